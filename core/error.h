@@ -1,0 +1,40 @@
+#pragma once
+// How every fallible function of the house answers.
+//
+// A bug asserts. Bad input or environment is an Error inside tl::expected. A numerical outcome ("did not converge",
+// "under-determined") is no Error but a status inside the result.
+
+#include <string>
+#include <tl/expected.hpp>
+
+namespace seamwright {
+
+// Decides the exit code of the command line: usage and input end with 2, device and file with 3.
+enum class ErrorKind { usage, input, device, file };
+
+// One clear sentence: what is wrong, where, and how to mend it. `where` and `mend` may be empty.
+struct Error {
+    ErrorKind kind = ErrorKind::input;
+    std::string what;   // "the rotation is not orthonormal (off by 0.02)"
+    std::string where;  // "spots[3].workobject_from_sensor"
+    std::string mend;   // "give a rotation matrix whose rows have length 1"
+    std::string sentence() const;
+};
+
+template <class T>
+using Expected = tl::expected<T, Error>;
+
+inline tl::unexpected<Error> input_error(std::string what, std::string where = {}, std::string mend = {}) {
+    return tl::unexpected(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
+}
+inline tl::unexpected<Error> usage_error(std::string what, std::string where = {}, std::string mend = {}) {
+    return tl::unexpected(Error{ErrorKind::usage, std::move(what), std::move(where), std::move(mend)});
+}
+inline tl::unexpected<Error> device_error(std::string what, std::string where = {}, std::string mend = {}) {
+    return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend)});
+}
+inline tl::unexpected<Error> file_error(std::string what, std::string where = {}, std::string mend = {}) {
+    return tl::unexpected(Error{ErrorKind::file, std::move(what), std::move(where), std::move(mend)});
+}
+
+}  // namespace seamwright

@@ -1,8 +1,10 @@
 #pragma once
-// The project: plain value types, everything the engineer sets up. Stored by project_file.h, run by station.h.
+// The project: plain value types, everything the engineer sets up. Stored by project_file.h, run by
+// station.h.
 //
-// Frames. base: the robot's; work object: the part as taught, base_from_workobject; flange; sensor. A spot's pose
-// in the work object is derived: workobject_from_sensor = base_from_workobject^-1 * base_from_flange * flange_from_sensor.
+// Frames. base: the robot's; work object: the part as taught, base_from_workobject; flange; sensor. A spot's
+// pose in the work object is derived: workobject_from_sensor = base_from_workobject^-1 * base_from_flange *
+// flange_from_sensor.
 
 #include <cstdint>
 #include <map>
@@ -30,45 +32,47 @@ struct PartSetup {
 };
 
 struct SensorSetup {
-    std::string id;                   // "A"
-    std::string driver;               // registry name
+    std::string id;      // "A"
+    std::string driver;  // registry name
     nlohmann::json settings = nlohmann::json::object();
-    SensorIdentity identity;          // as last connected; empty serial = never
-    PeakOptions peaks;                // image -> peaks
-    FilterOptions filter;             // stripe model
-    std::string calibration_id;       // the one in use; empty = none (then only finished profiles can be measured)
+    SensorIdentity identity;     // as last connected; empty serial = never
+    PeakOptions peaks;           // image -> peaks
+    FilterOptions filter;        // stripe model
+    std::string calibration_id;  // the one in use; empty = none (then only finished profiles can be measured)
 };
 
 struct RobotSetup {
-    std::string id;                   // "R1"
+    std::string id;  // "R1"
     std::string driver;
     nlohmann::json settings = nlohmann::json::object();
     RobotIdentity identity;
-    RobotMode required_mode = RobotMode::unknown;  // pushes are refused in any other; unknown = any but stopped/fault
+    RobotMode required_mode =
+        RobotMode::unknown;  // pushes are refused in any other; unknown = any but stopped/fault
 };
 
 // A calibration that turns a sensor's frames into millimetres on the flange.
 struct Calibration {
     std::string id;
-    std::string method;               // "simulated truth", "tcp-sphere", "stripe-camera", "factory", ...
+    std::string method;  // "simulated truth", "tcp-sphere", "stripe-camera", "factory", ...
     std::string sensor_id, robot_id;
-    SensorIdentity sensor_identity;   // compared before every push
+    SensorIdentity sensor_identity;  // compared before every push
     RobotIdentity robot_identity;
-    std::string created_utc;          // ISO 8601
-    std::string source;               // from which data
-    std::optional<SensorModel> model; // absent for sensors that deliver millimetres themselves
+    std::string created_utc;           // ISO 8601
+    std::string source;                // from which data
+    std::optional<SensorModel> model;  // absent for sensors that deliver millimetres themselves
     Pose flange_from_sensor = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();
-    std::string verdict;              // good | usable | poor | undetermined
-    nlohmann::json raw = nlohmann::json::object();  // the data it was solved from, complete enough to solve again
+    std::string verdict;  // good | usable | poor | undetermined
+    nlohmann::json raw =
+        nlohmann::json::object();  // the data it was solved from, complete enough to solve again
     nlohmann::json result = nlohmann::json::object();
 };
 
 struct Spot {
-    std::string id;                   // "S1"
+    std::string id;  // "S1"
     std::string sensor_id, robot_id;
     bool enabled = true;
-    bool required = true;             // a region with a required spot missing is not pushed
+    bool required = true;                      // a region with a required spot missing is not pushed
     Pose base_from_flange = Pose::Identity();  // taught trigger pose
     double entry_mm = 20, exit_mm = 20;        // travel before and after the trigger, along the sensor's Y
     double speed_mm_s = 100;
@@ -78,18 +82,18 @@ struct Spot {
     Profile reference_profile;
     Eigen::Vector3d weights = {1, 0, 1};
     double sigma_mm = 0.05;
-    double jitter_mm = 3;             // half width of the jitter window
+    double jitter_mm = 3;  // half width of the jitter window
     std::optional<ContourCurve> curve;
 };
 
 struct Region {
-    std::string id;                   // "R1"
+    std::string id;  // "R1"
     std::vector<std::string> spot_ids;
     FreeDof free = kAllFree;
     CorrectionLimits limits{25.0, 3.0};
-    double sigma_limit_mm = 0.1;      // over this the gate refuses
+    double sigma_limit_mm = 0.1;  // over this the gate refuses
     double sigma_limit_deg = 0.05;
-    std::string frame_name;           // on the controller
+    std::string frame_name;                   // on the controller
     Pose base_from_frame = Pose::Identity();  // taught, for the undisplaced part
 };
 

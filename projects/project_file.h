@@ -1,0 +1,87 @@
+#pragma once
+// *.seam: one project in one SQLite file.
+//
+// Identity: application_id "Seam" (0x5365616D), user_version = number of the last migration (schema.h).
+// Opening refuses, with one sentence (ErrorKind::file): what is no SQLite database, another program's, a
+// newer version's, truncated or damaged (SQLite's own check, foreign keys, tables that differ from what the
+// migrations make, so that triggers or views somebody planted never run).
+//
+// Crash safety: rollback journal, synchronous = FULL. Every save_*/append_* is one transaction; a process
+// killed at any instant leaves the last committed state, which the next open restores from the journal beside
+// the file (FILE.seam-journal; move both together). A write-ahead log was not chosen because then a project
+// is two files most of the time. A new file is made under another name in the same folder and renamed when
+// complete. Migrations run on a copy that replaces the file when it has passed the checks.
+//
+// Contents: one row per sensor, robot, calibration, spot, region (key columns + JSON in project_json.h's
+// form, doubles exact, profiles as blobs of profile_blob.h); a run is one row with its spots, regions, and
+// captures packed into blobs of about 1 MiB, and refers to the setup it was made with (the project as JSON,
+// stored once per content), so that it can be computed again after the project was edited.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "projects/project.h"
+#include "projects/run.h"
+
+namespace seamwright {
+
+enum class FileAccess { read_write, read_only };
+
+// What a list of runs shows; cheap.
+struct RunSummary {
+    std::int64_t number = 0;
+    std::string part_id, started_utc, finished_utc;
+    bool push = false;
+    RunStatus status = RunStatus::ok;
+    std::string message;
+    int spots = 0, captures = 0;
+};
+
+// One thread at a time. Several processes may have a file open; a writer waits up to 5 s for another's lock.
+class ProjectFile {
+  public:
+    // Makes a file holding `project`. An existing file is refused unless `replace`, and then only if it is
+    // empty or a Seamwright file.
+    static Expected<ProjectFile> create(const std::filesystem::path& path, const Project& project,
+                                        bool replace = false);
+    // An older file is brought up to date: in place for read_write, in memory for read_only.
+    static Expected<ProjectFile> open(const std::filesystem::path& path,
+                                      FileAccess access = FileAccess::read_write);
+    ProjectFile(ProjectFile&&) noexcept;
+    ProjectFile& operator=(ProjectFile&&) noexcept;
+    ~ProjectFile();
+
+    const std::filesystem::path& path() const;
+
+    Expected<Project> load() const;
+    // Only rows that changed are written. Refuses (input) two entities of one id and empty ids.
+    Expected<void> save(const Project& project);
+
+    // `setup` is the project the run was made with. Returns the run's number; events of the record get it
+    // too.
+    Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
+    // Returns the event's id.
+    Expected<std::int64_t> append_event(const EventRecord& event);
+
+    Expected<std::vector<RunSummary>> runs() const;
+    // `with_captures` false leaves out the raw data.
+    Expected<RunRecord> load_run(std::int64_t number, bool with_captures = true) const;
+    // The project as it was when the run was made, without mesh and calibration raw data.
+    Expected<Project> load_run_setup(std::int64_t number) const;
+    // Newest last; run 0 = all.
+    Expected<std::vector<EventRecord>> events(std::int64_t run = 0) const;
+    Expected<void> delete_run(std::int64_t number);
+
+    // The long check: SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
+    // = sound.
+    std::vector<Error> check() const;
+
+  private:
+    struct Impl;
+    explicit ProjectFile(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,131 @@
+#pragma once
+// What one measuring run leaves behind: the captures as the sensors delivered them, what was measured in
+// them, the corrections, what the safety gate said, what was written to the robot. Value types; stored by
+// project_file.h, made by station.h, computed again by replay.h.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/correction/correction.h"
+#include "core/features/feature.h"
+#include "core/profile/profile.h"
+#include "devices/frame.h"
+
+namespace seamwright {
+
+// A raw camera image with its own pixels, rows packed without gaps; depths as in StripeImage.
+struct StoredImage {
+    int width = 0, height = 0, bit_depth = 8;
+    std::vector<std::byte> pixels;  // [height * width * bytes per pixel]
+    StripeImage view() const;
+};
+
+// One frame as kept with a run. Raw: what the sensor gave, before tracking and filtering. A profile sensor
+// leaves `profile` (no segments); a camera leaves `candidates` (peaks in millimetres) and, where asked, the
+// image. A damaged frame leaves only its status.
+struct Capture {
+    std::string spot_id, sensor_id;
+    FrameStatus status = FrameStatus::ok;
+    std::uint64_t sequence = 0;
+    std::int64_t device_time_ns = 0, host_time_ns = 0;
+    std::optional<Pose> base_from_flange;  // as reported for this trigger; absent = the taught pose is taken
+    Profile profile;
+    ProfileCandidates candidates;
+    std::optional<StoredImage> image;
+};
+
+enum class SpotStatus {
+    measured,        // the feature was found; only this one enters a correction
+    not_measured,    // no frame came: sensor silent, robot error, run cancelled
+    damaged_frame,   // a frame came, but not whole; it is never measured
+    no_stripe,       // no usable profile in the frame
+    no_calibration,  // an image without a sensor model, or the sensor has no calibration
+    no_feature       // feature.status says why
+};
+std::string_view to_string(SpotStatus status);
+std::optional<SpotStatus> spot_status_from(std::string_view name);
+
+struct SpotMeasurement {
+    std::string spot_id;
+    SpotStatus status = SpotStatus::not_measured;
+    std::string message;                                    // empty when measured, else why, in plain words
+    Feature feature;                                        // sensor frame at the pose of the exposure
+    Eigen::Vector3d measured_mm = Eigen::Vector3d::Zero();  // in the taught sensor frame, see measure.h
+    double sigma_mm = 0;            // of an observed coordinate: spot's own and the feature's
+    bool pose_reported = false;     // false: taught pose taken
+    std::string part_id;            // the part it was measured on
+    std::int64_t host_time_ns = 0;  // of the frame, steady clock
+    int capture = -1;               // index in RunRecord::captures, -1 = none
+};
+
+enum class PushStatus {
+    not_pushed,  // dry run, or the gate refused
+    written,     // written, read back, equal
+    failed,      // nothing was written: the old frame could not be read or the attempt could not be recorded
+    restored,    // alarm: write or read-back failed; the old frame stands on the controller again (read back,
+                 // equal)
+    not_restored  // alarm: and the old frame could not be put back either
+};
+std::string_view to_string(PushStatus status);
+std::optional<PushStatus> push_status_from(std::string_view name);
+
+struct PushRecord {
+    PushStatus status = PushStatus::not_pushed;
+    std::string frame_name;
+    std::optional<Pose> before, read_back;
+    std::string message;
+};
+
+struct RegionRecord {
+    std::string region_id;
+    std::optional<RegionCorrection>
+        correction;  // absent when too little was measured to solve; `refusals` says so
+    Pose base_from_frame = Pose::Identity();  // the frame that carries the path onto the displaced part
+    bool gate_passed = false;
+    std::vector<std::string> refusals;  // why the gate refuses, in words; empty when passed
+    PushRecord push;
+};
+
+enum class EventKind { note, refusal, push_attempt, push, alarm, device };
+std::string_view to_string(EventKind kind);
+std::optional<EventKind> event_kind_from(std::string_view name);
+
+struct EventRecord {
+    std::int64_t id = 0;   // given by the file
+    std::string utc;       // ISO 8601 with milliseconds, "2024-05-01T12:00:00.000Z"
+    std::int64_t run = 0;  // 0 = outside any run
+    EventKind kind = EventKind::note;
+    std::string subject;  // region, frame, sensor, robot
+    std::string text;
+};
+
+enum class RunStatus {
+    ok,        // every region solved and passed the gate (and, in a push run, written and read back)
+    refused,   // at least one region refused by the gate or not solvable
+    alarm,     // a push went wrong
+    device,    // a sensor or robot failed; nothing was pushed
+    cancelled  // by the user; nothing was pushed
+};
+std::string_view to_string(RunStatus status);
+std::optional<RunStatus> run_status_from(std::string_view name);
+
+struct RunRecord {
+    std::int64_t number = 0;  // given by the file, 1..
+    std::string part_id;
+    std::string started_utc, finished_utc;
+    bool push = false;  // false = dry run
+    RunStatus status = RunStatus::ok;
+    std::string message;                 // one sentence
+    std::vector<SpotMeasurement> spots;  // enabled spots, in the order of the project
+    std::vector<RegionRecord> regions;
+    std::vector<Capture> captures;
+    std::vector<EventRecord> events;
+};
+
+// The wall clock for records.
+std::string utc_now();
+
+}  // namespace seamwright

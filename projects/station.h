@@ -1,0 +1,70 @@
+#pragma once
+// The station: an open project, its devices, and the run measure -> correct -> gate -> push -> read back ->
+// record. The command line and the screen call the same functions.
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "devices/registry.h"
+#include "projects/project_file.h"
+
+namespace seamwright {
+
+struct RunProgress {
+    int done = 0, total = 0;  // spots
+    std::string text;         // "S3 measured", "region left: pushed"
+};
+
+struct RunOptions {
+    std::string part_id;       // empty = "run <number>"
+    bool push = false;         // false = dry run: everything but writing
+    bool keep_images = false;  // raw images with the run, beside candidates and profiles
+    std::chrono::milliseconds trigger_timeout{20000};  // robot: from one spot to the next
+    std::chrono::milliseconds frame_timeout{3000};     // sensor: from trigger to frame
+    std::stop_token cancel;
+    std::function<void(const RunProgress&)> progress;  // called on the running thread
+};
+
+// One thread at a time.
+class Station {
+  public:
+    static Expected<Station> open(const std::filesystem::path& path,
+                                  FileAccess access = FileAccess::read_write);
+    explicit Station(ProjectFile file, Project project);
+    Station(Station&&) noexcept;
+    Station& operator=(Station&&) noexcept;
+    ~Station();
+
+    const Project& project() const;
+    ProjectFile& file();
+    // Saves, then takes over. Devices stay as connected; connect() again after changing their settings.
+    Expected<void> edit(const Project& project);
+
+    // Opens every device of the project through the registry and notes who answered in the project
+    // (SensorSetup::identity, RobotSetup::identity). All or nothing.
+    Expected<void> connect();
+    // The same with devices made elsewhere (tests, a simulation already running).
+    void connect(std::map<std::string, std::unique_ptr<ProfileSource>> sensors,
+                 std::map<std::string, std::unique_ptr<RobotLink>> robots);
+    void disconnect();
+    bool connected() const;
+    ProfileSource* sensor(const std::string& id);  // nullptr when not connected
+    RobotLink* robot(const std::string& id);
+
+    // One part. Device failures and cancelling end in the record's status (with what was measured until
+    // then), never with anything half-written; nothing is pushed before all regions are judged. The record is
+    // in the file when this returns. Error: not connected, no enabled spot, a recipe that cannot be prepared,
+    // the file.
+    Expected<RunRecord> run(const RunOptions& options);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seamwright

@@ -15,6 +15,8 @@ struct ParameterInfo {
     double minimum = 0, maximum = 0, default_value = 0;
     int decimals = 3;
     std::string help;  // one sentence
+    // A choice by name ("left", "right"): the value is the index, minimum 0 and maximum size - 1. Empty: a number.
+    std::vector<std::string> choices = {};
 };
 
 // Settings by name; what is absent has its default.

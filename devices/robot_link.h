@@ -3,7 +3,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry/pose.h"
@@ -18,6 +20,7 @@ struct RobotIdentity {
 
 enum class RobotMode { unknown, manual_reduced /* T1 */, manual_full /* T2 */, automatic, external, stopped, fault };
 std::string_view to_string(RobotMode mode);
+std::optional<RobotMode> robot_mode_from_string(std::string_view name);
 
 // One linear pass over a spot: entry -> trigger -> exit, sensor's Y along the travel. Poses are base_from_flange.
 struct MeasuringMove {
@@ -49,6 +52,8 @@ public:
     // The frame (base) that a region's path runs in, by its name on the controller: base_from_frame.
     virtual Expected<Pose> read_frame(const std::string& name) = 0;
     virtual Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) = 0;
+    // Teaching: goes to `base_from_flange` and stands still there. An Error (device) unless the driver can move.
+    virtual Expected<void> move_to(const Pose& base_from_flange);
 };
 
 }  // namespace seamwright

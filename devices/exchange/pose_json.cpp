@@ -1,0 +1,223 @@
+#include "devices/exchange/pose_json.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "core/geometry/notation.h"
+#include "devices/exchange/text_file.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kFarthest_mm = 1e5;
+constexpr double kFarthest_m = 50;
+
+Expected<Eigen::Vector3d> vector3(const nlohmann::json& json, const char* key, const std::string& where) {
+    const auto numbers = json_numbers(json.at(key), 3, json_path(where, key));
+    if (!numbers) return tl::unexpected(numbers.error());
+    return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+}
+
+Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where) {
+    Eigen::Matrix4d matrix;
+    const bool rows = json.is_array() && !json.empty() && json[0].is_array();
+    if (rows) {
+        if (json.size() != 4) return input_error(fmt::format("has {} rows instead of 4", json.size()), where);
+        for (int r = 0; r < 4; ++r) {
+            const auto numbers = json_numbers(json[static_cast<std::size_t>(r)], 4,
+                                              json_path(where, static_cast<std::size_t>(r)));
+            if (!numbers) return tl::unexpected(numbers.error());
+            for (int c = 0; c < 4; ++c) matrix(r, c) = (*numbers)[static_cast<std::size_t>(c)];
+        }
+    } else {
+        const auto numbers = json_numbers(json, 16, where);
+        if (!numbers) return tl::unexpected(numbers.error());
+        for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[static_cast<std::size_t>(i)];
+    }
+    return pose_from_matrix(matrix, where);
+}
+
+Expected<Eigen::Matrix3d> from_abc(const nlohmann::json& json, const std::string& where) {
+    const auto abc = vector3(json, "abc", where);
+    if (!abc) return tl::unexpected(abc.error());
+    if (abc->cwiseAbs().maxCoeff() > 720) {
+        return input_error("an angle exceeds 720", json_path(where, "abc"), "give degrees");
+    }
+    return rotation_from_kuka({abc->x(), abc->y(), abc->z()});
+}
+
+Expected<Pose> pose_from_metres(const Eigen::Vector3d& t, const Eigen::Vector4d& q_xyzw,
+                                const std::string& where) {
+    if (!t.allFinite() || !q_xyzw.allFinite()) return input_error("a number is not finite", where);
+    if (t.norm() > kFarthest_m) {
+        return input_error(
+            fmt::format("the translation is {} m long, but this format is in metres", t.norm()), where,
+            "convert millimetres to metres or use a .json pose file");
+    }
+    const auto rotation = rotation_from_abb({q_xyzw[3], q_xyzw[0], q_xyzw[1], q_xyzw[2]}, where);
+    if (!rotation) return tl::unexpected(rotation.error());
+    return make_pose(*rotation, 1000.0 * t);
+}
+
+// The number at the start of `text`, blanks skipped; text moves behind it.
+Expected<double> leading_number(std::string_view text, const std::string& where) {
+    double value = 0;
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || problem != std::errc() || end != text.data() + text.size()) {
+        std::string shown;
+        for (char c : text.substr(0, 24)) shown += (c >= 32 && c < 127) ? c : '?';
+        return input_error("\"" + shown + "\" is no number", where);
+    }
+    return value;
+}
+
+}  // namespace
+
+Expected<Pose> pose_from_json(const nlohmann::json& json, const std::string& where) {
+    if (auto ok = json_object(json, {"xyz", "abc", "quat_wxyz", "rotvec_rad", "matrix"}, where); !ok) {
+        return tl::unexpected(ok.error());
+    }
+    const bool xyz = json.contains("xyz"), abc = json.contains("abc"), quat = json.contains("quat_wxyz"),
+               rotvec = json.contains("rotvec_rad"), matrix = json.contains("matrix");
+    if (abc + quat + rotvec > 1 || (matrix && (quat || rotvec)) || (matrix && xyz != abc)) {
+        return input_error("mixes several forms of a pose", where,
+                           "give xyz with one of abc, quat_wxyz, rotvec_rad, or matrix alone");
+    }
+    if (!matrix && (!xyz || abc + quat + rotvec != 1)) {
+        return input_error(xyz ? "has no rotation" : "has no translation", where,
+                           "give xyz with one of abc, quat_wxyz, rotvec_rad, or matrix alone");
+    }
+    Eigen::Vector3d t = Eigen::Vector3d::Zero();
+    if (xyz) {
+        const auto read = vector3(json, "xyz", where);
+        if (!read) return tl::unexpected(read.error());
+        t = *read;
+        if (t.cwiseAbs().maxCoeff() > kFarthest_mm) {
+            return input_error("the translation exceeds 100 m", json_path(where, "xyz"), "give millimetres");
+        }
+    }
+    if (matrix) {
+        const auto pose = from_matrix(json.at("matrix"), json_path(where, "matrix"));
+        if (!pose || !xyz) return pose;
+        const auto rotation = from_abc(json, where);
+        if (!rotation) return tl::unexpected(rotation.error());
+        const Pose beside = make_pose(*rotation, t);
+        if (distance_mm(*pose, beside) > 1e-4 || deg_from_rad(angle_rad(*pose, beside)) > 1e-4) {
+            return input_error("xyz and abc contradict matrix", where, "give one form only");
+        }
+        return pose;
+    }
+    if (abc) {
+        const auto rotation = from_abc(json, where);
+        if (!rotation) return tl::unexpected(rotation.error());
+        return make_pose(*rotation, t);
+    }
+    if (quat) {
+        const auto q = json_numbers(json.at("quat_wxyz"), 4, json_path(where, "quat_wxyz"));
+        if (!q) return tl::unexpected(q.error());
+        const auto rotation =
+            rotation_from_abb({(*q)[0], (*q)[1], (*q)[2], (*q)[3]}, json_path(where, "quat_wxyz"));
+        if (!rotation) return tl::unexpected(rotation.error());
+        return make_pose(*rotation, t);
+    }
+    const auto w = vector3(json, "rotvec_rad", where);
+    if (!w) return tl::unexpected(w.error());
+    if (w->norm() > 2 * kPi + 1e-6) {
+        return input_error("the rotation vector is longer than one turn", json_path(where, "rotvec_rad"),
+                           "give radian");
+    }
+    return make_pose(rotation_exp(*w), t);
+}
+
+nlohmann::json json_from_pose(const Pose& pose) {
+    const auto abc = kuka_from_rotation(pose.linear());
+    const auto t = pose.translation();
+    nlohmann::json matrix = nlohmann::json::array();
+    for (int r = 0; r < 4; ++r) {
+        matrix.push_back(
+            {pose.matrix()(r, 0), pose.matrix()(r, 1), pose.matrix()(r, 2), pose.matrix()(r, 3)});
+    }
+    return {{"xyz", {t.x(), t.y(), t.z()}}, {"abc", {abc.a_deg, abc.b_deg, abc.c_deg}}, {"matrix", matrix}};
+}
+
+Expected<Pose> parse_tuple_pose(std::string_view text, const std::string& where) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    constexpr std::string_view separators = "()[], \t\r\n";
+    double numbers[7];
+    std::size_t count = 0, at = 0;
+    while ((at = text.find_first_not_of(separators, at)) != std::string_view::npos) {
+        const auto end = std::min(text.find_first_of(separators, at), text.size());
+        const auto number = leading_number(text.substr(at, end - at), where);
+        if (!number) return tl::unexpected(number.error());
+        if (count == 7)
+            return input_error("holds more than 7 numbers", where, "write ((x, y, z), (qx, qy, qz, qw))");
+        numbers[count++] = *number;
+        at = end;
+    }
+    if (count != 7) {
+        return input_error(fmt::format("holds {} numbers instead of 7", count), where,
+                           "write ((x, y, z), (qx, qy, qz, qw)) in metres");
+    }
+    return pose_from_metres({numbers[0], numbers[1], numbers[2]},
+                            {numbers[3], numbers[4], numbers[5], numbers[6]}, where);
+}
+
+Expected<Pose> parse_yaml_pose(std::string_view text, const std::string& where) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::map<std::string, double, std::less<>> values;
+    constexpr std::string_view keys[] = {"x", "y", "z", "qx", "qy", "qz", "qw"};
+    const auto trim = [](std::string_view s) {
+        const auto first = s.find_first_not_of(" \t\r");
+        return first == std::string_view::npos ? std::string_view{}
+                                               : s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
+    };
+    std::size_t line_number = 0;
+    while (!text.empty()) {
+        const auto end = text.find('\n');
+        std::string_view line = text.substr(0, end);
+        text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+        ++line_number;
+        const std::string at = fmt::format("{}, line {}", where, line_number);
+        line = trim(line.substr(0, line.find('#')));
+        if (line.empty() || line == "---" || line == "...") continue;
+        const auto colon = line.find(':');
+        if (colon == std::string_view::npos) return input_error("is no `key: number`", at);
+        const std::string_view key = trim(line.substr(0, colon));
+        if (std::find(std::begin(keys), std::end(keys), key) == std::end(keys)) {
+            return input_error("is not one of x, y, z, qx, qy, qz, qw", at);
+        }
+        const auto number = leading_number(trim(line.substr(colon + 1)), at);
+        if (!number) return tl::unexpected(number.error());
+        if (!values.emplace(key, *number).second)
+            return input_error(std::string(key) + " is given twice", at);
+    }
+    for (std::string_view key : keys) {
+        if (!values.contains(key)) return input_error(std::string(key) + " is missing", where);
+    }
+    return pose_from_metres({values["x"], values["y"], values["z"]},
+                            {values["qx"], values["qy"], values["qz"], values["qw"]}, where);
+}
+
+Expected<Pose> read_pose_file(const std::filesystem::path& path) {
+    const std::string where = path.string();
+    const auto text = read_text_file(path, std::size_t{1} << 20);
+    if (!text) return tl::unexpected(text.error());
+    const auto extension = path.extension().string();
+    if (extension == ".txt") return parse_tuple_pose(*text, where);
+    if (extension == ".yaml" || extension == ".yml") return parse_yaml_pose(*text, where);
+    if (extension == ".json") {
+        const auto json = parse_json(*text, where);
+        if (!json) return tl::unexpected(json.error());
+        if (json->is_object() && json->contains("base_from_flange")) {
+            return pose_from_json((*json)["base_from_flange"], where + ": base_from_flange");
+        }
+        return pose_from_json(*json, where);
+    }
+    return input_error("is no known kind of pose file", where, "known are .txt, .yaml and .json");
+}
+
+}  // namespace seamwright

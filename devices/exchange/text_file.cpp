@@ -1,0 +1,240 @@
+#include "devices/exchange/text_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+namespace seamwright {
+namespace {
+
+struct Descriptor {
+    int fd = -1;
+    ~Descriptor() {
+        if (fd >= 0) ::close(fd);
+    }
+};
+
+std::string system_message() {
+    return std::strerror(errno);
+}
+
+const char* type_name(const nlohmann::json& json) {
+    switch (json.type()) {
+        case nlohmann::json::value_t::null:
+            return "null";
+        case nlohmann::json::value_t::object:
+            return "an object";
+        case nlohmann::json::value_t::array:
+            return "an array";
+        case nlohmann::json::value_t::string:
+            return "a text";
+        case nlohmann::json::value_t::boolean:
+            return "true/false";
+        default:
+            return "a number";
+    }
+}
+
+}  // namespace
+
+Expected<std::string> read_text_file(const std::filesystem::path& path, std::size_t limit_bytes) {
+    Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (file.fd < 0) return file_error("cannot be opened (" + system_message() + ")", path.string());
+    struct stat info {};
+    if (::fstat(file.fd, &info) != 0)
+        return file_error("cannot be read (" + system_message() + ")", path.string());
+    if (S_ISDIR(info.st_mode)) return file_error("is a folder, not a file", path.string());
+    const auto too_long = [&] {
+        return file_error(fmt::format("is longer than {} MiB", limit_bytes >> 20), path.string());
+    };
+    if (info.st_size > 0 && static_cast<std::size_t>(info.st_size) > limit_bytes) return too_long();
+    std::string text;
+    std::size_t used = 0;
+    text.resize(info.st_size > 0 ? static_cast<std::size_t>(info.st_size) + 1 : 65536);
+    for (;;) {
+        if (used == text.size()) text.resize(text.size() * 2);
+        const ssize_t got = ::read(file.fd, text.data() + used, text.size() - used);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return file_error("cannot be read (" + system_message() + ")", path.string());
+        if (got == 0) break;
+        used += static_cast<std::size_t>(got);
+        if (used > limit_bytes) return too_long();
+    }
+    text.resize(used);
+    return text;
+}
+
+Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
+    if (path.filename().empty()) return file_error("names no file", path.string(), "give the path of a file");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        return file_error("is a folder, not a file", path.string());
+    std::string temporary = path.string() + ".XXXXXX";
+    Descriptor file{::mkstemp(temporary.data())};
+    if (file.fd < 0) {
+        return file_error("cannot be written (" + system_message() + ")", path.string(),
+                          "check that the folder exists and is writable");
+    }
+    const auto fail = [&] {
+        const std::string message = system_message();
+        ::unlink(temporary.c_str());
+        return file_error("cannot be written (" + message + ")", path.string());
+    };
+    std::size_t done = 0;
+    while (done < text.size()) {
+        const ssize_t put = ::write(file.fd, text.data() + done, text.size() - done);
+        if (put < 0 && errno == EINTR) continue;
+        if (put <= 0) return fail();
+        done += static_cast<std::size_t>(put);
+    }
+    // mkstemp gives 0600; a file that already stood there keeps its rights, a new one gets the process's
+    // usual ones.
+    struct stat old {};
+    mode_t mode = 0;
+    if (::stat(path.c_str(), &old) == 0) {
+        mode = old.st_mode & 07777;
+    } else {
+        const mode_t mask = ::umask(0);
+        ::umask(mask);
+        mode = 0666 & ~mask;
+    }
+    if (::fchmod(file.fd, mode) != 0 || ::fsync(file.fd) != 0) return fail();
+    if (::rename(temporary.c_str(), path.c_str()) != 0) return fail();
+    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    Descriptor entry{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+    if (entry.fd >= 0)
+        ::fsync(entry.fd);  // the rename itself; refused by some network file systems, which is harmless
+    return {};
+}
+
+Expected<nlohmann::json> parse_json(std::string_view text, const std::string& where) {
+    using nlohmann::json;
+    constexpr int kDeepest = 64;
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::vector<std::set<std::string>> keys;  // of the objects that are open
+    std::string twice;
+    bool too_deep = false;
+    const json::parser_callback_t watch = [&](int depth, json::parse_event_t event, json& parsed) {
+        if (depth > kDeepest) too_deep = true;
+        if (event == json::parse_event_t::object_start) keys.emplace_back();
+        if (event == json::parse_event_t::object_end) keys.pop_back();
+        if (event == json::parse_event_t::key) {
+            const auto& key = parsed.get_ref<const std::string&>();
+            if (!keys.back().insert(key).second && twice.empty()) twice = key;
+        }
+        return !too_deep;
+    };
+    try {
+        json parsed = json::parse(text.begin(), text.end(), watch);
+        if (too_deep) return input_error(fmt::format("the JSON is nested deeper than {}", kDeepest), where);
+        if (!twice.empty())
+            return input_error("the key \"" + twice + "\" is given twice in one object", where);
+        return parsed;
+    } catch (const json::exception& e) {
+        // "[json.exception.parse_error.101] parse error at line 1, column 4: ..." without the library's own
+        // tag.
+        std::string message = e.what();
+        if (const auto tag = message.find("] "); tag != std::string::npos) message.erase(0, tag + 2);
+        if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) message = "the text is empty";
+        return input_error("is no JSON (" + message + ")", where);
+    }
+}
+
+Expected<nlohmann::json> read_json_file(const std::filesystem::path& path, std::size_t limit_bytes) {
+    auto text = read_text_file(path, limit_bytes);
+    if (!text) return tl::unexpected(text.error());
+    return parse_json(*text, path.string());
+}
+
+std::string json_path(const std::string& where, const std::string& key) {
+    return where.empty() ? key : where + "." + key;
+}
+std::string json_path(const std::string& where, std::size_t index) {
+    return fmt::format("{}[{}]", where, index);
+}
+
+Expected<void> json_object(const nlohmann::json& json, std::initializer_list<std::string_view> known,
+                           const std::string& where) {
+    if (!json.is_object())
+        return input_error(std::string("must be an object, not ") + type_name(json), where);
+    if (known.size() == 0) return {};
+    for (const auto& [key, value] : json.items()) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        std::string list;
+        for (std::string_view k : known) list += (list.empty() ? "" : ", ") + std::string(k);
+        return input_error("is not a known field", json_path(where, key), "known are " + list);
+    }
+    return {};
+}
+
+namespace {
+Expected<double> as_number(const nlohmann::json& value, const std::string& where) {
+    if (!value.is_number())
+        return input_error(std::string("must be a number, not ") + type_name(value), where);
+    const double number = value.get<double>();
+    if (!std::isfinite(number)) return input_error("must be finite", where);
+    return number;
+}
+}  // namespace
+
+Expected<double> json_number(const nlohmann::json& json, const std::string& key, const std::string& where) {
+    const auto it = json.find(key);
+    if (it == json.end()) return input_error("is missing", json_path(where, key));
+    return as_number(*it, json_path(where, key));
+}
+
+Expected<std::string> json_string(const nlohmann::json& json, const std::string& key,
+                                  const std::string& where) {
+    const auto it = json.find(key);
+    if (it == json.end()) return input_error("is missing", json_path(where, key));
+    if (!it->is_string()) {
+        return input_error(std::string("must be a text, not ") + type_name(*it), json_path(where, key));
+    }
+    return it->get<std::string>();
+}
+
+Expected<double> json_number_or(const nlohmann::json& json, const std::string& key, double otherwise,
+                                const std::string& where) {
+    return json.contains(key) ? json_number(json, key, where) : Expected<double>(otherwise);
+}
+
+Expected<bool> json_bool_or(const nlohmann::json& json, const std::string& key, bool otherwise,
+                            const std::string& where) {
+    const auto it = json.find(key);
+    if (it == json.end()) return otherwise;
+    if (!it->is_boolean()) {
+        return input_error(std::string("must be true or false, not ") + type_name(*it),
+                           json_path(where, key));
+    }
+    return it->get<bool>();
+}
+
+Expected<std::string> json_string_or(const nlohmann::json& json, const std::string& key,
+                                     const std::string& otherwise, const std::string& where) {
+    return json.contains(key) ? json_string(json, key, where) : Expected<std::string>(otherwise);
+}
+
+Expected<std::vector<double>> json_numbers(const nlohmann::json& json, std::size_t size,
+                                           const std::string& where) {
+    if (!json.is_array())
+        return input_error(std::string("must be an array of numbers, not ") + type_name(json), where);
+    if (size != 0 && json.size() != size) {
+        return input_error(fmt::format("has {} entries instead of {}", json.size(), size), where);
+    }
+    std::vector<double> numbers;
+    numbers.reserve(json.size());
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const auto number = as_number(json[i], json_path(where, i));
+        if (!number) return tl::unexpected(number.error());
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+}  // namespace seamwright

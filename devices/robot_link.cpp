@@ -1,0 +1,44 @@
+#include "devices/robot_link.h"
+
+#include <array>
+
+namespace seamwright {
+namespace {
+constexpr std::array kModes = {RobotMode::unknown,   RobotMode::manual_reduced, RobotMode::manual_full,
+                               RobotMode::automatic, RobotMode::external,       RobotMode::stopped,
+                               RobotMode::fault};
+}
+
+std::string_view to_string(RobotMode mode) {
+    switch (mode) {
+        case RobotMode::unknown:
+            return "unknown";
+        case RobotMode::manual_reduced:
+            return "manual_reduced";
+        case RobotMode::manual_full:
+            return "manual_full";
+        case RobotMode::automatic:
+            return "automatic";
+        case RobotMode::external:
+            return "external";
+        case RobotMode::stopped:
+            return "stopped";
+        case RobotMode::fault:
+            return "fault";
+    }
+    return "unknown";
+}
+
+std::optional<RobotMode> robot_mode_from_string(std::string_view name) {
+    for (const RobotMode mode : kModes) {
+        if (to_string(mode) == name) return mode;
+    }
+    return std::nullopt;
+}
+
+Expected<void> RobotLink::move_to(const Pose&) {
+    return device_error("this robot cannot be moved from the program", {},
+                        "move it by hand and read its position");
+}
+
+}  // namespace seamwright

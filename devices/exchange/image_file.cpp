@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "devices/exchange/text_file.h"
+#include "devices/exchange/files.h"
 
 namespace seamwright {
 

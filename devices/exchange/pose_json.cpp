@@ -7,19 +7,13 @@
 #include <map>
 
 #include "core/geometry/notation.h"
-#include "devices/exchange/text_file.h"
+#include "devices/exchange/json_fields.h"
 
 namespace seamwright {
 namespace {
 
 constexpr double kFarthest_mm = 1e5;
 constexpr double kFarthest_m = 50;
-
-Expected<Eigen::Vector3d> vector3(const nlohmann::json& json, const char* key, const std::string& where) {
-    const auto numbers = json_numbers(json.at(key), 3, json_path(where, key));
-    if (!numbers) return tl::unexpected(numbers.error());
-    return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-}
 
 Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where) {
     Eigen::Matrix4d matrix;
@@ -41,7 +35,7 @@ Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where)
 }
 
 Expected<Eigen::Matrix3d> from_abc(const nlohmann::json& json, const std::string& where) {
-    const auto abc = vector3(json, "abc", where);
+    const auto abc = json_vector3(json, "abc", where);
     if (!abc) return tl::unexpected(abc.error());
     if (abc->cwiseAbs().maxCoeff() > 720) {
         return input_error("an angle exceeds 720", json_path(where, "abc"), "give degrees");
@@ -77,8 +71,8 @@ Expected<double> leading_number(std::string_view text, const std::string& where)
 
 }  // namespace
 
-Expected<Pose> pose_from_json(const nlohmann::json& json, const std::string& where) {
-    if (auto ok = json_object(json, {"xyz", "abc", "quat_wxyz", "rotvec_rad", "matrix"}, where); !ok) {
+Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) {
+    if (auto ok = only_fields(json, {"xyz", "abc", "quat_wxyz", "rotvec_rad", "matrix"}, where); !ok) {
         return tl::unexpected(ok.error());
     }
     const bool xyz = json.contains("xyz"), abc = json.contains("abc"), quat = json.contains("quat_wxyz"),
@@ -93,7 +87,7 @@ Expected<Pose> pose_from_json(const nlohmann::json& json, const std::string& whe
     }
     Eigen::Vector3d t = Eigen::Vector3d::Zero();
     if (xyz) {
-        const auto read = vector3(json, "xyz", where);
+        const auto read = json_vector3(json, "xyz", where);
         if (!read) return tl::unexpected(read.error());
         t = *read;
         if (t.cwiseAbs().maxCoeff() > kFarthest_mm) {
@@ -124,7 +118,7 @@ Expected<Pose> pose_from_json(const nlohmann::json& json, const std::string& whe
         if (!rotation) return tl::unexpected(rotation.error());
         return make_pose(*rotation, t);
     }
-    const auto w = vector3(json, "rotvec_rad", where);
+    const auto w = json_vector3(json, "rotvec_rad", where);
     if (!w) return tl::unexpected(w.error());
     if (w->norm() > 2 * kPi + 1e-6) {
         return input_error("the rotation vector is longer than one turn", json_path(where, "rotvec_rad"),
@@ -133,7 +127,7 @@ Expected<Pose> pose_from_json(const nlohmann::json& json, const std::string& whe
     return make_pose(rotation_exp(*w), t);
 }
 
-nlohmann::json json_from_pose(const Pose& pose) {
+nlohmann::json pose_json(const Pose& pose) {
     const auto abc = kuka_from_rotation(pose.linear());
     const auto t = pose.translation();
     nlohmann::json matrix = nlohmann::json::array();
@@ -213,9 +207,9 @@ Expected<Pose> read_pose_file(const std::filesystem::path& path) {
         const auto json = parse_json(*text, where);
         if (!json) return tl::unexpected(json.error());
         if (json->is_object() && json->contains("base_from_flange")) {
-            return pose_from_json((*json)["base_from_flange"], where + ": base_from_flange");
+            return parse_pose((*json)["base_from_flange"], where + ": base_from_flange");
         }
-        return pose_from_json(*json, where);
+        return parse_pose(*json, where);
     }
     return input_error("is no known kind of pose file", where, "known are .txt, .yaml and .json");
 }

@@ -15,12 +15,12 @@ namespace seamwright {
 //   {"xyz":[mm],"quat_wxyz":[4]}      unit quaternion, w first (norm within 1e-3 of 1, then normalised)
 //   {"xyz":[mm],"rotvec_rad":[3]}     axis times angle in radian, at most one turn
 //   {"matrix":[16 row-major]} or {"matrix":[[4],[4],[4],[4]]}    translation in mm in the last column
-// What json_from_pose() writes (xyz, abc and matrix) reads back too: the matrix counts, and xyz and abc must
+// What pose_json() writes (xyz, abc and matrix) reads back too: the matrix counts, and xyz and abc must
 // agree with it within 1e-4 mm and 1e-4 degrees, so that an edit of one of them alone is found. Refused with
 // the JSON path: any other mixture, unknown fields, wrong lengths, texts, NaN, non-orthonormal or mirrored
 // matrices, translations beyond 100 m, angles beyond 720 degrees.
-Expected<Pose> pose_from_json(const nlohmann::json& json, const std::string& where);
-nlohmann::json json_from_pose(const Pose& pose);
+Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where);
+nlohmann::json pose_json(const Pose& pose);
 
 // Pose files beside recorded frames. The format, not the numbers, decides the unit; a metre format whose
 // translation exceeds 50 is refused as "millimetres in a file of metres".

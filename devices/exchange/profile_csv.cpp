@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "devices/exchange/text_file.h"
+#include "devices/exchange/files.h"
 
 namespace seamwright {
 namespace {
@@ -279,7 +279,7 @@ Expected<void> write_profile_csv(const std::filesystem::path& path, const Profil
     return write_text_file(path, profile_csv(profile));
 }
 
-Expected<std::vector<TravelProfile>> parse_travel_csv(std::string_view text, const std::string& where) {
+Expected<std::vector<TravelProfile>> parse_align_csv(std::string_view text, const std::string& where) {
     constexpr std::string_view wanted[] = {"travel_mm", "profile_index", "x_mm",   "z_mm",
                                            "intensity", "valid",         "segment"};
     Table table(text, where);
@@ -317,7 +317,7 @@ Expected<std::vector<TravelProfile>> parse_travel_csv(std::string_view text, con
     return pass;
 }
 
-std::string travel_csv(std::span<const TravelProfile> pass) {
+std::string align_csv(std::span<const TravelProfile> pass) {
     fmt::memory_buffer out;
     fmt::format_to(std::back_inserter(out), "travel_mm,profile_index,x_mm,z_mm\n");
     for (std::size_t p = 0; p < pass.size(); ++p) {
@@ -332,10 +332,10 @@ std::string travel_csv(std::span<const TravelProfile> pass) {
     return fmt::to_string(out);
 }
 
-Expected<std::vector<TravelProfile>> read_travel_csv(const std::filesystem::path& path) {
+Expected<std::vector<TravelProfile>> read_align_csv(const std::filesystem::path& path) {
     const auto text = read_text_file(path);
     if (!text) return tl::unexpected(text.error());
-    return parse_travel_csv(*text, path.string());
+    return parse_align_csv(*text, path.string());
 }
 
 }  // namespace seamwright

@@ -35,11 +35,11 @@ std::string profile_csv(const Profile& profile);
 Expected<Profile> read_profile_csv(const std::filesystem::path& path);
 Expected<void> write_profile_csv(const std::filesystem::path& path, const Profile& profile);
 
-// The pass over a spot: header `travel_mm,profile_index,x_mm,z_mm[,intensity]`, the rows of a profile
-// together. Besides the above refused: an index that comes back after another one, is negative or no whole
-// number, a travel that changes within a profile or is not finite. Profiles stay in file order.
-Expected<std::vector<TravelProfile>> parse_travel_csv(std::string_view text, const std::string& where);
-std::string travel_csv(std::span<const TravelProfile> pass);
-Expected<std::vector<TravelProfile>> read_travel_csv(const std::filesystem::path& path);
+// The pass over a spot (`seamwright align`): header `travel_mm,profile_index,x_mm,z_mm[,intensity]`, the rows
+// of a profile together. Besides the above refused: an index that comes back after another one, is negative
+// or no whole number, a travel that changes within a profile or is missing. Profiles stay in file order.
+Expected<std::vector<TravelProfile>> parse_align_csv(std::string_view text, const std::string& where);
+std::string align_csv(std::span<const TravelProfile> pass);
+Expected<std::vector<TravelProfile>> read_align_csv(const std::filesystem::path& path);
 
 }  // namespace seamwright

@@ -1,0 +1,165 @@
+#include "core/profile/contour_sequence.h"
+
+#include <limits>
+
+namespace seamwright::contour {
+namespace {
+
+constexpr int kMaxSamples = 1024;
+constexpr double kMedianToSigma = 1 / 0.6744897501960817;
+constexpr double kUpperToSigma = 1 / 1.1503493803760083;  // of the 75 % quantile of |normal|
+constexpr double kNoiseFloor = 0.01;  // of the spacing: below it the direction decides, not the noise
+
+double quantile(std::vector<double>& values, double share) {
+    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+// Standard deviation of a coordinate from absolute second differences. The median is blind to a quarter of
+// outliers; the upper quantile, trusted only along a cleaned path, sees noise that quantisation hides from
+// the median.
+double sigma_of(std::vector<double>& differences, bool clean) {
+    if (differences.empty()) return 0;
+    double sigma = quantile(differences, 0.5) * kMedianToSigma;
+    if (clean || sigma == 0) {
+        const double upper = quantile(differences, 0.75) * kUpperToSigma;
+        sigma = sigma > 0 ? 0.5 * (sigma + upper) : upper;
+    }
+    return sigma / std::sqrt(6.);
+}
+
+}  // namespace
+
+Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path,
+                     const FilterOptions& options) {
+    Scale scale;
+    const int n = int(pick.size());
+    const auto at = [&](int k) -> const Candidate& {
+        return w.candidates[std::size_t(pick[std::size_t(k)])];
+    };
+    auto& a = w.samples_x;
+    auto& b = w.samples_z;
+
+    const int baseline = n >= 24 ? 8 : 1;
+    a.clear();
+    double magnitude = 0;
+    for (int k = 0, step = std::max(1, n / kMaxSamples); k + baseline < n; k += step) {
+        const double dx = at(k + baseline).x - at(k).x, dz = at(k + baseline).z - at(k).z;
+        a.push_back(std::sqrt(dx * dx + dz * dz) / (at(k + baseline).line - at(k).line));
+        magnitude = std::max({magnitude, std::abs(at(k).x), std::abs(at(k).z)});
+    }
+    if (!a.empty()) scale.spacing = quantile(a, 0.5);
+    scale.spacing = std::max({scale.spacing, 1e-9 * magnitude, 1e-12});
+
+    for (const bool strict : {true, false}) {
+        a.clear(), b.clear();
+        for (int k = 1, step = std::max(1, n / kMaxSamples); k + 1 < n; k += step) {
+            const Candidate &p = at(k - 1), &c = at(k), &q = at(k + 1);
+            if (strict && (c.line - p.line != 1 || q.line - c.line != 1)) continue;
+            if (along_path && (w.nodes[std::size_t(pick[std::size_t(k)])].link != Link::smooth ||
+                               w.nodes[std::size_t(pick[std::size_t(k + 1)])].link != Link::smooth))
+                continue;
+            a.push_back(std::abs(p.x - 2 * c.x + q.x));
+            b.push_back(std::abs(p.z - 2 * c.z + q.z));
+        }
+        if (a.size() >= 8) break;
+    }
+    scale.sx = sigma_of(a, along_path);
+    scale.sz = sigma_of(b, along_path);
+    if (options.noise_mm > 0) {
+        scale.sx = std::min(scale.sx, options.noise_mm);
+        scale.sz = options.noise_mm;
+    }
+    const double floor = kNoiseFloor * scale.spacing;
+    scale.sx = std::max(scale.sx, floor);
+    scale.sz = std::max(scale.sz, floor);
+    return scale;
+}
+
+void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
+    const int lines = int(w.first.size()) - 1, window = 2 * lookahead + 2;
+    w.nodes.resize(w.candidates.size());
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    // Cheapest cost of all lines before the present one, ending at node `ended`; of those before the last
+    // one.
+    double past = infinite, older = infinite;
+    int ended = -1;
+    for (int line = 0; line < lines; ++line) {
+        const int begin = w.first[std::size_t(line)], end = w.first[std::size_t(line) + 1];
+        const int before = line > 0 ? w.first[std::size_t(line) - 1] : begin;
+        double previous_best = infinite;
+        for (int j = before; j < begin; ++j)
+            previous_best = std::min(previous_best, w.nodes[std::size_t(j)].cost);
+        const double start_cost = line * m.outlier_cost;
+        for (int c = begin; c < end; ++c) {
+            const Candidate& point = w.candidates[std::size_t(c)];
+            double best = infinite;
+            int from = -1;
+            Link link = Link::start;
+            Deviation best_deviation;
+            const auto try_smooth = [&](int j, double skipped) {
+                const Node& node = w.nodes[std::size_t(j)];
+                const int i = point.line - w.candidates[std::size_t(j)].line;
+                if (node.state.age < 2) {
+                    const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
+                    const double cost = node.cost + skipped + 0.25 * m.outlier_cost * ratio * ratio;
+                    if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
+                    return;
+                }
+                const Deviation d = deviation(m, node.state, point.x, point.z, i);
+                const double cost = node.cost + skipped + 0.5 * d.d2;
+                if (0.5 * d.d2 < m.outlier_cost && cost < best)
+                    best = cost, from = j, link = Link::smooth, best_deviation = d;
+            };
+            for (int j = before; j < begin; ++j) try_smooth(j, 0);
+            // Nothing else can be cheaper: older nodes pay for the line between, an edge for itself.
+            if (!(best <= older && best <= start_cost && best <= previous_best + m.edge_cost)) {
+                double skipped = 0;
+                for (int back = 1; back <= window && back <= line; ++back, skipped += m.outlier_cost) {
+                    const int j0 = w.first[std::size_t(line - back)],
+                              j1 = w.first[std::size_t(line - back) + 1];
+                    for (int j = j0; j < j1; ++j) {
+                        const Node& node = w.nodes[std::size_t(j)];
+                        if (node.cost + skipped >= best) continue;
+                        if (back > 1) try_smooth(j, skipped);
+                        if (node.state.age < 2 || node.cost + skipped + m.edge_cost >= best) continue;
+                        const int i = point.line - w.candidates[std::size_t(j)].line;
+                        const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
+                        const double cost =
+                            node.cost + skipped + m.edge_cost + 0.25 * m.outlier_cost * ratio * ratio;
+                        if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
+                    }
+                }
+                if (start_cost < best) best = start_cost, from = -1, link = Link::start;
+                if (past + m.jump_cost < best) best = past + m.jump_cost, from = ended, link = Link::start;
+            }
+            Node& node = w.nodes[std::size_t(c)];
+            node.cost = best + point.cost;
+            node.previous = from;
+            node.link = link;
+            if (link == Link::start) {
+                node.state = first_point(m, point.x, point.z);
+            } else {
+                node.state = w.nodes[std::size_t(from)].state;
+                const int i = point.line - w.candidates[std::size_t(from)].line;
+                if (link == Link::smooth)
+                    accept(m, node.state, best_deviation, point.x, point.z, i);
+                else
+                    accept_any_direction(m, node.state, point.x, point.z, i);
+                if (link == Link::edge && w.nodes[std::size_t(from)].state.age < 2) node.link = Link::smooth;
+            }
+        }
+        older = past + m.outlier_cost;
+        past = older;
+        for (int c = begin; c < end; ++c) {
+            const double cost = w.nodes[std::size_t(c)].cost;
+            if (cost < past) past = cost, ended = c;
+        }
+    }
+    w.path.clear();
+    for (int c = ended; c >= 0; c = w.nodes[std::size_t(c)].previous) w.path.push_back(c);
+    std::reverse(w.path.begin(), w.path.end());
+}
+
+}  // namespace seamwright::contour

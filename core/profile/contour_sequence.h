@@ -1,0 +1,54 @@
+#pragma once
+// The cheapest explanation of a sequence of lines with one or several candidates each: the inside of
+// filter_profile and track_stripe (not for others).
+
+#include <cstdint>
+#include <vector>
+
+#include "core/profile/contour_state.h"
+
+namespace seamwright::contour {
+
+// How a point continues what came before.
+enum class Link : std::uint8_t {
+    start,   // new segment
+    smooth,  // in the band of the prediction
+    edge     // within reach, in another direction
+};
+
+struct Candidate {
+    double x, z;
+    double cost;  // of choosing it, beside its position; 0 or more
+    int line;     // of the sensor, rising
+};
+
+struct Node {
+    State state;  // after this point, along its cheapest past
+    double cost = 0;
+    int previous = -1;
+    Link link = Link::start;
+};
+
+struct Workspace {
+    std::vector<Candidate> candidates;  // grouped by line, lines rising
+    std::vector<Node> nodes;            // one per candidate
+    std::vector<int> first;             // of each line with candidates, and one past the last
+    std::vector<int> path;              // candidate numbers of the cheapest sequence, rising
+    std::vector<State> backward;        // filter: states seen from the other end, per element of the path
+    std::vector<int> piece;             // filter: per candidate, smooth piece or -1
+    std::vector<int> chosen;            // tracking: candidate number within the line, or -1
+    std::vector<double> samples_x, samples_z;
+    std::vector<int> pieces;    // filter: segment of a piece
+    std::vector<int> segments;  // filter: stack of open segments, three numbers each
+};
+
+// Noise and spacing from medians over the candidates `pick`, which rise in line. With `along_path` they are a
+// path found before: differences across starts and edges are left out.
+Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path,
+                     const FilterOptions& options);
+
+// Fills nodes and path. At most one candidate per line belongs to the path; a line left out costs
+// outlier_cost.
+void cheapest_sequence(Workspace& w, const Model& model, int lookahead);
+
+}  // namespace seamwright::contour

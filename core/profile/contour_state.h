@@ -1,0 +1,156 @@
+#pragma once
+// State of a contour being followed point by point: the inside of filter_profile and track_stripe (not for
+// others).
+//
+// Running straight line with spacing: foot point (x, z), advance (vx, vz) per line of the sensor, whose
+// length is the spacing. Its covariance is one 2x2 matrix (position, advance) in units of the measuring
+// covariance diag(sx^2, sz^2): recursive regression over the line number, whose direction does a random walk.
+// Along the contour the advance is the MAP spacing of (3.7) and the prediction i lines ahead spreads as
+// (3.5); drift and variance are averages (3.20).
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/profile/filter.h"
+
+namespace seamwright::contour {
+
+inline constexpr double kTurn = 0.04;  // rad, what the direction may turn from line to line (one sigma)
+inline constexpr double kSpacingReach = 3.5;  // spacing ratio a sharp edge may show; 1/cos 70 degrees = 2.9
+inline constexpr double kMinSpacingSigma = 0.05;
+inline constexpr int kMature = 3;  // points after which the direction carries the spacing
+
+// What the profile itself says: noise of x and z, typical spacing per line.
+struct Scale {
+    double sx = 0, sz = 0, spacing = 0;
+    double largest() const { return std::max(sx, sz); }
+};
+
+struct Model {
+    Scale scale;
+    double band = 4, average = 0.15, initial_sigma = 0.15;
+    double outlier_cost = 0, edge_cost = 0, jump_cost = 0;
+    Model(const Scale& s, const FilterOptions& o)
+        : scale(s), band(o.band_sigmas), average(o.average), initial_sigma(o.initial_sigma) {
+        outlier_cost = 0.5 * band * band + 0.75;
+        edge_cost = 2.2 * outlier_cost;
+        jump_cost = (o.lookahead + 0.6) * outlier_cost;
+    }
+};
+
+struct State {
+    double x = 0, z = 0, vx = 0, vz = 0;
+    double p11 = 1, p12 = 0, p22 = 0;             // covariance in units of the measuring covariance
+    double spacing = 0, drift = 0, variance = 0;  // GBM: s_0, mu, sigma^2
+    double excess = 1;                            // average of the squared normalised deviation, at least 1
+    int age = 0;                                  // points since the direction was last unknown
+};
+
+// Where the next point is expected, i lines ahead, and how far off a given point is.
+struct Deviation {
+    double ex = 0, ez = 0;  // point minus prediction
+    double p11 = 0, p12 = 0, p22 = 0;
+    double along_variance = 0;  // of the spacing process, mm^2
+    double sigma_across2 = 0;   // measuring variance across the contour
+    double d2 = 0;              // squared normalised distance
+};
+
+inline State first_point(const Model& m, double x, double z) {
+    State s;
+    s.x = x, s.z = z;
+    s.spacing = m.scale.spacing;
+    s.variance = m.initial_sigma * m.initial_sigma;
+    s.age = 1;
+    return s;
+}
+
+inline Deviation deviation(const Model& m, const State& s, double x, double z, int i) {
+    Deviation d;
+    const double sx2 = m.scale.sx * m.scale.sx, sz2 = m.scale.sz * m.scale.sz;
+    const double length2 = s.vx * s.vx + s.vz * s.vz;
+    const double inverse = length2 > 0 ? 1 / length2 : 0;
+    const double txx = s.vx * s.vx * inverse, tzz = s.vz * s.vz * inverse, txz = s.vx * s.vz * inverse;
+    d.sigma_across2 = tzz * sx2 + txx * sz2;
+    if (!(d.sigma_across2 > 0)) d.sigma_across2 = std::max(sx2, sz2);
+    const double q = kTurn * kTurn * s.spacing * s.spacing / d.sigma_across2;
+    const double n = i;
+    d.p11 = s.p11 + n * (2 * s.p12 + n * s.p22) + q * n * n * n * (1. / 3);
+    d.p12 = s.p12 + n * s.p22 + 0.5 * q * n * n;
+    d.p22 = s.p22 + q * n;
+    // (3.4), (3.5) for the distance of i lines: drift as the mean growth over them.
+    double grown = n;
+    if (i > 1 && s.drift != 0) grown = n * (1 + std::clamp(0.5 * s.drift * (n - 1), -0.3, 0.3));
+    d.ex = x - s.x - grown * s.vx;
+    d.ez = z - s.z - grown * s.vz;
+    const double relative = s.variance * n;
+    d.along_variance = (relative + 0.5 * relative * relative) * n * n * s.spacing * s.spacing;
+    const double S = 1 + d.p11;
+    const double cxx = S * sx2 + d.along_variance * txx, czz = S * sz2 + d.along_variance * tzz;
+    const double cxz = d.along_variance * txz;
+    const double determinant = cxx * czz - cxz * cxz;
+    d.d2 = (d.ex * d.ex * czz - 2 * d.ex * d.ez * cxz + d.ez * d.ez * cxx) / (determinant * s.excess);
+    return d;
+}
+
+// The state after a point that fits; `d` is its deviation.
+inline void accept(const Model& m, State& s, const Deviation& d, double x, double z, int i) {
+    const double S = 1 + d.p11, g1 = d.p11 / S, g2 = d.p12 / S;
+    const double length = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+    const double inverse = length > 0 ? 1 / length : 0;
+    const double tx = s.vx * inverse, tz = s.vz * inverse;
+    const double along = tx * d.ex + tz * d.ez;
+    const double sigma_along2 = tx * tx * m.scale.sx * m.scale.sx + tz * tz * m.scale.sz * m.scale.sz;
+    const double spread = d.along_variance + S * sigma_along2;
+    const double g_along = spread > 0 ? (d.along_variance + d.p11 * sigma_along2) / spread : 1;
+    const double extra = (g_along - g1) * along;
+    const double measured = (tx * (x - s.x) + tz * (z - s.z)) / i;
+    const double sn = std::sqrt(sigma_along2 * (1 + s.p11)) / i;
+    s.x = x - (1 - g1) * d.ex + tx * extra;
+    s.z = z - (1 - g1) * d.ez + tz * extra;
+    s.vx += g2 * d.ex, s.vz += g2 * d.ez;
+    s.p11 = d.p11 / S, s.p12 = d.p12 / S, s.p22 = d.p22 - d.p12 * g2;
+    ++s.age;
+    if (s.age >= kMature && length > 0) {
+        const double sigma = std::sqrt(s.variance);
+        const double estimate = map_spacing(measured, s.spacing, s.drift, sigma, sn, i);
+        const double growth = std::clamp(estimate / s.spacing - 1, -0.5, 0.5) / i;
+        const double surprise = growth - s.drift;
+        s.variance = std::max((1 - m.average) * s.variance + m.average * surprise * surprise,
+                              kMinSpacingSigma * kMinSpacingSigma);
+        s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -0.1, 0.1);
+        s.spacing = std::max(estimate, 0.05 * m.scale.spacing);
+        const double turned = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+        if (turned > 0) s.vx *= s.spacing / turned, s.vz *= s.spacing / turned;
+    }
+    s.excess = std::max(1., s.excess + 0.05 * (0.5 * d.d2 * s.excess - s.excess));
+}
+
+// A point that lies within reach of the foot point in any direction: the thesis's test of the spacing alone.
+// Used where the direction is unknown: second point of a segment, first point after a sharp edge. Returns the
+// ratio to the reach.
+inline double reach_ratio(const Model& m, const State& s, double x, double z, int i) {
+    const double dx = x - s.x, dz = z - s.z;
+    const double reach =
+        kSpacingReach * std::max(s.spacing, 0.5 * m.scale.spacing) * i + m.band * 1.5 * m.scale.largest();
+    return std::sqrt(dx * dx + dz * dz) / reach;
+}
+
+// The state after such a point: direction from the two points, shrunk to what spacing and noise make
+// probable.
+inline void accept_any_direction(const Model& m, State& s, double x, double z, int i) {
+    const double prior = 1.5 * m.scale.spacing, prior2 = prior * prior * i * i;
+    const auto weight = [&](double sigma) { return prior2 / (prior2 + 2 * sigma * sigma); };
+    const double w = weight(m.scale.largest());
+    s.vx = weight(m.scale.sx) * (x - s.x) / i;
+    s.vz = weight(m.scale.sz) * (z - s.z) / i;
+    s.x = x, s.z = z;
+    s.p11 = 1, s.p12 = w / i, s.p22 = 2 * w / (double(i) * i);
+    const double length = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+    s.spacing = std::clamp(length, 0.3 * m.scale.spacing, 3 * m.scale.spacing);
+    s.drift = 0;
+    s.variance = m.initial_sigma * m.initial_sigma;
+    s.excess = 1;
+    s.age = 2;
+}
+
+}  // namespace seamwright::contour

@@ -1,0 +1,274 @@
+#include "core/profile/filter.h"
+
+#include "core/profile/contour_sequence.h"
+
+namespace seamwright {
+namespace {
+
+using namespace contour;
+
+constexpr double kAbsurd = 1e100;    // coordinates beyond are no return: their squares would overflow
+constexpr double kSpacingGap = 3.5;  // distance in spacings per line beyond which the contour is interrupted
+constexpr int kShortGap = 10;        // lines without points across which a sharp edge is still believed
+constexpr double kLongGapSlope = 0.05;  // uncertainty of direction across longer gaps, rad
+
+Workspace& workspace() {
+    thread_local Workspace w;
+    return w;
+}
+
+bool usable(double v) {
+    return std::abs(v) < kAbsurd;
+}  // false for NaN
+
+double dot_across(const State& s, double dx, double dz) {
+    const double length = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+    return length > 0 ? (s.vx * dz - s.vz * dx) / length : std::sqrt(dx * dx + dz * dz);
+}
+
+double line_difference(const Workspace& w, int a, int b) {
+    return std::abs(w.candidates[std::size_t(b)].line - w.candidates[std::size_t(a)].line);
+}
+
+// The same tracker along the path from its other end.
+void run_backward(Workspace& w, const Model& m) {
+    const int n = int(w.path.size());
+    w.backward.resize(std::size_t(n));
+    for (int k = n - 1; k >= 0; --k) {
+        const int c = w.path[std::size_t(k)];
+        const Candidate& point = w.candidates[std::size_t(c)];
+        State& state = w.backward[std::size_t(k)];
+        if (k == n - 1 || w.nodes[std::size_t(w.path[std::size_t(k) + 1])].link == Link::start) {
+            state = first_point(m, point.x, point.z);
+            continue;
+        }
+        state = w.backward[std::size_t(k) + 1];
+        const int i = w.candidates[std::size_t(w.path[std::size_t(k) + 1])].line - point.line;
+        if (state.age >= 2) {
+            const Deviation d = deviation(m, state, point.x, point.z, i);
+            if (0.5 * d.d2 < m.outlier_cost) {
+                accept(m, state, d, point.x, point.z, i);
+                continue;
+            }
+        }
+        accept_any_direction(m, state, point.x, point.z, i);
+    }
+}
+
+// Is `point` in the band seen from the states before and after it (either may be missing)?
+bool in_band(const Model& m, const State* before, int i_before, const State* after, int i_after, double x,
+             double z) {
+    const double limit = 2 * m.outlier_cost;
+    Deviation f, b;
+    if (before) f = deviation(m, *before, x, z, i_before);
+    if (after) b = deviation(m, *after, x, z, i_after);
+    if (before && after) {
+        // Both predictions, if they agree, together: sharper than either.
+        const double sx2 = m.scale.sx * m.scale.sx, sz2 = m.scale.sz * m.scale.sz;
+        const double along = std::min(f.along_variance, b.along_variance);
+        const double length2 = before->vx * before->vx + before->vz * before->vz;
+        const double inverse = length2 > 0 ? 1 / length2 : 0;
+        const double txx = before->vx * before->vx * inverse, tzz = before->vz * before->vz * inverse,
+                     txz = before->vx * before->vz * inverse;
+        const auto distance2 = [&](double ex, double ez, double S) {
+            const double cxx = S * sx2 + along * txx, czz = S * sz2 + along * tzz, cxz = along * txz;
+            return (ex * ex * czz - 2 * ex * ez * cxz + ez * ez * cxx) / (cxx * czz - cxz * cxz);
+        };
+        const double excess = std::min(before->excess, after->excess);
+        if (distance2(f.ex - b.ex, f.ez - b.ez, f.p11 + b.p11) < limit * excess) {
+            const double wf = b.p11 / (f.p11 + b.p11), wb = 1 - wf;
+            return distance2(wf * f.ex + wb * b.ex, wf * f.ez + wb * b.ez, 1 + wf * f.p11) < limit * excess;
+        }
+    }
+    return (before && f.d2 < limit) || (after && b.d2 < limit);
+}
+
+// Decides every point again, seen from both sides, and sets w.piece (number of smooth pieces returned).
+int verify(Workspace& w, const Model& m) {
+    const int n = int(w.path.size());
+    w.piece.assign(w.candidates.size(), -1);
+    int piece = 0;
+    for (int k = -1; k < n; ++k) {
+        if (k >= 0 && k > 0 && w.nodes[std::size_t(w.path[std::size_t(k)])].link != Link::smooth) ++piece;
+        const int here = k >= 0 ? w.path[std::size_t(k)] : -1;
+        const int next = k + 1 < n ? w.path[std::size_t(k) + 1] : -1;
+        const bool next_starts = next >= 0 && w.nodes[std::size_t(next)].link == Link::start;
+        if (here >= 0) {
+            const Candidate& p = w.candidates[std::size_t(here)];
+            const bool starts = k == 0 || w.nodes[std::size_t(here)].link == Link::start;
+            const State* before = starts ? nullptr : &w.nodes[std::size_t(w.path[std::size_t(k) - 1])].state;
+            const State* after = next < 0 || next_starts ? nullptr : &w.backward[std::size_t(k) + 1];
+            if (before && before->age < kMature) before = nullptr;
+            if (after && after->age < kMature) after = nullptr;
+            const int ib = before ? p.line - w.candidates[std::size_t(w.path[std::size_t(k) - 1])].line : 0;
+            const int ia = after ? w.candidates[std::size_t(next)].line - p.line : 0;
+            if ((!before && !after) || in_band(m, before, ib, after, ia, p.x, p.z))
+                w.piece[std::size_t(here)] = piece;
+        }
+        // The points left out between here and next.
+        const State* before = here >= 0 ? &w.nodes[std::size_t(here)].state : nullptr;
+        const State* after = next >= 0 ? &w.backward[std::size_t(k) + 1] : nullptr;
+        if (before && before->age < kMature) before = nullptr;
+        if (after && after->age < kMature) after = nullptr;
+        const int end = next >= 0 ? next : int(w.candidates.size());
+        for (int c = here + 1; c < end; ++c) {
+            const Candidate& p = w.candidates[std::size_t(c)];
+            const int ib = before ? p.line - w.candidates[std::size_t(here)].line : 0;
+            const int ia = after ? w.candidates[std::size_t(next)].line - p.line : 0;
+            if (next_starts) {
+                if (before && in_band(m, before, ib, nullptr, 0, p.x, p.z))
+                    w.piece[std::size_t(c)] = piece;
+                else if (after && in_band(m, nullptr, 0, after, ia, p.x, p.z))
+                    w.piece[std::size_t(c)] = piece + 1;
+            } else if ((before || after) && in_band(m, before, ib, after, ia, p.x, p.z)) {
+                w.piece[std::size_t(c)] = piece;
+            }
+        }
+    }
+    return n > 0 ? piece + 1 : 0;
+}
+
+// Do the pieces that end at path element ka and begin at kb belong to one contour? They do when one line
+// continues the other within its uncertainty, or when both meet between the two points (a sharp edge), and no
+// spacing is missing.
+bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
+    const int ca = w.path[std::size_t(ka)], cb = w.path[std::size_t(kb)];
+    const Candidate &a = w.candidates[std::size_t(ca)], &b = w.candidates[std::size_t(cb)];
+    const State &left = w.nodes[std::size_t(ca)].state, &right = w.backward[std::size_t(kb)];
+    const double n = line_difference(w, ca, cb);
+    const double distance = std::hypot(b.x - a.x, b.z - a.z);
+    const double spacing = std::max({left.spacing, right.spacing, 0.5 * m.scale.spacing});
+    if (!(distance < kSpacingGap * spacing * n + m.band * 1.5 * m.scale.largest())) return false;
+    if (left.age < kMature || right.age < kMature) return n <= kShortGap;
+
+    const auto tolerance = [&](const State& s, const State& other) {
+        const double length2 = s.vx * s.vx + s.vz * s.vz;
+        const double sigma2 =
+            (s.vz * s.vz * m.scale.sx * m.scale.sx + s.vx * s.vx * m.scale.sz * m.scale.sz) / length2;
+        const double turn = n <= kShortGap ? kTurn * kTurn * s.spacing * s.spacing * n * n * n / 3 : 0;
+        const double p = s.p11 + n * (2 * s.p12 + n * s.p22) + other.p11;
+        return m.band * std::sqrt(sigma2 * p + turn) + (n > kShortGap ? kLongGapSlope * n * s.spacing : 0);
+    };
+    const double dx = right.x - left.x, dz = right.z - left.z;
+    if (std::abs(dot_across(left, dx, dz)) < tolerance(left, right)) return true;
+    if (std::abs(dot_across(right, dx, dz)) < tolerance(right, left)) return true;
+    if (n > kShortGap) return false;
+    // left + alpha v_left = right + beta v_right; v_right points back.
+    const double cross = left.vx * right.vz - left.vz * right.vx;
+    const double alpha = (dx * right.vz - dz * right.vx) / cross,
+                 beta = (dx * left.vz - dz * left.vx) / cross;
+    const double slack =
+        0.75 + m.band * m.scale.largest() * std::sqrt(left.spacing * right.spacing) / std::abs(cross);
+    return alpha > -slack && alpha < n + slack && beta > -slack && beta < n + slack;
+}
+
+// Joins pieces to segments, drops the short ones, numbers the rest.
+void number_segments(Workspace& w, const Model& m, int pieces, int min_points, Profile& profile) {
+    w.pieces.assign(std::size_t(pieces) * 3, 0);  // per piece: points, first and last path element
+    int* const points = w.pieces.data();
+    int* const head = points + pieces;
+    int* const tail = head + pieces;
+    for (int p = 0; p < pieces; ++p) head[p] = tail[p] = -1;
+    for (const int p : w.piece)
+        if (p >= 0) ++points[p];
+    for (int k = 0; k < int(w.path.size()); ++k) {
+        const int p = w.piece[std::size_t(w.path[std::size_t(k)])];
+        if (p < 0) continue;
+        if (head[p] < 0) head[p] = k;
+        tail[p] = k;
+    }
+    // Stack of segments: points, last path element, first piece. Pieces of a dropped segment get -1.
+    w.segments.clear();
+    const auto top = [&](int field) -> int& {
+        return w.segments[w.segments.size() - 3 + std::size_t(field)];
+    };
+    const auto drop_short = [&] {
+        if (!w.segments.empty() && top(0) < min_points) {
+            w.segments.resize(w.segments.size() - 3);
+            return true;
+        }
+        return false;
+    };
+    // `head` is reused: index of the segment on the stack at the time, checked against its first piece
+    // afterwards.
+    for (int p = 0; p < pieces; ++p) {
+        const int first = head[p];
+        head[p] = -1;
+        if (first < 0) continue;
+        for (;;) {
+            if (!w.segments.empty() && continuous(w, m, top(1), first)) {
+                top(0) += points[p], top(1) = tail[p];
+                head[p] = top(2);
+                break;
+            }
+            if (drop_short()) continue;
+            w.segments.insert(w.segments.end(), {points[p], tail[p], p});
+            head[p] = p;
+            break;
+        }
+    }
+    while (drop_short()) {
+    }
+    // head[p] names a segment by its first piece; number those that stayed, in order.
+    for (int p = 0; p < pieces; ++p) points[p] = -1;
+    int number = 0;
+    for (std::size_t s = 0; s < w.segments.size(); s += 3) points[w.segments[s + 2]] = number++;
+    for (std::size_t c = 0; c < w.candidates.size(); ++c) {
+        const int p = w.piece[c];
+        if (p >= 0 && head[p] >= 0) profile.segment[std::size_t(w.candidates[c].line)] = points[head[p]];
+    }
+}
+
+Expected<void> check_options(const FilterOptions& o) {
+    const auto refuse = [](const char* what, const char* where, const char* mend) -> Expected<void> {
+        return input_error(what, where, mend);
+    };
+    if (!(o.noise_mm >= 0) || !std::isfinite(o.noise_mm))
+        return refuse("the noise is not a length", "noise_mm", "give 0 (estimate it) or a positive number");
+    if (!(o.band_sigmas >= 1 && o.band_sigmas <= 20))
+        return refuse("the acceptance band is out of range", "band_sigmas",
+                      "give 1 to 20 standard deviations");
+    if (o.lookahead < 1 || o.lookahead > 50)
+        return refuse("the lookahead is out of range", "lookahead", "give 1 to 50 points");
+    if (!(o.average > 0 && o.average <= 1))
+        return refuse("the weight of the moving average is out of range", "average",
+                      "give a number above 0, at most 1");
+    if (!(o.initial_sigma > 0 && o.initial_sigma <= 2))
+        return refuse("the initial sigma of the spacing is out of range", "initial_sigma",
+                      "give a number above 0, at most 2");
+    if (o.min_segment_points < 1)
+        return refuse("the shortest segment has no point", "min_segment_points", "give 1 or more");
+    return {};
+}
+
+}  // namespace
+
+Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
+    if (auto ok = check_options(options); !ok) return ok;
+    const std::size_t n = profile.x_mm.size();
+    if (profile.z_mm.size() != n || (!profile.intensity.empty() && profile.intensity.size() != n))
+        return input_error("the columns of the profile differ in length", "x_mm, z_mm, intensity",
+                           "give one x, one z and, if any, one intensity per point");
+    profile.segment.assign(n, kOutlier);
+
+    Workspace& w = workspace();
+    w.candidates.clear(), w.first.clear(), w.path.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!usable(profile.x_mm[k]) || !usable(profile.z_mm[k])) continue;
+        w.first.push_back(int(w.candidates.size()));
+        w.path.push_back(int(w.candidates.size()));
+        w.candidates.push_back({profile.x_mm[k], profile.z_mm[k], 0, int(k)});
+    }
+    w.first.push_back(int(w.candidates.size()));
+    if (w.candidates.empty()) return {};
+
+    const Model rough(estimate_scale(w, w.path, false, options), options);
+    cheapest_sequence(w, rough, options.lookahead);
+    const Model model(estimate_scale(w, w.path, true, options), options);
+    run_backward(w, model);
+    const int pieces = verify(w, model);
+    number_segments(w, model, pieces, options.min_segment_points, profile);
+    return {};
+}
+
+}  // namespace seamwright

@@ -1,0 +1,343 @@
+#include "devices/replay/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+
+namespace seamwright {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kFrameLimit = 1'000'000;
+
+std::string lower(std::string s) {
+    std::transform(s.begin(), s.end(), s.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return s;
+}
+
+bool is_profile_file(const fs::path& p) {
+    return lower(p.extension().string()) == ".csv";
+}
+bool is_image_file(const fs::path& p) {
+    static const std::set<std::string> known = {".png", ".bmp", ".tif", ".tiff", ".pgm", ".jpg", ".jpeg"};
+    return known.contains(lower(p.extension().string()));
+}
+
+// A file of the folder named by a manifest: relative and not leading out.
+Expected<fs::path> inside(const fs::path& folder, const std::string& name, const std::string& where) {
+    const fs::path relative(name);
+    bool leads_out = relative.is_absolute();
+    for (const auto& part : relative) leads_out = leads_out || part == "..";
+    if (name.empty() || leads_out || name.find('\0') != std::string::npos) {
+        return input_error("must be the name of a file inside the folder", where);
+    }
+    return folder / relative;
+}
+
+// The pose file that belongs to `file` by its name.
+std::optional<fs::path> pose_beside(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    std::size_t digits = stem.size();
+    while (digits > 0 && std::isdigit(static_cast<unsigned char>(stem[digits - 1]))) --digits;
+    std::vector<fs::path> stems = {file.parent_path() / stem};
+    if (digits < stem.size()) stems.push_back(file.parent_path() / ("pose" + stem.substr(digits)));
+    stems.push_back(file.parent_path() / "poses" / stem);
+    if (file.parent_path().has_parent_path())
+        stems.push_back(file.parent_path().parent_path() / "poses" / stem);
+    for (const auto& s : stems) {
+        for (const char* extension : {".json", ".txt", ".yaml", ".yml"}) {
+            std::error_code ignored;
+            fs::path candidate = s;
+            candidate += extension;
+            if (fs::is_regular_file(candidate, ignored)) return candidate;
+        }
+    }
+    return std::nullopt;
+}
+
+Expected<RecordedFrame> manifest_frame(const fs::path& folder, const std::string& file,
+                                       const std::string& spot_id, const std::string& pose_file,
+                                       const std::string& where) {
+    RecordedFrame frame;
+    const auto path = inside(folder, file, json_path(where, "file"));
+    if (!path) return tl::unexpected(path.error());
+    frame.file = *path;
+    if (!is_profile_file(*path) && !is_image_file(*path)) {
+        return input_error("\"" + file + "\" is neither a profile (.csv) nor an image",
+                           json_path(where, "file"));
+    }
+    frame.image = is_image_file(*path);
+    if (spot_id.empty()) return input_error("is empty", json_path(where, "spot_id"));
+    frame.spot_id = spot_id;
+    if (!pose_file.empty()) {
+        const auto pose_path = inside(folder, pose_file, json_path(where, "pose_file"));
+        if (!pose_path) return tl::unexpected(pose_path.error());
+        const auto pose = read_pose_file(*pose_path);
+        if (!pose) return tl::unexpected(pose.error());
+        frame.base_from_flange = *pose;
+    }
+    return frame;
+}
+
+Expected<std::vector<RecordedFrame>> frames_of_json(const fs::path& folder, const fs::path& manifest) {
+    const auto json = read_json_file(manifest);
+    if (!json) return tl::unexpected(json.error());
+    const std::string where = manifest.string();
+    if (auto ok = only_fields(*json, {"frames"}, where); !ok) return tl::unexpected(ok.error());
+    const auto list = json_array(*json, "frames", where);
+    if (!list) return tl::unexpected(list.error());
+    std::vector<RecordedFrame> frames;
+    for (std::size_t i = 0; i < (*list)->size(); ++i) {
+        const auto& entry = (**list)[i];
+        const std::string at = json_path(where + ": frames", i);
+        if (auto ok = only_fields(entry, {"file", "spot_id", "pose_file", "base_from_flange"}, at); !ok) {
+            return tl::unexpected(ok.error());
+        }
+        const auto file = json_string(entry, "file", at);
+        if (!file) return tl::unexpected(file.error());
+        const auto spot = json_string(entry, "spot_id", at);
+        if (!spot) return tl::unexpected(spot.error());
+        const auto pose_file = json_string_or(entry, "pose_file", "", at);
+        if (!pose_file) return tl::unexpected(pose_file.error());
+        auto frame = manifest_frame(folder, *file, *spot, *pose_file, at);
+        if (!frame) return tl::unexpected(frame.error());
+        if (entry.contains("base_from_flange")) {
+            if (!pose_file->empty())
+                return input_error("names two poses", at, "give base_from_flange or pose_file");
+            const auto pose = parse_pose(entry["base_from_flange"], json_path(at, "base_from_flange"));
+            if (!pose) return tl::unexpected(pose.error());
+            frame->base_from_flange = *pose;
+        }
+        frames.push_back(std::move(*frame));
+    }
+    return frames;
+}
+
+Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const fs::path& manifest) {
+    const auto text = read_text_file(manifest);
+    if (!text) return tl::unexpected(text.error());
+    std::vector<RecordedFrame> frames;
+    std::string_view rest = *text;
+    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+    std::size_t number = 0, width = 0;
+    while (!rest.empty()) {
+        const auto end = rest.find('\n');
+        std::string_view line = rest.substr(0, end);
+        rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+        ++number;
+        const std::string at = fmt::format("{}, line {}", manifest.string(), number);
+        std::vector<std::string> fields;
+        for (std::size_t begin = 0;;) {
+            const auto comma = line.find(',', begin);
+            std::string_view field = line.substr(begin, comma - begin);
+            const auto first = field.find_first_not_of(" \t\r\"");
+            field = first == std::string_view::npos
+                        ? std::string_view{}
+                        : field.substr(first, field.find_last_not_of(" \t\r\"") - first + 1);
+            fields.emplace_back(field);
+            if (comma == std::string_view::npos) break;
+            begin = comma + 1;
+        }
+        if (fields.size() == 1 && fields[0].empty()) continue;
+        if (width == 0) {
+            width = fields.size();
+            const bool two = fields == std::vector<std::string>{"file", "spot_id"};
+            const bool three = fields == std::vector<std::string>{"file", "spot_id", "pose_file"};
+            if (!two && !three) return input_error("is not the header file,spot_id[,pose_file]", at);
+            continue;
+        }
+        if (fields.size() != width) {
+            return input_error(fmt::format("has {} fields where the header names {}", fields.size(), width),
+                               at);
+        }
+        auto frame = manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at);
+        if (!frame) return tl::unexpected(frame.error());
+        frames.push_back(std::move(*frame));
+    }
+    return frames;
+}
+
+Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, const std::string& kind) {
+    std::vector<RecordedFrame> profiles, images;
+    std::error_code problem;
+    for (auto it = fs::directory_iterator(folder, problem); !problem && it != fs::directory_iterator();
+         it.increment(problem)) {
+        std::error_code ignored;
+        if (!it->is_regular_file(ignored)) continue;
+        const fs::path& p = it->path();
+        if (is_profile_file(p)) profiles.push_back({p, p.stem().string(), std::nullopt, false});
+        if (is_image_file(p)) images.push_back({p, p.stem().string(), std::nullopt, true});
+        if (profiles.size() + images.size() > kFrameLimit) {
+            return input_error(fmt::format("holds more than {} frames", kFrameLimit), folder.string());
+        }
+    }
+    if (problem) return file_error("cannot be listed (" + problem.message() + ")", folder.string());
+    if (kind.empty() && !profiles.empty() && !images.empty()) {
+        return input_error(
+            "holds both profiles (.csv) and images", folder.string(),
+            "say which with the setting \"kind\": \"profiles\" or \"images\", or write a frames.csv");
+    }
+    const bool take_images = kind.empty() ? !images.empty() : kind == "images";
+    auto& frames = take_images ? images : profiles;
+    std::sort(frames.begin(), frames.end(), [](const RecordedFrame& a, const RecordedFrame& b) {
+        return natural_less(a.file.filename().string(), b.file.filename().string());
+    });
+    return frames;
+}
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::size_t i = 0, j = 0;
+    while (i < a.size() && j < b.size()) {
+        if (digit(a[i]) && digit(b[j])) {
+            std::size_t ie = i, je = j;
+            while (ie < a.size() && digit(a[ie])) ++ie;
+            while (je < b.size() && digit(b[je])) ++je;
+            std::string_view na = a.substr(i, ie - i), nb = b.substr(j, je - j);
+            na.remove_prefix(std::min(na.find_first_not_of('0'), na.size()));
+            nb.remove_prefix(std::min(nb.find_first_not_of('0'), nb.size()));
+            if (na.size() != nb.size()) return na.size() < nb.size();
+            if (na != nb) return na < nb;
+            i = ie;
+            j = je;
+        } else {
+            if (a[i] != b[j]) return a[i] < b[j];
+            ++i;
+            ++j;
+        }
+    }
+    if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+    return a < b;  // "a01" and "a1": any fixed order
+}
+
+Expected<std::vector<RecordedFrame>> list_recording(const fs::path& folder, const std::string& kind,
+                                                    bool poses_required) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) {
+        return file_error("is no folder", folder.string(), "give the folder that holds the recorded frames");
+    }
+    const bool json = fs::exists(folder / "spots.json", ignored),
+               csv = fs::exists(folder / "frames.csv", ignored);
+    auto frames = json
+                      ? frames_of_json(folder, folder / "spots.json")
+                      : (csv ? frames_of_csv(folder, folder / "frames.csv") : frames_of_folder(folder, kind));
+    if (!frames) return frames;
+    if (frames->empty()) {
+        return input_error("holds no frames", folder.string(),
+                           "profiles are .csv, images .png, .bmp, .tiff or .pgm");
+    }
+    std::size_t with_pose = 0;
+    const RecordedFrame* missing = nullptr;
+    for (RecordedFrame& frame : *frames) {
+        if (!frame.base_from_flange) {
+            if (const auto path = pose_beside(frame.file)) {
+                const auto pose = read_pose_file(*path);
+                if (!pose) return tl::unexpected(pose.error());
+                frame.base_from_flange = *pose;
+            }
+        }
+        if (frame.base_from_flange) {
+            ++with_pose;
+        } else if (!missing) {
+            missing = &frame;
+        }
+    }
+    if (missing && (with_pose > 0 || poses_required)) {
+        return input_error("has no pose", missing->file.string(),
+                           "put its pose beside it, e.g. pose0001.txt for frame0001.png");
+    }
+    return frames;
+}
+
+Recording::Recording(fs::path folder, std::vector<RecordedFrame> frames, bool loop)
+    : folder_(std::move(folder)), frames_(std::move(frames)), loop_(loop) {
+    for (std::size_t i = 0; i < frames_.size(); ++i) of_spot_[frames_[i].spot_id].push_back(i);
+}
+
+Expected<std::size_t> Recording::take(const std::string& spot_id) {
+    if (spot_id.empty()) {
+        if (cursor_ == frames_.size()) {
+            if (!loop_) return device_error(kEndOfRecording, folder_.string());
+            cursor_ = 0;
+        }
+        return cursor_++;
+    }
+    const auto it = of_spot_.find(spot_id);
+    if (it == of_spot_.end()) {
+        return device_error("the recording has no spot \"" + spot_id + "\"", folder_.string());
+    }
+    std::size_t& played = played_[spot_id];
+    if (played == it->second.size()) {
+        if (!loop_) return device_error(kEndOfRecording, folder_.string());
+        played = 0;
+    }
+    return it->second[played++];
+}
+
+Expected<void> Recording::start_moves(const std::vector<std::string>& spot_ids) {
+    const std::lock_guard lock(mutex_);
+    const auto played_before = played_;
+    std::deque<std::size_t> moves;
+    for (const std::string& id : spot_ids) {
+        if (id.empty()) return input_error("a measuring move names no spot");
+        const auto index = take(id);
+        if (!index) {
+            played_ = played_before;
+            return tl::unexpected(index.error());
+        }
+        moves.push_back(*index);
+    }
+    driven_ = true;
+    moves_ = std::move(moves);
+    due_.clear();
+    return {};
+}
+
+const RecordedFrame* Recording::fire() {
+    const std::lock_guard lock(mutex_);
+    if (moves_.empty()) return nullptr;
+    due_.push_back(moves_.front());
+    moves_.pop_front();
+    return &frames_[due_.back()];
+}
+
+Expected<void> Recording::trigger(const std::string& spot_id) {
+    const std::lock_guard lock(mutex_);
+    for (const std::size_t i : due_) {
+        if (frames_[i].spot_id == spot_id) return {};
+    }
+    const auto index = take(spot_id);
+    if (!index) return tl::unexpected(index.error());
+    driven_ = true;
+    due_.push_back(*index);
+    return {};
+}
+
+Recording::Next Recording::next(const RecordedFrame*& frame) {
+    const std::lock_guard lock(mutex_);
+    if (!due_.empty()) {
+        frame = &frames_[due_.front()];
+        due_.pop_front();
+        return Next::frame;
+    }
+    if (driven_) return Next::nothing_due;
+    const auto index = take("");
+    if (!index) return Next::ended;
+    frame = &frames_[*index];
+    return Next::frame;
+}
+
+void Recording::put_back(const RecordedFrame* frame) {
+    const std::lock_guard lock(mutex_);
+    due_.push_front(static_cast<std::size_t>(frame - frames_.data()));
+}
+
+}  // namespace seamwright

@@ -1,0 +1,48 @@
+#pragma once
+// A folder of its own for a test, gone afterwards.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace seamwright {
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "seamwright-XXXXXX").string();
+        if (!::mkdtemp(name.data())) ADD_FAILURE() << "no temporary folder";
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path write(const std::string& name, std::string_view bytes) const {
+        const auto file = path_ / name;
+        std::filesystem::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary) << bytes;
+        return file;
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+// ../shared/data, or SEAMWRIGHT_DATA; empty when it is not there.
+inline std::filesystem::path real_data() {
+    const char* set = std::getenv("SEAMWRIGHT_DATA");
+    const std::filesystem::path folder = set ? set : SEAMWRIGHT_DATA_FOLDER;
+    std::error_code ignored;
+    return std::filesystem::is_directory(folder, ignored) ? folder : std::filesystem::path();
+}
+
+}  // namespace seamwright

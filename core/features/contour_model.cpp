@@ -1,0 +1,355 @@
+#include "core/features/contour_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace seamwright {
+namespace {
+
+constexpr double kMadToSigma = 1.4826;
+// Below a tenth of a micrometre nothing measured is meant: it stands for drawn (noise-free) contours and
+// rounding.
+constexpr double kSmallestSigma_mm = 1e-4;
+constexpr int kNodesPerEdge = 64;
+
+double median(std::vector<double>& v) {
+    if (v.empty()) return 0;
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::nth_element(v.begin(), middle, v.end());
+    return *middle;
+}
+
+// Sums over the point numbers of a window of m equally numbered points, counted from its middle:
+// s2 = sum xi^2, s4 = sum (xi^2 - s2/m)^2 (the orthogonal parabola).
+struct WindowSums {
+    double s2, s4, mean2;
+    explicit WindowSums(int m)
+        : s2(m * (double(m) * m - 1) / 12.0),
+          s4(m * (double(m) * m - 1) * (double(m) * m - 4) / 180.0),
+          mean2((double(m) * m - 1) / 12.0) {}
+};
+
+}  // namespace
+
+double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch) {
+    scratch.clear();
+    for (std::size_t i = 4; i < x.size(); ++i) {
+        const double tx = x[i] - x[i - 4], tz = z[i] - z[i - 4];
+        const double length = std::hypot(tx, tz);
+        if (!(length > 0)) continue;
+        const double fx = x[i] - 4 * x[i - 1] + 6 * x[i - 2] - 4 * x[i - 3] + x[i - 4];
+        const double fz = z[i] - 4 * z[i - 1] + 6 * z[i - 2] - 4 * z[i - 3] + z[i - 4];
+        scratch.push_back(std::abs(fz * tx - fx * tz) / length);
+    }
+    if (scratch.size() < 8) return 0;
+    return kMadToSigma * median(scratch) / std::sqrt(70.0);
+}
+
+bool ContourPitch::is_wall(double dx, double dz) const {
+    return std::hypot(dx, dz) > 5 * distance && std::abs(dx) <= 3 * along_x;
+}
+
+bool ContourPitch::is_gap(double dx, double dz) const {
+    return std::hypot(dx, dz) > 6 * distance && std::abs(dx) > 3 * along_x;
+}
+
+ContourPitch contour_pitch(std::span<const double> x, std::span<const double> z,
+                           std::vector<double>& scratch) {
+    ContourPitch pitch;
+    scratch.clear();
+    for (std::size_t i = 1; i < x.size(); ++i) scratch.push_back(std::abs(x[i] - x[i - 1]));
+    pitch.along_x = median(scratch);
+    scratch.clear();
+    for (std::size_t i = 1; i < x.size(); ++i)
+        scratch.push_back(std::hypot(x[i] - x[i - 1], z[i] - z[i - 1]));
+    pitch.distance = median(scratch);
+    return pitch;
+}
+
+void ContourModel::build(const Profile& profile) {
+    x_.clear();
+    z_.clear();
+    edges_.clear();
+    const bool marked = profile.filtered();
+    for (std::size_t i = 0; i < profile.size() && i < profile.z_mm.size(); ++i) {
+        const double x = profile.x_mm[i], z = profile.z_mm[i];
+        if (!std::isfinite(x) || !std::isfinite(z) || (marked && profile.segment[i] == kOutlier)) continue;
+        if (!x_.empty() && x == x_.back() && z == z_.back()) continue;
+        x_.push_back(x);
+        z_.push_back(z);
+    }
+    const std::size_t n = x_.size();
+    if (n < 5) return;
+    origin_ = {std::accumulate(x_.begin(), x_.end(), 0.0) / double(n),
+               std::accumulate(z_.begin(), z_.end(), 0.0) / double(n)};
+    for (double& v : x_) v -= origin_.x();
+    for (double& v : z_) v -= origin_.y();
+    const auto [x0, x1] = std::minmax_element(x_.begin(), x_.end());
+    const auto [z0, z1] = std::minmax_element(z_.begin(), z_.end());
+    lower_ = {*x0, *z0};
+    upper_ = {*x1, *z1};
+    extent_ = (upper_ - lower_).norm();
+    if (!(extent_ > 0) || !std::isfinite(extent_)) return;
+    pitch_ = contour_pitch(x_, z_, scratch_);
+    if (!(pitch_.distance > 0)) return;
+    sigma_ = std::max(contour_noise_mm(x_, z_, scratch_), kSmallestSigma_mm);
+
+    link_.assign(n, 0);
+    run_first_.assign(n, 0);
+    run_last_.assign(n, 0);
+    const double highest_wall = std::max(20.0, 5 * pitch_.distance);
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        const double dx = x_[i + 1] - x_[i], dz = z_[i + 1] - z_[i];
+        if (pitch_.is_gap(dx, dz)) continue;
+        link_[i] = !pitch_.is_wall(dx, dz) ? 1 : std::hypot(dx, dz) <= highest_wall ? 2 : 0;
+    }
+    for (std::size_t i = 0, first = 0; i < n; ++i)
+        if (link_[i] != 1) {
+            for (std::size_t j = first; j <= i; ++j) {
+                run_first_[j] = static_cast<int>(first);
+                run_last_[j] = static_cast<int>(i);
+            }
+            first = i + 1;
+        }
+
+    sums_.assign(n + 1, {});
+    const double middle = 0.5 * double(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double k = double(i) - middle, x = x_[i], z = z_[i];
+        const std::array<double, 9> term{x, z, k * x, k * z, k * k * x, k * k * z, x * x, x * z, z * z};
+        for (int j = 0; j < 9; ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
+    }
+    fit_edges();
+    if (usable()) build_nodes();
+}
+
+bool ContourModel::fit_window(int point, int first, int count, int degree, Edge& edge, double& residual2,
+                              double& bend) const {
+    const WindowSums w(count);
+    std::array<double, 9> s;
+    for (int j = 0; j < 9; ++j) s[j] = sums_[first + count][j] - sums_[first][j];
+    const double centre = first + 0.5 * (count - 1);
+    const double c = centre - 0.5 * double(x_.size());
+    Eigen::Vector2d m0(s[0], s[1]), m1(s[2], s[3]), m2(s[4], s[5]);
+    m2 += -2 * c * m1 + c * c * m0;
+    m1 -= c * m0;
+    m2 -= w.mean2 * m0;
+    const Eigen::Vector2d b0 = m0 / count, b1 = m1 / w.s2;
+    const Eigen::Vector2d b2 = count > 2 ? Eigen::Vector2d(m2 / w.s4) : Eigen::Vector2d(0, 0);
+    const double xi = point + 0.5 - centre;
+    Eigen::Vector2d position = b0 + b1 * xi, slope = b1;
+    double bow = 0;
+    if (degree == 2) {
+        position += b2 * (xi * xi - w.mean2);
+        slope += 2 * xi * b2;
+    }
+    const double speed = slope.norm();
+    if (!(speed > 1e-12)) return false;
+    const Eigen::Vector2d t = slope / speed, n(-t.y(), t.x());
+    auto across = [&](const Eigen::Vector2d& v) { return n.dot(v) * n.dot(v); };
+    double total = n.x() * n.x() * s[6] + 2 * n.x() * n.y() * s[7] + n.y() * n.y() * s[8];
+    total -= count * across(b0) + w.s2 * across(b1);
+    if (degree == 2) {
+        total -= w.s4 * across(b2);
+        bow = 2 * n.dot(b2) / (speed * speed);
+    }
+    residual2 = std::max(total, 0.0);
+    bend = count > 2 ? std::abs(n.dot(b2)) * std::sqrt(w.s4) : 0;
+    edge.cx = position.x();
+    edge.cz = position.y();
+    edge.tx = t.x();
+    edge.tz = t.y();
+    edge.curvature = bow;
+    edge.half = 0.5 * speed;
+    edge.index_mm = 1 / speed;
+    edge.xi = xi;
+    edge.centre = centre;
+    edge.first = first;
+    edge.count = count;
+    edge.degree = degree;
+    return true;
+}
+
+void ContourModel::fit_edges() {
+    const int n = static_cast<int>(x_.size());
+    length_ = 0;
+    int run = 0;
+    double pooled = 0, freedom = 0;
+    const double variance = sigma_ * sigma_;
+    for (int k = 0; k + 1 < n; ++k) {
+        if (link_[k] == 0) {
+            ++run;
+            continue;
+        }
+        Edge best{};
+        double residual2 = 0, bend = 0;
+        if (!fit_window(k, k, 2, 1, best, residual2, bend)) continue;
+        if (link_[k] == 1) {
+            double best_variance = weights(best, 0).value_variance;
+            double best_residual2 = 0;
+            const int first_allowed = run_first_[k], last_allowed = run_last_[k];
+            for (int count = 4; count <= 64 && count <= last_allowed - first_allowed + 1; count *= 2) {
+                bool accepted = false;
+                const int centred = std::clamp(k - count / 2 + 1, first_allowed, last_allowed - count + 1);
+                const int places[3] = {centred, k + 2 - count, k};
+                for (int place = 0; place < 3; ++place) {
+                    const int first = places[place];
+                    if (first < first_allowed || first + count - 1 > last_allowed) continue;
+                    if (place > 0 && first == centred) continue;
+                    bool here = false;
+                    for (int degree = 2; degree >= 1; --degree) {
+                        Edge edge{};
+                        if (!fit_window(k, first, count, degree, edge, residual2, bend)) continue;
+                        const double dof = count - degree - 1;
+                        if (residual2 > variance * (dof + 2.5 * std::sqrt(2 * dof))) break;
+                        here = true;
+                        // A line where the parabola's bow is not seen above the noise: four ninths of its
+                        // variance.
+                        if (degree == 1 && bend > 1.5 * sigma_) continue;
+                        const double v = weights(edge, 0).value_variance;
+                        if (v < best_variance) {
+                            best_variance = v;
+                            best_residual2 = residual2;
+                            best = edge;
+                        }
+                    }
+                    accepted = accepted || here;
+                    if (here && place == 0) break;  // one-sided windows are for corners and ends
+                }
+                if (!accepted) break;
+            }
+            if (best.count > 4) {
+                pooled += best_residual2;
+                freedom += best.count - best.degree - 1;
+            }
+        }
+        best.point = k;
+        best.wall = link_[k] == 2;
+        best.run = run;
+        best.previous = best.next = -1;
+        const int number = static_cast<int>(edges_.size());
+        if (number > 0 && edges_.back().run == run) {
+            best.previous = number - 1;
+            edges_.back().next = number;
+        }
+        edges_.push_back(best);
+        if (!best.wall) length_ += 2 * best.half;
+    }
+    if (freedom > 20) sigma_ = std::max(kSmallestSigma_mm, std::sqrt(pooled / freedom));
+}
+
+ContourModel::Weights ContourModel::weights(const Edge& edge, double u) const {
+    const WindowSums w(edge.count);
+    const double xi = edge.xi + u * edge.index_mm;
+    Weights r;
+    r.a0 = 1.0 / edge.count;
+    r.a1 = xi / w.s2;
+    r.a2 = 0;
+    r.value_variance = 1.0 / edge.count + xi * xi / w.s2;
+    r.slope_variance = 1 / w.s2;
+    if (edge.degree == 2) {
+        const double q = xi * xi - w.mean2;
+        r.a2 = q / w.s4;
+        r.a0 -= w.mean2 * r.a2;
+        r.value_variance += q * q / w.s4;
+        r.slope_variance += 4 * xi * xi / w.s4;
+    }
+    r.slope_variance *= edge.index_mm * edge.index_mm;
+    return r;
+}
+
+void ContourModel::build_nodes() {
+    along_z_ = (upper_ - lower_).y() > 2 * (upper_ - lower_).x();
+    std::vector<std::array<double, 3>> nodes;
+    nodes.reserve(edges_.size() * 2);
+    node_reach_ = 0;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+        const Edge& edge = edges_[e];
+        const int parts = std::clamp(static_cast<int>(std::ceil(2 * edge.half / (1.5 * pitch_.distance))), 1,
+                                     kNodesPerEdge);
+        const double half = edge.half / parts;
+        node_reach_ = std::max(node_reach_, half);
+        for (int i = 0; i < parts; ++i) {
+            const double u = -edge.half + (2 * i + 1) * half;
+            const double x = edge.cx + u * edge.tx, z = edge.cz + u * edge.tz;
+            nodes.push_back({along_z_ ? z : x, along_z_ ? x : z, double(e)});
+        }
+    }
+    auto before = [](const auto& a, const auto& b) { return a[0] < b[0]; };
+    if (!std::is_sorted(nodes.begin(), nodes.end(), before)) std::sort(nodes.begin(), nodes.end(), before);
+    const std::size_t n = nodes.size();
+    node_a_.resize(n);
+    node_b_.resize(n);
+    node_edge_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        node_a_[i] = nodes[i][0];
+        node_b_[i] = nodes[i][1];
+        node_edge_[i] = static_cast<int>(nodes[i][2]);
+    }
+    const double span = node_a_.back() - node_a_.front();
+    bin_origin_ = node_a_.front();
+    bins_per_mm_ = span > 0 ? double(n) / span : 0;
+    bin_.assign(n + 1, 0);
+    std::size_t i = 0;
+    for (std::size_t b = 0; b <= n; ++b) {
+        while (i < n && (node_a_[i] - bin_origin_) * bins_per_mm_ < double(b)) ++i;
+        bin_[b] = static_cast<int>(i);
+    }
+}
+
+ContourModel::Foot ContourModel::nearest(double px, double pz, double radius) const {
+    const double a = along_z_ ? pz : px, b = along_z_ ? px : pz;
+    const int n = static_cast<int>(node_a_.size());
+    const double reach = radius + node_reach_;
+    double best = reach * reach;
+    int found = -1;
+    const double place = (a - bin_origin_) * bins_per_mm_;
+    const int start = bin_[place <= 0 ? 0 : place >= double(n) ? n : static_cast<int>(place)];
+    for (int i = start; i < n; ++i) {
+        const double da = node_a_[i] - a;
+        if (da > 0 && da * da >= best) break;
+        const double db = node_b_[i] - b, d2 = da * da + db * db;
+        if (d2 < best) {
+            best = d2;
+            found = i;
+        }
+    }
+    for (int i = start - 1; i >= 0; --i) {
+        const double da = a - node_a_[i];
+        if (da > 0 && da * da >= best) break;
+        const double db = node_b_[i] - b, d2 = da * da + db * db;
+        if (d2 < best) {
+            best = d2;
+            found = i;
+        }
+    }
+    Foot foot;
+    if (found < 0) return foot;
+    // The nearest node's edge or one of its neighbours holds the foot.
+    double nearest2 = radius * radius;
+    const int middle = node_edge_[found];
+    const int candidates[3] = {middle, edges_[middle].previous, edges_[middle].next};
+    for (const int e : candidates) {
+        if (e < 0) continue;
+        const Edge& edge = edges_[e];
+        const double dx = px - edge.cx, dz = pz - edge.cz;
+        const double u = dx * edge.tx + dz * edge.tz, v = dz * edge.tx - dx * edge.tz;
+        const double beyond = std::abs(u) - edge.half;
+        // An end of the contour: half a pitch more, since the surface ends somewhere before the next missing
+        // point.
+        if (beyond > 0.5 * pitch_.distance && (u > 0 ? edge.next : edge.previous) < 0) continue;
+        const double residual = v - 0.5 * edge.curvature * u * u;
+        const double out = std::max(beyond, 0.0);
+        const double d2 = out * out + residual * residual;
+        if (d2 < nearest2) {
+            nearest2 = d2;
+            foot.edge = e;
+            foot.u = u;
+            foot.residual = residual;
+        }
+    }
+    return foot;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/features/feature.h"
+#include "core/features/feature_kinds.h"
+
+namespace seamwright {
+
+const std::vector<FeatureKind>& feature_kinds() {
+    static const std::vector<FeatureKind> kinds{
+        contour_end_kind(),
+    };
+    return kinds;
+}
+
+const FeatureKind* feature_kind(std::string_view name) {
+    const auto& kinds = feature_kinds();
+    const auto it =
+        std::find_if(kinds.begin(), kinds.end(), [&](const FeatureKind& k) { return k.name == name; });
+    return it == kinds.end() ? nullptr : &*it;
+}
+
+Expected<std::unique_ptr<FeatureFinder>> make_feature_finder(const FeatureRecipe& recipe) {
+    const FeatureKind* kind = feature_kind(recipe.kind);
+    if (!kind) {
+        std::string known;
+        for (const FeatureKind& k : feature_kinds())
+            known += (known.empty() ? "" : ", ") + std::string(k.name);
+        return input_error(fmt::format("unknown kind of feature \"{}\"", recipe.kind), "kind",
+                           "known are: " + known);
+    }
+    if (auto valid = validate(recipe.parameters, kind->parameters, std::string(kind->name)); !valid)
+        return tl::unexpected(valid.error());
+    return kind->make(recipe);
+}
+
+std::string_view to_string(FeatureStatus status) {
+    switch (status) {
+        case FeatureStatus::ok:
+            return "ok";
+        case FeatureStatus::no_points:
+            return "no_points";
+        case FeatureStatus::not_found:
+            return "not_found";
+        case FeatureStatus::ambiguous:
+            return "ambiguous";
+        case FeatureStatus::ill_conditioned:
+            return "ill_conditioned";
+    }
+    return "not_found";
+}
+
+}  // namespace seamwright

@@ -88,7 +88,6 @@ Expected<void> only_fields(const nlohmann::json& json, std::initializer_list<std
     return {};
 }
 
-namespace {
 Expected<double> as_number(const nlohmann::json& value, const std::string& where) {
     if (!value.is_number())
         return input_error(std::string("must be a number, not ") + type_name(value), where);
@@ -96,7 +95,6 @@ Expected<double> as_number(const nlohmann::json& value, const std::string& where
     if (!std::isfinite(number)) return input_error("must be finite", where);
     return number;
 }
-}  // namespace
 
 Expected<const nlohmann::json*> json_field(const nlohmann::json& json, const std::string& key,
                                            const std::string& where) {
@@ -132,27 +130,30 @@ Expected<std::string> json_string(const nlohmann::json& json, const std::string&
 
 Expected<double> json_number_or(const nlohmann::json& json, const std::string& key, double otherwise,
                                 const std::string& where) {
-    return json.contains(key) ? json_number(json, key, where) : Expected<double>(otherwise);
+    return json.is_object() && !json.contains(key) ? Expected<double>(otherwise)
+                                                   : json_number(json, key, where);
 }
 
 Expected<bool> json_bool_or(const nlohmann::json& json, const std::string& key, bool otherwise,
                             const std::string& where) {
-    const auto it = json.find(key);
-    if (it == json.end()) return otherwise;
-    if (!it->is_boolean()) {
-        return input_error(std::string("must be true or false, not ") + type_name(*it),
+    if (json.is_object() && !json.contains(key)) return otherwise;
+    const auto field = json_field(json, key, where);
+    if (!field) return tl::unexpected(field.error());
+    if (!(*field)->is_boolean()) {
+        return input_error(std::string("must be true or false, not ") + type_name(**field),
                            json_path(where, key));
     }
-    return it->get<bool>();
+    return (*field)->get<bool>();
 }
 
 Expected<std::string> json_string_or(const nlohmann::json& json, const std::string& key,
                                      const std::string& otherwise, const std::string& where) {
-    return json.contains(key) ? json_string(json, key, where) : Expected<std::string>(otherwise);
+    return json.is_object() && !json.contains(key) ? Expected<std::string>(otherwise)
+                                                   : json_string(json, key, where);
 }
 
-Expected<std::vector<double>> json_numbers(const nlohmann::json& json, std::size_t size,
-                                           const std::string& where) {
+Expected<std::vector<double>> as_numbers(const nlohmann::json& json, std::size_t size,
+                                         const std::string& where) {
     if (!json.is_array())
         return input_error(std::string("must be an array of numbers, not ") + type_name(json), where);
     if (size != 0 && json.size() != size) {
@@ -168,11 +169,20 @@ Expected<std::vector<double>> json_numbers(const nlohmann::json& json, std::size
     return numbers;
 }
 
+Expected<Eigen::Vector2d> json_vector2(const nlohmann::json& json, const std::string& key,
+                                       const std::string& where) {
+    const auto field = json_field(json, key, where);
+    if (!field) return tl::unexpected(field.error());
+    const auto numbers = as_numbers(**field, 2, json_path(where, key));
+    if (!numbers) return tl::unexpected(numbers.error());
+    return Eigen::Vector2d((*numbers)[0], (*numbers)[1]);
+}
+
 Expected<Eigen::Vector3d> json_vector3(const nlohmann::json& json, const std::string& key,
                                        const std::string& where) {
     const auto field = json_field(json, key, where);
     if (!field) return tl::unexpected(field.error());
-    const auto numbers = json_numbers(**field, 3, json_path(where, key));
+    const auto numbers = as_numbers(**field, 3, json_path(where, key));
     if (!numbers) return tl::unexpected(numbers.error());
     return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }

@@ -43,9 +43,12 @@ Expected<bool> json_bool_or(const nlohmann::json& json, const std::string& key, 
                             const std::string& where);
 Expected<std::string> json_string_or(const nlohmann::json& json, const std::string& key,
                                      const std::string& otherwise, const std::string& where);
-// An array of exactly `size` numbers (0 = any length) at `json` itself.
-Expected<std::vector<double>> json_numbers(const nlohmann::json& json, std::size_t size,
-                                           const std::string& where);
+// `json` itself as an array of exactly `size` numbers (0 = any length), and as a number.
+Expected<std::vector<double>> as_numbers(const nlohmann::json& json, std::size_t size,
+                                         const std::string& where);
+Expected<double> as_number(const nlohmann::json& json, const std::string& where);
+Expected<Eigen::Vector2d> json_vector2(const nlohmann::json& json, const std::string& key,
+                                       const std::string& where);
 Expected<Eigen::Vector3d> json_vector3(const nlohmann::json& json, const std::string& key,
                                        const std::string& where);
 // "spots[3]" + "id" -> "spots[3].id"; "" + "id" -> "id".

@@ -21,13 +21,13 @@ Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where)
     if (rows) {
         if (json.size() != 4) return input_error(fmt::format("has {} rows instead of 4", json.size()), where);
         for (int r = 0; r < 4; ++r) {
-            const auto numbers = json_numbers(json[static_cast<std::size_t>(r)], 4,
-                                              json_path(where, static_cast<std::size_t>(r)));
+            const auto numbers = as_numbers(json[static_cast<std::size_t>(r)], 4,
+                                            json_path(where, static_cast<std::size_t>(r)));
             if (!numbers) return tl::unexpected(numbers.error());
             for (int c = 0; c < 4; ++c) matrix(r, c) = (*numbers)[static_cast<std::size_t>(c)];
         }
     } else {
-        const auto numbers = json_numbers(json, 16, where);
+        const auto numbers = as_numbers(json, 16, where);
         if (!numbers) return tl::unexpected(numbers.error());
         for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[static_cast<std::size_t>(i)];
     }
@@ -111,7 +111,7 @@ Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) 
         return make_pose(*rotation, t);
     }
     if (quat) {
-        const auto q = json_numbers(json.at("quat_wxyz"), 4, json_path(where, "quat_wxyz"));
+        const auto q = as_numbers(json.at("quat_wxyz"), 4, json_path(where, "quat_wxyz"));
         if (!q) return tl::unexpected(q.error());
         const auto rotation =
             rotation_from_abb({(*q)[0], (*q)[1], (*q)[2], (*q)[3]}, json_path(where, "quat_wxyz"));

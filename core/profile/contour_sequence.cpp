@@ -101,6 +101,7 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
             const auto try_smooth = [&](int j, double skipped) {
                 const Node& node = w.nodes[std::size_t(j)];
                 const int i = point.line - w.candidates[std::size_t(j)].line;
+                if (i > kShortGap) return;
                 if (node.state.age < 2) {
                     const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
                     const double cost = node.cost + skipped + 0.25 * m.outlier_cost * ratio * ratio;
@@ -125,6 +126,7 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                         if (back > 1) try_smooth(j, skipped);
                         if (node.state.age < 2 || node.cost + skipped + m.edge_cost >= best) continue;
                         const int i = point.line - w.candidates[std::size_t(j)].line;
+                        if (i > lookahead + 1) continue;
                         const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
                         const double cost =
                             node.cost + skipped + m.edge_cost + 0.25 * m.outlier_cost * ratio * ratio;
@@ -144,7 +146,7 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                 node.state = w.nodes[std::size_t(from)].state;
                 const int i = point.line - w.candidates[std::size_t(from)].line;
                 if (link == Link::smooth)
-                    accept(m, node.state, best_deviation, point.x, point.z, i);
+                    accept(m, node.state, best_deviation, i);
                 else
                     accept_any_direction(m, node.state, point.x, point.z, i);
                 if (link == Link::edge && w.nodes[std::size_t(from)].state.age < 2) node.link = Link::smooth;

@@ -18,7 +18,8 @@ namespace seamwright::contour {
 inline constexpr double kTurn = 0.04;  // rad, what the direction may turn from line to line (one sigma)
 inline constexpr double kSpacingReach = 3.5;  // spacing ratio a sharp edge may show; 1/cos 70 degrees = 2.9
 inline constexpr double kMinSpacingSigma = 0.05;
-inline constexpr int kMature = 3;  // points after which the direction carries the spacing
+inline constexpr int kShortGap = 10;  // lines without points across which the direction is still believed
+inline constexpr int kMature = 3;     // points after which the direction carries the spacing
 
 // What the profile itself says: noise of x and z, typical spacing per line.
 struct Scale {
@@ -48,6 +49,8 @@ struct State {
 
 // Where the next point is expected, i lines ahead, and how far off a given point is.
 struct Deviation {
+    double straight = 0;    // p11 if the direction keeps still
+    double grown = 1;       // predicted distance in present spacings
     double ex = 0, ez = 0;  // point minus prediction
     double p11 = 0, p12 = 0, p22 = 0;
     double along_variance = 0;  // of the spacing process, mm^2
@@ -74,11 +77,12 @@ inline Deviation deviation(const Model& m, const State& s, double x, double z, i
     if (!(d.sigma_across2 > 0)) d.sigma_across2 = std::max(sx2, sz2);
     const double q = kTurn * kTurn * s.spacing * s.spacing / d.sigma_across2;
     const double n = i;
-    d.p11 = s.p11 + n * (2 * s.p12 + n * s.p22) + q * n * n * n * (1. / 3);
+    d.straight = s.p11 + n * (2 * s.p12 + n * s.p22);
+    d.p11 = d.straight + q * n * n * n * (1. / 3);
     d.p12 = s.p12 + n * s.p22 + 0.5 * q * n * n;
     d.p22 = s.p22 + q * n;
     // (3.4), (3.5) for the distance of i lines: drift as the mean growth over them.
-    double grown = n;
+    double& grown = d.grown = n;
     if (i > 1 && s.drift != 0) grown = n * (1 + std::clamp(0.5 * s.drift * (n - 1), -0.3, 0.3));
     d.ex = x - s.x - grown * s.vx;
     d.ez = z - s.z - grown * s.vz;
@@ -92,36 +96,36 @@ inline Deviation deviation(const Model& m, const State& s, double x, double z, i
     return d;
 }
 
-// The state after a point that fits; `d` is its deviation.
-inline void accept(const Model& m, State& s, const Deviation& d, double x, double z, int i) {
+// The state after a point that fits; `d` is its deviation. What the spacing process explains is taken along
+// the contour by MAP (its measured spacing is the generalised least squares estimate of the advance, with the
+// noise of the prediction in it); the rest is measuring noise and passes the gains of the regression.
+inline void accept(const Model& m, State& s, const Deviation& d, int i) {
     const double S = 1 + d.p11, g1 = d.p11 / S, g2 = d.p12 / S;
     const double length = std::sqrt(s.vx * s.vx + s.vz * s.vz);
-    const double inverse = length > 0 ? 1 / length : 0;
-    const double tx = s.vx * inverse, tz = s.vz * inverse;
-    const double along = tx * d.ex + tz * d.ez;
-    const double sigma_along2 = tx * tx * m.scale.sx * m.scale.sx + tz * tz * m.scale.sz * m.scale.sz;
-    const double spread = d.along_variance + S * sigma_along2;
-    const double g_along = spread > 0 ? (d.along_variance + d.p11 * sigma_along2) / spread : 1;
-    const double extra = (g_along - g1) * along;
-    const double measured = (tx * (x - s.x) + tz * (z - s.z)) / i;
-    const double sn = std::sqrt(sigma_along2 * (1 + s.p11)) / i;
-    s.x = x - (1 - g1) * d.ex + tx * extra;
-    s.z = z - (1 - g1) * d.ez + tz * extra;
-    s.vx += g2 * d.ex, s.vz += g2 * d.ez;
-    s.p11 = d.p11 / S, s.p12 = d.p12 / S, s.p22 = d.p22 - d.p12 * g2;
-    ++s.age;
+    double ex = d.ex, ez = d.ez;
+    s.x += d.grown * s.vx, s.z += d.grown * s.vz;
     if (s.age >= kMature && length > 0) {
-        const double sigma = std::sqrt(s.variance);
-        const double estimate = map_spacing(measured, s.spacing, s.drift, sigma, sn, i);
-        const double growth = std::clamp(estimate / s.spacing - 1, -0.5, 0.5) / i;
+        const double tx = s.vx / length, tz = s.vz / length;
+        const double wx = tx / (m.scale.sx * m.scale.sx), wz = tz / (m.scale.sz * m.scale.sz);
+        const double information = wx * tx + wz * tz;
+        const double sn = std::sqrt(S / information) / i;
+        const double measured = length * (d.grown / i) + (wx * ex + wz * ez) / (information * i);
+        const double estimate = map_spacing(measured, length, s.drift, std::sqrt(s.variance), sn, i);
+        const double growth = std::clamp(estimate / length - 1, -0.5, 0.5) / i;
         const double surprise = growth - s.drift;
         s.variance = std::max((1 - m.average) * s.variance + m.average * surprise * surprise,
                               kMinSpacingSigma * kMinSpacingSigma);
         s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -0.1, 0.1);
-        s.spacing = std::max(estimate, 0.05 * m.scale.spacing);
-        const double turned = std::sqrt(s.vx * s.vx + s.vz * s.vz);
-        if (turned > 0) s.vx *= s.spacing / turned, s.vz *= s.spacing / turned;
+        const double advance = estimate - length * (d.grown / i);
+        s.x += tx * advance * i, s.z += tz * advance * i;
+        ex -= tx * advance * i, ez -= tz * advance * i;
+        s.vx += tx * (estimate - length), s.vz += tz * (estimate - length);
     }
+    s.x += g1 * ex, s.z += g1 * ez;
+    s.vx += g2 * ex, s.vz += g2 * ez;
+    s.spacing = std::clamp(std::sqrt(s.vx * s.vx + s.vz * s.vz), 0.1 * m.scale.spacing, 10 * m.scale.spacing);
+    s.p11 = d.p11 / S, s.p12 = d.p12 / S, s.p22 = d.p22 - d.p12 * g2;
+    ++s.age;
     s.excess = std::max(1., s.excess + 0.05 * (0.5 * d.d2 * s.excess - s.excess));
 }
 

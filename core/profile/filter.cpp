@@ -9,7 +9,9 @@ using namespace contour;
 
 constexpr double kAbsurd = 1e100;    // coordinates beyond are no return: their squares would overflow
 constexpr double kSpacingGap = 3.5;  // distance in spacings per line beyond which the contour is interrupted
-constexpr int kShortGap = 10;        // lines without points across which a sharp edge is still believed
+constexpr int kFitPoints = 6,
+              kSettled = 5;    // of the line at the end of a piece; age at which the tracker knows better
+constexpr int kUnchecked = 3;  // lines across which a smooth link is taken without looking from both sides
 constexpr double kLongGapSlope = 0.05;  // uncertainty of direction across longer gaps, rad
 
 Workspace& workspace() {
@@ -47,7 +49,7 @@ void run_backward(Workspace& w, const Model& m) {
         if (state.age >= 2) {
             const Deviation d = deviation(m, state, point.x, point.z, i);
             if (0.5 * d.d2 < m.outlier_cost) {
-                accept(m, state, d, point.x, point.z, i);
+                accept(m, state, d, i);
                 continue;
             }
         }
@@ -55,7 +57,19 @@ void run_backward(Workspace& w, const Model& m) {
     }
 }
 
-// Is `point` in the band seen from the states before and after it (either may be missing)?
+// Squared normalised distance of a deviation across an advance (vx, vz), S times the measuring covariance.
+double distance2(const Model& m, const State& s, double ex, double ez, double S, double along) {
+    const double sx2 = m.scale.sx * m.scale.sx, sz2 = m.scale.sz * m.scale.sz;
+    const double length2 = s.vx * s.vx + s.vz * s.vz;
+    const double per_length = length2 > 0 ? along / length2 : 0;
+    const double cxx = S * sx2 + per_length * s.vx * s.vx, czz = S * sz2 + per_length * s.vz * s.vz;
+    const double cxz = per_length * s.vx * s.vz;
+    return (ex * ex * czz - 2 * ex * ez * cxz + ez * ez * cxx) / (cxx * czz - cxz * cxz);
+}
+
+// Is the point in the band seen from the states before and after it (either may be missing)? Where both agree
+// they count together, sharper than either; beside that a point may continue one side straight on, which is
+// how points next to a sharp edge look.
 bool in_band(const Model& m, const State* before, int i_before, const State* after, int i_after, double x,
              double z) {
     const double limit = 2 * m.outlier_cost;
@@ -63,21 +77,14 @@ bool in_band(const Model& m, const State* before, int i_before, const State* aft
     if (before) f = deviation(m, *before, x, z, i_before);
     if (after) b = deviation(m, *after, x, z, i_after);
     if (before && after) {
-        // Both predictions, if they agree, together: sharper than either.
-        const double sx2 = m.scale.sx * m.scale.sx, sz2 = m.scale.sz * m.scale.sz;
         const double along = std::min(f.along_variance, b.along_variance);
-        const double length2 = before->vx * before->vx + before->vz * before->vz;
-        const double inverse = length2 > 0 ? 1 / length2 : 0;
-        const double txx = before->vx * before->vx * inverse, tzz = before->vz * before->vz * inverse,
-                     txz = before->vx * before->vz * inverse;
-        const auto distance2 = [&](double ex, double ez, double S) {
-            const double cxx = S * sx2 + along * txx, czz = S * sz2 + along * tzz, cxz = along * txz;
-            return (ex * ex * czz - 2 * ex * ez * cxz + ez * ez * cxx) / (cxx * czz - cxz * cxz);
-        };
         const double excess = std::min(before->excess, after->excess);
-        if (distance2(f.ex - b.ex, f.ez - b.ez, f.p11 + b.p11) < limit * excess) {
+        if (distance2(m, *before, f.ex - b.ex, f.ez - b.ez, f.p11 + b.p11, along) < limit * excess) {
             const double wf = b.p11 / (f.p11 + b.p11), wb = 1 - wf;
-            return distance2(wf * f.ex + wb * b.ex, wf * f.ez + wb * b.ez, 1 + wf * f.p11) < limit * excess;
+            return distance2(m, *before, wf * f.ex + wb * b.ex, wf * f.ez + wb * b.ez, 1 + wf * f.p11,
+                             along) < limit * excess ||
+                   distance2(m, *before, f.ex, f.ez, 1 + f.straight, f.along_variance) < limit * excess ||
+                   distance2(m, *after, b.ex, b.ez, 1 + b.straight, b.along_variance) < limit * excess;
         }
     }
     return (before && f.d2 < limit) || (after && b.d2 < limit);
@@ -89,7 +96,9 @@ int verify(Workspace& w, const Model& m) {
     w.piece.assign(w.candidates.size(), -1);
     int piece = 0;
     for (int k = -1; k < n; ++k) {
-        if (k >= 0 && k > 0 && w.nodes[std::size_t(w.path[std::size_t(k)])].link != Link::smooth) ++piece;
+        if (k > 0 && (w.nodes[std::size_t(w.path[std::size_t(k)])].link != Link::smooth ||
+                      line_difference(w, w.path[std::size_t(k) - 1], w.path[std::size_t(k)]) > kUnchecked))
+            ++piece;
         const int here = k >= 0 ? w.path[std::size_t(k)] : -1;
         const int next = k + 1 < n ? w.path[std::size_t(k) + 1] : -1;
         const bool next_starts = next >= 0 && w.nodes[std::size_t(next)].link == Link::start;
@@ -128,13 +137,49 @@ int verify(Workspace& w, const Model& m) {
     return n > 0 ? piece + 1 : 0;
 }
 
+// Straight line over the (at most kFitPoints) points of a piece from its end at candidate `c` inwards: for a
+// tracker that had no time to learn the direction. Direction of travel as for the tracker that comes from
+// inside to `c`.
+State end_line(const Workspace& w, int c, int step, const State& fallback) {
+    int lines[kFitPoints], found[kFitPoints], n = 0;
+    const int piece = w.piece[std::size_t(c)], line0 = w.candidates[std::size_t(c)].line;
+    double mean = 0, mx = 0, mz = 0;
+    for (int k = c; k >= 0 && k < int(w.candidates.size()) && n < kFitPoints; k += step) {
+        const int other = w.piece[std::size_t(k)];
+        if (other >= 0 && other != piece) break;
+        if (other < 0) continue;
+        lines[n] = std::abs(w.candidates[std::size_t(k)].line - line0), found[n++] = k;
+    }
+    if (n < kMature) return fallback;
+    for (int k = 0; k < n; ++k) {
+        mean += lines[k];
+        mx += w.candidates[std::size_t(found[k])].x, mz += w.candidates[std::size_t(found[k])].z;
+    }
+    mean /= n, mx /= n, mz /= n;
+    double spread = 0, sx = 0, sz = 0;
+    for (int k = 0; k < n; ++k) {
+        const double d = lines[k] - mean;
+        spread += d * d;
+        sx += d * w.candidates[std::size_t(found[k])].x, sz += d * w.candidates[std::size_t(found[k])].z;
+    }
+    State s = fallback;
+    s.vx = -sx / spread, s.vz = -sz / spread;  // lines count inwards, the advance points outwards
+    s.x = mx + mean * s.vx, s.z = mz + mean * s.vz;
+    s.p11 = 1. / n + mean * mean / spread, s.p12 = mean / spread, s.p22 = 1 / spread;
+    s.spacing = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+    s.age = n;
+    return s;
+}
+
 // Do the pieces that end at path element ka and begin at kb belong to one contour? They do when one line
 // continues the other within its uncertainty, or when both meet between the two points (a sharp edge), and no
 // spacing is missing.
 bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
     const int ca = w.path[std::size_t(ka)], cb = w.path[std::size_t(kb)];
     const Candidate &a = w.candidates[std::size_t(ca)], &b = w.candidates[std::size_t(cb)];
-    const State &left = w.nodes[std::size_t(ca)].state, &right = w.backward[std::size_t(kb)];
+    State left = w.nodes[std::size_t(ca)].state, right = w.backward[std::size_t(kb)];
+    if (left.age < kSettled) left = end_line(w, ca, -1, left);
+    if (right.age < kSettled) right = end_line(w, cb, +1, right);
     const double n = line_difference(w, ca, cb);
     const double distance = std::hypot(b.x - a.x, b.z - a.z);
     const double spacing = std::max({left.spacing, right.spacing, 0.5 * m.scale.spacing});

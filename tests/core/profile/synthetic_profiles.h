@@ -59,15 +59,16 @@ class Maker {
         const double density = (r.jumps_per_1000 + r.edges_per_1000) / 1000;
         while (int(t.profile.size()) < r.points) {
             // One piece.
-            const int length =
+            int length =
                 density > 0 ? std::max(r.min_piece, int(-std::log(uniform(1e-9, 1)) / density)) : r.points;
+            if (int(t.profile.size()) + length + kMostMissing + r.min_piece > r.points) length = r.points;
             const int kind = r.curved ? whole(0, 2) : 0;
             double curvature = 0, wave = 0, wave_length = 1;
             const double turn = chance(0.5) ? 1 : -1;
             if (kind == 1) curvature = turn / (r.min_radius * std::exp(uniform(0, 3)));
             if (kind == 2) {
                 wave_length = r.spacing * uniform(60, 400);
-                wave = std::min(turn * 0.3, wave_length / (2 * std::numbers::pi * r.min_radius));
+                wave = turn * std::min(0.3, wave_length / (2 * std::numbers::pi * r.min_radius));
             }
             const double base = slope;
             double run = 0;
@@ -94,15 +95,20 @@ class Maker {
                     r.clear ? std::max({r.jump_min, 10 * r.noise / 0.34, 5 * ds / 0.34}) : r.jump_min;
                 const double size =
                     std::max(least, r.jump_min * std::pow(r.jump_max / r.jump_min, uniform(0, 1)));
-                const int missing = chance(0.4) ? whole(1, 40) : 0;
+                const int missing = chance(0.4) ? whole(1, kMostMissing) : 0;
                 for (int k = 0; k < missing && int(t.profile.size()) < r.points; ++k)
                     push(t, nan, nan), angle.push_back(0);
                 x += r.spacing * (missing + 1);
                 z += r.spacing * (missing + 1) * std::tan(here);
                 if (missing == 0 && chance(0.3))
                     x += std::max(size, (r.clear ? 8 * ds : 0.));  // a gap of lines not delivered
-                else
-                    z += (chance(0.5) ? 1 : -1) * size;
+                else {
+                    // A step that the two slopes explain as a sharp edge inside the missing lines is none to
+                    // see.
+                    const double bend = r.spacing * (missing + 1) * (std::tan(slope) - std::tan(here));
+                    const bool hidden = r.clear && size < 2 * std::abs(bend);
+                    z += (hidden ? -std::copysign(1., bend) : chance(0.5) ? 1 : -1) * size;
+                }
                 if (int(t.profile.size()) < r.points) t.jump.push_back(int(t.profile.size()));
             } else {
                 // Off the end of the old piece, in a new direction.
@@ -119,6 +125,8 @@ class Maker {
     }
 
   private:
+    static constexpr int kMostMissing = 40;
+
     static void push(Truth& t, double x, double z) {
         t.profile.x_mm.push_back(x), t.profile.z_mm.push_back(z);
     }

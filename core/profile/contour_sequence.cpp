@@ -104,7 +104,8 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                 if (i > kShortGap) return;
                 if (node.state.age < 2) {
                     const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
-                    const double cost = node.cost + skipped + 0.25 * m.outlier_cost * ratio * ratio;
+                    const double cost = node.cost + skipped +
+                                        (0.6 * ratio * ratio + (skipped > 0 ? 0.5 : 0)) * m.outlier_cost;
                     if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
                     return;
                 }
@@ -129,7 +130,7 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                         if (i > lookahead + 1) continue;
                         const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
                         const double cost =
-                            node.cost + skipped + m.edge_cost + 0.25 * m.outlier_cost * ratio * ratio;
+                            node.cost + skipped + m.edge_cost + 0.6 * m.outlier_cost * ratio * ratio;
                         if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
                     }
                 }

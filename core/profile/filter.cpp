@@ -10,9 +10,10 @@ using namespace contour;
 constexpr double kAbsurd = 1e100;    // coordinates beyond are no return: their squares would overflow
 constexpr double kSpacingGap = 3.5;  // distance in spacings per line beyond which the contour is interrupted
 constexpr int kFitPoints = 6,
-              kSettled = 5;    // of the line at the end of a piece; age at which the tracker knows better
+              kLongFitPoints = 12;  // of the line at the end of a piece: near, across a long gap
+constexpr int kSettled = 5;         // points after which the tracker knows better
 constexpr int kUnchecked = 3;  // lines across which a smooth link is taken without looking from both sides
-constexpr double kLongGapSlope = 0.05;  // uncertainty of direction across longer gaps, rad
+constexpr double kLongGapSlope = 0.03;  // uncertainty of direction across longer gaps, rad
 
 Workspace& workspace() {
     thread_local Workspace w;
@@ -122,14 +123,16 @@ int verify(Workspace& w, const Model& m) {
         const int end = next >= 0 ? next : int(w.candidates.size());
         for (int c = here + 1; c < end; ++c) {
             const Candidate& p = w.candidates[std::size_t(c)];
-            const int ib = before ? p.line - w.candidates[std::size_t(here)].line : 0;
-            const int ia = after ? w.candidates[std::size_t(next)].line - p.line : 0;
+            const int ib = p.line - (here >= 0 ? w.candidates[std::size_t(here)].line : 0);
+            const int ia = (next >= 0 ? w.candidates[std::size_t(next)].line : 0) - p.line;
+            const State* const from_left = ib <= kShortGap ? before : nullptr;
+            const State* const from_right = ia <= kShortGap ? after : nullptr;
             if (next_starts) {
-                if (before && in_band(m, before, ib, nullptr, 0, p.x, p.z))
+                if (from_left && in_band(m, from_left, ib, nullptr, 0, p.x, p.z))
                     w.piece[std::size_t(c)] = piece;
-                else if (after && in_band(m, nullptr, 0, after, ia, p.x, p.z))
+                else if (from_right && in_band(m, nullptr, 0, from_right, ia, p.x, p.z))
                     w.piece[std::size_t(c)] = piece + 1;
-            } else if ((before || after) && in_band(m, before, ib, after, ia, p.x, p.z)) {
+            } else if ((from_left || from_right) && in_band(m, from_left, ib, from_right, ia, p.x, p.z)) {
                 w.piece[std::size_t(c)] = piece;
             }
         }
@@ -140,11 +143,11 @@ int verify(Workspace& w, const Model& m) {
 // Straight line over the (at most kFitPoints) points of a piece from its end at candidate `c` inwards: for a
 // tracker that had no time to learn the direction. Direction of travel as for the tracker that comes from
 // inside to `c`.
-State end_line(const Workspace& w, int c, int step, const State& fallback) {
-    int lines[kFitPoints], found[kFitPoints], n = 0;
+State end_line(const Workspace& w, int c, int step, int points, const State& fallback) {
+    int lines[kLongFitPoints], found[kLongFitPoints], n = 0;
     const int piece = w.piece[std::size_t(c)], line0 = w.candidates[std::size_t(c)].line;
     double mean = 0, mx = 0, mz = 0;
-    for (int k = c; k >= 0 && k < int(w.candidates.size()) && n < kFitPoints; k += step) {
+    for (int k = c; k >= 0 && k < int(w.candidates.size()) && n < points; k += step) {
         const int other = w.piece[std::size_t(k)];
         if (other >= 0 && other != piece) break;
         if (other < 0) continue;
@@ -178,9 +181,10 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
     const int ca = w.path[std::size_t(ka)], cb = w.path[std::size_t(kb)];
     const Candidate &a = w.candidates[std::size_t(ca)], &b = w.candidates[std::size_t(cb)];
     State left = w.nodes[std::size_t(ca)].state, right = w.backward[std::size_t(kb)];
-    if (left.age < kSettled) left = end_line(w, ca, -1, left);
-    if (right.age < kSettled) right = end_line(w, cb, +1, right);
     const double n = line_difference(w, ca, cb);
+    const bool far = n > kShortGap;
+    if (far || left.age < kSettled) left = end_line(w, ca, -1, far ? kLongFitPoints : kFitPoints, left);
+    if (far || right.age < kSettled) right = end_line(w, cb, +1, far ? kLongFitPoints : kFitPoints, right);
     const double distance = std::hypot(b.x - a.x, b.z - a.z);
     const double spacing = std::max({left.spacing, right.spacing, 0.5 * m.scale.spacing});
     if (!(distance < kSpacingGap * spacing * n + m.band * 1.5 * m.scale.largest())) return false;
@@ -190,14 +194,16 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
         const double length2 = s.vx * s.vx + s.vz * s.vz;
         const double sigma2 =
             (s.vz * s.vz * m.scale.sx * m.scale.sx + s.vx * s.vx * m.scale.sz * m.scale.sz) / length2;
-        const double turn = n <= kShortGap ? kTurn * kTurn * s.spacing * s.spacing * n * n * n / 3 : 0;
+        const double turn = far ? 0 : kTurn * kTurn * s.spacing * s.spacing * n * n * n / 3;
         const double p = s.p11 + n * (2 * s.p12 + n * s.p22) + other.p11;
-        return m.band * std::sqrt(sigma2 * p + turn) + (n > kShortGap ? kLongGapSlope * n * s.spacing : 0);
+        return far ? 3 * std::sqrt(sigma2 * p) + kLongGapSlope * n * s.spacing
+                   : m.band * std::sqrt(sigma2 * p + turn);
     };
     const double dx = right.x - left.x, dz = right.z - left.z;
-    if (std::abs(dot_across(left, dx, dz)) < tolerance(left, right)) return true;
-    if (std::abs(dot_across(right, dx, dz)) < tolerance(right, left)) return true;
-    if (n > kShortGap) return false;
+    const bool on_left = std::abs(dot_across(left, dx, dz)) < tolerance(left, right);
+    const bool on_right = std::abs(dot_across(right, dx, dz)) < tolerance(right, left);
+    if (far) return on_left && on_right;
+    if (on_left || on_right) return true;
     // left + alpha v_left = right + beta v_right; v_right points back.
     const double cross = left.vx * right.vz - left.vz * right.vx;
     const double alpha = (dx * right.vz - dz * right.vx) / cross,

@@ -37,6 +37,7 @@ struct RunSummary {
     RunStatus status = RunStatus::ok;
     std::string message;
     int spots = 0, captures = 0;
+    std::int64_t setup = 0;  // runs with equal numbers were made with the same setup
 };
 
 // One thread at a time. Several processes may have a file open; a writer waits up to 5 s for another's lock.
@@ -62,6 +63,8 @@ class ProjectFile {
     // `setup` is the project the run was made with. Returns the run's number; events of the record get it
     // too.
     Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
+    // Replaces the outcome of a run (times, status, message, regions); spots, captures and events stay.
+    Expected<void> update_run(const RunRecord& run);
     // Returns the event's id.
     Expected<std::int64_t> append_event(const EventRecord& event);
 
@@ -70,6 +73,7 @@ class ProjectFile {
     Expected<RunRecord> load_run(std::int64_t number, bool with_captures = true) const;
     // The project as it was when the run was made, without mesh and calibration raw data.
     Expected<Project> load_run_setup(std::int64_t number) const;
+    Expected<Project> load_setup(std::int64_t setup) const;
     // Newest last; run 0 = all.
     Expected<std::vector<EventRecord>> events(std::int64_t run = 0) const;
     Expected<void> delete_run(std::int64_t number);

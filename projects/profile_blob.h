@@ -1,0 +1,39 @@
+#pragma once
+// Profiles and captures as bytes: exact, versioned, little endian, checked.
+//
+// Blob:    "SWPB" | u16 version = 1 | u16 record kind (1 profile, 2 capture) | u32 records | u32 crc32 of the
+// payload | payload Profile: u32 points | u8 columns (1 intensity, 2 segment) | x f64[n] | z f64[n] |
+// [intensity f32[n]] | [segment i32[n]] Capture: spot id, sensor id (u16 length + UTF-8 each) | u8 frame
+// status | u64 sequence | i64 device time ns | i64 host time ns
+//          | u8 pose present | [matrix rows 0..2 row-major f64[12]] | profile
+//          | u32 lines | u8 per line | [per line: u8 count, then count * (x f64, z f64, intensity f32)]
+// A capture's image is not in here, see project_file.
+// Reading never trusts a length: every size is held against what is left of the blob before memory is taken.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/error.h"
+#include "projects/run.h"
+
+namespace seamwright {
+
+// Error: columns of different length.
+Expected<std::vector<std::byte>> pack_profile(const Profile& profile);
+Expected<Profile> unpack_profile(std::span<const std::byte> blob, const std::string& where);
+
+// Packs captures in order into blobs that are closed as soon as they reach `target_bytes`.
+inline constexpr std::size_t kCaptureBlobBytes = 1u << 20;
+struct CaptureBlob {
+    int captures = 0;
+    std::vector<std::byte> bytes;
+};
+// Error: columns of different length, ids over 64 KiB, more than 65536 lines or 64 candidates a line.
+Expected<std::vector<CaptureBlob>> pack_captures(std::span<const Capture> captures,
+                                                 std::size_t target_bytes = kCaptureBlobBytes);
+// Appends to `captures`.
+Expected<void> unpack_captures(std::span<const std::byte> blob, const std::string& where,
+                               std::vector<Capture>& captures);
+
+}  // namespace seamwright

@@ -1,0 +1,376 @@
+#include "projects/project_json.h"
+
+#include "core/geometry/notation.h"
+
+namespace seamwright {
+
+// The words on disk. Their order is that of the enum's values and must never change.
+#define SEAMWRIGHT_WORDS(E, ...)                                                 \
+    template <>                                                                  \
+    struct EnumWords<E> {                                                        \
+        static constexpr auto words = std::to_array<const char*>({__VA_ARGS__}); \
+    }
+SEAMWRIGHT_WORDS(ScanLines, "columns", "rows");
+SEAMWRIGHT_WORDS(PeakMethod, "centre_of_gravity", "gaussian", "steger");
+SEAMWRIGHT_WORDS(RobotMode, "unknown", "manual_reduced", "manual_full", "automatic", "external", "stopped",
+                 "fault");
+SEAMWRIGHT_WORDS(FeatureStatus, "ok", "no_points", "not_found", "ambiguous", "ill_conditioned");
+SEAMWRIGHT_WORDS(CorrectionStatus, "ok", "under_determined", "over_limit", "not_converged");
+SEAMWRIGHT_WORDS(SpotStatus, "measured", "not_measured", "damaged_frame", "no_stripe", "no_calibration",
+                 "no_feature");
+SEAMWRIGHT_WORDS(PushStatus, "not_pushed", "written", "failed", "restored", "not_restored");
+#undef SEAMWRIGHT_WORDS
+
+namespace {
+
+Eigen::Matrix<double, 4, 4> matrix_of(const Pose& pose) {
+    return pose.matrix();
+}
+
+template <class A>
+void profile_fields(A& a, Profile& p) {
+    a("x_mm", p.x_mm);
+    a("z_mm", p.z_mm);
+    a("intensity", p.intensity);
+    a("segment", p.segment);
+}
+
+}  // namespace
+
+nlohmann::json JsonWriter::encode(const Pose& pose) {
+    const Eigen::Matrix4d m = matrix_of(pose);
+    nlohmann::json object = nlohmann::json::object();
+    if (m.allFinite()) {
+        const KukaAbc abc = kuka_from_rotation(pose.linear());
+        object["xyz"] = {m(0, 3), m(1, 3), m(2, 3)};
+        object["abc"] = {encode(abc.a_deg), encode(abc.b_deg), encode(abc.c_deg)};
+    }
+    JsonWriter writer(ArchiveOptions{});
+    object["matrix"] = writer.encode(m);
+    return object;
+}
+
+void JsonReader::decode(const nlohmann::json& json, Pose& pose) {
+    if (!json.is_object()) return expected("a pose", json);
+    const auto field = json.find("matrix");
+    if (field == json.end()) {
+        const auto xyz = json.find("xyz"), abc = json.find("abc");
+        if (xyz == json.end() || abc == json.end())
+            return fail("a pose needs \"matrix\", or \"xyz\" and \"abc\"");
+        Eigen::Vector3d t = Eigen::Vector3d::Zero(), angles = Eigen::Vector3d::Zero();
+        decode(*xyz, t);
+        decode(*abc, angles);
+        if (!error_ && !(t.allFinite() && angles.allFinite()))
+            fail("the pose holds a value that is not a finite number");
+        if (!error_) pose = make_pose(rotation_from_kuka({angles.x(), angles.y(), angles.z()}), t);
+        return;
+    }
+    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+    if (field->is_array() && field->size() == 4 && field->front().is_array()) {
+        for (std::size_t r = 0; r < 4 && !error_; ++r) {
+            Eigen::Vector4d row = Eigen::Vector4d::Zero();
+            decode((*field)[r], row);
+            m.row(static_cast<int>(r)) = row;
+        }
+    } else {
+        decode(*field, m);
+    }
+    if (error_) return;
+    if (options_.rigid_poses) {
+        const Expected<Pose> rigid = pose_from_matrix(m, path_);
+        if (!rigid) {
+            fail(rigid.error().what, rigid.error().mend);
+            return;
+        }
+        // The stored bits are kept when they are a rotation to rounding; a hand-written one is made
+        // orthonormal.
+        if ((rigid->matrix() - m).cwiseAbs().maxCoeff() > 1e-9) m = rigid->matrix();
+    }
+    pose.matrix() = m;
+    pose.makeAffine();
+}
+
+// --- devices and core
+
+template <class A>
+void describe(A& a, SensorIdentity& v) {
+    a("driver", v.driver);
+    a("vendor", v.vendor);
+    a("model", v.model);
+    a("serial", v.serial);
+}
+template <class A>
+void describe(A& a, RobotIdentity& v) {
+    a("driver", v.driver);
+    a("brand", v.brand);
+    a("model", v.model);
+    a("serial", v.serial);
+}
+template <class A>
+void describe(A& a, PeakOptions& v) {
+    a("scan", v.scan);
+    a("method", v.method);
+    a("per_line", v.per_line);
+    a("threshold", v.threshold);
+    a("min_width_px", v.min_width_px);
+    a("max_width_px", v.max_width_px);
+    a("steger_sigma_px", v.steger_sigma_px);
+}
+template <class A>
+void describe(A& a, FilterOptions& v) {
+    a("noise_mm", v.noise_mm);
+    a("band_sigmas", v.band_sigmas);
+    a("lookahead", v.lookahead);
+    a("average", v.average);
+    a("initial_sigma", v.initial_sigma);
+    a("min_segment_points", v.min_segment_points);
+}
+template <class A>
+void describe(A& a, CameraModel& v) {
+    a("fx", v.fx);
+    a("fy", v.fy);
+    a("cx", v.cx);
+    a("cy", v.cy);
+    a("k1", v.k1);
+    a("k2", v.k2);
+    a("p1", v.p1);
+    a("p2", v.p2);
+    a("k3", v.k3);
+    a("width", v.width);
+    a("height", v.height);
+}
+template <class A>
+void describe(A& a, LookupTable& v) {
+    a("u0", v.u0);
+    a("v0", v.v0);
+    a("step_u", v.step_u);
+    a("step_v", v.step_v);
+    a("columns", v.columns);
+    a("rows", v.rows);
+    a("x_mm", v.x_mm);
+    a("z_mm", v.z_mm);
+    if constexpr (A::reading) {
+        const bool sizes =
+            v.columns >= 0 && v.rows >= 0 && v.x_mm.size() == v.z_mm.size() &&
+            v.x_mm.size() == static_cast<std::size_t>(v.columns) * static_cast<std::size_t>(v.rows);
+        if (!sizes) a.fail("the table does not hold rows * columns entries");
+    }
+}
+template <class A>
+void describe(A& a, SensorModel& v) {
+    a("camera", v.camera);
+    a("camera_from_laser", v.camera_from_laser);
+    a("table", v.table);
+}
+template <class A>
+void describe(A& a, Profile& v) {
+    profile_fields(a, v);
+    if constexpr (A::reading) {
+        const std::size_t n = v.x_mm.size();
+        if (v.z_mm.size() != n || (!v.intensity.empty() && v.intensity.size() != n) ||
+            (!v.segment.empty() && v.segment.size() != n))
+            a.fail("the columns of the profile differ in length");
+    }
+}
+template <class A>
+void describe(A& a, FeatureRecipe& v) {
+    a("kind", v.kind);
+    a("parameters", v.parameters);
+    a("template_reference_mm", v.template_reference_mm);
+    if (a.options().profiles) a("template_profile", v.template_profile);
+}
+template <class A>
+void describe(A& a, ContourCurve& v) {
+    a("x_coefficients", v.x_coefficients);
+    a("z_coefficients", v.z_coefficients);
+    a("valid_from_mm", v.valid_from_mm);
+    a("valid_to_mm", v.valid_to_mm);
+}
+template <class A>
+void describe(A& a, CorrectionLimits& v) {
+    a("translation_mm", v.translation_mm);
+    a("rotation_deg", v.rotation_deg);
+}
+template <class A>
+void describe(A& a, Feature& v) {
+    a("status", v.status);
+    a("point_mm", v.point_mm);
+    a("covariance_mm2", v.covariance_mm2);
+    a("phi_rad", v.phi_rad);
+    a("rms_mm", v.rms_mm);
+    a("points_used", v.points_used);
+    a("message", v.message);
+}
+template <class A>
+void describe(A& a, SpotResidual& v) {
+    a("id", v.id);
+    a("residual_mm", v.residual_mm);
+    a("used", v.used);
+}
+template <class A>
+void describe(A& a, RegionCorrection& v) {
+    a("status", v.status);
+    a("workobject_from_movedworkobject", v.displacement.workobject_from_movedworkobject);
+    a("covariance", v.covariance);
+    a("sigma_xyz_mm", v.sigma_xyz_mm);
+    a("sigma_abc_deg", v.sigma_abc_deg);
+    a("rms_mm", v.rms_mm);
+    a("redundancy", v.redundancy);
+    a("spots", v.spots);
+    a("unobservable", v.unobservable);
+    a("message", v.message);
+    a("iterations", v.iterations);
+}
+
+// --- the project
+
+template <class A>
+void describe(A& a, PartSetup& v) {
+    a("name", v.name);
+    a("mesh_source", v.mesh_source);
+    a("base_from_workobject", v.base_from_workobject);
+}
+template <class A>
+void describe(A& a, SensorSetup& v) {
+    a("id", v.id);
+    a("driver", v.driver);
+    a("settings", v.settings);
+    a("identity", v.identity);
+    a("peaks", v.peaks);
+    a("filter", v.filter);
+    a("calibration_id", v.calibration_id);
+}
+template <class A>
+void describe(A& a, RobotSetup& v) {
+    a("id", v.id);
+    a("driver", v.driver);
+    a("settings", v.settings);
+    a("identity", v.identity);
+    a("required_mode", v.required_mode);
+}
+template <class A>
+void describe(A& a, Calibration& v) {
+    a("id", v.id);
+    a("method", v.method);
+    a("sensor_id", v.sensor_id);
+    a("robot_id", v.robot_id);
+    a("sensor_identity", v.sensor_identity);
+    a("robot_identity", v.robot_identity);
+    a("created_utc", v.created_utc);
+    a("source", v.source);
+    a("model", v.model);
+    a("flange_from_sensor", v.flange_from_sensor);
+    a("covariance", v.covariance);
+    a("verdict", v.verdict);
+    a("raw", v.raw);
+    a("result", v.result);
+}
+template <class A>
+void describe(A& a, Spot& v) {
+    a("id", v.id);
+    a("sensor_id", v.sensor_id);
+    a("robot_id", v.robot_id);
+    a("enabled", v.enabled);
+    a("required", v.required);
+    a("base_from_flange", v.base_from_flange);
+    a("entry_mm", v.entry_mm);
+    a("exit_mm", v.exit_mm);
+    a("speed_mm_s", v.speed_mm_s);
+    a("stop_at_trigger", v.stop_at_trigger);
+    a("feature", v.feature);
+    a("reference_mm", v.reference_mm);
+    if (a.options().profiles) a("reference_profile", v.reference_profile);
+    a("weights", v.weights);
+    a("sigma_mm", v.sigma_mm);
+    a("jitter_mm", v.jitter_mm);
+    a("curve", v.curve);
+}
+template <class A>
+void describe(A& a, Region& v) {
+    a("id", v.id);
+    a("spot_ids", v.spot_ids);
+    a("free", v.free);
+    a("limits", v.limits);
+    a("sigma_limit_mm", v.sigma_limit_mm);
+    a("sigma_limit_deg", v.sigma_limit_deg);
+    a("frame_name", v.frame_name);
+    a("base_from_frame", v.base_from_frame);
+}
+template <class A>
+void describe(A& a, Project& v) {
+    a("name", v.name);
+    a("part", v.part);
+    a("sensors", v.sensors);
+    a("robots", v.robots);
+    a("calibrations", v.calibrations);
+    a("spots", v.spots);
+    a("regions", v.regions);
+}
+
+// --- runs
+
+template <class A>
+void describe(A& a, SpotMeasurement& v) {
+    a("spot_id", v.spot_id);
+    a("status", v.status);
+    a("message", v.message);
+    a("feature", v.feature);
+    a("measured_mm", v.measured_mm);
+    a("sigma_mm", v.sigma_mm);
+    a("pose_reported", v.pose_reported);
+    a("part_id", v.part_id);
+    a("host_time_ns", v.host_time_ns);
+    a("capture", v.capture);
+}
+template <class A>
+void describe(A& a, PushRecord& v) {
+    a("status", v.status);
+    a("frame_name", v.frame_name);
+    a("before", v.before);
+    a("read_back", v.read_back);
+    a("message", v.message);
+}
+template <class A>
+void describe(A& a, RegionRecord& v) {
+    a("region_id", v.region_id);
+    a("correction", v.correction);
+    a("base_from_frame", v.base_from_frame);
+    a("gate_passed", v.gate_passed);
+    a("refusals", v.refusals);
+    a("push", v.push);
+}
+
+template <class T>
+nlohmann::json to_json_document(const T& value, const ArchiveOptions& options) {
+    return JsonWriter(options).document(value);
+}
+
+template <class T>
+Expected<T> from_json_document(const nlohmann::json& document, const std::string& where,
+                               const ArchiveOptions& options) {
+    return JsonReader(options).document<T>(document, where);
+}
+
+#define SEAMWRIGHT_DOCUMENT(T)                                                 \
+    template nlohmann::json to_json_document(const T&, const ArchiveOptions&); \
+    template Expected<T> from_json_document(const nlohmann::json&, const std::string&, const ArchiveOptions&)
+SEAMWRIGHT_DOCUMENT(Project);
+SEAMWRIGHT_DOCUMENT(PartSetup);
+SEAMWRIGHT_DOCUMENT(SensorSetup);
+SEAMWRIGHT_DOCUMENT(RobotSetup);
+SEAMWRIGHT_DOCUMENT(Calibration);
+SEAMWRIGHT_DOCUMENT(Spot);
+SEAMWRIGHT_DOCUMENT(Region);
+SEAMWRIGHT_DOCUMENT(SpotMeasurement);
+SEAMWRIGHT_DOCUMENT(RegionRecord);
+#undef SEAMWRIGHT_DOCUMENT
+
+Expected<std::string> dump_document(const nlohmann::json& document, const std::string& where) {
+    try {
+        return document.dump();
+    } catch (const nlohmann::json::exception&) {
+        return input_error("a text is not UTF-8", where, "use plain letters in names");
+    }
+}
+
+}  // namespace seamwright

@@ -1,0 +1,266 @@
+#include "projects/safety_gate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace seamwright {
+
+// The only maker of passes.
+struct GateKeeper {
+    static GatePass pass(const GateRequest& request) {
+        GatePass pass;
+        pass.region_id_ = request.region.id;
+        pass.frame_name_ = request.region.frame_name;
+        pass.base_from_frame_ = corrected_frame(request.base_from_workobject, request.correction.displacement,
+                                                request.region.base_from_frame);
+        return pass;
+    }
+};
+
+namespace {
+
+class Reasons {
+  public:
+    explicit Reasons(std::vector<std::string>& list) : list_(list) {}
+    template <class... Args>
+    void refuse_unless(bool ok, fmt::format_string<Args...> text, Args&&... args) {
+        if (!ok) list_.push_back(fmt::format(text, std::forward<Args>(args)...));
+    }
+
+  private:
+    std::vector<std::string>& list_;
+};
+
+bool rigid(const Pose& pose) {
+    // A frame that is 100 m away is as wrong as one that is sheared; both end here.
+    return pose_from_matrix(pose.matrix(), "", 1e-6).has_value();
+}
+
+// Standard deviation along the worst direction of a 3x3 block, NaN when the block is no covariance.
+double worst_sigma(const Eigen::Matrix3d& covariance) {
+    if (!covariance.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+    const double smallest = solver.eigenvalues().minCoeff(), largest = solver.eigenvalues().maxCoeff();
+    if (smallest < -1e-9 * std::max(1.0, largest)) return std::numeric_limits<double>::quiet_NaN();
+    return std::sqrt(std::max(0.0, largest));
+}
+
+std::string name_of(const SensorIdentity& id) {
+    return fmt::format("{} {} {} {}", id.driver, id.vendor, id.model, id.serial);
+}
+std::string name_of(const RobotIdentity& id) {
+    return fmt::format("{} {} {} {}", id.driver, id.brand, id.model, id.serial);
+}
+
+void judge_spots(const GateRequest& request, Reasons& reasons) {
+    for (const std::string& id : request.region.spot_ids) {
+        const auto count = std::count_if(request.spots.begin(), request.spots.end(),
+                                         [&](const GateSpot& spot) { return spot.id == id; });
+        reasons.refuse_unless(count == 1, "spot {} of the region is {}", id,
+                              count ? "given twice" : "not known");
+    }
+    bool any = false;
+    for (const GateSpot& spot : request.spots) {
+        const auto& ids = request.region.spot_ids;
+        reasons.refuse_unless(std::find(ids.begin(), ids.end(), spot.id) != ids.end(),
+                              "spot {} is not of this region", spot.id);
+        if (!spot.measured) {
+            reasons.refuse_unless(!spot.required, "required spot {} was not measured", spot.id);
+            continue;
+        }
+        any = true;
+        reasons.refuse_unless(spot.part_id == request.part_id,
+                              "spot {} was measured on part \"{}\", not on \"{}\"", spot.id, spot.part_id,
+                              request.part_id);
+        reasons.refuse_unless(spot.measured_at_ns >= request.part_since_ns,
+                              "spot {} is stale: measured {:.1f} s before the part came", spot.id,
+                              1e-9 * static_cast<double>(request.part_since_ns - spot.measured_at_ns));
+        reasons.refuse_unless(spot.measured_at_ns <= request.now_ns, "spot {} carries a time in the future",
+                              spot.id);
+        if (spot.calibration_id.empty()) {
+            reasons.refuse_unless(false, "the sensor of spot {} is not calibrated", spot.id);
+            continue;
+        }
+        reasons.refuse_unless(
+            spot.calibration_verdict == "good" || spot.calibration_verdict == "usable",
+            "calibration {} at spot {} is {}, not good or usable", spot.calibration_id, spot.id,
+            spot.calibration_verdict.empty() ? "without verdict" : spot.calibration_verdict);
+        reasons.refuse_unless(!spot.calibrated_sensor.driver.empty() && spot.sensor == spot.calibrated_sensor,
+                              "the sensor at spot {} is [{}], calibrated was [{}]", spot.id,
+                              name_of(spot.sensor), name_of(spot.calibrated_sensor));
+        reasons.refuse_unless(!spot.calibrated_robot.driver.empty() && spot.robot == spot.calibrated_robot,
+                              "the robot at spot {} is [{}], calibrated was [{}]", spot.id,
+                              name_of(spot.robot), name_of(spot.calibrated_robot));
+    }
+    reasons.refuse_unless(any, "no spot of the region was measured");
+}
+
+void judge_correction(const GateRequest& request, Reasons& reasons) {
+    const RegionCorrection& correction = request.correction;
+    const Region& region = request.region;
+    reasons.refuse_unless(correction.status == CorrectionStatus::ok, "the correction is not ok ({})",
+                          correction.message.empty() ? "no message" : correction.message);
+    const Pose& d = correction.displacement.workobject_from_movedworkobject;
+    const bool finite = d.matrix().allFinite() && correction.covariance.allFinite() &&
+                        correction.sigma_xyz_mm.allFinite() && correction.sigma_abc_deg.allFinite();
+    reasons.refuse_unless(finite, "the correction holds a value that is not a finite number");
+    if (!finite) return;
+    if (!rigid(d)) {
+        reasons.refuse_unless(false, "the correction is no rigid displacement");
+        return;
+    }
+
+    // Every comparison is written so that NaN refuses.
+    const double length = d.translation().norm();
+    const double turn = deg_from_rad(angle_rad(d, Pose::Identity()));
+    reasons.refuse_unless(length <= region.limits.translation_mm,
+                          "the displacement of {:.3f} mm is beyond the limit of {:.3f} mm", length,
+                          region.limits.translation_mm);
+    reasons.refuse_unless(turn <= region.limits.rotation_deg,
+                          "the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn,
+                          region.limits.rotation_deg);
+
+    const double sigma_mm = std::max(worst_sigma(correction.covariance.topLeftCorner<3, 3>()),
+                                     correction.sigma_xyz_mm.cwiseAbs().maxCoeff());
+    const double sigma_deg =
+        std::max(deg_from_rad(worst_sigma(correction.covariance.bottomRightCorner<3, 3>())),
+                 correction.sigma_abc_deg.cwiseAbs().maxCoeff());
+    reasons.refuse_unless(sigma_mm <= region.sigma_limit_mm,
+                          "sigma of {:.4f} mm is over the region's limit of {:.4f} mm", sigma_mm,
+                          region.sigma_limit_mm);
+    reasons.refuse_unless(sigma_deg <= region.sigma_limit_deg,
+                          "sigma of {:.4f} degrees is over the region's limit of {:.4f} degrees", sigma_deg,
+                          region.sigma_limit_deg);
+    // A free direction known without any error was never estimated.
+    reasons.refuse_unless(sigma_mm > 0 || sigma_deg > 0, "the correction states no uncertainty");
+}
+
+bool mode_allowed(RobotMode mode, RobotMode required) {
+    if (mode == RobotMode::stopped || mode == RobotMode::fault) return false;
+    return required == RobotMode::unknown || mode == required;
+}
+
+struct FrameDistance {
+    double mm, deg;
+    bool equal() const { return mm <= kReadBackToleranceMm && deg <= kReadBackToleranceDeg; }
+};
+FrameDistance distance(const Pose& a, const Pose& b) {
+    if (!a.matrix().allFinite() || !b.matrix().allFinite()) {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {nan, nan};
+    }
+    return {distance_mm(a, b), deg_from_rad(angle_rad(a, b))};
+}
+
+std::string text_of(const Pose& pose) {
+    const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear());
+    return fmt::format("({:.4f}, {:.4f}, {:.4f}) mm, turned {:.5f} degrees", t.x(), t.y(), t.z(),
+                       deg_from_rad(w.norm()));
+}
+
+}  // namespace
+
+Pose corrected_frame(const Pose& base_from_workobject, const Displacement& displacement,
+                     const Pose& base_from_frame) {
+    const Pose workobject_from_frame = base_from_workobject.inverse() * base_from_frame;
+    return base_from_workobject * displacement.corrected(Pose::Identity()) * workobject_from_frame;
+}
+
+GatePass::GatePass(GatePass&& other) noexcept
+    : region_id_(std::move(other.region_id_)),
+      frame_name_(std::move(other.frame_name_)),
+      base_from_frame_(other.base_from_frame_),
+      spent_(std::exchange(other.spent_, true)) {}
+
+GateVerdict pass_gate(const GateRequest& request) {
+    GateVerdict verdict;
+    Reasons reasons(verdict.reasons);
+    reasons.refuse_unless(!request.region.id.empty(), "the region has no id");
+    reasons.refuse_unless(!request.region.frame_name.empty(), "the region names no frame on the controller");
+    reasons.refuse_unless(!request.region.spot_ids.empty(), "the region has no spots");
+    reasons.refuse_unless(!request.part_id.empty(), "it is not known which part stands there");
+    reasons.refuse_unless(rigid(request.base_from_workobject), "the work object's frame is no rigid pose");
+    reasons.refuse_unless(rigid(request.region.base_from_frame),
+                          "the taught frame of the region is no rigid pose");
+    reasons.refuse_unless(mode_allowed(request.mode, request.required_mode),
+                          "the robot is in mode {}, required is {}", to_string(request.mode),
+                          request.required_mode == RobotMode::unknown ? "any but stopped and fault"
+                                                                      : to_string(request.required_mode));
+    judge_spots(request, reasons);
+    judge_correction(request, reasons);
+    if (!verdict.reasons.empty()) return verdict;
+    GatePass pass = GateKeeper::pass(request);
+    reasons.refuse_unless(rigid(pass.base_from_frame()), "the corrected frame is no rigid pose");
+    if (verdict.reasons.empty()) verdict.pass.emplace(std::move(pass));
+    return verdict;
+}
+
+PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& record) {
+    const GatePass pass(std::move(given));  // spends the caller's
+    PushRecord push;
+    push.frame_name = pass.frame_name();
+    const Pose& target = pass.base_from_frame();
+    const auto give_up = [&](PushStatus status, EventKind kind, std::string message) {
+        push.status = status;
+        push.message = std::move(message);
+        // The outcome is in the returned record in any case; the log is the second place.
+        if (auto logged = record(kind, pass.frame_name(), push.message); !logged)
+            push.message += "; the event could not be recorded: " + logged.error().sentence();
+        return push;
+    };
+    if (pass.spent())
+        return give_up(PushStatus::failed, EventKind::refusal, "this pass of the gate was used before");
+
+    const Expected<Pose> before = robot.read_frame(pass.frame_name());
+    if (!before)
+        return give_up(PushStatus::failed, EventKind::device,
+                       "the old frame cannot be read: " + before.error().sentence());
+    if (!rigid(*before))
+        return give_up(PushStatus::failed, EventKind::device,
+                       "the robot answered an old frame that is no rigid pose");
+    push.before = *before;
+    if (auto logged = record(
+            EventKind::push_attempt, pass.frame_name(),
+            fmt::format("region {}: from {} to {}", pass.region_id(), text_of(*before), text_of(target)));
+        !logged) {
+        push.status = PushStatus::failed;
+        push.message = "the attempt cannot be recorded, so nothing was sent: " + logged.error().sentence();
+        return push;
+    }
+
+    std::string trouble;
+    if (auto written = robot.write_frame(pass.frame_name(), target); !written) {
+        trouble = "writing failed: " + written.error().sentence();
+    } else if (const Expected<Pose> back = robot.read_frame(pass.frame_name()); !back) {
+        trouble = "reading back failed: " + back.error().sentence();
+    } else {
+        push.read_back = *back;
+        const FrameDistance off = distance(*back, target);
+        if (off.equal())
+            return give_up(PushStatus::written, EventKind::push,
+                           fmt::format("region {}: frame written and read back", pass.region_id()));
+        trouble =
+            fmt::format("the robot holds another frame than was written (off by {:.4f} mm, {:.5f} degrees)",
+                        off.mm, off.deg);
+    }
+
+    // What the controller holds is not known any more: the old frame goes back.
+    if (auto restored = robot.write_frame(pass.frame_name(), *before); !restored)
+        return give_up(PushStatus::not_restored, EventKind::alarm,
+                       trouble + "; the old frame could not be restored: " + restored.error().sentence());
+    const Expected<Pose> back = robot.read_frame(pass.frame_name());
+    if (!back)
+        return give_up(
+            PushStatus::not_restored, EventKind::alarm,
+            trouble + "; the old frame was written but cannot be read back: " + back.error().sentence());
+    if (!distance(*back, *before).equal())
+        return give_up(PushStatus::not_restored, EventKind::alarm,
+                       trouble + "; the old frame was written but does not read back");
+    return give_up(PushStatus::restored, EventKind::alarm, trouble + "; the old frame is restored");
+}
+
+}  // namespace seamwright

@@ -1,0 +1,210 @@
+#include "projects/schema.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <set>
+#include <utility>
+
+namespace seamwright {
+namespace {
+
+constexpr const char* kVersion1 = R"sql(
+CREATE TABLE project (
+    id INTEGER PRIMARY KEY CHECK (id = 1),
+    name TEXT NOT NULL,
+    created_utc TEXT NOT NULL
+) STRICT;
+CREATE TABLE part (
+    id INTEGER PRIMARY KEY CHECK (id = 1),
+    body TEXT NOT NULL,
+    mesh BLOB NOT NULL
+) STRICT;
+CREATE TABLE sensors (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    driver TEXT NOT NULL,
+    body TEXT NOT NULL
+) STRICT;
+CREATE TABLE robots (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    driver TEXT NOT NULL,
+    body TEXT NOT NULL
+) STRICT;
+CREATE TABLE calibrations (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    sensor_id TEXT NOT NULL,
+    robot_id TEXT NOT NULL,
+    created_utc TEXT NOT NULL,
+    verdict TEXT NOT NULL,
+    body TEXT NOT NULL
+) STRICT;
+CREATE TABLE spots (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    sensor_id TEXT NOT NULL,
+    robot_id TEXT NOT NULL,
+    body TEXT NOT NULL,
+    reference_profile BLOB NOT NULL,
+    template_profile BLOB NOT NULL
+) STRICT;
+CREATE TABLE regions (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    frame_name TEXT NOT NULL,
+    body TEXT NOT NULL
+) STRICT;
+CREATE TABLE setups (
+    id INTEGER PRIMARY KEY,
+    crc INTEGER NOT NULL,
+    body TEXT NOT NULL
+) STRICT;
+CREATE INDEX setups_by_crc ON setups (crc);
+CREATE TABLE runs (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    part_id TEXT NOT NULL,
+    started_utc TEXT NOT NULL,
+    finished_utc TEXT NOT NULL,
+    push INTEGER NOT NULL CHECK (push IN (0, 1)),
+    status TEXT NOT NULL,
+    message TEXT NOT NULL,
+    setup INTEGER NOT NULL REFERENCES setups (id)
+) STRICT;
+CREATE TABLE run_spots (
+    run INTEGER NOT NULL REFERENCES runs (number) ON DELETE CASCADE,
+    position INTEGER NOT NULL,
+    spot_id TEXT NOT NULL,
+    status TEXT NOT NULL,
+    body TEXT NOT NULL,
+    PRIMARY KEY (run, position)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE run_regions (
+    run INTEGER NOT NULL REFERENCES runs (number) ON DELETE CASCADE,
+    position INTEGER NOT NULL,
+    region_id TEXT NOT NULL,
+    gate_passed INTEGER NOT NULL CHECK (gate_passed IN (0, 1)),
+    body TEXT NOT NULL,
+    PRIMARY KEY (run, position)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE captures (
+    id INTEGER PRIMARY KEY,
+    run INTEGER NOT NULL REFERENCES runs (number) ON DELETE CASCADE,
+    chunk INTEGER NOT NULL,
+    captures INTEGER NOT NULL,
+    data BLOB NOT NULL,
+    UNIQUE (run, chunk)
+) STRICT;
+CREATE TABLE events (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    utc TEXT NOT NULL,
+    run INTEGER NOT NULL,
+    kind TEXT NOT NULL,
+    subject TEXT NOT NULL,
+    text TEXT NOT NULL
+) STRICT;
+)sql";
+
+// Raw camera images of captures, packed rows.
+constexpr const char* kVersion2 = R"sql(
+CREATE TABLE images (
+    id INTEGER PRIMARY KEY,
+    run INTEGER NOT NULL REFERENCES runs (number) ON DELETE CASCADE,
+    capture INTEGER NOT NULL,
+    width INTEGER NOT NULL,
+    height INTEGER NOT NULL,
+    bit_depth INTEGER NOT NULL,
+    crc INTEGER NOT NULL,
+    data BLOB NOT NULL,
+    UNIQUE (run, capture)
+) STRICT;
+CREATE INDEX events_by_run ON events (run);
+)sql";
+
+constexpr std::array<Migration, 2> kMigrations{{{1, kVersion1}, {2, kVersion2}}};
+
+using SchemaEntries = std::set<std::pair<std::string, std::string>>;  // name, SQL
+
+Expected<SchemaEntries> schema_entries(Database& db) {
+    auto s = db.prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
+    if (!s) return tl::unexpected(s.error());
+    SchemaEntries entries;
+    for (;;) {
+        auto row = s->step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return entries;
+        entries.emplace(s->text(0), s->text(1));
+        if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
+    }
+}
+
+}  // namespace
+
+std::span<const Migration> migrations() {
+    return kMigrations;
+}
+std::int32_t current_version() {
+    return kMigrations.back().version;
+}
+
+Expected<void> migrate(Database& db, std::int32_t until) {
+    auto version = db.integer("PRAGMA user_version");
+    if (!version) return tl::unexpected(version.error());
+    auto transaction = Transaction::begin(db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    for (const Migration& step : kMigrations) {
+        if (step.version <= *version || step.version > until) continue;
+        if (auto done = db.execute(step.sql); !done) return done;
+        if (auto done = db.execute(fmt::format("PRAGMA user_version = {}", step.version)); !done) return done;
+    }
+    if (auto done = db.execute(fmt::format("PRAGMA application_id = {}", kApplicationId)); !done) return done;
+    return transaction->commit();
+}
+
+Expected<std::int32_t> check_identity(Database& db) {
+    auto id = db.integer("PRAGMA application_id");
+    if (!id) return tl::unexpected(id.error());
+    if (*id != kApplicationId)
+        return file_error("this is another program's database, no project file", db.path(),
+                          "choose a .seam file");
+    auto version = db.integer("PRAGMA user_version");
+    if (!version) return tl::unexpected(version.error());
+    if (*version > current_version())
+        return file_error(fmt::format("the project file has version {}, this program knows up to {}",
+                                      *version, current_version()),
+                          db.path(), "open it with a newer Seamwright");
+    if (*version < 1) return file_error("the project file has no valid version", db.path());
+    return static_cast<std::int32_t>(*version);
+}
+
+Expected<void> check_structure(Database& db, std::int32_t version) {
+    const auto damaged = [&](const std::string& finding) {
+        return file_error(fmt::format("the project file is damaged ({})", finding), db.path(),
+                          "take the last good copy from the backup");
+    };
+    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (!fresh) return tl::unexpected(fresh.error());
+    if (auto made = migrate(*fresh, version); !made) return made;
+    const auto expected = schema_entries(*fresh);
+    if (!expected) return tl::unexpected(expected.error());
+    const auto found = schema_entries(db);
+    if (!found) return tl::unexpected(found.error());
+    if (*expected != *found) return damaged("its tables are not those of a project");
+
+    auto check = db.prepare("PRAGMA quick_check(1)");
+    if (!check) return tl::unexpected(check.error());
+    auto row = check->step();
+    if (!row) return tl::unexpected(row.error());
+    if (const std::string answer = *row ? check->text(0) : "no answer"; answer != "ok")
+        return damaged(answer);
+    check->reset();
+    auto keys = db.prepare("PRAGMA foreign_key_check");
+    if (!keys) return tl::unexpected(keys.error());
+    row = keys->step();
+    if (!row) return tl::unexpected(row.error());
+    if (*row) return damaged("a row refers to one that is not there");
+    return {};
+}
+
+}  // namespace seamwright

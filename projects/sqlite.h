@@ -1,0 +1,89 @@
+#pragma once
+// SQLite behind RAII and tl::expected. Only what the project file needs. Not thread-safe: one connection, one
+// thread.
+
+#include <sqlite3.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace seamwright {
+
+class Database;
+
+// A prepared statement. bind() counts from 1, column() from 0. After step() answered false (done) or an Error
+// the statement is reset and can be run again with new bindings.
+class Statement {
+  public:
+    void bind(int index, std::int64_t value);
+    void bind(int index, std::string_view text);
+    void bind(int index,
+              std::span<const std::byte> blob);  // not copied: must live until the statement has run
+    void bind_null(int index);
+    Expected<bool> step();  // true: a row is there
+    Expected<void> run();   // steps to the end, ignoring rows
+    void reset();
+
+    // A column of another type than asked for is an empty value plus type_error(): nothing is converted
+    // silently.
+    std::int64_t integer(int column);
+    std::string text(int column);
+    std::span<const std::byte> blob(int column);  // valid until the next step
+    bool is_null(int column) const;
+    // Error when a column read from this row was not of the type asked for.
+    Expected<void> row_ok() const;
+
+  private:
+    friend class Database;
+    struct Finalize {
+        void operator()(sqlite3_stmt* s) const { sqlite3_finalize(s); }
+    };
+    bool is(int column, int type);
+    std::unique_ptr<sqlite3_stmt, Finalize> stmt_;
+    std::string where_;
+    bool type_error_ = false;
+};
+
+class Database {
+  public:
+    // `flags` as of sqlite3_open_v2. Hardened: defensive, untrusted schema, no double-quoted strings, cell
+    // checks.
+    static Expected<Database> open(const std::string& path, int flags);
+
+    Expected<void> execute(const std::string& sql);  // one or more statements without bindings
+    Expected<Statement> prepare(std::string_view sql);
+    Expected<std::int64_t> integer(const std::string& sql);  // one row, one column
+    std::int64_t last_rowid() const { return sqlite3_last_insert_rowid(db_.get()); }
+    Expected<void> copy_to(Database& target);
+    const std::string& path() const { return path_; }
+    sqlite3* handle() const { return db_.get(); }
+
+  private:
+    struct Close {
+        void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
+    };
+    std::unique_ptr<sqlite3, Close> db_;
+    std::string path_;
+};
+
+// BEGIN IMMEDIATE; rolled back unless committed.
+class Transaction {
+  public:
+    static Expected<Transaction> begin(Database& db);
+    Transaction(Transaction&& other) noexcept : db_(std::exchange(other.db_, nullptr)) {}
+    Transaction& operator=(Transaction&&) = delete;
+    ~Transaction();
+    Expected<void> commit();
+
+  private:
+    explicit Transaction(Database& db) : db_(&db) {}
+    Database* db_;
+};
+
+}  // namespace seamwright

@@ -401,6 +401,22 @@ Expected<void> load_results(Database& db, const char* sql, std::int64_t number, 
     });
 }
 
+// SQLite pads a last page that is cut; the header says how long the file must be. Call after the first read,
+// which rolls a killed writer's journal back.
+Expected<void> check_size(Database& db, const fs::path& path) {
+    auto pages = db.integer("PRAGMA page_count");
+    if (!pages) return tl::unexpected(pages.error());
+    auto page_bytes = db.integer("PRAGMA page_size");
+    if (!page_bytes) return tl::unexpected(page_bytes.error());
+    std::error_code code;
+    const auto bytes = fs::file_size(path, code);
+    if (code || bytes % static_cast<std::uintmax_t>(*page_bytes) != 0 ||
+        bytes / static_cast<std::uintmax_t>(*page_bytes) < static_cast<std::uintmax_t>(*pages))
+        return file_error("the project file is cut short", path.string(),
+                          "take the last good copy from the backup");
+    return {};
+}
+
 // Replaces `path` by the finished `made`. Without `replace` an existing file wins.
 Expected<void> put_in_place(const fs::path& made, const fs::path& path, bool replace) {
     const unsigned flags = replace ? 0 : RENAME_NOREPLACE;
@@ -447,11 +463,14 @@ Expected<void> prepare_replacing(const fs::path& path) {
 Expected<void> migrate_file(Database& original, const fs::path& path) {
     const fs::path made = beside(path, "migrating");
     remove_with_journal(made);
-    if (auto locked = original.execute("BEGIN EXCLUSIVE"); !locked) return locked;
+    // Holds off other writers; the copy is read through a second connection, which this lock lets pass.
+    if (auto locked = original.execute("BEGIN IMMEDIATE"); !locked) return locked;
     const auto work = [&]() -> Expected<void> {
+        auto source = Database::open(path.string(), SQLITE_OPEN_READONLY);
+        if (!source) return tl::unexpected(source.error());
         auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
         if (!copy) return tl::unexpected(copy.error());
-        if (auto done = original.copy_to(*copy); !done) return done;
+        if (auto done = source->copy_to(*copy); !done) return done;
         if (auto done = migrate(*copy); !done) return done;
         return check_structure(*copy, current_version());
     };
@@ -527,6 +546,7 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
         if (!db) return tl::unexpected(db.error());
         auto version = check_identity(*db);
         if (!version) return tl::unexpected(version.error());
+        if (auto whole = check_size(*db, path); !whole) return tl::unexpected(whole.error());
         if (auto sound = check_structure(*db, *version); !sound) return tl::unexpected(sound.error());
         if (*version < current_version()) {
             if (!writing) {

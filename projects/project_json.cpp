@@ -1,6 +1,6 @@
 #include "projects/project_json.h"
 
-#include "core/geometry/notation.h"
+#include "devices/exchange/pose_json.h"
 
 namespace seamwright {
 
@@ -23,10 +23,6 @@ SEAMWRIGHT_WORDS(PushStatus, "not_pushed", "written", "failed", "restored", "not
 
 namespace {
 
-Eigen::Matrix<double, 4, 4> matrix_of(const Pose& pose) {
-    return pose.matrix();
-}
-
 template <class A>
 void profile_fields(A& a, Profile& p) {
     a("x_mm", p.x_mm);
@@ -38,31 +34,18 @@ void profile_fields(A& a, Profile& p) {
 }  // namespace
 
 nlohmann::json JsonWriter::encode(const Pose& pose) {
-    const Eigen::Matrix4d m = matrix_of(pose);
-    nlohmann::json object = nlohmann::json::object();
-    if (m.allFinite()) {
-        const KukaAbc abc = kuka_from_rotation(pose.linear());
-        object["xyz"] = {m(0, 3), m(1, 3), m(2, 3)};
-        object["abc"] = {encode(abc.a_deg), encode(abc.b_deg), encode(abc.c_deg)};
-    }
+    if (pose.matrix().allFinite()) return pose_json(pose);
     JsonWriter writer(ArchiveOptions{});
-    object["matrix"] = writer.encode(m);
-    return object;
+    return {{"matrix", writer.encode(Eigen::Matrix4d(pose.matrix()))}};
 }
 
 void JsonReader::decode(const nlohmann::json& json, Pose& pose) {
     if (!json.is_object()) return expected("a pose", json);
     const auto field = json.find("matrix");
     if (field == json.end()) {
-        const auto xyz = json.find("xyz"), abc = json.find("abc");
-        if (xyz == json.end() || abc == json.end())
-            return fail("a pose needs \"matrix\", or \"xyz\" and \"abc\"");
-        Eigen::Vector3d t = Eigen::Vector3d::Zero(), angles = Eigen::Vector3d::Zero();
-        decode(*xyz, t);
-        decode(*abc, angles);
-        if (!error_ && !(t.allFinite() && angles.allFinite()))
-            fail("the pose holds a value that is not a finite number");
-        if (!error_) pose = make_pose(rotation_from_kuka({angles.x(), angles.y(), angles.z()}), t);
+        auto parsed = parse_pose(json, path_);
+        if (!parsed) return fail(parsed.error().what, parsed.error().mend);
+        pose = *parsed;
         return;
     }
     Eigen::Matrix4d m = Eigen::Matrix4d::Identity();

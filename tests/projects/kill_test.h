@@ -1,0 +1,23 @@
+#pragma once
+// Processes that are killed while they write to a project file, and forged files.
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace seamwright {
+
+// `kills` times: a child appends runs and edits to one file and reports each commit through a pipe, SIGKILL
+// hits it at a random instant; then the file must open, be sound, and hold every reported run and edit (and
+// at most one more).
+void kill_while_appending(int kills, unsigned seed);
+
+// Puts the right checksum on a changed blob.
+void set_blob_checksum(std::vector<std::byte>& blob);
+
+// A project file of schema version 1 from tests/data/version1.sql.
+void make_version_one(const std::filesystem::path& path);
+
+}  // namespace seamwright

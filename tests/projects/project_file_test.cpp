@@ -1,0 +1,510 @@
+#include "projects/project_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include "projects/profile_blob.h"
+#include "projects/schema.h"
+#include "projects/sqlite.h"
+#include "tests/projects/kill_test.h"
+#include "tests/projects/sample_project.h"
+
+namespace seamwright {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(ProjectFile, RoundTripIsExact) {
+    TemporaryFolder folder;
+    const Project project = sample_project();
+    {
+        auto file = ProjectFile::create(folder / "a.seam", project);
+        ASSERT_TRUE(file) << file.error().sentence();
+    }
+    auto file = ProjectFile::open(folder / "a.seam");
+    ASSERT_TRUE(file) << file.error().sentence();
+    auto loaded = file->load();
+    ASSERT_TRUE(loaded) << loaded.error().sentence();
+    EXPECT_EQ(exact_text(*loaded), exact_text(project));
+    EXPECT_EQ(loaded->part.mesh_ply, project.part.mesh_ply);
+    for (std::size_t i = 0; i < project.spots.size(); ++i) {
+        EXPECT_TRUE(same_bits(loaded->spots[i].reference_profile, project.spots[i].reference_profile));
+        EXPECT_TRUE(
+            same_bits(loaded->spots[i].feature.template_profile, project.spots[i].feature.template_profile));
+        EXPECT_EQ(loaded->spots[i].base_from_flange.matrix(), project.spots[i].base_from_flange.matrix());
+    }
+    EXPECT_TRUE(std::signbit(loaded->spots[0].feature.template_reference_mm.y()));
+    EXPECT_TRUE(file->check().empty());
+    EXPECT_FALSE(fs::exists(folder / "a.seam-journal"));
+}
+
+TEST(ProjectFile, EmptyProjectRoundTrips) {
+    TemporaryFolder folder;
+    auto file = ProjectFile::create(folder / "a.seam", Project{});
+    ASSERT_TRUE(file) << file.error().sentence();
+    auto loaded = file->load();
+    ASSERT_TRUE(loaded) << loaded.error().sentence();
+    EXPECT_EQ(exact_text(*loaded), exact_text(Project{}));
+}
+
+TEST(ProjectFile, SavesEditsReordersAndDeletes) {
+    TemporaryFolder folder;
+    Project project = sample_project();
+    auto file = ProjectFile::create(folder / "a.seam", project);
+    ASSERT_TRUE(file);
+    project.name = "other";
+    std::swap(project.spots[0], project.spots[3]);
+    project.spots.erase(project.spots.begin() + 1);
+    project.spots[2].reference_profile.z_mm[0] += 1e-9;
+    project.regions[0].limits.rotation_deg = 1.25;
+    project.calibrations[0].raw["more"] = 1;
+    ASSERT_TRUE(file->save(project));
+    auto loaded = ProjectFile::open(folder / "a.seam")->load();
+    ASSERT_TRUE(loaded);
+    EXPECT_EQ(exact_text(*loaded), exact_text(project));
+}
+
+TEST(ProjectFile, RefusesWhatCouldNotBeReadAgain) {
+    TemporaryFolder folder;
+    const Project good = sample_project();
+    auto file = ProjectFile::create(folder / "a.seam", good);
+    ASSERT_TRUE(file);
+    const auto refused = [&](auto edit) {
+        Project bad = good;
+        edit(bad);
+        auto saved = file->save(bad);
+        EXPECT_FALSE(saved);
+        if (!saved) {
+            EXPECT_EQ(saved.error().kind, ErrorKind::input);
+        }
+        EXPECT_EQ(exact_text(*file->load()), exact_text(good)) << "a refused save must change nothing";
+        return saved ? std::string() : saved.error().sentence();
+    };
+    EXPECT_THAT(refused([](Project& p) { p.spots[1].id = p.spots[0].id; }),
+                HasSubstr("two spots are called \"S1\""));
+    EXPECT_THAT(refused([](Project& p) { p.sensors[0].id = ""; }), HasSubstr("no id"));
+    EXPECT_THAT(refused([](Project& p) { p.spots[2].base_from_flange.translation().x() = std::nan(""); }),
+                HasSubstr("spot S3"));
+    EXPECT_THAT(refused([](Project& p) { p.regions[0].base_from_frame.linear() *= 1.1; }),
+                HasSubstr("orthonormal"));
+    EXPECT_THAT(refused([](Project& p) { p.spots[2].reference_profile.z_mm.pop_back(); }),
+                HasSubstr("spot S3"));
+    EXPECT_THAT(refused([](Project& p) { p.spots[2].id = "\xff\xfe"; }), HasSubstr("UTF-8"));
+    EXPECT_THAT(refused([](Project& p) { p.name = "\xc3"; }), HasSubstr("UTF-8"));
+}
+
+TEST(ProjectFile, RunsRoundTripExactly) {
+    TemporaryFolder folder;
+    Project project = sample_project();
+    auto file = ProjectFile::create(folder / "a.seam", project);
+    ASSERT_TRUE(file);
+    const RunRecord first = sample_run(1),
+                    second = sample_run(2, 40, 3000);  // the second fills several blobs
+    auto one = file->append_run(first, project);
+    ASSERT_TRUE(one) << one.error().sentence();
+    Project edited = project;
+    edited.spots.pop_back();
+    auto two = file->append_run(second, edited);
+    ASSERT_TRUE(two) << two.error().sentence();
+    EXPECT_EQ(*one, 1);
+    EXPECT_EQ(*two, 2);
+    for (const auto& [number, expected] : {std::pair(*one, first), std::pair(*two, second)}) {
+        auto run = file->load_run(number);
+        ASSERT_TRUE(run) << run.error().sentence();
+        EXPECT_EQ(run->part_id, expected.part_id);
+        EXPECT_EQ(run->started_utc, expected.started_utc);
+        EXPECT_EQ(run->finished_utc, expected.finished_utc);
+        EXPECT_EQ(run->push, expected.push);
+        EXPECT_EQ(run->status, expected.status);
+        EXPECT_EQ(run->message, expected.message);
+        ASSERT_EQ(run->spots.size(), expected.spots.size());
+        for (std::size_t i = 0; i < run->spots.size(); ++i)
+            EXPECT_EQ(exact_text(run->spots[i]), exact_text(expected.spots[i]));
+        ASSERT_EQ(run->regions.size(), 1u);
+        EXPECT_EQ(exact_text(run->regions[0]), exact_text(expected.regions[0]));
+        ASSERT_EQ(run->captures.size(), expected.captures.size());
+        for (std::size_t i = 0; i < run->captures.size(); ++i)
+            EXPECT_TRUE(same_bits(run->captures[i], expected.captures[i])) << i;
+        ASSERT_EQ(run->events.size(), 1u);
+        EXPECT_EQ(run->events[0].run, number);
+        EXPECT_EQ(run->events[0].text, "because");
+        EXPECT_EQ(file->load_run(number, false)->captures.size(), 0u);
+    }
+    auto list = file->runs();
+    ASSERT_TRUE(list);
+    ASSERT_EQ(list->size(), 2u);
+    EXPECT_EQ((*list)[1].captures, 40);
+    EXPECT_NE((*list)[0].setup, (*list)[1].setup);
+    EXPECT_EQ(file->load_run_setup(2)->spots.size(), project.spots.size() - 1);
+    EXPECT_EQ(file->load_run_setup(1)->spots.size(), project.spots.size());
+    EXPECT_TRUE(same_bits(file->load_run_setup(1)->spots[1].feature.template_profile,
+                          project.spots[1].feature.template_profile));
+    EXPECT_FALSE(file->load_run(3));
+    EXPECT_FALSE(file->load_run(0));
+
+    RunRecord changed = first;
+    changed.number = 1;
+    changed.status = RunStatus::ok;
+    changed.regions[0].push.status = PushStatus::written;
+    ASSERT_TRUE(file->update_run(changed));
+    EXPECT_EQ(file->load_run(1)->status, RunStatus::ok);
+    EXPECT_EQ(file->load_run(1)->regions[0].push.status, PushStatus::written);
+    EXPECT_EQ(file->load_run(1)->captures.size(), first.captures.size());
+    changed.number = 77;
+    EXPECT_FALSE(file->update_run(changed));
+
+    ASSERT_TRUE(file->delete_run(1));
+    EXPECT_EQ(file->runs()->size(), 1u);
+    EXPECT_EQ(*file->append_run(first, project), 3) << "numbers are never given twice";
+    EXPECT_TRUE(file->check().empty());
+}
+
+TEST(ProjectFile, EventsKeepTheirOrder) {
+    TemporaryFolder folder;
+    auto file = ProjectFile::create(folder / "a.seam", Project{});
+    ASSERT_TRUE(file);
+    for (int i = 0; i < 5; ++i)
+        ASSERT_TRUE(
+            file->append_event({0, "", i % 2, EventKind::alarm, "frame", "text " + std::to_string(i)}));
+    auto all = ProjectFile::open(folder / "a.seam", FileAccess::read_only)->events();
+    ASSERT_TRUE(all);
+    ASSERT_EQ(all->size(), 5u);
+    EXPECT_EQ((*all)[4].text, "text 4");
+    EXPECT_EQ((*all)[4].kind, EventKind::alarm);
+    EXPECT_EQ((*all)[4].utc.size(), 24u);
+    EXPECT_EQ(file->events(1)->size(), 2u);
+}
+
+TEST(ProjectFile, CreateNeverOverwritesUnasked) {
+    TemporaryFolder folder;
+    ASSERT_TRUE(ProjectFile::create(folder / "a.seam", sample_project()));
+    auto again = ProjectFile::create(folder / "a.seam", Project{});
+    ASSERT_FALSE(again);
+    EXPECT_EQ(again.error().kind, ErrorKind::file);
+    ASSERT_TRUE(ProjectFile::create(folder / "a.seam", Project{}, true));
+    EXPECT_TRUE(ProjectFile::open(folder / "a.seam")->load()->spots.empty());
+    write_bytes(folder / "letter.txt", "Dear reader, this is not a database at all.");
+    auto foreign = ProjectFile::create(folder / "letter.txt", Project{}, true);
+    ASSERT_FALSE(foreign);
+    EXPECT_EQ(file_bytes(folder / "letter.txt"), "Dear reader, this is not a database at all.");
+    EXPECT_FALSE(ProjectFile::create(folder / "no/such/folder/a.seam", Project{}));
+    EXPECT_FALSE(ProjectFile::create(folder.path(), Project{}, true));
+    std::size_t left = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path())) left += entry.is_regular_file();
+    EXPECT_EQ(left, 2u) << "no temporary files stay";
+}
+
+TEST(ProjectFile, AStaleJournalOfADeletedFileIsNeverApplied) {
+    TemporaryFolder folder;
+    write_bytes(folder / "a.seam-journal", std::string(4096, '\x55'));
+    auto file = ProjectFile::create(folder / "a.seam", sample_project());
+    ASSERT_TRUE(file) << file.error().sentence();
+    EXPECT_TRUE(file->check().empty());
+}
+
+TEST(ProjectFile, ReadOnlyDoesNotWrite) {
+    TemporaryFolder folder;
+    ASSERT_TRUE(ProjectFile::create(folder / "a.seam", sample_project()));
+    auto file = ProjectFile::open(folder / "a.seam", FileAccess::read_only);
+    ASSERT_TRUE(file);
+    EXPECT_TRUE(file->load());
+    EXPECT_FALSE(file->save(Project{}));
+    EXPECT_FALSE(file->append_event({}));
+}
+
+// --- hostile files
+
+void expect_refused(const fs::path& path, const char* words) {
+    for (const FileAccess access : {FileAccess::read_only, FileAccess::read_write}) {
+        auto file = ProjectFile::open(path, access);
+        ASSERT_FALSE(file) << path;
+        EXPECT_EQ(file.error().kind, ErrorKind::file);
+        EXPECT_THAT(file.error().sentence(), HasSubstr(words));
+        EXPECT_THAT(file.error().sentence(), HasSubstr(path.filename().string()));
+    }
+}
+
+class HostileFile : public testing::Test {
+  protected:
+    void SetUp() override {
+        auto file = ProjectFile::create(path, sample_project());
+        ASSERT_TRUE(file);
+        ASSERT_TRUE(file->append_run(sample_run(1), sample_project()));
+    }
+    void sql(const std::string& text) {
+        sqlite3* db = nullptr;
+        ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
+        char* message = nullptr;
+        EXPECT_EQ(sqlite3_exec(db, text.c_str(), nullptr, nullptr, &message), SQLITE_OK) << message;
+        sqlite3_free(message);
+        sqlite3_close(db);
+    }
+    TemporaryFolder folder;
+    fs::path path = folder / "a.seam";
+};
+
+TEST_F(HostileFile, ForeignEmptyMissing) {
+    expect_refused(folder / "missing.seam", "does not exist");
+    write_bytes(folder / "empty.seam", "");
+    expect_refused(folder / "empty.seam", "empty");
+    write_bytes(folder / "text.seam", "hello\n");
+    expect_refused(folder / "text.seam", "no project file");
+    write_bytes(folder / "long.seam", std::string(100000, 'x'));
+    expect_refused(folder / "long.seam", "no project file");
+    write_bytes(folder / "zero.seam", std::string(8192, '\0'));
+    expect_refused(folder / "zero.seam", "no project file");
+    fs::create_directory(folder / "folder.seam");
+    expect_refused(folder / "folder.seam", "no file");
+    sqlite3* db = nullptr;
+    ASSERT_EQ(sqlite3_open((folder / "other.seam").c_str(), &db), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(db, "CREATE TABLE t(x)", nullptr, nullptr, nullptr), SQLITE_OK);
+    sqlite3_close(db);
+    expect_refused(folder / "other.seam", "another program's");
+}
+
+TEST_F(HostileFile, NewerVersion) {
+    sql("PRAGMA user_version = 9999");
+    expect_refused(path, "newer Seamwright");
+}
+
+TEST_F(HostileFile, NegativeVersion) {
+    sql("PRAGMA user_version = -5");
+    expect_refused(path, "no valid version");
+}
+
+TEST_F(HostileFile, PlantedTriggerOrView) {
+    sql("CREATE TRIGGER evil AFTER INSERT ON runs BEGIN DELETE FROM events; END");
+    expect_refused(path, "tables");
+    sql("DROP TRIGGER evil; CREATE VIEW evil AS SELECT * FROM runs");
+    expect_refused(path, "tables");
+    sql("DROP VIEW evil; DROP TABLE events");
+    expect_refused(path, "tables");
+}
+
+TEST_F(HostileFile, BrokenReference) {
+    sql("PRAGMA foreign_keys = OFF; INSERT INTO run_spots VALUES (55, 0, 'S1', 'measured', '{}')");
+    expect_refused(path, "not there");
+}
+
+TEST_F(HostileFile, TruncatedAtManyLengths) {
+    const std::string whole = file_bytes(path);
+    std::mt19937 rng(3);
+    std::vector<std::size_t> lengths{
+        1, 15, 16, 99, 100, 511, 512, 4095, 4096, 4097, whole.size() - 1, whole.size() - 4096};
+    for (int i = 0; i < 60; ++i) lengths.push_back(1 + rng() % (whole.size() - 1));
+    for (const std::size_t length : lengths) {
+        write_bytes(folder / "cut.seam", whole.substr(0, length));
+        auto file = ProjectFile::open(folder / "cut.seam");
+        ASSERT_FALSE(file) << "of " << whole.size() << " bytes " << length;
+        EXPECT_EQ(file.error().kind, ErrorKind::file);
+    }
+}
+
+// A flipped byte is refused, or found by check(), or sits in unused space; it never crashes.
+TEST_F(HostileFile, FlippedBytes) {
+    const std::string whole = file_bytes(path);
+    std::mt19937 rng(4);
+    int refused = 0, found = 0, harmless = 0;
+    for (int i = 0; i < 120; ++i) {
+        std::string bytes = whole;
+        const std::size_t where = i < 40 ? static_cast<std::size_t>(i) : rng() % bytes.size();
+        bytes[where] = static_cast<char>(bytes[where] ^ (1u << rng() % 8));
+        write_bytes(folder / "flip.seam", bytes);
+        auto file = ProjectFile::open(folder / "flip.seam");
+        if (!file) {
+            EXPECT_EQ(file.error().kind, ErrorKind::file);
+            ++refused;
+        } else if (!file->check().empty()) {
+            ++found;
+        } else {
+            ++harmless;
+        }
+    }
+    EXPECT_GT(refused, 10);
+    EXPECT_GT(found, 10);
+    EXPECT_LT(harmless, 90);
+}
+
+TEST_F(HostileFile, WrongValuesInColumns) {
+    const auto load_fails = [&](const std::string& change, const char* words) {
+        const std::string before = file_bytes(path);
+        sql(change);
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file) << file.error().sentence();
+        auto project = file->load();
+        EXPECT_FALSE(project) << change;
+        if (!project) {
+            EXPECT_EQ(project.error().kind, ErrorKind::file);
+            EXPECT_THAT(project.error().sentence(), HasSubstr(words));
+        }
+        EXPECT_FALSE(file->check().empty());
+        write_bytes(path, before);
+    };
+    load_fails("UPDATE spots SET body = 'x' WHERE id = 'S2'", "cannot be read");
+    load_fails("UPDATE spots SET body = '[]' WHERE id = 'S2'", "an object was expected");
+    load_fails("UPDATE spots SET body = '{\"id\":\"S9\"}' WHERE id = 'S2'", "another's id");
+    load_fails("UPDATE spots SET body = json_set(body, '$.sigma_mm', 'abc') WHERE id = 'S2'", "sigma_mm");
+    load_fails(
+        "UPDATE spots SET body = json_set(body, '$.base_from_flange.matrix[0][0]', 'nan') WHERE id = 'S2'",
+        "base_from_flange");
+    load_fails("UPDATE spots SET body = json_set(body, '$.base_from_flange.matrix[0][0]', 7) WHERE id = 'S2'",
+               "orthonormal");
+    load_fails("UPDATE spots SET body = json_set(body, '$.surprise', 7) WHERE id = 'S2'", "surprise");
+    load_fails("UPDATE sensors SET body = json_set(body, '$.peaks.per_line', 99999999999)", "out of range");
+    load_fails("UPDATE sensors SET body = json_set(body, '$.peaks.method', 'guess')", "not known");
+    load_fails("UPDATE spots SET body = zeroblob(0) || '' WHERE id = 'S2'", "cannot be read");
+    load_fails("UPDATE spots SET body = replace(hex(zeroblob(500000)), '00', '[') WHERE id = 'S2'",
+               "cannot be read");
+    load_fails("UPDATE spots SET reference_profile = x'00' WHERE id = 'S2'", "no block of profiles");
+    load_fails("UPDATE spots SET reference_profile = substr(reference_profile, 1, 500) WHERE id = 'S2'",
+               "checksum");
+    load_fails("UPDATE spots SET reference_profile = (SELECT data FROM captures) WHERE id = 'S2'",
+               "another kind");
+}
+
+TEST_F(HostileFile, DamagedRunIsRefusedAlone) {
+    {
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file->append_run(sample_run(2), sample_project()));
+    }
+    sql("UPDATE captures SET data = CAST(substr(data, 1, 100) || x'42' || substr(data, 102) AS BLOB) WHERE "
+        "run = 1");
+    auto file = ProjectFile::open(path);
+    ASSERT_TRUE(file);
+    EXPECT_FALSE(file->load_run(1));
+    EXPECT_TRUE(file->load_run(1, false));
+    EXPECT_TRUE(file->load_run(2));
+    EXPECT_THAT(file->load_run(1).error().sentence(), HasSubstr("checksum"));
+    EXPECT_EQ(file->check().size(), 1u);
+}
+
+// --- blobs
+
+TEST(ProfileBlob, PacksToAboutOneMebibyte) {
+    SampleMaker make(5);
+    std::vector<Capture> captures;
+    for (int i = 0; i < 300; ++i) {
+        Capture c;
+        c.spot_id = "S" + std::to_string(i);
+        c.profile = make.profile(1000, false);
+        captures.push_back(c);
+    }
+    auto blobs = pack_captures(captures);
+    ASSERT_TRUE(blobs);
+    EXPECT_GT(blobs->size(), 3u);
+    std::vector<Capture> again;
+    for (const CaptureBlob& blob : *blobs) {
+        EXPECT_LT(blob.bytes.size(), kCaptureBlobBytes + 20000);
+        ASSERT_TRUE(unpack_captures(blob.bytes, "blob", again));
+    }
+    ASSERT_EQ(again.size(), captures.size());
+    for (std::size_t i = 0; i < again.size(); ++i) EXPECT_TRUE(same_bits(again[i], captures[i]));
+}
+
+// Forged blobs with a right checksum: lengths must be held against what is there.
+TEST(ProfileBlob, ForgedLengthsAreRefused) {
+    SampleMaker make(6);
+    const Capture capture = make.image_capture("S1", 40);
+    const auto blobs = pack_captures(std::span(&capture, 1));
+    ASSERT_TRUE(blobs);
+    const std::vector<std::byte> good = blobs->front().bytes;
+    std::mt19937 rng(8);
+    int refused = 0;
+    for (int i = 0; i < 3000; ++i) {
+        std::vector<std::byte> bad = good;
+        if (i % 3 == 0) bad.resize(16 + rng() % (bad.size() - 16));
+        for (int k = 0; k < 2 && i % 3; ++k) {
+            const std::size_t at = 16 + rng() % std::min<std::size_t>(bad.size() - 16, 200);
+            const std::uint32_t value = rng() % 2 ? 0xffffffffu : rng();
+            std::memcpy(bad.data() + at, &value, std::min<std::size_t>(4, bad.size() - at));
+        }
+        set_blob_checksum(bad);
+        std::vector<Capture> out;
+        if (!unpack_captures(bad, "forged", out)) ++refused;
+    }
+    EXPECT_GT(refused, 1500);
+}
+
+// --- migrations
+
+// The file of version 1 was written by the first schema; `tests/data/version1.sql` is its dump.
+TEST(Migration, VersionOneBecomesCurrent) {
+    TemporaryFolder folder;
+    const fs::path path = folder / "old.seam";
+    make_version_one(path);
+    const std::string before = file_bytes(path);
+    {
+        auto file = ProjectFile::open(path, FileAccess::read_only);
+        ASSERT_TRUE(file) << file.error().sentence();
+        EXPECT_EQ(file->load()->name, "first version");
+        EXPECT_EQ(file->runs()->size(), 1u);
+    }
+    EXPECT_EQ(file_bytes(path), before) << "reading must not migrate the file";
+    {
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file) << file.error().sentence();
+        EXPECT_EQ(file->load()->spots.size(), 2u);
+        EXPECT_EQ(file->load_run(1)->captures.size(), 2u);
+        EXPECT_TRUE(file->check().empty());
+        RunRecord run = sample_run(1);
+        EXPECT_TRUE(file->append_run(run, *file->load())) << "images need the second version";
+    }
+    auto db = Database::open(path.string(), SQLITE_OPEN_READONLY);
+    EXPECT_EQ(*db->integer("PRAGMA user_version"), current_version());
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path())) ++files;
+    EXPECT_EQ(files, 1u);
+}
+
+TEST(Migration, AFailedOneLeavesTheOldFile) {
+    TemporaryFolder folder;
+    const fs::path path = folder / "old.seam";
+    make_version_one(path);
+    {
+        // A table that the second version wants to make stands there already.
+        sqlite3* db = nullptr;
+        ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
+        ASSERT_EQ(sqlite3_exec(db, "CREATE TABLE images (x)", nullptr, nullptr, nullptr), SQLITE_OK);
+        sqlite3_close(db);
+    }
+    const std::string before = file_bytes(path);
+    EXPECT_FALSE(ProjectFile::open(path));
+    EXPECT_EQ(file_bytes(path), before);
+}
+
+TEST(Migration, VersionsCountUp) {
+    std::int32_t version = 0;
+    for (const Migration& step : migrations()) EXPECT_EQ(step.version, ++version);
+    EXPECT_EQ(version, current_version());
+}
+
+// --- kill
+
+TEST(Kill, EveryCommittedRunSurvives) {
+    kill_while_appending(20, 1);
+}
+
+TEST(Kill, WhileCreating) {
+    for (unsigned i = 0; i < 20; ++i) {
+        TemporaryFolder folder;
+        const fs::path path = folder / "a.seam";
+        const pid_t child = fork();
+        if (child == 0) {
+            (void)ProjectFile::create(path, sample_project());
+            _exit(0);
+        }
+        usleep(500 + 1500 * i);
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+        if (!fs::exists(path)) continue;
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file) << file.error().sentence();
+        EXPECT_EQ(file->load()->spots.size(), 6u);
+    }
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -1,0 +1,264 @@
+#pragma once
+// A project that uses every field, and comparisons to the last bit.
+
+#include <unistd.h>
+
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "projects/project_json.h"
+
+namespace seamwright {
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "seamwright-XXXXXX").string();
+        path_ = ::mkdtemp(pattern.data());
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+inline std::string file_bytes(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+class SampleMaker {
+  public:
+    explicit SampleMaker(unsigned seed) : rng_(seed) {}
+    double number(double scale = 100) { return scale * normal_(rng_); }
+    Pose pose() {
+        return make_pose(rotation_exp(Eigen::Vector3d(number(1), number(1), number(1))),
+                         Eigen::Vector3d(number(), number(), number()));
+    }
+    Profile profile(int points, bool columns = true) {
+        Profile p;
+        for (int i = 0; i < points; ++i) {
+            p.x_mm.push_back(number());
+            p.z_mm.push_back(i % 17 == 3 ? std::numeric_limits<double>::quiet_NaN() : number());
+            if (columns) {
+                p.intensity.push_back(static_cast<float>(number()));
+                p.segment.push_back(i % 5 ? i / 10 : kOutlier);
+            }
+        }
+        return p;
+    }
+    Capture image_capture(const std::string& spot, int lines) {
+        Capture c;
+        c.spot_id = spot;
+        c.sensor_id = "A";
+        c.sequence = rng_();
+        c.device_time_ns = -static_cast<std::int64_t>(rng_());
+        c.host_time_ns = static_cast<std::int64_t>(rng_());
+        c.base_from_flange = pose();
+        ProfileCandidates& k = c.candidates;
+        k.lines = lines;
+        k.per_line = 3;
+        const auto n = static_cast<std::size_t>(lines) * 3;
+        k.count.assign(static_cast<std::size_t>(lines), 0);
+        k.x_mm.assign(n, 0.0);
+        k.z_mm.assign(n, 0.0);
+        k.intensity.assign(n, 0.0f);
+        for (int line = 0; line < lines; ++line) {
+            k.count[static_cast<std::size_t>(line)] = static_cast<std::uint8_t>(rng_() % 4);
+            for (int i = 0; i < k.count[static_cast<std::size_t>(line)]; ++i) {
+                const auto at = static_cast<std::size_t>(k.index(line, i));
+                k.x_mm[at] = number();
+                k.z_mm[at] = number();
+                k.intensity[at] = static_cast<float>(number());
+            }
+        }
+        return c;
+    }
+    std::mt19937& rng() { return rng_; }
+
+  private:
+    std::mt19937 rng_;
+    std::normal_distribution<double> normal_;
+};
+
+inline Project sample_project(unsigned seed = 1) {
+    SampleMaker make(seed);
+    Project p;
+    p.name = "Türe links \"42\"\n";
+    p.part = {"door left", "door.stl", {}, make.pose()};
+    for (int i = 0; i < 5000; ++i) p.part.mesh_ply.push_back(static_cast<std::byte>(make.rng()() & 0xff));
+    SensorSetup sensor;
+    sensor.id = "A";
+    sensor.driver = "simulated";
+    sensor.settings = {{"seed", 7}, {"exposure_us", 120.5}, {"list", {1, 2, 3}}};
+    sensor.identity = {"simulated", "Seamwright", "S", "0001"};
+    sensor.peaks.scan = ScanLines::rows;
+    sensor.peaks.method = PeakMethod::steger;
+    sensor.peaks.threshold = 0.1 + 0.2;
+    sensor.filter.noise_mm = 1.0 / 3.0;
+    sensor.calibration_id = "C1";
+    p.sensors.push_back(sensor);
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = "simulated";
+    robot.settings = {{"repeatability_mm", 0.03}};
+    robot.identity = {"simulated", "KUKA", "KR", "0002"};
+    robot.required_mode = RobotMode::external;
+    p.robots.push_back(robot);
+    Calibration c;
+    c.id = "C1";
+    c.method = "tcp-sphere";
+    c.sensor_id = "A";
+    c.robot_id = "R1";
+    c.sensor_identity = sensor.identity;
+    c.robot_identity = robot.identity;
+    c.created_utc = "2024-01-02T03:04:05.678Z";
+    c.source = "ball";
+    c.model.emplace();
+    c.model->camera = {1000.1, 1000.2, 640.3, 512.4, 0.01, -0.02, 1e-5, -2e-5, 0.003, 1280, 1024};
+    c.model->camera_from_laser = make.pose();
+    c.model->table = LookupTable{0.5, 0.25, 8, 4, 2, 2, {1, 2, 3, std::nan("")}, {4, 5, 6, std::nan("")}};
+    c.flange_from_sensor = make.pose();
+    for (int i = 0; i < 36; ++i) c.covariance(i / 6, i % 6) = make.number(1e-3);
+    c.verdict = "good";
+    c.raw = {{"radius_mm", 12.7}, {"observations", nlohmann::json::array({1.5, 2.5})}};
+    c.result = {{"rms_mm", 0.02}};
+    p.calibrations.push_back(c);
+    for (int i = 0; i < 6; ++i) {
+        Spot s;
+        s.id = "S" + std::to_string(i + 1);
+        s.sensor_id = "A";
+        s.robot_id = "R1";
+        s.enabled = i != 5;
+        s.required = i != 4;
+        s.base_from_flange = make.pose();
+        s.entry_mm = 10 + i;
+        s.exit_mm = 12 + i;
+        s.speed_mm_s = 80 + i;
+        s.stop_at_trigger = i % 2;
+        s.feature.kind = i % 2 ? "template" : "contour-end";
+        s.feature.parameters = {{"window_left_mm", -1.0 / 3.0}, {"tiny", 5e-324}};
+        s.feature.template_profile = make.profile(50, i % 2);
+        s.feature.template_reference_mm = {make.number(), -0.0};
+        s.reference_mm = {make.number(), 0, make.number()};
+        s.reference_profile = make.profile(200);
+        s.weights = {1, 0, 0.5};
+        s.sigma_mm = 0.03;
+        s.jitter_mm = 2.5;
+        if (i % 3 == 0) s.curve = ContourCurve{{0.1, 0.02, 1e-9}, {0.3, 0.04, -1e-300}, -20, 19.5};
+        p.spots.push_back(s);
+    }
+    Region r;
+    r.id = "edge";
+    r.spot_ids = {"S1", "S2", "S3", "S4", "S5"};
+    r.free = {true, true, true, false, true, true};
+    r.limits = {std::numeric_limits<double>::infinity(), 2.5};
+    r.sigma_limit_mm = 0.2;
+    r.frame_name = "BASE_DATA[7]";
+    r.base_from_frame = make.pose();
+    p.regions.push_back(r);
+    return p;
+}
+
+inline RunRecord sample_run(unsigned seed, int captures = 4, int points = 300) {
+    SampleMaker make(seed);
+    RunRecord run;
+    run.part_id = "car " + std::to_string(seed);
+    run.started_utc = "2024-05-01T12:00:00.000Z";
+    run.finished_utc = "2024-05-01T12:00:09.999Z";
+    run.push = seed % 2;
+    run.status = RunStatus::refused;
+    run.message = "refused";
+    for (int i = 0; i < captures; ++i) {
+        Capture c;
+        if (i % 3 == 1) {
+            c = make.image_capture("S2", points);
+            if (i % 2) c.image = StoredImage{7, 5, 10, std::vector<std::byte>(70, std::byte{3})};
+        } else if (i % 3 == 2) {
+            c.spot_id = "S3";
+            c.status = FrameStatus::incomplete;
+        } else {
+            c.spot_id = "S1";
+            c.sensor_id = "A";
+            c.profile = make.profile(points, false);
+        }
+        run.captures.push_back(c);
+        SpotMeasurement m;
+        m.spot_id = c.spot_id;
+        m.status = c.status == FrameStatus::ok ? SpotStatus::measured : SpotStatus::damaged_frame;
+        m.feature.status = FeatureStatus::ok;
+        m.feature.point_mm = {make.number(), make.number()};
+        m.feature.covariance_mm2 << 1e-4, 1e-5, 1e-5, 2e-4;
+        if (i % 2) m.feature.phi_rad = make.number(0.1);
+        m.measured_mm = {make.number(), make.number(), make.number()};
+        m.sigma_mm = 0.05;
+        m.part_id = run.part_id;
+        m.host_time_ns = 1234567890123456789;
+        m.capture = i;
+        run.spots.push_back(m);
+    }
+    RegionRecord region;
+    region.region_id = "edge";
+    region.correction.emplace();
+    region.correction->status = CorrectionStatus::under_determined;
+    region.correction->displacement.workobject_from_movedworkobject = make.pose();
+    region.correction->sigma_xyz_mm = {0.1, std::numeric_limits<double>::infinity(), 0.3};
+    region.correction->unobservable = {"translation along Y"};
+    region.correction->spots = {{"S1", {0.01, 0, 0.02}, true}, {"S2", {3, 0, 2}, false}};
+    region.base_from_frame = make.pose();
+    region.refusals = {"because"};
+    region.push.before = make.pose();
+    run.regions.push_back(region);
+    run.events.push_back({0, "2024-05-01T12:00:01.000Z", 0, EventKind::refusal, "edge", "because"});
+    return run;
+}
+
+// Equality to the last bit, NaN equal to itself, through the complete and exact JSON form.
+template <class T>
+std::string exact_text(const T& value) {
+    return to_json_document(value, {.profiles = true, .rigid_poses = false}).dump(1);
+}
+
+inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+inline bool same_bits(const Profile& a, const Profile& b) {
+    return same_bits(a.x_mm, b.x_mm) && same_bits(a.z_mm, b.z_mm) && a.intensity == b.intensity &&
+           a.segment == b.segment;
+}
+inline bool same_bits(const Capture& a, const Capture& b) {
+    const auto image = [](const Capture& c) {
+        return c.image ? std::tuple(c.image->width, c.image->height, c.image->bit_depth, c.image->pixels)
+                       : std::tuple(0, 0, 0, std::vector<std::byte>());
+    };
+    return a.spot_id == b.spot_id && a.sensor_id == b.sensor_id && a.status == b.status &&
+           a.sequence == b.sequence && a.device_time_ns == b.device_time_ns &&
+           a.host_time_ns == b.host_time_ns &&
+           a.base_from_flange.has_value() == b.base_from_flange.has_value() &&
+           (!a.base_from_flange || a.base_from_flange->matrix() == b.base_from_flange->matrix()) &&
+           same_bits(a.profile, b.profile) && a.candidates.lines == b.candidates.lines &&
+           (!a.candidates.lines ||
+            (a.candidates.per_line == b.candidates.per_line && a.candidates.count == b.candidates.count &&
+             same_bits(a.candidates.x_mm, b.candidates.x_mm) &&
+             same_bits(a.candidates.z_mm, b.candidates.z_mm) &&
+             a.candidates.intensity == b.candidates.intensity)) &&
+           image(a) == image(b);
+}
+
+}  // namespace seamwright

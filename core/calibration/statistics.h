@@ -1,0 +1,17 @@
+#pragma once
+// Quantiles that verdicts rest on; exact to about 1 % from three degrees of freedom on, which no verdict
+// depends on.
+
+namespace seamwright {
+
+// Standard normal quantile, 0 < p < 1, to rounding (Newton on erfc).
+double normal_quantile(double p);
+
+// Chi-squared quantile (Wilson and Hilferty: the cube root is nearly normal).
+double chi_squared_quantile(double p, double freedom);
+
+// Student's t quantile (Cornish-Fisher expansion in 1/freedom; closed forms for one and two degrees of
+// freedom).
+double student_quantile(double p, double freedom);
+
+}  // namespace seamwright

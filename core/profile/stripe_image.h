@@ -32,6 +32,11 @@ struct StripePeaks {
     std::vector<float> position_px;   // [lines * per_line] sub-pixel position along the line
     std::vector<float> intensity;     // grey value at the peak, 0..full_scale
     std::vector<float> width_px;  // full width at half maximum; of a saturated stripe its plateau and flanks
+    std::vector<std::uint8_t> flags;  // kSaturated | kTruncated
+    static constexpr std::uint8_t kSaturated =
+        1;  // top cut off at the sensor's full scale (or at a flat plateau)
+    static constexpr std::uint8_t kTruncated =
+        2;  // runs out of the image: the position is that of the visible part
     int index(int line, int peak) const { return line * per_line + peak; }
 };
 

@@ -1,0 +1,377 @@
+#include "core/profile/stripe_scan.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace seamwright::detail {
+namespace {
+
+constexpr int kBatch = 1024;        // runs handed over at once: their pixels are still in the cache
+constexpr int kSampledRows = 4;     // per tile
+constexpr int kDifferenceStep = 2;  // px; neighbours of demosaiced or compressed images are correlated
+constexpr double kSqrtPi = 1.7724538509055160;
+
+template <class Pixel>
+const Pixel* row_of(const StripeImage& image, int y) {
+    return reinterpret_cast<const Pixel*>(image.pixels + static_cast<std::size_t>(y) * image.row_bytes);
+}
+
+struct TileSums {
+    std::uint32_t grey = 0, difference = 0;
+    int pixels = 0, pairs = 0;
+};
+
+template <class Pixel>
+void add_row_portable(const Pixel* row, int count, int pairs, TileSums& sums) {
+    std::uint32_t grey = 0, difference = 0;
+    for (int i = 0; i < count; ++i) grey += row[i];
+    for (int i = 0; i < pairs; ++i) {
+        const int d = static_cast<int>(row[i]) - static_cast<int>(row[i + kDifferenceStep]);
+        difference += static_cast<std::uint32_t>(d < 0 ? -d : d);
+    }
+    sums.grey += grey;
+    sums.difference += difference;
+}
+
+// Bits of the 32 pixels that exceed their limits.
+template <class Pixel>
+std::uint32_t mask_portable(const Pixel* row, const Pixel* limit) {
+    bool any = false;
+    for (int i = 0; i < 32; ++i) any |= row[i] > limit[i];
+    if (!any) return 0;
+    std::uint32_t mask = 0;
+    for (int i = 0; i < 32; ++i) mask |= static_cast<std::uint32_t>(row[i] > limit[i]) << i;
+    return mask;
+}
+
+// Collects runs and hands them over in batches.
+struct Collector {
+    StripeScan& work;
+    RunConsumer consume;
+    void* context;
+    void add(int line, int begin, int end) {
+        work.runs.push_back({line, begin, end});
+        if (static_cast<int>(work.runs.size()) == kBatch) flush();
+    }
+    void flush() {
+        if (!work.runs.empty()) consume(context, work.runs);
+        work.runs.clear();
+    }
+};
+
+// A change of the candidate bits of 32 neighbouring columns between row y - 1 and row y.
+void column_edges(std::uint32_t changed, std::uint32_t mask, int first_column, int y, Collector& collector) {
+    while (changed) {
+        const int bit = std::countr_zero(changed);
+        changed &= changed - 1;
+        const int column = first_column + bit;
+        if (mask >> bit & 1u) {
+            collector.work.begin_of[column] = y;
+        } else {
+            collector.add(column, collector.work.begin_of[column], y);
+        }
+    }
+}
+
+// Runs of one row out of its candidate bits, 32 at a time; `open` is where an unfinished run began, or -1.
+void row_edges(std::uint32_t mask, int first_column, int line, int& open, Collector& collector) {
+    if (mask == 0) {
+        if (open >= 0) collector.add(line, open, first_column);
+        open = -1;
+        return;
+    }
+    int at = 0;
+    while (at < 32) {
+        const std::uint32_t rest = mask >> at;
+        if (open < 0) {
+            if (rest == 0) return;
+            at += std::countr_zero(rest);
+            open = first_column + at;
+        } else {
+            const int ones = std::countr_one(rest);
+            if (at + ones >= 32) return;
+            at += ones;
+            collector.add(line, open, first_column + at);
+            open = -1;
+        }
+    }
+}
+
+template <class Pixel>
+std::uint32_t tail_mask(const Pixel* row, const Pixel* limit, int count) {
+    std::uint32_t mask = 0;
+    for (int i = 0; i < count; ++i) mask |= static_cast<std::uint32_t>(row[i] > limit[i]) << i;
+    return mask;
+}
+
+template <class Pixel>
+void columns_row_portable(const Pixel* row, const Pixel* limit, int blocks, int y, Collector& collector) {
+    std::uint32_t* open = collector.work.open_columns.data();
+    for (int b = 0; b < blocks; ++b) {
+        const std::uint32_t mask = mask_portable(row + 32 * b, limit + 32 * b);
+        if (mask != open[b]) {
+            column_edges(mask ^ open[b], mask, 32 * b, y, collector);
+            open[b] = mask;
+        }
+    }
+}
+
+template <class Pixel>
+void rows_row_portable(const Pixel* row, const Pixel* limit, int blocks, int y, int& open,
+                       Collector& collector) {
+    for (int b = 0; b < blocks; ++b) {
+        const std::uint32_t mask = mask_portable(row + 32 * b, limit + 32 * b);
+        if (mask != 0 || open >= 0) row_edges(mask, 32 * b, y, open, collector);
+    }
+}
+
+#if defined(__x86_64__)
+
+__attribute__((target("avx2"))) inline std::uint32_t mask_avx2(const std::uint8_t* row,
+                                                               const std::uint8_t* limit) {
+    const __m256i pixels = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row));
+    const __m256i limits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(limit));
+    // There is no unsigned compare: pixel <= limit exactly where the saturating difference is zero.
+    const __m256i not_above = _mm256_cmpeq_epi8(_mm256_subs_epu8(pixels, limits), _mm256_setzero_si256());
+    return ~static_cast<std::uint32_t>(_mm256_movemask_epi8(not_above));
+}
+
+__attribute__((target("avx2"))) inline std::uint32_t mask_avx2(const std::uint16_t* row,
+                                                               const std::uint16_t* limit) {
+    const __m256i zero = _mm256_setzero_si256();
+    const auto* pixels = reinterpret_cast<const __m256i*>(row);
+    const auto* limits = reinterpret_cast<const __m256i*>(limit);
+    const __m256i low =
+        _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_loadu_si256(pixels), _mm256_loadu_si256(limits)), zero);
+    const __m256i high = _mm256_cmpeq_epi16(
+        _mm256_subs_epu16(_mm256_loadu_si256(pixels + 1), _mm256_loadu_si256(limits + 1)), zero);
+    const __m256i packed = _mm256_permute4x64_epi64(_mm256_packs_epi16(low, high), 0xD8);
+    return ~static_cast<std::uint32_t>(_mm256_movemask_epi8(packed));
+}
+
+template <class Pixel>
+__attribute__((target("avx2"))) void columns_row_avx2(const Pixel* row, const Pixel* limit, int blocks, int y,
+                                                      Collector& collector) {
+    std::uint32_t* open = collector.work.open_columns.data();
+    for (int b = 0; b < blocks; ++b) {
+        const std::uint32_t mask = mask_avx2(row + 32 * b, limit + 32 * b);
+        if (mask != open[b]) {
+            column_edges(mask ^ open[b], mask, 32 * b, y, collector);
+            open[b] = mask;
+        }
+    }
+}
+
+template <class Pixel>
+__attribute__((target("avx2"))) void rows_row_avx2(const Pixel* row, const Pixel* limit, int blocks, int y,
+                                                   int& open, Collector& collector) {
+    for (int b = 0; b < blocks; ++b) {
+        const std::uint32_t mask = mask_avx2(row + 32 * b, limit + 32 * b);
+        if (mask != 0 || open >= 0) row_edges(mask, 32 * b, y, open, collector);
+    }
+}
+
+__attribute__((target("avx2"))) void add_row_avx2(const std::uint8_t* row, TileSums& sums) {
+    const __m256i zero = _mm256_setzero_si256();
+    const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row));
+    const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + kDifferenceStep));
+    const __m256i distance = _mm256_or_si256(_mm256_subs_epu8(a, b), _mm256_subs_epu8(b, a));
+    alignas(32) std::uint64_t grey[4], difference[4];
+    _mm256_store_si256(reinterpret_cast<__m256i*>(grey), _mm256_sad_epu8(a, zero));
+    _mm256_store_si256(reinterpret_cast<__m256i*>(difference), _mm256_sad_epu8(distance, zero));
+    sums.grey += static_cast<std::uint32_t>(grey[0] + grey[1] + grey[2] + grey[3]);
+    sums.difference +=
+        static_cast<std::uint32_t>(difference[0] + difference[1] + difference[2] + difference[3]);
+}
+
+__attribute__((target("avx2"))) void add_row_avx2(const std::uint16_t* row, TileSums& sums) {
+    const __m256i low = _mm256_set1_epi32(0xFFFF);
+    __m256i grey = _mm256_setzero_si256(), difference = _mm256_setzero_si256();
+    for (int half = 0; half < 2; ++half) {
+        const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + 16 * half));
+        const __m256i b =
+            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + 16 * half + kDifferenceStep));
+        const __m256i distance = _mm256_or_si256(_mm256_subs_epu16(a, b), _mm256_subs_epu16(b, a));
+        grey = _mm256_add_epi32(grey, _mm256_add_epi32(_mm256_and_si256(a, low), _mm256_srli_epi32(a, 16)));
+        difference = _mm256_add_epi32(
+            difference, _mm256_add_epi32(_mm256_and_si256(distance, low), _mm256_srli_epi32(distance, 16)));
+    }
+    alignas(32) std::uint32_t g[8], d[8];
+    _mm256_store_si256(reinterpret_cast<__m256i*>(g), grey);
+    _mm256_store_si256(reinterpret_cast<__m256i*>(d), difference);
+    for (int i = 0; i < 8; ++i) {
+        sums.grey += g[i];
+        sums.difference += d[i];
+    }
+}
+
+bool use_avx2(Kernel kernel) {
+    static const bool available = __builtin_cpu_supports("avx2");
+    return available && kernel == Kernel::best;
+}
+
+#else
+
+bool use_avx2(Kernel) {
+    return false;
+}
+template <class Pixel>
+void add_row_avx2(const Pixel*, TileSums&) {}
+template <class Pixel>
+void columns_row_avx2(const Pixel*, const Pixel*, int, int, Collector&) {}
+template <class Pixel>
+void rows_row_avx2(const Pixel*, const Pixel*, int, int, int&, Collector&) {}
+
+#endif
+
+template <class Pixel>
+void measure_tiles(const StripeImage& image, bool avx2, StripeScan& work) {
+    for (int ty = 0; ty < work.tile_rows; ++ty) {
+        const int y0 = ty * kTile, height = std::min(kTile, image.height - y0);
+        for (int tx = 0; tx < work.tile_columns; ++tx) {
+            const int x0 = tx * kTile, width = std::min(kTile, image.width - x0);
+            const int pairs = std::clamp(image.width - kDifferenceStep - x0, 0, width);
+            TileSums sums;
+            for (int k = 0; k < kSampledRows; ++k) {
+                const Pixel* row = row_of<Pixel>(image, y0 + height * (2 * k + 1) / (2 * kSampledRows)) + x0;
+                if (avx2 && pairs == kTile) {
+                    add_row_avx2(row, sums);
+                } else {
+                    add_row_portable(row, width, pairs, sums);
+                }
+            }
+            const int tile = ty * work.tile_columns + tx;
+            work.background[tile] = static_cast<float>(sums.grey) / static_cast<float>(kSampledRows * width);
+            // Quantisation to whole grey values is noise of 1/sqrt(12), also where the differences do not
+            // show it.
+            const double spread = pairs > 0 ? 0.5 * kSqrtPi * sums.difference / (kSampledRows * pairs) : 0.0;
+            work.noise[tile] = static_cast<float>(std::max(spread, 0.29));
+        }
+    }
+}
+
+// Running minimum (or maximum) of 2 * reach + 1 tiles along the scan direction.
+template <class Pick>
+void running(const std::vector<float>& in, std::vector<float>& out, const StripeScan& work, ScanLines scan,
+             int reach, Pick pick) {
+    const int along = scan == ScanLines::columns ? work.tile_rows : work.tile_columns;
+    const int across = scan == ScanLines::columns ? work.tile_columns : work.tile_rows;
+    const int step = scan == ScanLines::columns ? work.tile_columns : 1;
+    const int line = scan == ScanLines::columns ? 1 : work.tile_columns;
+    for (int c = 0; c < across; ++c) {
+        for (int a = 0; a < along; ++a) {
+            const int first = std::max(0, a - reach), last = std::min(along - 1, a + reach);
+            float value = in[c * line + first * step];
+            for (int i = first + 1; i <= last; ++i) value = pick(value, in[c * line + i * step]);
+            out[c * line + a * step] = value;
+        }
+    }
+}
+
+void open_map(std::vector<float>& map, StripeScan& work, ScanLines scan, int reach) {
+    running(map, work.scratch, work, scan, reach, [](float a, float b) { return std::min(a, b); });
+    running(work.scratch, map, work, scan, reach, [](float a, float b) { return std::max(a, b); });
+}
+
+template <class Pixel>
+void fill_limits(const StripeImage& image, const ThresholdRule& rule, const StripeScan& work, int tile_row,
+                 std::vector<Pixel>& limits) {
+    const double top = image.full_scale();
+    for (int tx = 0; tx < work.tile_columns; ++tx) {
+        const int tile = tile_row * work.tile_columns + tx;
+        // A candidate is at or above background + threshold, that is above the next whole grey value below
+        // it.
+        const double at_least = std::ceil(work.background[tile] + rule.of(work.noise[tile]));
+        const auto limit = static_cast<Pixel>(std::clamp(at_least - 1.0, 0.0, top));
+        std::fill_n(limits.begin() + static_cast<std::ptrdiff_t>(tx) * kTile, kTile, limit);
+    }
+}
+
+template <class Pixel>
+void scan_image(const StripeImage& image, ScanLines scan, const ThresholdRule& rule, bool avx2,
+                StripeScan& work, std::vector<Pixel>& limits, Collector& collector) {
+    const int blocks = image.width / 32, rest = image.width % 32;
+    limits.resize(static_cast<std::size_t>(work.tile_columns) * kTile);
+    std::fill(work.open_columns.begin(), work.open_columns.end(), 0u);
+    for (int y = 0; y < image.height; ++y) {
+        if (y % kTile == 0) fill_limits(image, rule, work, y / kTile, limits);
+        const Pixel* row = row_of<Pixel>(image, y);
+        const std::uint32_t tail =
+            rest ? tail_mask(row + 32 * blocks, limits.data() + 32 * blocks, rest) : 0u;
+        if (scan == ScanLines::columns) {
+            if (avx2) {
+                columns_row_avx2(row, limits.data(), blocks, y, collector);
+            } else {
+                columns_row_portable(row, limits.data(), blocks, y, collector);
+            }
+            if (rest && tail != work.open_columns[blocks]) {
+                column_edges(tail ^ work.open_columns[blocks], tail, 32 * blocks, y, collector);
+                work.open_columns[blocks] = tail;
+            }
+        } else {
+            int open = -1;
+            if (avx2) {
+                rows_row_avx2(row, limits.data(), blocks, y, open, collector);
+            } else {
+                rows_row_portable(row, limits.data(), blocks, y, open, collector);
+            }
+            if (rest) row_edges(tail, 32 * blocks, y, open, collector);
+            if (open >= 0) collector.add(y, open, image.width);
+        }
+    }
+    if (scan == ScanLines::columns) {
+        for (int b = 0; b < static_cast<int>(work.open_columns.size()); ++b)
+            column_edges(work.open_columns[b], 0u, 32 * b, image.height, collector);
+    }
+    collector.flush();
+}
+
+}  // namespace
+
+void measure_background(const StripeImage& image, ScanLines scan, double max_width_px, Kernel kernel,
+                        StripeScan& work) {
+    work.tile_columns = (image.width + kTile - 1) / kTile;
+    work.tile_rows = (image.height + kTile - 1) / kTile;
+    const auto tiles = static_cast<std::size_t>(work.tile_columns) * static_cast<std::size_t>(work.tile_rows);
+    work.background.resize(tiles);
+    work.noise.resize(tiles);
+    work.scratch.resize(tiles);
+    work.open_columns.resize(static_cast<std::size_t>(work.tile_columns));
+    work.begin_of.resize(static_cast<std::size_t>(work.tile_columns) * kTile);
+    work.runs.reserve(kBatch);
+    const bool avx2 = use_avx2(kernel);
+    if (image.bytes_per_pixel() == 1) {
+        measure_tiles<std::uint8_t>(image, avx2, work);
+    } else {
+        measure_tiles<std::uint16_t>(image, avx2, work);
+    }
+    work.scratch = work.noise;
+    const auto middle = work.scratch.begin() + static_cast<std::ptrdiff_t>(tiles / 2);
+    std::nth_element(work.scratch.begin(), middle, work.scratch.end());
+    work.frame_noise = *middle;
+    const int reach = static_cast<int>(std::ceil(max_width_px / kTile + 1.0)) / 2 + 1;
+    open_map(work.background, work, scan, reach);
+    open_map(work.noise, work, scan, reach);
+    for (float& noise : work.noise) noise = std::max(noise, 0.5f * work.frame_noise);
+}
+
+void scan_runs(const StripeImage& image, ScanLines scan, const ThresholdRule& rule, Kernel kernel,
+               StripeScan& work, RunConsumer consume, void* context) {
+    work.runs.clear();
+    Collector collector{work, consume, context};
+    const bool avx2 = use_avx2(kernel);
+    if (image.bytes_per_pixel() == 1) {
+        scan_image<std::uint8_t>(image, scan, rule, avx2, work, work.limit8, collector);
+    } else {
+        scan_image<std::uint16_t>(image, scan, rule, avx2, work, work.limit16, collector);
+    }
+}
+
+}  // namespace seamwright::detail

@@ -1,17 +1,34 @@
 #pragma once
-// Path correction from sparse measures (methods.md 3; thesis 3.3): where has the part gone, from a few cuts that each
-// see two of three directions.
+// Path correction from sparse measures (methods.md 3; thesis 3.3): where has the part gone, from a few cuts
+// that each see two of three directions.
 //
-// Model. Spot n was taught with sensor pose W_n = workobject_from_sensor and reference point r_n; now it measures m_n
-// (both in the sensor frame, mm). The part has moved by D = workobject_from_movedworkobject. Residual
+// Model. Spot n was taught with sensor pose W_n = workobject_from_sensor and reference point r_n; now it
+// measures m_n (both in the sensor frame, mm). The part has moved by D = workobject_from_movedworkobject.
+// Residual
 //     e_n(D) = diag(w_n) (r_n - W_n^-1 D^-1 W_n m_n),      minimise  sum |e_n|^2 / sigma_n^2
-// (3.49, with D^-1 where the thesis writes T_corr). Weights are along the sensor's axes, 0 = not observed.
-// What is returned is D, the frame shift that moves the path WITH the part: corrected frame = frame * D when D is
-// expressed in that frame. Its inverse is never returned.
+// (3.49, corrected: D^-1 where the thesis writes T_corr). Weights are along the sensor's axes, 0 = not
+// observed. What is returned is D, the frame shift that moves the path WITH the part: corrected frame = frame
+// * D when D is expressed in that frame. Its inverse is never returned.
+//
+// Noise model. Every observed coordinate carries independent noise of standard deviation sigma_n, isotropic
+// and independent of its weight: a weight says how much a coordinate shall count, sigma how noisy it is. With
+// Omega = diag(w^2 / sigma^2) the estimator is (J^T Omega J)^-1 J^T Omega e and its covariance the sandwich
+//     C = (J^T Omega J)^-1 (J^T Omega diag(sigma^2) Omega J) (J^T Omega J)^-1
+// over the observed coordinates, which is (J^T Omega J)^-1 whenever every weight is 0 or 1. First order in
+// sigma; when the noise has no component along the travel direction (a profile point has y = 0 exactly) the
+// stated sigma is on the safe side by the cosine of D's angle.
+//
+// Observability. A displacement is judged by what it does to the spots, not to the origin of the work object,
+// which may lie metres away: it is written as translation of the spots' centroid (mm) and rotation (rad), the
+// rotation counting as (rms distance of the spots from their centroid) x angle, in mm. A free direction is
+// unobservable when its predicted standard deviation in this sense exceeds sigma_limit_mm, or its rotation
+// alone sigma_limit_deg, or the information is singular. Then nothing is returned but the verdict: no
+// regularisation.
 
 #include <Eigen/Core>
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,46 +42,64 @@ namespace seamwright {
 // D as a type of its own, because its inverse sends the robot the wrong way.
 struct Displacement {
     Pose workobject_from_movedworkobject = Pose::Identity();
-    // The frame that carries the taught path onto the displaced part. `frame` is expressed like the work object.
+    // The frame that carries the taught path onto the displaced part. `frame` is expressed like the work
+    // object.
     Pose corrected(const Pose& frame) const { return frame * workobject_from_movedworkobject; }
 };
 
-// The local shape of the contour at a spot, learnt from the profiles between entry and exit: the reference point as a
-// function of travel y (mm, along the sensor's +Y, 0 at the trigger position), x(y) = r_x + x1 y + x2 y^2 + x3 y^3, z alike.
-// Replaces the straight line along Y in the residual (5.1): without it a curved contour is mistaken by
-// r - sqrt(r^2 - y^2) when the part slides along it.
+// The local shape of the contour at a spot, learnt from the profiles between entry and exit: the reference
+// point as a function of travel y (mm, along the sensor's +Y, 0 at the trigger position), x(y) = r_x + x1 y +
+// x2 y^2 + x3 y^3, z alike. Replaces the straight line along Y in the residual (5.1): without it a curved
+// contour is mistaken by r - sqrt(r^2 - y^2) when the part slides along it. Used only where Y is not observed
+// (weight 0). Beyond [valid_from, valid_to] the tangent at the end is followed, and the correction's message
+// says which spot slid so far.
 struct ContourCurve {
     Eigen::Vector3d x_coefficients = Eigen::Vector3d::Zero();  // 1/1, 1/mm, 1/mm^2 for y, y^2, y^3
     Eigen::Vector3d z_coefficients = Eigen::Vector3d::Zero();
-    double valid_from_mm = 0, valid_to_mm = 0;                 // travel range the profiles covered
+    double valid_from_mm = 0, valid_to_mm = 0;  // travel range the profiles covered
 };
+
+// The reference point as found in one profile of the pass, sensor frame.
+struct TravelPoint {
+    double travel_mm = 0, x_mm = 0, z_mm = 0;
+};
+
+// Fits x(y) and z(y) with the lowest order (up to 3, each axis its own) that the data ask for: a higher order
+// is taken when it lowers the residual significantly (F test, 1e-3). Robust: points that lie off by more than
+// 4 robust standard deviations are left out. Non-finite points are ignored. Refuses fewer than 5 points or a
+// travel below 1 mm.
+Expected<ContourCurve> fit_contour_curve(std::span<const TravelPoint> points);
 
 struct SpotObservation {
     std::string id;
-    Pose workobject_from_sensor = Pose::Identity();             // at teaching
-    Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();     // r_n, sensor frame
-    Eigen::Vector3d measured_mm = Eigen::Vector3d::Zero();      // m_n, sensor frame
-    Eigen::Vector3d weights = {1, 0, 1};                        // sensor axes; Y is the travel direction
-    double sigma_mm = 0.05;                                     // standard deviation of an observed coordinate (weight 1)
+    Pose workobject_from_sensor = Pose::Identity();          // at teaching
+    Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // r_n, sensor frame
+    Eigen::Vector3d measured_mm = Eigen::Vector3d::Zero();   // m_n, sensor frame
+    Eigen::Vector3d weights = {1, 0, 1};                     // sensor axes; Y is the travel direction
+    double sigma_mm = 0.05;                                  // standard deviation of an observed coordinate
     std::optional<ContourCurve> curve;
 };
 
 struct CorrectionLimits {
-    double translation_mm = std::numeric_limits<double>::infinity();   // length of D's translation
-    double rotation_deg = std::numeric_limits<double>::infinity();     // angle of D's rotation
+    double translation_mm = std::numeric_limits<double>::infinity();  // length of D's translation
+    double rotation_deg = std::numeric_limits<double>::infinity();    // angle of D's rotation
 };
 
-// Free degrees of freedom in the order x, y, z, a, b, c (KUKA letters: rotation about Z, Y, X of the work object).
+// Free degrees of freedom in the order x, y, z, a, b, c: the translation of D and its KUKA angles (a about Z,
+// b about Y, c about X of the work object, R = Rz(a) Ry(b) Rx(c)). A fixed one is exactly 0 in D as printed
+// (xyz, abc).
 using FreeDof = std::array<bool, 6>;
 inline constexpr FreeDof kAllFree{true, true, true, true, true, true};
 
 struct CorrectionOptions {
     FreeDof free = kAllFree;
     CorrectionLimits limits;
-    // A direction is unobservable when its predicted sigma exceeds these (and always when the information is singular).
+    // A direction is unobservable when its predicted sigma at the spots exceeds these (and always when the
+    // information is singular). The defaults let through twenty times the usual sensor noise of 0.05 mm.
     double sigma_limit_mm = 1.0;
     double sigma_limit_deg = 0.5;
-    // Leave-one-out test of single wrong spots, two-sided significance after Bonferroni over the spots.
+    // Test of single wrong spots on their studentised residuals, significance over the whole region
+    // (Bonferroni over the spots).
     bool reject_outliers = true;
     double outlier_significance = 1e-3;
     int max_iterations = 50;
@@ -72,49 +107,91 @@ struct CorrectionOptions {
 
 enum class CorrectionStatus {
     ok,
-    under_determined,  // a free direction is not observed well enough; `unobservable` names it; displacement is identity
-    over_limit,        // solved, but beyond the limits; displacement holds the solution
-    not_converged      // the step did not shrink below 1e-9 mm / 1e-12 rad within max_iterations
+    under_determined,  // a free direction is not observed well enough, or the spots contradict each other
+                       // beyond the sigma limit and cannot tell which is wrong; displacement is identity
+    over_limit,    // solved, but beyond the limits; displacement holds the solution
+    not_converged  // the step did not shrink below 1e-9 mm / 1e-12 rad within max_iterations
 };
 std::string_view to_string(CorrectionStatus status);
 
 struct SpotResidual {
     std::string id;
-    Eigen::Vector3d residual_mm = Eigen::Vector3d::Zero();  // r - W^-1 D^-1 W m in the sensor frame, unweighted axes 0
-    bool used = true;                                       // false: found to be wrong and left out
+    Eigen::Vector3d residual_mm =
+        Eigen::Vector3d::Zero();  // r - W^-1 D^-1 W m in the sensor frame, unweighted axes 0
+    bool used = true;             // false: found to be wrong and left out
 };
 
 struct RegionCorrection {
     CorrectionStatus status = CorrectionStatus::not_converged;
     Displacement displacement;
-    Matrix6 covariance = Matrix6::Zero();   // tangent of pose.h, work object; fixed degrees of freedom have rows of 0
+    // Tangent of pose.h, work object. Fixed translations have rows of 0. When the information is singular,
+    // the degrees of freedom concerned have an infinite variance (and sigma) and no correlations.
+    Matrix6 covariance = Matrix6::Zero();
     Eigen::Vector3d sigma_xyz_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d sigma_abc_deg = Eigen::Vector3d::Zero();  // of KUKA A, B, C
-    double rms_mm = 0;                      // weighted rms of the used residuals
-    int redundancy = 0;                     // observed coordinates minus free degrees of freedom
-    std::vector<SpotResidual> spots;        // in the order given
-    std::vector<std::string> unobservable;  // plain words: "translation along X", "rotation about the axis ..."
-    std::string message;                    // one sentence: the verdict and how to cure it
+    double sigma_at_spots_mm = 0;  // of the weakest free direction, as judged (see Observability)
+    double rms_mm = 0;             // weighted rms of the used residuals
+    int redundancy = 0;            // observed coordinates of the used spots minus free degrees of freedom
+    // (sum of (residual / sigma)^2) / redundancy: about 1 when the stated sigmas are true; 1 without
+    // redundancy. The covariance above is the one that follows from the stated sigmas, never rescaled by
+    // this.
+    double variance_factor = 1;
+    bool consistent = true;           // false: the variance factor is beyond chance (chi-square, 1e-4)
+    std::vector<SpotResidual> spots;  // in the order given
+    std::vector<std::string>
+        unobservable;     // plain words: "translation along X", "rotation about the axis ..."
+    std::string message;  // one sentence: the verdict and how to cure it
     int iterations = 0;
 };
 
-// Refuses (Error): no spots, duplicate ids, non-finite numbers, sigma <= 0, negative weights, no free degree.
-Expected<RegionCorrection> solve_region(std::span<const SpotObservation> spots, const CorrectionOptions& options);
+// Refuses (Error): no spots, duplicate ids, non-finite numbers, sigma <= 0, negative weights, no free degree,
+// a pose that is none, coordinates beyond 10 km.
+//
+// Wrong measures. Each spot's residual is studentised with its own covariance (what the other spots leave of
+// it). When one exceeds chance, the smallest set of spots is sought without which all others agree with each
+// other: every single spot, pair and triple is tried, beyond that a graduated robust fit. The set is left out
+// when it is the only one that explains the contradiction and the rest still determines the displacement;
+// else `message` says that the wrong spot cannot be told, and the region is refused when the contradiction,
+// carried into the displacement, exceeds the sigma limits. When the stated sigma is too small altogether, a
+// spot must also stand out from the scatter of the others.
+Expected<RegionCorrection> solve_region(std::span<const SpotObservation> spots,
+                                        const CorrectionOptions& options);
 
+// The same for the run's hot path: keeps its memory, and that of `result`, from call to call; allocates
+// nothing after the first call with as many spots unless something has to be said about them. One thread at a
+// time.
+class RegionSolver {
+  public:
+    RegionSolver();
+    RegionSolver(RegionSolver&&) noexcept;
+    RegionSolver& operator=(RegionSolver&&) noexcept;
+    ~RegionSolver();
+    Expected<void> solve(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                         RegionCorrection& result);
 
-// What a region will be able to tell, before anything is measured (measured_mm is ignored).
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+// What a region will be able to tell, before anything is measured (measured_mm is ignored): everything at D =
+// identity.
 struct RegionPlan {
     CorrectionStatus status = CorrectionStatus::ok;  // ok or under_determined
-    Matrix6 covariance = Matrix6::Zero();
+    Matrix6 covariance = Matrix6::Zero();            // as in RegionCorrection
     Eigen::Vector3d sigma_xyz_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d sigma_abc_deg = Eigen::Vector3d::Zero();
-    Vector6 weakest_direction = Vector6::Zero();     // unit length after scaling rotations by the spots' spread
-    std::string weakest;                             // in plain words
+    double sigma_at_spots_mm = 0;                 // of the weakest direction; infinity when singular
+    Vector6 weakest_direction = Vector6::Zero();  // (translation of the spots' centroid, rotation vector
+                                                  // times the spots' spread), unit length
+    std::string weakest;  // in plain words
     std::vector<std::string> unobservable;
     int redundancy = 0;
-    std::vector<std::string> uncontrolled;           // spots whose single wrong measure could not be found
-    std::string advice;                              // which spot to add, where, in which orientation
+    // Spots whose single wrong measure of kFindableErrorMm could not be found and named.
+    std::vector<std::string> uncontrolled;
+    std::string advice;  // which spot to add, where, in which orientation
 };
+inline constexpr double kFindableErrorMm = 3.0;
 Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const CorrectionOptions& options);
 
 }  // namespace seamwright

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/correction/region_system.h"
+
+namespace seamwright::correction {
+namespace {
+
+constexpr double kFarthestMm = 1e7;
+
+bool is_pose(const Pose& pose) {
+    const Eigen::Matrix3d r = pose.linear();
+    return (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-4 &&
+           r.determinant() > 0;
+}
+
+std::string where(std::size_t n, const SpotObservation& spot, const char* field) {
+    return fmt::format("spots[{}] \"{}\" {}", n, spot.id, field);
+}
+
+tl::unexpected<Error> twice(const std::string& id) {
+    return input_error(fmt::format("the spot id \"{}\" occurs twice", id), "spots",
+                       "give every spot its own id");
+}
+
+Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured) {
+    const auto bad_point = [](const Eigen::Vector3d& p) {
+        return !p.allFinite() || p.cwiseAbs().maxCoeff() > kFarthestMm;
+    };
+    const char* far = "is not finite or lies beyond 10 km";
+    if (!s.workobject_from_sensor.matrix().allFinite() || bad_point(s.workobject_from_sensor.translation()))
+        return input_error(std::string("the pose ") + far, where(n, s, "workobject_from_sensor"),
+                           "give finite numbers in millimetres");
+    if (!is_pose(s.workobject_from_sensor))
+        return input_error("the rotation is not orthonormal", where(n, s, "workobject_from_sensor"),
+                           "give a rotation without scale, shear or mirroring");
+    if (bad_point(s.reference_mm))
+        return input_error(std::string("the reference point ") + far, where(n, s, "reference"),
+                           "give finite numbers in millimetres");
+    if (measured && bad_point(s.measured_mm))
+        return input_error(std::string("the measured point ") + far, where(n, s, "measured"),
+                           "leave spots that were not measured out of the list");
+    if (!s.weights.allFinite() || s.weights.minCoeff() < 0 || s.weights.maxCoeff() > 1e6)
+        return input_error("a weight is negative, not finite or above 1e6", where(n, s, "weights"),
+                           "use 0 for an axis that is not observed, else 1 or a share of it");
+    for (int i = 0; i < 3; ++i) {
+        if (s.weights[i] > 0 && s.weights[i] < 1e-6)
+            return input_error("a weight lies between 0 and 1e-6", where(n, s, "weights"),
+                               "use 0 for \"not observed\"");
+    }
+    if (!(s.sigma_mm >= 1e-9) || !(s.sigma_mm <= 1e6))
+        return input_error("sigma is not a positive number of millimetres", where(n, s, "sigma_mm"),
+                           "give the standard deviation of a measured coordinate, e.g. 0.05");
+    if (s.curve) {
+        const ContourCurve& c = *s.curve;
+        if (!c.x_coefficients.allFinite() || !c.z_coefficients.allFinite() ||
+            !std::isfinite(c.valid_from_mm) || !std::isfinite(c.valid_to_mm) ||
+            c.valid_from_mm > c.valid_to_mm)
+            return input_error("the contour curve is not finite or its range is reversed",
+                               where(n, s, "curve"), "learn it again from the profiles of the pass");
+    }
+    return {};
+}
+
+}  // namespace
+
+Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& o,
+                            bool measured) {
+    if (spots.empty())
+        return input_error("there are no spots", "spots", "give at least three in different orientations");
+    if (std::none_of(o.free.begin(), o.free.end(), [](bool f) { return f; }))
+        return input_error("no degree of freedom is free", "free", "name at least one of x, y, z, a, b, c");
+    if (!(o.limits.translation_mm >= 0) || !(o.limits.rotation_deg >= 0))
+        return input_error("a limit is negative or not a number", "limits", "give limits of at least 0");
+    if (!(o.sigma_limit_mm > 0) || !(o.sigma_limit_deg > 0))
+        return input_error("a sigma limit is not positive", "sigma limits",
+                           "give millimetres and degrees above 0");
+    if (!(o.outlier_significance > 0 && o.outlier_significance < 1))
+        return input_error("the outlier significance is not between 0 and 1", "outlier_significance",
+                           "use e.g. 0.001");
+    if (o.max_iterations < 1)
+        return input_error("at least one iteration is needed", "max_iterations", "use e.g. 50");
+    for (std::size_t n = 0; n < spots.size(); ++n) {
+        if (auto good = check_spot(n, spots[n], measured); !good) return good;
+    }
+    // Few spots are compared pair by pair, which needs no memory; many are sorted.
+    if (spots.size() <= 64) {
+        for (std::size_t n = 0; n < spots.size(); ++n) {
+            for (std::size_t k = 0; k < n; ++k) {
+                if (spots[n].id == spots[k].id) return twice(spots[n].id);
+            }
+        }
+    } else {
+        std::vector<std::string_view> ids;
+        for (const SpotObservation& s : spots) ids.push_back(s.id);
+        std::sort(ids.begin(), ids.end());
+        const auto same = std::adjacent_find(ids.begin(), ids.end());
+        if (same != ids.end()) return twice(std::string(*same));
+    }
+    return {};
+}
+
+}  // namespace seamwright::correction

@@ -1,0 +1,26 @@
+#pragma once
+// Robust polynomials against travel, shared by the contour curve and the alignment aid.
+
+#include <array>
+#include <span>
+
+namespace seamwright {
+
+// v(y) = sum c_k y^k, k = 0..order <= 3, by least squares on the points within 4 robust standard deviations
+// (biweight start). `sigma` is the residual standard deviation, the coefficients' sigmas follow from it. ok =
+// false when the different travels are too few.
+struct PolynomialFit {
+    bool ok = false;
+    int order = 0, used = 0, degrees = 0;
+    std::array<double, 4> coefficient{}, coefficient_sigma{};
+    double sigma = 0, sum_squares = 0;
+};
+PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order);
+
+// The lowest order in [lowest, highest] that a higher one does not beat significantly (F test, 1e-3).
+PolynomialFit fit_lowest_order(std::span<const double> y, std::span<const double> v, int lowest, int highest);
+
+// Probability of a value as large under F(over, under).
+double f_test(double value, double over, double under);
+
+}  // namespace seamwright

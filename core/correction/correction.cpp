@@ -1,0 +1,245 @@
+#include "core/correction/correction.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/correction/region_system.h"
+#include "core/correction/wrong_spots.h"
+
+namespace seamwright {
+namespace {
+
+using namespace correction;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string join(const std::vector<std::string>& words) {
+    std::string out;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) out += i + 1 == words.size() ? " and " : ", ";
+        out += words[i];
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string_view to_string(CorrectionStatus status) {
+    switch (status) {
+        case CorrectionStatus::ok:
+            return "ok";
+        case CorrectionStatus::under_determined:
+            return "under_determined";
+        case CorrectionStatus::over_limit:
+            return "over_limit";
+        case CorrectionStatus::not_converged:
+            return "not_converged";
+    }
+    return "unknown";
+}
+
+namespace correction {
+
+void report_spread(const RegionSystem& system, const Spread& spread, const Observability& seen,
+                   const State& state, Matrix6& covariance, Eigen::Vector3d& sigma_xyz_mm,
+                   Eigen::Vector3d& sigma_abc_deg) {
+    if (spread.regular) {
+        system.outer(spread.covariance, state, covariance, sigma_xyz_mm, sigma_abc_deg);
+        sigma_abc_deg *= deg_from_rad(1);
+        return;
+    }
+    // Singular: infinite where a degree of freedom takes part in an undetermined direction, nothing known
+    // elsewhere.
+    covariance.setZero();
+    for (Eigen::Index k = 0; k < seen.weak.cols(); ++k) {
+        const Vector6 t = system.tangent_from_xi(seen.weak.col(k), state);
+        for (int i = 0; i < 6; ++i) {
+            const double size = i < 3 ? std::abs(t[i]) : std::abs(t[i]) * system.spread_mm();
+            if (size > 1e-6) covariance(i, i) = kInfinity;
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        sigma_xyz_mm[i] = std::sqrt(covariance(i, i));
+        sigma_abc_deg[i] = covariance(5 - i, 5 - i) > 0 ? kInfinity : 0.0;  // A about Z, B about Y, C about X
+    }
+}
+
+}  // namespace correction
+
+struct RegionSolver::Impl {
+    RegionSystem taught, system;
+    WrongSpotSearch search;
+    std::vector<double> factor;
+    RegionSystem::Fit fit;
+
+    void refuse(const Observability& seen, const State& state, const Spread& spread, RegionCorrection& r) {
+        r.status = CorrectionStatus::under_determined;
+        r.displacement = {};
+        r.unobservable = name_directions(seen.weak, system.centroid(), system.spread_mm());
+        r.sigma_at_spots_mm = seen.weakest_sigma_mm;
+        report_spread(system, spread, seen, state, r.covariance, r.sigma_xyz_mm, r.sigma_abc_deg);
+        r.message =
+            fmt::format("the spots do not determine the {}: add a spot whose edge runs in another direction",
+                        join(r.unobservable));
+    }
+
+    void fill_spots(std::span<const SpotObservation> spots, RegionCorrection& r) {
+        r.spots.resize(spots.size());
+        Eigen::Vector3d e;
+        Rows rows;
+        double weighted = 0, weights = 0;
+        for (std::size_t n = 0; n < spots.size(); ++n) {
+            SpotResidual& out = r.spots[n];
+            out.id.assign(spots[n].id);
+            out.used = factor[n] > 0;
+            system.residual(n, fit.state, e, rows);
+            for (int i = 0; i < 3; ++i) {
+                const double w = spots[n].weights[i];
+                out.residual_mm[i] = w > 0 ? e[i] : 0.0;
+                if (!out.used || !(w > 0)) continue;
+                weighted += w * w * e[i] * e[i];
+                weights += w * w;
+            }
+        }
+        r.rms_mm = weights > 0 ? std::sqrt(weighted / weights) : 0;
+    }
+
+    void remarks(std::span<const SpotObservation> spots, Verdict verdict, RegionCorrection& r) {
+        std::vector<std::string> out;
+        for (const SpotResidual& s : r.spots) {
+            if (!s.used) out.push_back(fmt::format("{} (off by {:.2f} mm)", s.id, s.residual_mm.norm()));
+        }
+        const auto add = [&](const std::string& sentence) {
+            if (!r.message.empty()) r.message += "; ";
+            r.message += sentence;
+        };
+        if (!out.empty())
+            add(fmt::format("left out as wrong: {}: look there for a foreign particle or a wrong feature",
+                            join(out)));
+        const double scatter = std::sqrt(r.variance_factor);
+        if (verdict == Verdict::contradictory)
+            add(fmt::format(
+                "the spots contradict each other ({:.1f} times their stated sigma) and too few are left to "
+                "tell which is wrong: check every spot, or add spots",
+                scatter));
+        else if (!r.consistent)
+            add(fmt::format(
+                "the residuals are {:.1f} times the stated sigma: the part is deformed or sigma is stated "
+                "too small",
+                scatter));
+        for (std::size_t n = 0; n < spots.size(); ++n) {
+            const double beyond = system.beyond_curve_mm(n, fit.state);
+            if (beyond > 0.5)
+                add(fmt::format("{} slid {:.1f} mm beyond the taught range of its contour curve", spots[n].id,
+                                beyond));
+        }
+    }
+
+    Expected<void> solve(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                         RegionCorrection& r) {
+        if (auto good = check_region(spots, options, true); !good) return good;
+        r.status = CorrectionStatus::not_converged;
+        r.displacement = {};
+        r.covariance.setZero();
+        r.sigma_xyz_mm.setZero();
+        r.sigma_abc_deg.setZero();
+        r.sigma_at_spots_mm = r.rms_mm = 0;
+        r.variance_factor = 1;
+        r.consistent = true;
+        r.unobservable.clear();
+        r.message.clear();
+        r.iterations = 0;
+
+        factor.assign(spots.size(), 1.0);
+        system.load(spots, options, false);
+        fit = {};
+
+        // Judged on the taught geometry first: a hopeless region is not iterated, and a wild measure must not
+        // lend it a lever that it does not have.
+        taught.load(spots, options, true);
+        Linearization lin;
+        const State start;
+        taught.linearize(start, factor, lin);
+        int observed = 0;
+        for (std::size_t n = 0; n < spots.size(); ++n) observed += taught.spot(n).observed;
+        r.redundancy = observed - taught.free_count();
+        const Spread before = taught.spread(lin, start);
+        if (!before.regular || !taught.surely_observable(before)) {
+            const Observability seen = taught.observability(lin, start);
+            if (!seen.ok) {
+                fill_spots(spots, r);
+                refuse(seen, start, before, r);
+                return {};
+            }
+        }
+
+        system.fit(factor, fit);
+        Verdict verdict = Verdict::agree;
+        if (options.reject_outliers && (r.redundancy > 0))
+            verdict = search.run(system, options.outlier_significance, fit, factor);
+        r.iterations = fit.iterations;
+        fill_spots(spots, r);
+        if (!fit.converged) {
+            r.message = fmt::format(
+                "no displacement explains the measures within {} iterations: check that the spots and poses "
+                "belong together",
+                options.max_iterations);
+            return {};
+        }
+        const Spread spread = system.spread(fit.lin, fit.state);
+        const Agreement a = agreement(system, fit, spread, factor);
+        r.redundancy = a.redundancy;
+        if (a.redundancy > 0) r.variance_factor = a.sum_squares / a.redundancy;
+        r.consistent = a.global_p >= kGlobalDisagreement && verdict != Verdict::contradictory;
+        const double inflation =
+            verdict == Verdict::contradictory ? std::max(1.0, std::sqrt(r.variance_factor)) : 1.0;
+        const bool sure = inflation == 1.0 && spread.regular && system.surely_observable(spread);
+        Observability seen;
+        if (!sure || !r.consistent) seen = system.observability(fit.lin, fit.state, inflation);
+        if (!sure && !seen.ok) {
+            refuse(seen, fit.state, spread, r);
+            if (verdict == Verdict::contradictory) {
+                r.message.clear();
+                remarks(spots, verdict, r);
+            }
+            return {};
+        }
+        report_spread(system, spread, seen, fit.state, r.covariance, r.sigma_xyz_mm, r.sigma_abc_deg);
+        r.sigma_at_spots_mm = system.weakest_sigma_mm(spread);
+        r.displacement.workobject_from_movedworkobject = fit.state.pose();
+        r.status = CorrectionStatus::ok;
+        remarks(spots, verdict, r);
+        const double moved = fit.state.translation.norm();
+        const double turned = deg_from_rad(rotation_log(fit.state.rotation).norm());
+        if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {
+            r.status = CorrectionStatus::over_limit;
+            const std::string sentence = fmt::format(
+                "the part has moved by {:.3f} mm and {:.3f} degrees, beyond the limits of {:g} mm and {:g} "
+                "degrees: check its seat",
+                moved, turned, options.limits.translation_mm, options.limits.rotation_deg);
+            r.message = r.message.empty() ? sentence : sentence + "; " + r.message;
+        }
+        return {};
+    }
+};
+
+RegionSolver::RegionSolver() : impl_(std::make_unique<Impl>()) {}
+RegionSolver::RegionSolver(RegionSolver&&) noexcept = default;
+RegionSolver& RegionSolver::operator=(RegionSolver&&) noexcept = default;
+RegionSolver::~RegionSolver() = default;
+
+Expected<void> RegionSolver::solve(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                                   RegionCorrection& result) {
+    return impl_->solve(spots, options, result);
+}
+
+Expected<RegionCorrection> solve_region(std::span<const SpotObservation> spots,
+                                        const CorrectionOptions& options) {
+    RegionSolver solver;
+    RegionCorrection result;
+    if (auto good = solver.solve(spots, options, result); !good) return tl::unexpected(good.error());
+    return result;
+}
+
+}  // namespace seamwright

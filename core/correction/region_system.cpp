@@ -1,0 +1,387 @@
+#include "core/correction/region_system.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/notation.h"
+
+namespace seamwright::correction {
+namespace {
+
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+// Smallest ratio of eigenvalues of the information (in xi) that counts as regular.
+constexpr double kSingular = 1e-13;
+constexpr double kStepMm = 1e-9, kStepRad = 1e-12;
+
+// Rz(A) Ry(B) Rx(C), written out: an angle of 0 leaves exact zeros, so that it is 0 when read back.
+Eigen::Matrix3d rotation_from_abc(const Eigen::Vector3d& abc) {
+    const double ca = std::cos(abc.x()), sa = std::sin(abc.x()), cb = std::cos(abc.y()),
+                 sb = std::sin(abc.y());
+    const double cc = std::cos(abc.z()), sc = std::sin(abc.z());
+    Eigen::Matrix3d r;
+    r << ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc,  //
+        sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc,   //
+        -sb, cb * sc, cb * cc;
+    return r;
+}
+
+// d(rotation vector)/d(A, B, C): the axes about which the angles turn.
+Eigen::Matrix3d rotation_vector_from_abc(const Eigen::Vector3d& abc) {
+    const Eigen::AngleAxisd a(abc.x(), Eigen::Vector3d::UnitZ()), b(abc.y(), Eigen::Vector3d::UnitY());
+    Eigen::Matrix3d g;
+    g.col(0) = Eigen::Vector3d::UnitZ();
+    g.col(1) = a * Eigen::Vector3d::UnitY();
+    g.col(2) = a * (b * Eigen::Vector3d::UnitX());
+    return g;
+}
+
+// Value and slope of c1 s + c2 s^2 + c3 s^3 at s inside [from, to], continued along the tangent outside.
+void follow(const Eigen::Vector3d& c, double s, double from, double to, double& value, double& slope) {
+    const double inside = std::clamp(s, from, to);
+    slope = c[0] + inside * (2 * c[1] + inside * 3 * c[2]);
+    value = inside * (c[0] + inside * (c[1] + inside * c[2])) + slope * (s - inside);
+}
+
+}  // namespace
+
+void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                        bool from_reference) {
+    options_ = options;
+    spots_.resize(spots.size());
+    binary_ = true;
+    centroid_.setZero();
+    for (std::size_t n = 0; n < spots.size(); ++n) {
+        const SpotObservation& in = spots[n];
+        PreparedSpot& s = spots_[n];
+        s.sensor_from_workobject = in.workobject_from_sensor.linear().transpose();
+        s.sensor_origin = in.workobject_from_sensor.translation();
+        s.measured = in.workobject_from_sensor * (from_reference ? in.reference_mm : in.measured_mm);
+        s.reference = in.reference_mm;
+        s.weights = in.weights;
+        s.sigma = in.sigma_mm;
+        s.curve = in.curve && in.weights.y() == 0 ? &*in.curve : nullptr;
+        s.observed = 0;
+        for (int i = 0; i < 3; ++i) {
+            s.observed += in.weights[i] > 0;
+            binary_ = binary_ && (in.weights[i] == 0 || in.weights[i] == 1);
+        }
+        centroid_ += in.workobject_from_sensor * in.reference_mm;
+    }
+    centroid_ /= static_cast<double>(spots.size());
+    double square = 0;
+    for (const SpotObservation& in : spots)
+        square += (in.workobject_from_sensor * in.reference_mm - centroid_).squaredNorm();
+    spread_ = std::max(1.0, std::sqrt(square / static_cast<double>(spots.size())));
+    free_count_ = static_cast<int>(std::count(options.free.begin(), options.free.end(), true));
+    all_free_ = free_count_ == 6;
+    by_angles_ = !(options.free[3] && options.free[4] && options.free[5]);
+}
+
+void RegionSystem::residual(std::size_t n, const State& state, Eigen::Vector3d& e, Rows& rows) const {
+    const PreparedSpot& s = spots_[n];
+    const Eigen::Vector3d from_origin = s.measured - state.translation;
+    e = s.reference - s.sensor_from_workobject * (state.rotation.transpose() * from_origin - s.sensor_origin);
+    // Rows: the sensor's axes as they stand on the displaced part.
+    Eigen::Matrix3d axes = s.sensor_from_workobject * state.rotation.transpose();
+    if (s.curve) {
+        const double travel = -e.y();
+        double value, slope_x, slope_z;
+        follow(s.curve->x_coefficients, travel, s.curve->valid_from_mm, s.curve->valid_to_mm, value, slope_x);
+        e.x() += value;
+        follow(s.curve->z_coefficients, travel, s.curve->valid_from_mm, s.curve->valid_to_mm, value, slope_z);
+        e.z() += value;
+        axes.row(0) -= slope_x * axes.row(1);
+        axes.row(2) -= slope_z * axes.row(1);
+    }
+    const Eigen::Vector3d lever = (from_origin - state.rotation * centroid_) / spread_;
+    rows.leftCols<3>() = axes;
+    for (int i = 0; i < 3; ++i) rows.block<1, 3>(i, 3) = lever.cross(axes.row(i).transpose()).transpose();
+}
+
+void RegionSystem::add_information(std::size_t n, const Rows& rows, double factor, Matrix6& information,
+                                   Matrix6& meat) const {
+    const PreparedSpot& s = spots_[n];
+    for (int i = 0; i < 3; ++i) {
+        if (!(s.weights[i] > 0)) continue;
+        const double w = s.weights[i] * s.weights[i] * factor / (s.sigma * s.sigma);
+        const Vector6 row = rows.row(i).transpose();
+        const Vector6 scaled = w * row;
+        information.noalias() += scaled * row.transpose();
+        if (!binary_) meat.noalias() += (s.sigma * s.sigma) * (scaled * scaled.transpose());
+    }
+}
+
+void RegionSystem::linearize(const State& state, std::span<const double> factor, Linearization& out) const {
+    out = Linearization{};
+    Eigen::Vector3d e;
+    Rows rows;
+    for (std::size_t n = 0; n < spots_.size(); ++n) {
+        if (!(factor[n] > 0)) continue;
+        residual(n, state, e, rows);
+        add_information(n, rows, factor[n], out.information, out.meat);
+        const PreparedSpot& s = spots_[n];
+        for (int i = 0; i < 3; ++i) {
+            if (!(s.weights[i] > 0)) continue;
+            const double w = s.weights[i] * s.weights[i] * factor[n] / (s.sigma * s.sigma);
+            out.gradient += (w * e[i]) * rows.row(i).transpose();
+            out.cost += w * e[i] * e[i];
+        }
+    }
+}
+
+double RegionSystem::beyond_curve_mm(std::size_t n, const State& state) const {
+    const PreparedSpot& s = spots_[n];
+    if (!s.curve) return 0;
+    const Eigen::Vector3d q =
+        s.sensor_from_workobject *
+        (state.rotation.transpose() * (s.measured - state.translation) - s.sensor_origin);
+    const double travel = q.y() - s.reference.y();
+    return std::abs(travel - std::clamp(travel, s.curve->valid_from_mm, s.curve->valid_to_mm));
+}
+
+Matrix6 RegionSystem::xi_from_parameters(const State& state) const {
+    if (all_free_) return Matrix6::Identity();
+    // dt_c = dt - (R c) x w and L w, for dt = unit vectors and w = the rotation's own parameters.
+    const Eigen::Matrix3d g =
+        by_angles_ ? rotation_vector_from_abc(state.abc) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+    Matrix6 b = Matrix6::Zero();
+    b.topLeftCorner<3, 3>().setIdentity();
+    b.topRightCorner<3, 3>() = -skew(state.rotation * centroid_) * g;
+    b.bottomRightCorner<3, 3>() = spread_ * g;
+    for (int i = 0; i < 6; ++i) {
+        if (!options_.free[static_cast<std::size_t>(i)]) b.col(i).setZero();
+    }
+    return b;
+}
+
+Vector6 RegionSystem::tangent_from_xi(const Vector6& xi, const State& state) const {
+    Vector6 t;
+    t.tail<3>() = xi.tail<3>() / spread_;
+    t.head<3>() = xi.head<3>() + (state.rotation * centroid_).cross(t.tail<3>());
+    return t;
+}
+
+Spread RegionSystem::spread(const Linearization& lin, const State& state) const {
+    Spread out;
+    const Matrix6 b = xi_from_parameters(state);
+    Matrix6 h = lin.information;
+    if (!all_free_) {
+        h = b.transpose() * lin.information * b;
+        for (int i = 0; i < 6; ++i) {
+            if (!options_.free[static_cast<std::size_t>(i)]) h(i, i) = 1;
+        }
+    }
+    // Scaled to a unit diagonal, so that the pivots tell the rank whatever the units.
+    Vector6 scale;
+    for (int i = 0; i < 6; ++i) {
+        if (!(h(i, i) > 0) || !std::isfinite(h(i, i))) return out;
+        scale[i] = 1 / std::sqrt(h(i, i));
+    }
+    const Eigen::LDLT<Matrix6> ldlt(scale.asDiagonal() * h * scale.asDiagonal());
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > kSingular)) return out;
+    Matrix6 inverse = scale.asDiagonal() * ldlt.solve(Matrix6(scale.asDiagonal()));
+    if (all_free_) {
+        out.bread = inverse;
+    } else {
+        out.bread = b * inverse * b.transpose();  // columns of fixed parameters are 0 in b
+    }
+    out.bread = 0.5 * (out.bread + out.bread.transpose()).eval();
+    out.covariance = binary_ ? out.bread : Matrix6(out.bread * lin.meat * out.bread);
+    out.regular = true;
+    return out;
+}
+
+Vector6 RegionSystem::per_limit() const {
+    const double limit_mm = std::min(options_.sigma_limit_mm, 1e9);
+    const double limit_rotation =
+        std::min(limit_mm, rad_from_deg(std::min(options_.sigma_limit_deg, 1e9)) * spread_);
+    Vector6 out;
+    out << Eigen::Vector3d::Constant(1 / limit_mm), Eigen::Vector3d::Constant(1 / limit_rotation);
+    return out;
+}
+
+bool RegionSystem::surely_observable(const Spread& s) const {
+    // The trace bounds the largest eigenvalue.
+    return s.regular && s.covariance.diagonal().dot(per_limit().cwiseAbs2()) < 1;
+}
+
+double RegionSystem::weakest_sigma_mm(const Spread& s) const {
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(s.covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(0.0, eigen.eigenvalues()[5]));
+}
+
+Observability RegionSystem::observability(const Linearization& lin, const State& state,
+                                          double inflation) const {
+    Observability out;
+    // eta = xi over its limit: a direction is weak when its sigma in eta exceeds 1.
+    const Vector6 to_eta = per_limit();
+    const Spread s = spread(lin, state);
+    Square m(free_count_, free_count_), h(free_count_, free_count_);
+    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> b(6, free_count_);
+    {
+        const Matrix6 all = xi_from_parameters(state);
+        for (int i = 0, k = 0; i < 6; ++i) {
+            if (options_.free[static_cast<std::size_t>(i)]) b.col(k++) = to_eta.asDiagonal() * all.col(i);
+        }
+    }
+    const Vector6 to_xi = to_eta.cwiseInverse();
+    m = b.transpose() * b;
+    const Matrix6 information = to_xi.asDiagonal() * lin.information * to_xi.asDiagonal();  // in eta
+    // Basis of the free space, orthonormal in eta.
+    const Eigen::SelfAdjointEigenSolver<Square> basis(m);
+    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> q = b * basis.eigenvectors();
+    for (int k = 0; k < free_count_; ++k) q.col(k).normalize();
+    // Re-orthogonalised: the metric may be ill-conditioned when the origin lies far from the spots.
+    for (int k = 0; k < free_count_; ++k) {
+        for (int j = 0; j < k; ++j) q.col(k) -= q.col(j).dot(q.col(k)) * q.col(j);
+        q.col(k).normalize();
+    }
+    Square sigma_squared(free_count_, free_count_);
+    Eigen::SelfAdjointEigenSolver<Square> eigen;
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> sigma(free_count_);
+    if (s.regular) {
+        sigma_squared = q.transpose() * (to_eta.asDiagonal() * s.covariance * to_eta.asDiagonal()) * q;
+        eigen.compute(sigma_squared);
+        for (int k = 0; k < free_count_; ++k)
+            sigma[k] = inflation * std::sqrt(std::max(0.0, eigen.eigenvalues()[k]));
+    } else {
+        h = q.transpose() * information * q;
+        eigen.compute(h);
+        const double largest = std::max(0.0, eigen.eigenvalues()[free_count_ - 1]);
+        for (int k = 0; k < free_count_; ++k) {
+            const double lambda = eigen.eigenvalues()[k];
+            const bool none = !(lambda > 1e-10 * largest) || largest == 0;
+            out.singular = out.singular || none;
+            sigma[k] = none ? std::numeric_limits<double>::infinity() : inflation / std::sqrt(lambda);
+        }
+        if (!out.singular) {  // the pivots said singular: believe them
+            out.singular = true;
+            sigma[0] = std::numeric_limits<double>::infinity();
+        }
+    }
+    out.weak.resize(6, 0);
+    double worst = -1;
+    for (int k = 0; k < free_count_; ++k) {
+        const Vector6 xi = to_xi.asDiagonal() * (q * eigen.eigenvectors().col(k));
+        const double length = xi.norm();
+        if (sigma[k] > worst) {
+            worst = sigma[k];
+            out.weakest = xi / length;
+            out.weakest_sigma_mm = sigma[k] * length;
+        }
+        if (sigma[k] > 1) {
+            out.weak.conservativeResize(6, out.weak.cols() + 1);
+            out.weak.col(out.weak.cols() - 1) = xi / length;
+        }
+    }
+    out.ok = out.weak.cols() == 0;
+    return out;
+}
+
+void RegionSystem::outer(const Matrix6& covariance_xi, const State& state, Matrix6& tangent,
+                         Eigen::Vector3d& sigma_xyz, Eigen::Vector3d& sigma_abc) const {
+    Matrix6 s = Matrix6::Identity();
+    s.topRightCorner<3, 3>() = skew(state.rotation * centroid_) / spread_;
+    s.bottomRightCorner<3, 3>() /= spread_;
+    tangent = s * covariance_xi * s.transpose();
+    Eigen::Matrix3d to_abc = Eigen::Matrix3d::Zero();
+    if (by_angles_) {
+        // Only the free angles' columns of d(w)/d(A, B, C), so that fixed ones come out as exactly 0.
+        const Eigen::Matrix3d g = rotation_vector_from_abc(state.abc);
+        Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> some(3, 0);
+        std::array<int, 3> which{};
+        for (int i = 0; i < 3; ++i) {
+            if (!options_.free[static_cast<std::size_t>(i + 3)]) continue;
+            which[static_cast<std::size_t>(some.cols())] = i;
+            some.conservativeResize(3, some.cols() + 1);
+            some.col(some.cols() - 1) = g.col(i);
+        }
+        if (some.cols() > 0) {
+            const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> pseudo =
+                (some.transpose() * some).ldlt().solve(some.transpose());
+            for (int k = 0; k < some.cols(); ++k)
+                to_abc.row(which[static_cast<std::size_t>(k)]) = pseudo.row(k);
+        }
+    } else {
+        to_abc = kuka_jacobian(state.rotation);
+    }
+    for (int i = 0; i < 3; ++i) {
+        if (!options_.free[static_cast<std::size_t>(i)]) {
+            tangent.row(i).setZero();
+            tangent.col(i).setZero();
+        }
+        sigma_xyz[i] = std::sqrt(std::max(0.0, tangent(i, i)));
+    }
+    const Eigen::Matrix3d abc = to_abc * tangent.bottomRightCorner<3, 3>() * to_abc.transpose();
+    for (int i = 0; i < 3; ++i) sigma_abc[i] = std::sqrt(std::max(0.0, abc(i, i)));
+}
+
+void RegionSystem::step(State& state, const Vector6& theta, const Vector6& xi) const {
+    if (by_angles_) {
+        state.abc += theta.tail<3>();
+        state.translation += theta.head<3>();
+        state.rotation = rotation_from_abc(state.abc);
+        return;
+    }
+    const Vector6 t = tangent_from_xi(xi, state);
+    state.translation += all_free_ ? t.head<3>() : theta.head<3>();
+    state.rotation = rotation_exp(t.tail<3>()) * state.rotation;
+}
+
+void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
+    out = Fit{};
+    linearize(out.state, factor, out.lin);
+    double damping = 0;
+    double last_gain = std::numeric_limits<double>::infinity();
+    Linearization trial_lin;
+    while (out.iterations < options_.max_iterations && std::isfinite(out.lin.cost)) {
+        ++out.iterations;
+        const Matrix6 b = xi_from_parameters(out.state);
+        Matrix6 h = all_free_ ? out.lin.information : Matrix6(b.transpose() * out.lin.information * b);
+        const Vector6 g = all_free_ ? out.lin.gradient : Vector6(b.transpose() * out.lin.gradient);
+        Vector6 scale;
+        for (int i = 0; i < 6; ++i) {
+            if (!options_.free[static_cast<std::size_t>(i)]) h(i, i) = 1;
+            scale[i] = h(i, i) > 0 ? 1 / std::sqrt(h(i, i)) : 1.0;
+        }
+        Matrix6 scaled = scale.asDiagonal() * h * scale.asDiagonal();
+        scaled.diagonal().array() += damping;
+        const Eigen::LDLT<Matrix6> ldlt(scaled);
+        if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > kSingular)) {
+            damping = std::max(10 * damping, 1e-8);
+            if (damping > 1e8) return;
+            continue;
+        }
+        const Vector6 theta = -(scale.asDiagonal() * ldlt.solve(scale.asDiagonal() * g));
+        const Vector6 xi = all_free_ ? theta : Vector6(b * theta);
+        const double gain = -g.dot(theta);  // predicted decrease of the cost
+        State trial = out.state;
+        step(trial, theta, xi);
+        const bool small = xi.head<3>().norm() < kStepMm && xi.tail<3>().norm() < kStepRad * spread_;
+        if (damping == 0 && small) {
+            out.state = trial;
+            out.converged = true;
+            return;
+        }
+        linearize(trial, factor, trial_lin);
+        if (std::isfinite(trial_lin.cost) && trial_lin.cost <= out.lin.cost + 1e-12 * (1 + out.lin.cost)) {
+            out.state = trial;
+            out.lin = trial_lin;
+            damping = damping < 1e-7 ? 0 : 0.1 * damping;
+            // Rounding keeps the step from shrinking further although it no longer matters (1e-7 of a sigma).
+            if (damping == 0 && gain < 1e-14 * (1 + out.lin.cost) && gain > 0.25 * last_gain) {
+                out.converged = true;
+                return;
+            }
+            last_gain = gain;
+        } else {
+            damping = std::max(10 * damping, 1e-4);
+            if (damping > 1e12) return;
+        }
+    }
+}
+
+}  // namespace seamwright::correction

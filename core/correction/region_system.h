@@ -1,0 +1,138 @@
+#pragma once
+// The linear algebra under solve_region and plan_region: the weighted least-squares problem of a region, its
+// linearisation and what follows from it. Fixed-size; allocates only when the number of spots grows.
+//
+// Inner coordinates xi of a small displacement, chosen so that xi of length 1 moves the spots by about 1 mm
+// whatever the distance of the work object's origin:
+//     xi = (translation of the displaced centroid [mm], L * rotation vector [mm]),  L = rms distance from the
+//     centroid.
+// To the tangent of pose.h: w = xi_w / L, dt = xi_t + (R c) x w, with c the taught centroid and R the
+// rotation of D. Parameters theta are what the solver steps in: xi itself when all six are free, else (x, y,
+// z, rotation), the rotation as a rotation vector when all its three are free and as KUKA angles otherwise,
+// so that "fixed" is exact.
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/correction/correction.h"
+
+namespace seamwright::correction {
+
+using Rows = Eigen::Matrix<double, 3, 6>;
+
+// D and, when single rotations are fixed, the angles that it is made of.
+struct State {
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+    Eigen::Vector3d abc = Eigen::Vector3d::Zero();  // rad
+    Pose pose() const { return make_pose(rotation, translation); }
+};
+
+struct Linearization {
+    Matrix6 information = Matrix6::Zero();  // J^T Omega J in xi
+    Matrix6 meat =
+        Matrix6::Zero();  // J^T Omega diag(sigma^2) Omega J in xi; only with weights other than 0, 1
+    Vector6 gradient = Vector6::Zero();  // J^T Omega e
+    double cost = 0;                     // e^T Omega e
+};
+
+// Covariance at a linearisation; `bread` is (J^T Omega J)^-1 and `covariance` the sandwich, both in xi, of
+// rank = number of free degrees. `regular` is false when the information is singular; then both are zero.
+struct Spread {
+    bool regular = false;
+    Matrix6 bread = Matrix6::Zero(), covariance = Matrix6::Zero();
+};
+
+// Directions of the free space whose predicted sigma exceeds the limits, as columns in xi, and the weakest of
+// all.
+struct Observability {
+    bool ok = false;
+    bool singular = false;
+    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> weak;  // unit length each
+    Vector6 weakest = Vector6::Zero();                       // unit length
+    double weakest_sigma_mm = 0;                             // at the spots; infinity when singular
+};
+
+struct PreparedSpot {
+    Eigen::Matrix3d sensor_from_workobject;   // rotation only
+    Eigen::Vector3d sensor_origin, measured;  // in the work object
+    Eigen::Vector3d reference, weights;
+    double sigma = 1;
+    const ContourCurve* curve = nullptr;  // null: straight along Y
+    int observed = 0;
+};
+
+class RegionSystem {
+  public:
+    // `from_reference`: the taught points stand for the measured ones (planning).
+    void load(std::span<const SpotObservation> spots, const CorrectionOptions& options, bool from_reference);
+
+    std::size_t size() const { return spots_.size(); }
+    const PreparedSpot& spot(std::size_t n) const { return spots_[n]; }
+    int free_count() const { return free_count_; }
+    double spread_mm() const { return spread_; }
+    const Eigen::Vector3d& centroid() const { return centroid_; }
+    bool weights_are_binary() const { return binary_; }
+
+    // Residual r - W^-1 D^-1 W m (all three axes, unweighted) and its derivative by xi.
+    void residual(std::size_t n, const State& state, Eigen::Vector3d& e, Rows& rows) const;
+    // Sum over spots with factor > 0, each term times its factor.
+    void linearize(const State& state, std::span<const double> factor, Linearization& out) const;
+    // One spot's share of the information; for leave-one-out.
+    void add_information(std::size_t n, const Rows& rows, double factor, Matrix6& information,
+                         Matrix6& meat) const;
+    // Travel along the contour, beyond the range of its curve; 0 when inside or without a curve.
+    double beyond_curve_mm(std::size_t n, const State& state) const;
+
+    Spread spread(const Linearization& lin, const State& state) const;
+    // `inflation` multiplies every predicted sigma.
+    Observability observability(const Linearization& lin, const State& state, double inflation = 1) const;
+    // Cheap and sufficient: no direction can exceed the limits. When false, ask observability().
+    bool surely_observable(const Spread& spread) const;
+    // Largest predicted sigma at the spots.
+    double weakest_sigma_mm(const Spread& spread) const;
+    // xi from theta; columns of fixed parameters are 0.
+    Matrix6 xi_from_parameters(const State& state) const;
+    // Covariance in the tangent of pose.h and sigma of (x, y, z) mm and (A, B, C) rad from one in xi.
+    void outer(const Matrix6& covariance_xi, const State& state, Matrix6& tangent, Eigen::Vector3d& sigma_xyz,
+               Eigen::Vector3d& sigma_abc) const;
+    Vector6 tangent_from_xi(const Vector6& xi, const State& state) const;
+
+    struct Fit {
+        bool converged = false;
+        int iterations = 0;
+        State state;
+        Linearization lin;
+    };
+    // Levenberg-Marquardt from identity.
+    void fit(std::span<const double> factor, Fit& out) const;
+
+  private:
+    // 1 / limit for each coordinate of xi.
+    Vector6 per_limit() const;
+    void step(State& state, const Vector6& theta, const Vector6& xi) const;
+
+    std::vector<PreparedSpot> spots_;
+    CorrectionOptions options_;
+    Eigen::Vector3d centroid_ = Eigen::Vector3d::Zero();
+    double spread_ = 1;
+    int free_count_ = 6;
+    bool all_free_ = true, by_angles_ = false, binary_ = true;
+};
+
+// Plain words for a set of unobservable directions (columns in xi, spanning the unobservable space): pure
+// translations first, then rotations with their axis. `centroid` and `spread` as in RegionSystem.
+std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
+                                         const Eigen::Vector3d& centroid, double spread);
+
+// Checks everything that solve_region and plan_region refuse.
+Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                            bool measured);
+
+// Fills covariance and sigmas as RegionCorrection describes them, also for a singular region.
+void report_spread(const RegionSystem& system, const Spread& spread, const Observability& seen,
+                   const State& state, Matrix6& covariance, Eigen::Vector3d& sigma_xyz_mm,
+                   Eigen::Vector3d& sigma_abc_deg);
+
+}  // namespace seamwright::correction

@@ -1,0 +1,315 @@
+#include "core/correction/wrong_spots.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/SpecialFunctions>
+
+#include "core/correction/contour_fit.h"
+
+namespace seamwright::correction {
+namespace {
+
+// Likelihood-ratio distance (in chi-square) by which the best explanation must beat the next.
+constexpr double kClear = 9.0;
+// Exhaustive search up to so many refits per size of the set.
+constexpr double kMostRefits = 6000;
+// A direction of a spot's residual with less redundancy than this says nothing.
+constexpr double kNoRedundancy = 1e-6;
+
+// Statistic e^T S^+ e of one spot over its observed axes, and its degrees.
+struct Studentised {
+    double value = 0;
+    int degrees = 0;
+};
+
+Studentised studentise(const PreparedSpot& spot, const Eigen::Vector3d& e,
+                       const Eigen::Matrix3d& covariance) {
+    Eigen::Vector3d v = e / spot.sigma;
+    Eigen::Matrix3d s = covariance / (spot.sigma * spot.sigma);
+    for (int i = 0; i < 3; ++i) {
+        if (spot.weights[i] > 0) continue;
+        v[i] = 0;
+        s.row(i).setZero();
+        s.col(i).setZero();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(s);
+    Studentised out;
+    for (int k = 0; k < 3; ++k) {
+        const double lambda = eigen.eigenvalues()[k];
+        if (!(lambda > kNoRedundancy)) continue;
+        const double along = eigen.eigenvectors().col(k).dot(v);
+        out.value += along * along / lambda;
+        ++out.degrees;
+    }
+    return out;
+}
+
+// Residual of a spot that was left out of the fit, against what the fit predicts for it.
+Studentised predicted(const RegionSystem& system, std::size_t n, const RegionSystem::Fit& fit,
+                      const Spread& spread) {
+    Eigen::Vector3d e;
+    Rows rows;
+    system.residual(n, fit.state, e, rows);
+    const PreparedSpot& s = system.spot(n);
+    const Eigen::Matrix3d covariance =
+        s.sigma * s.sigma * Eigen::Matrix3d::Identity() + rows * spread.covariance * rows.transpose();
+    return studentise(s, e, covariance);
+}
+
+double binomial(std::size_t n, std::size_t k) {
+    double c = 1;
+    for (std::size_t i = 0; i < k; ++i) c = c * static_cast<double>(n - i) / static_cast<double>(i + 1);
+    return c;
+}
+
+std::size_t count_used(std::span<const double> factor) {
+    return static_cast<std::size_t>(
+        std::count_if(factor.begin(), factor.end(), [](double f) { return f > 0; }));
+}
+
+}  // namespace
+
+double chi_square_p(double value, int degrees) {
+    if (degrees <= 0) return 1;
+    if (!(value > 0)) return std::isnan(value) ? 0.0 : 1.0;
+    if (!std::isfinite(value)) return 0;
+    switch (degrees) {  // closed forms for the degrees of one spot
+        case 1:
+            return std::erfc(std::sqrt(0.5 * value));
+        case 2:
+            return std::exp(-0.5 * value);
+        case 3:
+            return std::erfc(std::sqrt(0.5 * value)) + std::sqrt(2 * value / kPi) * std::exp(-0.5 * value);
+        default:
+            return Eigen::numext::igammac(0.5 * degrees, 0.5 * value);
+    }
+}
+
+Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, const Spread& spread,
+                    std::span<const double> factor) {
+    Agreement out;
+    Eigen::Vector3d e;
+    Rows rows;
+    for (std::size_t n = 0; n < system.size(); ++n) {
+        if (!(factor[n] > 0)) continue;
+        system.residual(n, fit.state, e, rows);
+        const PreparedSpot& s = system.spot(n);
+        out.observed += s.observed;
+        for (int i = 0; i < 3; ++i) {
+            if (s.weights[i] > 0) out.sum_squares += e[i] * e[i] / (s.sigma * s.sigma);
+        }
+        if (!spread.regular) continue;
+        // Residual = (I - J K) noise with the gain K = bread J^T Omega.
+        const Eigen::Matrix3d j = rows * spread.bread * rows.transpose();
+        const Eigen::Matrix3d gain = j * Eigen::Matrix3d(s.weights.cwiseAbs2().asDiagonal());
+        const Eigen::Matrix3d c = rows * spread.covariance * rows.transpose();
+        const Eigen::Matrix3d covariance =
+            s.sigma * s.sigma * Eigen::Matrix3d::Identity() - gain - gain.transpose() + c;
+        const Studentised t = studentise(s, e, covariance);
+        out.smallest_p = std::min(out.smallest_p, chi_square_p(t.value, t.degrees));
+    }
+    out.redundancy = out.observed - system.free_count();
+    out.global_p = chi_square_p(out.sum_squares, out.redundancy);
+    return out;
+}
+
+// Tries every set of `count` spots: is the rest in agreement without it? True when exactly one set explains
+// best.
+bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, double level,
+                              std::vector<double>& factor, RegionSystem::Fit& fit, bool& tied) {
+    const std::size_t n = system.size();
+    std::vector<std::size_t> set(count);
+    for (std::size_t i = 0; i < count; ++i) set[i] = i;
+    double best = std::numeric_limits<double>::infinity(), second = best;
+    RegionSystem::Fit best_fit, candidate;
+    std::vector<std::size_t> best_set;
+    for (bool more = n > count; more;) {
+        trial_.assign(n, 1.0);
+        for (const std::size_t i : set) trial_[i] = 0;
+        system.fit(trial_, candidate);
+        if (candidate.converged) {
+            const Spread spread = system.spread(candidate.lin, candidate.state);
+            if (spread.regular) {
+                const Agreement a = agreement(system, candidate, spread, trial_);
+                const double rest = static_cast<double>(n - count);
+                bool fits = a.smallest_p >= level / rest && a.global_p >= kGlobalDisagreement;
+                // Each one left out must be wrong by itself, or a smaller set would do.
+                for (const std::size_t i : set) {
+                    if (!fits) break;
+                    const Studentised t = predicted(system, i, candidate, spread);
+                    fits = chi_square_p(t.value, t.degrees) < level / static_cast<double>(n);
+                }
+                if (fits) {
+                    if (a.sum_squares < best) {
+                        second = best;
+                        best = a.sum_squares;
+                        best_fit = candidate;
+                        best_set = set;
+                    } else {
+                        second = std::min(second, a.sum_squares);
+                    }
+                }
+            }
+        }
+        // Next combination in lexicographic order.
+        more = false;
+        for (std::size_t i = count; i-- > 0;) {
+            if (set[i] < n - count + i) {
+                ++set[i];
+                for (std::size_t k = i + 1; k < count; ++k) set[k] = set[k - 1] + 1;
+                more = true;
+                break;
+            }
+        }
+    }
+    if (best_set.empty()) return false;
+    if (second - best < kClear) {
+        tied = true;
+        return false;
+    }
+    // The rest must still determine the displacement.
+    if (!system.observability(best_fit.lin, best_fit.state).ok) {
+        tied = true;
+        return false;
+    }
+    for (const std::size_t i : best_set) factor[i] = 0;
+    fit = best_fit;
+    return true;
+}
+
+// Many wrong spots: Geman-McClure weights, annealed from wide to the stated noise, then hard decisions by
+// prediction.
+bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::vector<double>& factor,
+                                RegionSystem::Fit& fit) {
+    const std::size_t n = system.size();
+    soft_.assign(n, 1.0);
+    RegionSystem::Fit soft_fit;
+    std::vector<double> square(n, 0.0);
+    Eigen::Vector3d e;
+    Rows rows;
+    double width = 0;  // of the weight function, in squared sigmas
+    for (int round = 0; round < 60; ++round) {
+        system.fit(soft_, soft_fit);
+        if (!soft_fit.state.translation.allFinite()) return false;
+        double largest = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            system.residual(k, soft_fit.state, e, rows);
+            const PreparedSpot& s = system.spot(k);
+            square[k] = 0;
+            for (int i = 0; i < 3; ++i) {
+                if (s.weights[i] > 0) square[k] += e[i] * e[i] / (s.sigma * s.sigma);
+            }
+            largest = std::max(largest, square[k]);
+        }
+        width = round == 0 ? largest : std::max(9.0, 0.6 * width);
+        for (std::size_t k = 0; k < n; ++k) {
+            const double u = width / (width + square[k]);
+            soft_[k] = std::max(1e-12, u * u);
+        }
+        if (width <= 9.0 && round > 5) break;
+    }
+    trial_.assign(n, 1.0);
+    for (std::size_t k = 0; k < n; ++k) {
+        if (square[k] > 36.0) trial_[k] = 0;
+    }
+    RegionSystem::Fit hard;
+    for (int round = 0; round < 10; ++round) {
+        const std::size_t used = count_used(trial_);
+        if (2 * used <= n || used == 0) return false;
+        system.fit(trial_, hard);
+        if (!hard.converged) return false;
+        const Spread spread = system.spread(hard.lin, hard.state);
+        if (!spread.regular) return false;
+        bool changed = false;
+        for (std::size_t k = 0; k < n; ++k) {
+            if (trial_[k] > 0) continue;
+            const Studentised t = predicted(system, k, hard, spread);
+            if (chi_square_p(t.value, t.degrees) >= level / static_cast<double>(n)) {
+                trial_[k] = 1;
+                changed = true;
+            }
+        }
+        if (changed) continue;
+        const Agreement a = agreement(system, hard, spread, trial_);
+        if (a.smallest_p < level / static_cast<double>(used) || a.global_p < kGlobalDisagreement || used == n)
+            return false;
+        if (!system.observability(hard.lin, hard.state).ok) return false;
+        factor = trial_;
+        fit = hard;
+        return true;
+    }
+    return false;
+}
+
+// The stated sigma is too small for all: a spot is wrong when leaving it out lowers the scatter of the rest
+// beyond chance (F test on the empirical variance), one after the other.
+bool WrongSpotSearch::stands_out(const RegionSystem& system, double level, std::vector<double>& factor,
+                                 RegionSystem::Fit& fit) {
+    const std::size_t n = system.size();
+    bool any = false;
+    for (std::size_t round = 0; round < n / 3; ++round) {
+        const std::size_t used = count_used(factor);
+        const Agreement now = agreement(system, fit, system.spread(fit.lin, fit.state), factor);
+        double best = std::numeric_limits<double>::infinity(), second = best;
+        std::size_t which = n;
+        RegionSystem::Fit best_fit, candidate;
+        for (std::size_t k = 0; k < n; ++k) {
+            if (!(factor[k] > 0)) continue;
+            trial_ = factor;
+            trial_[k] = 0;
+            system.fit(trial_, candidate);
+            if (!candidate.converged) continue;
+            const Spread spread = system.spread(candidate.lin, candidate.state);
+            if (!spread.regular || !system.observability(candidate.lin, candidate.state).ok) continue;
+            const double rest = agreement(system, candidate, spread, trial_).sum_squares;
+            if (rest < best) {
+                second = best;
+                best = rest;
+                which = k;
+                best_fit = candidate;
+            } else {
+                second = std::min(second, rest);
+            }
+        }
+        if (which == n) return any;
+        const int lost = system.spot(which).observed;
+        const int left = now.redundancy - lost;
+        if (left < 3) return any;
+        const double variance = best / left;
+        const double f = (now.sum_squares - best) / lost / variance;
+        if (f_test(f, lost, left) >= level / static_cast<double>(used) || (second - best) / variance < kClear)
+            return any;
+        factor[which] = 0;
+        fit = best_fit;
+        any = true;
+    }
+    return any;
+}
+
+Verdict WrongSpotSearch::run(const RegionSystem& system, double significance, RegionSystem::Fit& fit,
+                             std::vector<double>& factor) {
+    const std::size_t n = system.size();
+    const Spread spread = fit.converged ? system.spread(fit.lin, fit.state) : Spread{};
+    const Agreement all = agreement(system, fit, spread, factor);
+    if (fit.converged && all.smallest_p >= significance / static_cast<double>(n)) {
+        return all.global_p >= kGlobalDisagreement ? Verdict::agree : Verdict::noisy;
+    }
+    if (all.redundancy <= 0) return Verdict::agree;
+    bool tied = false;
+    bool searched = true;
+    for (std::size_t count = 1; count <= 3 && 2 * count < n; ++count) {
+        if (binomial(n, count) > kMostRefits) {
+            searched = false;
+            break;
+        }
+        if (explain(system, count, significance, factor, fit, tied)) return Verdict::found;
+        if (tied) return Verdict::contradictory;
+    }
+    if ((!searched || n > 6) && graduated(system, significance, factor, fit)) return Verdict::found;
+    if (fit.converged && stands_out(system, significance, factor, fit)) return Verdict::noisy;
+    return Verdict::contradictory;
+}
+
+}  // namespace seamwright::correction

@@ -1,11 +1,13 @@
 #include "devices/registry.h"
 
 #include "devices/replay/recording.h"
+#include "devices/simulated/cell.h"
 
 namespace seamwright {
 
 const std::vector<SensorDriver>& sensor_drivers() {
     static const std::vector<SensorDriver> drivers = {
+        {"simulated", "A car door before a stripe camera, rendered", &open_simulated_sensor},
         {"replay", "Recorded profiles (CSV) or images of a folder, with poses", &open_replay_sensor},
     };
     return drivers;
@@ -13,6 +15,7 @@ const std::vector<SensorDriver>& sensor_drivers() {
 
 const std::vector<RobotDriver>& robot_drivers() {
     static const std::vector<RobotDriver> drivers = {
+        {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
         {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
     };
     return drivers;

@@ -1,0 +1,174 @@
+#pragma once
+// The simulated cell: a part, a laser-stripe sensor on a robot's flange, and what makes them imperfect.
+// Frames are rendered images (renderer.h) and measured by the same code as real ones; nothing takes a profile
+// from the mesh.
+//
+// Settings, all optional; sensor and robot of one session share the cell and must be given the same settings.
+// Defaults:
+//   {"seed": 1,                        every random number follows from it and from the count of exposures
+//   and moves
+//    "scene": "part",                  part | sphere | plate | triangle; the targets stand at
+//    base_from_target "mesh": "", "mesh_unit": "",      STL/PLY/OBJ in the work object frame instead of the
+//    door; unit "mm" or "m" "base_from_workobject": POSE, "base_from_target": POSE, "flange_from_sensor":
+//    POSE, "part": {"displacement": POSE identity (D: workobject_from_movedworkobject), "bend_mm": 0,
+//    "twist_mm": 0}, "optics": {"width": 1280, "height": 1024, "bit_depth": 8|10|12|16, "stand_off_mm": 300,
+//    "triangulation_deg": 30,
+//               "field_mm": 100, "k1", "k2", "p1", "p2", "k3", "laser_width_mm": 0.2, "fan_deg": 30,
+//               "blur_px": 0.8},
+//    "surface": {"albedo": 0.5, "gloss": 0.4, "shininess": 30, "dark_share": 0.02, "dark_albedo": 0.06,
+//    "dark_size_mm": 12,
+//                "mirror": 0.3},
+//    "noise": {"shot": true, "read_electrons": 25, "speckle": 0.2, "ambient_electrons_per_ms": 120,
+//              "stray_probability": 0.15},
+//    "exposure_us": 1000, "gain_db": 0, "damaged_probability": 0, "buffers": 8,
+//    "robot": {"repeatability_mm": 0.03, "repeatability_deg": 0.002 (one sigma per axis, anew at every
+//    arrival),
+//              "trigger_jitter_mm": 1.5 (half width, uniform, at 100 mm/s; grows with speed, none when
+//              standing), "mode": "automatic", "frames": {name: POSE base_from_frame}},
+//    "sphere_radius_mm": 25, "board": {"columns": 7, "rows": 6, "pitch_mm": 10}, "serial": "SIM-1"}
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "devices/registry.h"
+#include "devices/simulated/door.h"
+#include "devices/simulated/random.h"
+#include "devices/simulated/renderer.h"
+
+namespace seamwright {
+
+enum class Scene { part, sphere, plate, triangle };
+std::string_view to_string(Scene scene);
+
+struct PartState {
+    Pose workobject_from_movedworkobject = Pose::Identity();  // D of methods.md 3
+    PartBend bend;
+};
+
+struct RobotSettings {
+    double repeatability_mm = 0.03, repeatability_deg = 0.002, trigger_jitter_mm = 1.5;
+    RobotMode mode = RobotMode::automatic;
+    std::map<std::string, Pose> frames;  // base_from_frame by name
+};
+
+struct CellSettings {
+    std::uint64_t seed = 1;
+    Scene scene = Scene::part;
+    std::string mesh, mesh_unit;
+    Pose base_from_workobject = Pose::Identity(), base_from_target = Pose::Identity(),
+         flange_from_sensor = Pose::Identity();
+    PartState part;
+    OpticsSettings optics;
+    SurfaceSettings surface;
+    NoiseSettings noise;
+    Exposure exposure;  // seed unused
+    double damaged_probability = 0;
+    int buffers = 8;
+    RobotSettings robot;
+    double sphere_radius_mm = 25;
+    BoardPattern board{7, 6, 10, 0.1};
+    std::string serial = "SIM-1";
+};
+CellSettings default_cell_settings();
+// Refuses unknown fields, wrong types and values out of range, with the field's path.
+Expected<CellSettings> parse_cell_settings(const nlohmann::json& settings);
+
+// Thread-safe. Poses are base_from_flange unless named otherwise.
+class SimulatedCell {
+  public:
+    static Expected<std::shared_ptr<SimulatedCell>> open(const CellSettings& settings);
+    static Expected<std::shared_ptr<SimulatedCell>> open(const nlohmann::json& settings);
+
+    // The truth, for tests, for a project that starts calibrated, and for judging corrections.
+    const CellSettings& settings() const { return settings_; }
+    const SensorModel& sensor_model() const { return renderer_.model(); }
+    const Pose& flange_from_sensor() const { return settings_.flange_from_sensor; }
+    const Pose& base_from_workobject() const { return settings_.base_from_workobject; }
+    const TriangleMesh& part_mesh() const { return undisplaced_; }  // neither bent nor displaced, work object
+    PartState part() const;
+    Eigen::Vector3d displaced(
+        const Eigen::Vector3d& point_workobject_mm) const;  // bent, then moved by D; work object
+    // Where the flange must stand for the sensor to stand at workobject_from_sensor of the undisplaced part.
+    Pose flange_for(const Pose& workobject_from_sensor) const;
+    nlohmann::json describe() const;  // noise, jitter, repeatability, seed, part: for reports
+
+    // The next part in the fixture; the scene before the sensor.
+    void set_part(const PartState& part);
+    void set_scene(Scene scene);
+
+    // Renders what the sensor sees with the flange exactly there. `frame.pixels` grows once.
+    void render(const Pose& base_from_flange, std::uint64_t frame_seed, Frame& frame,
+                std::vector<StripeSample>* truth = nullptr);
+
+    // Robot. Arrivals scatter by the repeatability; what the controller reports is where it was sent.
+    void move_to(const Pose& base_from_flange);
+    std::optional<Pose> reported_flange() const;
+    std::optional<Pose> true_flange() const;
+    void start_moves(std::vector<MeasuringMove> moves);
+    // Passes the next spot and fires the sensor there; nullopt when the program has ended.
+    std::optional<TriggerEvent> next_trigger();
+    RobotMode mode() const;
+    void set_mode(RobotMode mode);
+    Expected<Pose> read_frame(const std::string& name) const;
+    Expected<void> write_frame(const std::string& name, const Pose& base_from_frame);
+
+    // Sensor. An exposure waits here until the sensor delivers it.
+    struct Waiting {
+        std::string spot_id;
+        Pose base_from_flange = Pose::Identity();  // true
+        std::uint64_t number = 0;
+        std::int64_t time_ns = 0;
+    };
+    void arm(bool armed);  // hardware triggers count only while armed
+    // Exposes at the present pose, unless the robot's trigger for this spot still waits: that is the same
+    // exposure.
+    Expected<void> software_trigger(const std::string& spot_id);
+    std::optional<Waiting> take_exposure();
+    std::uint64_t lost_exposures() const;  // more waiting than buffers
+    double parameter(const std::string& name) const;
+    void set_parameter(const std::string& name, double value);
+
+  private:
+    SimulatedCell(const CellSettings& settings, TriangleMesh part);
+    Pose arrived(const Pose& commanded);  // precondition: locked
+    void expose(const std::string& spot_id, const Pose& base_from_flange);
+
+    const CellSettings settings_;
+    const TriangleMesh undisplaced_;
+    mutable std::mutex mutex_;  // robot, triggers, part
+    std::mutex render_mutex_;   // renderer and trees; taken before mutex_ where both are needed
+    StripeRenderer renderer_;
+    std::shared_ptr<MeshTree> tree_;    // the part, bent
+    std::shared_ptr<MeshTree> target_;  // of the scene, made when first asked for
+    Scene target_scene_ = Scene::part;
+    PartState part_;
+    Scene scene_;
+    Exposure exposure_;
+    std::optional<Pose> commanded_, true_;
+    std::deque<MeasuringMove> moves_;
+    std::deque<Waiting> waiting_;
+    bool armed_ = false;
+    std::uint64_t exposures_ = 0, arrivals_ = 0, lost_ = 0;
+    std::map<std::string, Pose> frames_;
+    RobotMode mode_;
+};
+
+// Devices on a cell that is already there.
+std::unique_ptr<ProfileSource> make_simulated_sensor(std::shared_ptr<SimulatedCell> cell);
+std::unique_ptr<RobotLink> make_simulated_robot(std::shared_ptr<SimulatedCell> cell);
+
+// The registry's forms: the session's cell is made from `settings` by the first and must agree for the
+// second.
+Expected<std::shared_ptr<SimulatedCell>> shared_cell(const nlohmann::json& settings, DeviceSession& session);
+Expected<std::unique_ptr<ProfileSource>> open_simulated_sensor(const nlohmann::json& settings,
+                                                               DeviceSession& session);
+Expected<std::unique_ptr<RobotLink>> open_simulated_robot(const nlohmann::json& settings,
+                                                          DeviceSession& session);
+
+}  // namespace seamwright

@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/geometry/notation.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/cell.h"
+
+namespace seamwright {
+namespace {
+
+constexpr std::array kScenes = {Scene::part, Scene::sphere, Scene::plate, Scene::triangle};
+
+// Reads fields one after another and keeps the first Error.
+class Fields {
+  public:
+    Fields(const nlohmann::json& json, std::string where) : json_(json), where_(std::move(where)) {}
+    void only(std::initializer_list<std::string_view> known) { keep(only_fields(json_, known, where_)); }
+    void number(const char* key, double& value, double low, double high) {
+        if (failed()) return;
+        const auto read = json_number_or(json_, key, value, where_);
+        if (!read) return keep(tl::make_unexpected(read.error()));
+        if (!(*read >= low && *read <= high)) {
+            return keep(input_error(fmt::format("{} is out of range {} to {}", *read, low, high),
+                                    json_path(where_, key)));
+        }
+        value = *read;
+    }
+    template <class Integer>
+    void whole(const char* key, Integer& value, double low, double high) {
+        auto number_value = static_cast<double>(value);
+        number(key, number_value, low, high);
+        if (!failed() && number_value != std::floor(number_value)) {
+            keep(input_error("must be a whole number", json_path(where_, key)));
+        }
+        if (!failed()) value = static_cast<Integer>(number_value);
+    }
+    void truth(const char* key, bool& value) {
+        if (failed()) return;
+        const auto read = json_bool_or(json_, key, value, where_);
+        if (!read) return keep(tl::make_unexpected(read.error()));
+        value = *read;
+    }
+    void text(const char* key, std::string& value) {
+        if (failed()) return;
+        const auto read = json_string_or(json_, key, value, where_);
+        if (!read) return keep(tl::make_unexpected(read.error()));
+        value = *read;
+    }
+    void pose(const char* key, Pose& value) {
+        if (failed() || !json_.contains(key)) return;
+        const auto read = parse_pose(json_.at(key), json_path(where_, key));
+        if (!read) return keep(tl::make_unexpected(read.error()));
+        value = *read;
+    }
+    template <class Read>
+    void object(const char* key, Read read) {
+        if (failed() || !json_.contains(key)) return;
+        Fields inner(json_.at(key), json_path(where_, key));
+        inner.keep(only_fields(json_.at(key), {}, json_path(where_, key)));
+        if (!inner.failed()) read(inner);
+        if (inner.failed()) error_ = inner.error_;
+    }
+    const nlohmann::json& json() const { return json_; }
+    std::string path(const std::string& key) const { return json_path(where_, key); }
+    void keep(const Expected<void>& result) {
+        if (!result && !error_) error_ = result.error();
+    }
+    bool failed() const { return error_.has_value(); }
+    const Error& error() const { return *error_; }
+
+  private:
+    const nlohmann::json& json_;
+    std::string where_;
+    std::optional<Error> error_;
+};
+
+}  // namespace
+
+std::string_view to_string(Scene scene) {
+    switch (scene) {
+        case Scene::part:
+            return "part";
+        case Scene::sphere:
+            return "sphere";
+        case Scene::plate:
+            return "plate";
+        case Scene::triangle:
+            return "triangle";
+    }
+    return "part";
+}
+
+CellSettings default_cell_settings() {
+    CellSettings s;
+    s.base_from_workobject = make_pose(rotation_from_kuka({12, -4, 3}), {900, -450, 500});
+    s.base_from_target = make_pose(rotation_from_kuka({-20, 2, -3}), {700, 600, 450});
+    s.flange_from_sensor = make_pose(rotation_from_kuka({8, 3, 178}), {30, -20, 450});
+    return s;
+}
+
+Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
+    CellSettings s = default_cell_settings();
+    Fields f(json, "settings");
+    f.only({"seed", "scene", "mesh", "mesh_unit", "base_from_workobject", "base_from_target",
+            "flange_from_sensor", "part", "optics", "surface", "noise", "exposure_us", "gain_db",
+            "damaged_probability", "buffers", "robot", "sphere_radius_mm", "board", "serial"});
+    f.whole("seed", s.seed, 0, 9e15);
+    std::string scene(to_string(s.scene));
+    f.text("scene", scene);
+    if (!f.failed()) {
+        const auto it =
+            std::find_if(kScenes.begin(), kScenes.end(), [&](Scene k) { return to_string(k) == scene; });
+        if (it == kScenes.end()) {
+            return input_error("\"" + scene + "\" is no scene", "settings.scene",
+                               "give part, sphere, plate or triangle");
+        }
+        s.scene = *it;
+    }
+    f.text("mesh", s.mesh);
+    f.text("mesh_unit", s.mesh_unit);
+    f.pose("base_from_workobject", s.base_from_workobject);
+    f.pose("base_from_target", s.base_from_target);
+    f.pose("flange_from_sensor", s.flange_from_sensor);
+    f.object("part", [&](Fields& p) {
+        p.only({"displacement", "bend_mm", "twist_mm"});
+        p.pose("displacement", s.part.workobject_from_movedworkobject);
+        p.number("bend_mm", s.part.bend.bend_mm, -50, 50);
+        p.number("twist_mm", s.part.bend.twist_mm, -50, 50);
+    });
+    f.object("optics", [&](Fields& o) {
+        o.only({"width", "height", "bit_depth", "stand_off_mm", "triangulation_deg", "field_mm", "k1", "k2",
+                "p1", "p2", "k3", "laser_width_mm", "fan_deg", "blur_px"});
+        o.whole("width", s.optics.width, 64, 8192);
+        o.whole("height", s.optics.height, 64, 8192);
+        o.whole("bit_depth", s.optics.bit_depth, 8, 16);
+        o.number("stand_off_mm", s.optics.stand_off_mm, 20, 2000);
+        o.number("triangulation_deg", s.optics.triangulation_deg, 5, 70);
+        o.number("field_mm", s.optics.field_mm, 5, 2000);
+        o.number("k1", s.optics.k1, -1, 1);
+        o.number("k2", s.optics.k2, -1, 1);
+        o.number("p1", s.optics.p1, -0.1, 0.1);
+        o.number("p2", s.optics.p2, -0.1, 0.1);
+        o.number("k3", s.optics.k3, -1, 1);
+        o.number("laser_width_mm", s.optics.laser_width_mm, 0.001, 5);
+        o.number("fan_deg", s.optics.fan_deg, 1, 120);
+        o.number("blur_px", s.optics.blur_px, 0.3, 5);
+        const int depth = s.optics.bit_depth;
+        if (!o.failed() && depth != 8 && depth != 10 && depth != 12 && depth != 16) {
+            o.keep(input_error("must be 8, 10, 12 or 16", o.path("bit_depth")));
+        }
+    });
+    f.object("surface", [&](Fields& o) {
+        o.only({"albedo", "gloss", "shininess", "dark_share", "dark_albedo", "dark_size_mm", "mirror"});
+        o.number("albedo", s.surface.albedo, 0, 1);
+        o.number("gloss", s.surface.gloss, 0, 10);
+        o.number("shininess", s.surface.shininess, 1, 1000);
+        o.number("dark_share", s.surface.dark_share, 0, 1);
+        o.number("dark_albedo", s.surface.dark_albedo, 0, 1);
+        o.number("dark_size_mm", s.surface.dark_size_mm, 0.1, 1000);
+        o.number("mirror", s.surface.mirror, 0, 5);
+    });
+    f.object("noise", [&](Fields& o) {
+        o.only({"shot", "read_electrons", "speckle", "ambient_electrons_per_ms", "stray_probability"});
+        o.truth("shot", s.noise.shot);
+        o.number("read_electrons", s.noise.read_electrons, 0, 5000);
+        o.number("speckle", s.noise.speckle, 0, 0.5);
+        o.number("ambient_electrons_per_ms", s.noise.ambient_electrons_per_ms, 0, 1e6);
+        o.number("stray_probability", s.noise.stray_probability, 0, 1);
+    });
+    f.number("exposure_us", s.exposure.exposure_us, 1, 1e6);
+    f.number("gain_db", s.exposure.gain_db, 0, 48);
+    f.number("damaged_probability", s.damaged_probability, 0, 1);
+    f.whole("buffers", s.buffers, 2, 1024);
+    f.number("sphere_radius_mm", s.sphere_radius_mm, 1, 500);
+    f.text("serial", s.serial);
+    f.object("board", [&](Fields& o) {
+        o.only({"columns", "rows", "pitch_mm"});
+        o.whole("columns", s.board.columns, 2, 50);
+        o.whole("rows", s.board.rows, 2, 50);
+        o.number("pitch_mm", s.board.pitch_mm, 0.5, 200);
+    });
+    f.object("robot", [&](Fields& o) {
+        o.only({"repeatability_mm", "repeatability_deg", "trigger_jitter_mm", "mode", "frames"});
+        o.number("repeatability_mm", s.robot.repeatability_mm, 0, 10);
+        o.number("repeatability_deg", s.robot.repeatability_deg, 0, 5);
+        o.number("trigger_jitter_mm", s.robot.trigger_jitter_mm, 0, 50);
+        std::string mode(to_string(s.robot.mode));
+        o.text("mode", mode);
+        if (const auto known = robot_mode_from_string(mode)) {
+            s.robot.mode = *known;
+        } else {
+            o.keep(input_error("\"" + mode + "\" is no mode", o.path("mode"), "give e.g. \"automatic\""));
+        }
+        o.object("frames", [&](Fields& frames) {
+            for (const auto& [name, value] : frames.json().items())
+                frames.pose(name.c_str(), s.robot.frames[name]);
+        });
+    });
+    if (f.failed()) return tl::unexpected(f.error());
+    return s;
+}
+
+}  // namespace seamwright

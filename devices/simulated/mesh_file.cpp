@@ -1,0 +1,114 @@
+#include "devices/simulated/mesh_file.h"
+
+#include <fmt/format.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCommand.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkPLYReader.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkTriangleFilter.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace seamwright {
+namespace {
+
+// Counts the reader's errors; with an observer VTK prints none.
+struct Watch {
+    vtkNew<vtkCallbackCommand> command;
+    int errors = 0;
+    Watch() {
+        command->SetClientData(this);
+        command->SetCallback(
+            [](vtkObject*, unsigned long, void* self, void*) { ++static_cast<Watch*>(self)->errors; });
+    }
+    void on(vtkObject* object) {
+        object->AddObserver(vtkCommand::ErrorEvent, command);
+        object->AddObserver(vtkCommand::WarningEvent, command);
+    }
+};
+
+template <class Reader>
+Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
+    Watch watch;
+    vtkNew<Reader> reader;
+    watch.on(reader);
+    reader->SetFileName(path.c_str());
+    vtkNew<vtkTriangleFilter> triangles;
+    watch.on(triangles);
+    watch.on(reader->GetExecutive());
+    watch.on(triangles->GetExecutive());
+    triangles->SetInputConnection(reader->GetOutputPort());
+    triangles->PassLinesOff();
+    triangles->PassVertsOff();
+    triangles->Update();
+    const vtkPolyData* none = nullptr;
+    vtkPolyData* data = triangles->GetOutput();
+    if (watch.errors > 0 || data == none || data->GetNumberOfPolys() == 0) {
+        return file_error("holds no readable triangles", path.string());
+    }
+    TriangleMesh mesh;
+    mesh.vertices.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        data->GetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].data());
+        if (!mesh.vertices[i].allFinite())
+            return file_error("holds a vertex that is not finite", path.string());
+    }
+    vtkNew<vtkIdList> cell;
+    auto* polygons = data->GetPolys();
+    for (polygons->InitTraversal(); polygons->GetNextCell(cell);) {
+        if (cell->GetNumberOfIds() != 3) continue;
+        Eigen::Vector3i t;
+        bool known = true;
+        for (int k = 0; k < 3; ++k) {
+            const vtkIdType id = cell->GetId(k);
+            known = known && id >= 0 && id < data->GetNumberOfPoints();
+            t[k] = static_cast<int>(id);
+        }
+        if (!known) return file_error("names a vertex that it does not hold", path.string());
+        const auto& v = mesh.vertices;
+        const auto& a = v[static_cast<std::size_t>(t[0])];
+        const Eigen::Vector3d n =
+            (v[static_cast<std::size_t>(t[1])] - a).cross(v[static_cast<std::size_t>(t[2])] - a);
+        if (n.norm() > 0) mesh.triangles.push_back(t);
+    }
+    if (mesh.triangles.empty()) return file_error("holds only degenerate triangles", path.string());
+    return mesh;
+}
+
+}  // namespace
+
+Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::string& unit) {
+    if (!unit.empty() && unit != "mm" && unit != "m") {
+        return input_error("\"" + unit + "\" is no unit of a mesh", path.string(), "give \"mm\" or \"m\"");
+    }
+    std::error_code problem;
+    if (!std::filesystem::is_regular_file(path, problem)) return file_error("is no file", path.string());
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    Expected<TriangleMesh> mesh = file_error("is neither .stl, .ply nor .obj", path.string());
+    try {
+        if (extension == ".stl") mesh = read_with<vtkSTLReader>(path);
+        if (extension == ".ply") mesh = read_with<vtkPLYReader>(path);
+        if (extension == ".obj") mesh = read_with<vtkOBJReader>(path);
+    } catch (const std::exception& e) {
+        return file_error(std::string("cannot be read (") + e.what() + ")", path.string());
+    }
+    if (!mesh) return mesh;
+    const double longest = mesh->box().sizes().maxCoeff();
+    if (unit == "m") {
+        for (auto& v : mesh->vertices) v *= 1000;
+    } else if (unit.empty() && longest < 10) {
+        return input_error(fmt::format("the part is only {:.4g} long: metres suspected", longest),
+                           path.string(), "say the unit: \"mm\" or \"m\"");
+    }
+    return mesh;
+}
+
+}  // namespace seamwright

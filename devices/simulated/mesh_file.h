@@ -1,0 +1,16 @@
+#pragma once
+// Triangle meshes from STL, PLY and OBJ files.
+
+#include <filesystem>
+
+#include "core/error.h"
+#include "devices/simulated/mesh.h"
+
+namespace seamwright {
+
+// `unit` is "mm" or "m" (scaled to mm); "" means mm, but a box whose longest side is below 10 is then refused
+// as "metres suspected", since no part measured here is that small. Polygons are triangulated, degenerate
+// triangles left out. Error (file): missing, unknown extension, unreadable, no triangle, not finite.
+Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::string& unit);
+
+}  // namespace seamwright

@@ -260,8 +260,8 @@ std::vector<DoorSpot> default_door_spots() {
             r.col(0) = e.inboard;
             r.col(2) = e.up;
             r.col(1) = e.up.cross(e.inboard);
-            spot.workobject_from_sensor = make_pose(r, e.point_mm + 3.0 * e.inboard + kFlangeTop * e.up);
-            spot.edge_mm = {-3, 0, 0};
+            spot.workobject_from_sensor = make_pose(r, e.point_mm + 15.0 * e.inboard + kFlangeTop * e.up);
+            spot.edge_mm = {-15, 0, 0};
             spots.push_back(spot);
         }
     }

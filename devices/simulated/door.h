@@ -31,9 +31,9 @@ struct DoorEdge {
 double door_edge_length_mm();
 DoorEdge door_edge(double arc_mm);  // from the middle of the latch side, anticlockwise; any number, periodic
 
-// A suggested measuring spot: the sensor's origin on the hem flange 3 mm inboard of the edge, X inboard, Y
-// along the edge, Z away from the sheet. Contour in the sensor frame: the edge at x = -3, the flange at z =
-// 0, its end at x = +6.
+// A suggested measuring spot: the sensor's origin 15 mm inboard of the edge at the height of the hem flange,
+// X inboard, Y along the edge, Z away from the sheet. Contour in the sensor frame: the edge at x = -15, the
+// flange at z = 0 up to its end at x = -6, the sealing land at z = -0.8 up to x = 12, then the ramp.
 struct DoorSpot {
     std::string id;  // "T1" .. "T3" top, "L" latch side, "B" bottom, "H" hinge side
     Pose workobject_from_sensor = Pose::Identity();

@@ -5,6 +5,10 @@
 
 namespace seamwright {
 
+FeatureKind circle_kind();
 FeatureKind contour_end_kind();
+FeatureKind corner_kind();
+FeatureKind extremum_kind();
+FeatureKind template_kind();
 
 }  // namespace seamwright

@@ -93,17 +93,20 @@ LineFit fit_line(std::span<const double> x, std::span<const double> z, LineWorks
         if (!changed) break;
         if (!total_least_squares(x, z, keep, line)) return line;
     }
+    if (line.used < 3) return line;
+    const Eigen::Vector2d sense(x[n - 1] - x[0], z[n - 1] - z[0]);
+    if (line.direction.dot(sense) < 0) line.direction = -line.direction;
     double rss = 0;
     for (int i = 0; i < n; ++i)
         if (keep[i]) {
             const double d = line.distance({x[i], z[i]});
             rss += d * d;
+            const double s = line.direction.dot(Eigen::Vector2d(x[i], z[i]) - line.centre);
+            line.first_mm = std::min(line.first_mm, s);
+            line.last_mm = std::max(line.last_mm, s);
         }
-    if (line.used < 3) return line;
     line.rms_mm = std::sqrt(rss / line.used);
     line.sigma_mm = std::sqrt(rss / (line.used - 2));
-    const Eigen::Vector2d sense(x[n - 1] - x[0], z[n - 1] - z[0]);
-    if (line.direction.dot(sense) < 0) line.direction = -line.direction;
     line.ok = true;
     return line;
 }

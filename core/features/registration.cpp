@@ -259,6 +259,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
 
     collect(pose, rating.gate, 1);
     const auto n = static_cast<double>(matches.size());
+    result.inliers = static_cast<int>(matches.size());
     if (matches.size() < static_cast<std::size_t>(kFewestPoints)) {
         result.status = RegistrationStatus::no_match;
         return result;

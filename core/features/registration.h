@@ -35,6 +35,7 @@ struct Registration {
     Eigen::Vector2d sliding_direction = Eigen::Vector2d::Zero();  // unit, in the scene; only for `sliding`
     double rms_mm = 0;
     double inlier_share = 0;  // share of template points with a partner in the scene
+    int inliers = 0;          // scene points that the pose rests on
     int iterations = 0;
 };
 

@@ -1,0 +1,264 @@
+// Circle: the centre of a round piece of contour (a bead, a pin, a fixed sphere), robust against the rest of
+// it.
+//
+// Start: circles through three points at growing distances along the contour, the one with the most points
+// within the noise of its rim wins (fixed places, so the answer is always the same); only circles of allowed
+// radius whose points span minimum_arc_deg compete, since a straight fits any large circle. Then the sum of
+// squared distances from the rim is minimised (Gauss-Newton; the algebraic fit is biased to small radii on
+// short arcs) over the points within 3.5 robust sigma, until the set stands still. With a known radius only
+// the centre is fitted.
+//
+// Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals. On a short arc the centre is hardly
+// determined along the arc's bisector (with a free radius the variance grows with the inverse fourth power of
+// the arc): below minimum_arc_deg, or when the centre's sigma exceeds a tenth of the radius, the answer is
+// ill_conditioned.
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/features/feature_kinds.h"
+#include "core/features/feature_points.h"
+#include "core/geometry/pose.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kFewest = 6;
+constexpr double kMadToSigma = 1.4826;
+constexpr int kMostCounted = 256;  // points that vote while the start is searched
+
+std::vector<ParameterInfo> parameters() {
+    return with_window({
+        {"radius_mm", "mm", 0, 1e5, 0, 3, "The radius when it is known; 0 fits it."},
+        {"radius_min_mm", "mm", 0, 1e5, 0.2, 3, "Free radius: the smallest that is accepted."},
+        {"radius_max_mm", "mm", 0, 1e5, 500, 3, "Free radius: the largest that is accepted."},
+        {"minimum_arc_deg", "deg", 1, 360, 25, 1, "The least arc that must be seen."},
+    });
+}
+
+struct Circle {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    double radius = 0;
+    double distance(double x, double z) const { return std::hypot(x - centre.x(), z - centre.y()) - radius; }
+};
+
+class CircleFinder final : public FeatureFinder {
+  public:
+    CircleFinder(FeatureWindow window, double known, double smallest, double largest, double arc)
+        : window_(window), known_(known), smallest_(smallest), largest_(largest), minimum_arc_(arc) {}
+
+    Feature find(const Profile& profile) const override {
+        Feature feature;
+        points_.gather(profile, window_);
+        const int n = static_cast<int>(points_.x.size());
+        if (n < kFewest) {
+            feature.status = FeatureStatus::no_points;
+            feature.message = fmt::format("{} points in the window, a circle needs {}", n, kFewest);
+            return feature;
+        }
+        Circle circle;
+        double arc = 0;
+        if (!start(circle, arc)) {
+            feature.message = "no round piece of contour in the window";
+            return feature;
+        }
+        return refine(feature, circle);
+    }
+
+  private:
+    bool through(int i, int j, int k, Circle& circle) const {
+        const Eigen::Vector2d a(points_.x[i], points_.z[i]);
+        const Eigen::Vector2d b = Eigen::Vector2d(points_.x[j], points_.z[j]) - a;
+        const Eigen::Vector2d c = Eigen::Vector2d(points_.x[k], points_.z[k]) - a;
+        const double cross = 2 * (b.x() * c.y() - b.y() * c.x());
+        if (!(std::abs(cross) > 1e-12 * (b.squaredNorm() + c.squaredNorm()))) return false;
+        const double bb = b.squaredNorm(), cc = c.squaredNorm();
+        const Eigen::Vector2d centre((c.y() * bb - b.y() * cc) / cross, (b.x() * cc - c.x() * bb) / cross);
+        circle.centre = a + centre;
+        circle.radius = centre.norm();
+        if (known_ > 0) {
+            if (circle.radius < 0.7 * known_ || circle.radius > 1.4 * known_) return false;
+            // Keep the middle of the arc and put the centre at the known distance from it.
+            const Eigen::Vector2d m(points_.x[j], points_.z[j]);
+            circle.centre = m + (circle.centre - m) * (known_ / circle.radius);
+            circle.radius = known_;
+            return true;
+        }
+        return circle.radius >= smallest_ && circle.radius <= largest_;
+    }
+
+    // Angle that the points within `tolerance` of the rim span: full turn minus the largest gap between them.
+    double arc_of(const Circle& circle, double tolerance, int stride) const {
+        angles_.clear();
+        for (std::size_t i = 0; i < points_.x.size(); i += static_cast<std::size_t>(stride))
+            if (std::abs(circle.distance(points_.x[i], points_.z[i])) <= tolerance)
+                angles_.push_back(
+                    std::atan2(points_.z[i] - circle.centre.y(), points_.x[i] - circle.centre.x()));
+        if (angles_.size() < 3) return 0;
+        std::sort(angles_.begin(), angles_.end());
+        double gap = angles_.front() + 2 * kPi - angles_.back();
+        for (std::size_t i = 1; i < angles_.size(); ++i) gap = std::max(gap, angles_[i] - angles_[i - 1]);
+        return 2 * kPi - gap;
+    }
+
+    bool start(Circle& best, double& best_arc) const {
+        const int n = static_cast<int>(points_.x.size());
+        const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
+        const double tolerance = std::max(3 * noise, 1e-6);
+        const int stride = std::max(1, n / kMostCounted);
+        double best_score = 0;
+        int best_any = 0;
+        bool found = false;
+        Circle any;
+        const auto try_circle = [&](const Circle& c) {
+            int count = 0;
+            for (int i = 0; i < n; i += stride)
+                count += std::abs(c.distance(points_.x[i], points_.z[i])) <= tolerance;
+            if (count <= best_score && count <= best_any) return;
+            if (count < 3) return;
+            const double arc = arc_of(c, tolerance, stride);
+            if (arc >= minimum_arc_) {
+                if (count > best_score) {
+                    best_score = count;
+                    best = c;
+                    best_arc = arc;
+                    found = true;
+                }
+            } else if (count > best_any) {
+                best_any = count;
+                any = c;
+            }
+        };
+        Circle c;
+        for (const double share : {1.0, 0.6, 0.35, 0.2, 0.1, 0.05}) {
+            const int span = std::max(kFewest - 1, static_cast<int>(share * (n - 1)));
+            if (span > n - 1) continue;
+            const int places = static_cast<int>(std::min(48.0, 3 / share));
+            for (int p = 0; p < places; ++p) {
+                const int i = places > 1 ? (n - 1 - span) * p / (places - 1) : 0;
+                if (through(i, i + span / 2, i + span, c)) try_circle(c);
+                if (through(i + span / 8, i + (5 * span) / 8, i + span - span / 8, c)) try_circle(c);
+                if (share == 1.0 && p > 0) break;
+            }
+        }
+        if (found) return true;
+        // Something round, but not enough of it: the refinement will say how badly it is determined.
+        if (best_any < std::max(kFewest, n / stride / 3)) return false;
+        best = any;
+        return true;
+    }
+
+    Feature refine(Feature feature, Circle circle) const {
+        const int n = static_cast<int>(points_.x.size());
+        const int unknowns = known_ > 0 ? 2 : 3;
+        keep_.assign(static_cast<std::size_t>(n), 0);
+        double gate = 0;
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        double rss = 0;
+        int used = 0;
+        for (int round = 0; round < 30; ++round) {
+            // The set is chosen while it still moves much; then it stays, so that the end is a true minimum.
+            if (round < 12) {
+                scratch_.clear();
+                const double first = std::max(6 * contour_noise_mm(points_.x, points_.z, scratch_), 1e-6);
+                if (round == 0) gate = first;
+                scratch_.clear();
+                for (int i = 0; i < n; ++i) {
+                    const double d = std::abs(circle.distance(points_.x[i], points_.z[i]));
+                    if (d <= gate) scratch_.push_back(d);
+                }
+                if (scratch_.size() < kFewest) break;
+                const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+                std::nth_element(scratch_.begin(), middle, scratch_.end());
+                gate = std::max(std::min(3.5 * kMadToSigma * *middle * 1.05, first), 1e-9);
+                for (int i = 0; i < n; ++i)
+                    keep_[i] = std::abs(circle.distance(points_.x[i], points_.z[i])) <= gate;
+            }
+            normal.setZero();
+            Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+            rss = 0;
+            used = 0;
+            for (int i = 0; i < n; ++i) {
+                if (!keep_[i]) continue;
+                const double dx = points_.x[i] - circle.centre.x(), dz = points_.z[i] - circle.centre.y();
+                const double rho = std::hypot(dx, dz);
+                if (!(rho > 0)) continue;
+                const Eigen::Vector3d row(-dx / rho, -dz / rho, known_ > 0 ? 0 : -1);
+                const double e = rho - circle.radius;
+                normal += row * row.transpose();
+                gradient += e * row;
+                rss += e * e;
+                ++used;
+            }
+            if (used < kFewest) break;
+            if (known_ > 0) normal(2, 2) = 1;
+            const Eigen::Vector3d step = -normal.ldlt().solve(gradient);
+            if (!step.allFinite()) break;
+            const double most = 0.3 * circle.radius;
+            const double size = step.norm();
+            const double scale = size > most ? most / size : 1;
+            circle.centre += scale * step.head<2>();
+            if (known_ <= 0) circle.radius += scale * step.z();
+            if (round >= 12 && size < 1e-9 * (1 + circle.radius)) break;
+        }
+        feature.points_used = used;
+        if (used < kFewest || !circle.centre.allFinite()) {
+            feature.status = FeatureStatus::not_found;
+            feature.message = "no round piece of contour in the window";
+            return feature;
+        }
+        const double sigma2 = rss / std::max(1, used - unknowns);
+        feature.rms_mm = std::sqrt(rss / used);
+        feature.point_mm = circle.centre;
+        const Eigen::Matrix3d covariance = sigma2 * normal.ldlt().solve(Eigen::Matrix3d::Identity());
+        feature.covariance_mm2 = covariance.topLeftCorner<2, 2>();
+        if (known_ <= 0 && (circle.radius < smallest_ || circle.radius > largest_)) {
+            feature.status = FeatureStatus::not_found;
+            feature.message = fmt::format("the radius of {:.3g} mm is not within the limits", circle.radius);
+            return feature;
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(feature.covariance_mm2);
+        const double worst = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+        const double arc = arc_of(circle, std::max(gate, 1e-9), 1);
+        if (arc < minimum_arc_ || !(worst < 0.1 * circle.radius)) {
+            feature.status = FeatureStatus::ill_conditioned;
+            feature.message =
+                fmt::format("the arc of {:.0f} degrees is too short: the centre is uncertain by {:.2g} mm",
+                            deg_from_rad(arc), worst);
+            return feature;
+        }
+        feature.status = FeatureStatus::ok;
+        return feature;
+    }
+
+    FeatureWindow window_;
+    double known_, smallest_, largest_, minimum_arc_;
+    mutable FeaturePoints points_;
+    mutable std::vector<double> scratch_, angles_;
+    mutable std::vector<std::uint8_t> keep_;
+};
+
+Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
+    const auto infos = parameters();
+    const auto window = FeatureWindow::from(recipe.parameters, infos);
+    if (!window) return tl::unexpected(window.error());
+    auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
+    if (!(value("radius_min_mm") < value("radius_max_mm")))
+        return input_error("the limits of the radius are empty", "radius_min_mm",
+                           "give a minimum below the maximum");
+    return std::make_unique<CircleFinder>(*window, value("radius_mm"), value("radius_min_mm"),
+                                          value("radius_max_mm"), rad_from_deg(value("minimum_arc_deg")));
+}
+
+}  // namespace
+
+FeatureKind circle_kind() {
+    return {"circle", "The centre of a round piece of contour.", parameters(), &make};
+}
+
+}  // namespace seamwright

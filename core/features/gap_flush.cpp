@@ -1,0 +1,144 @@
+#include "core/features/gap_flush.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace seamwright {
+
+std::string_view to_string(GapFlushStatus status) {
+    switch (status) {
+        case GapFlushStatus::ok:
+            return "ok";
+        case GapFlushStatus::no_points:
+            return "no_points";
+        case GapFlushStatus::not_found:
+            return "not_found";
+        case GapFlushStatus::ill_conditioned:
+            return "ill_conditioned";
+    }
+    return "not_found";
+}
+
+// The surface line of a piece: points between edge_skip and edge_skip + surface length from its edge.
+bool GapFlushGauge::measure_line(const FeaturePoints::Piece& piece, double edge_along_x, double inward,
+                                 LineFit& line) {
+    x_.clear();
+    z_.clear();
+    for (int i = piece.first; i < piece.first + piece.count; ++i) {
+        const double d = inward * (points_.x[i] - edge_along_x);
+        if (d < settings_.edge_skip_mm || d > settings_.edge_skip_mm + settings_.surface_mm) continue;
+        x_.push_back(points_.x[i]);
+        z_.push_back(points_.z[i]);
+    }
+    line = fit_line(x_, z_, workspace_);
+    return line.ok && line.used >= 4;
+}
+
+// The outermost place along u, half a pitch beyond the outermost return where the surface tears off there.
+void GapFlushGauge::measure_edge(const FeaturePoints::Piece& piece, const Eigen::Vector2d& u, Side& side) {
+    int outermost = piece.first;
+    double most = -std::numeric_limits<double>::infinity();
+    const auto along = [&](int i) { return u.dot(Eigen::Vector2d(points_.x[i], points_.z[i])); };
+    for (int i = piece.first; i < piece.first + piece.count; ++i)
+        if (along(i) > most) {
+            most = along(i);
+            outermost = i;
+        }
+    steps_.clear();
+    const int last = piece.first + piece.count - 1;
+    for (int i = std::max(piece.first, outermost - 8); i < std::min(last, outermost + 8); ++i)
+        steps_.push_back(std::abs(along(i + 1) - along(i)));
+    const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>(steps_.size() / 2);
+    std::nth_element(steps_.begin(), middle, steps_.end());
+    side.pitch = *middle;
+    side.edge = Eigen::Vector2d(points_.x[outermost], points_.z[outermost]) + 0.5 * side.pitch * u;
+}
+
+GapFlush GapFlushGauge::measure(const Profile& profile) {
+    GapFlush result;
+    points_.gather(profile, settings_.window);
+    const FeaturePoints::Piece *first = nullptr, *second = nullptr;
+    for (const auto& piece : points_.pieces) {
+        if (piece.count < std::max(settings_.minimum_points, 4)) continue;
+        if (!first || piece.count > first->count) {
+            second = first;
+            first = &piece;
+        } else if (!second || piece.count > second->count) {
+            second = &piece;
+        }
+    }
+    if (!first) {
+        result.status = GapFlushStatus::no_points;
+        result.message = "no surface in the window";
+        return result;
+    }
+    if (!second) {
+        result.message = "only one surface in the window: the contour is not broken by a gap";
+        return result;
+    }
+    const auto mean_x = [&](const FeaturePoints::Piece& p) {
+        double sum = 0;
+        for (int i = p.first; i < p.first + p.count; ++i) sum += points_.x[i];
+        return sum / p.count;
+    };
+    const bool first_is_left = mean_x(*first) < mean_x(*second);
+    const FeaturePoints::Piece& left = first_is_left ? *first : *second;
+    const FeaturePoints::Piece& right = first_is_left ? *second : *first;
+    const bool reference_left = settings_.reference == GapFlushSettings::Reference::left;
+    const FeaturePoints::Piece& reference_piece = reference_left ? left : right;
+    const FeaturePoints::Piece& other_piece = reference_left ? right : left;
+    const double inward_sign = reference_left ? 1 : -1;  // x direction from the reference into the gap
+
+    // Lines first by the edges along x, then again by the edges along the surface.
+    Side reference, other;
+    Eigen::Vector2d u(inward_sign, 0);
+    for (int round = 0; round < 2; ++round) {
+        measure_edge(reference_piece, u, reference);
+        measure_edge(other_piece, -u, other);
+        if (!measure_line(reference_piece, reference.edge.x(), -inward_sign, reference.line) ||
+            !measure_line(other_piece, other.edge.x(), inward_sign, other.line)) {
+            result.status = GapFlushStatus::ill_conditioned;
+            result.message = "too little straight surface beside an edge";
+            return result;
+        }
+        u = reference.line.direction * (reference.line.direction.x() * inward_sign > 0 ? 1.0 : -1.0);
+    }
+    measure_edge(reference_piece, u, reference);
+    measure_edge(other_piece, -u, other);
+    Eigen::Vector2d n(-u.y(), u.x());
+    if (n.y() < 0) n = -n;
+
+    result.along = u;
+    result.reference_edge_mm = reference.edge;
+    result.other_edge_mm = other.edge;
+    const Eigen::Vector2d between = other.edge - reference.edge;
+    result.gap_mm = u.dot(between);
+    // The other surface at the place along u where its edge is.
+    const Eigen::Vector2d d = other.line.direction;
+    const double along_u = d.dot(u);
+    if (std::abs(along_u) < 0.2) {
+        result.status = GapFlushStatus::ill_conditioned;
+        result.message = "the two surfaces stand across each other: flush has no meaning";
+        return result;
+    }
+    const double s_other = u.dot(other.edge - other.line.centre) / along_u;
+    const Eigen::Vector2d surface = other.line.centre + s_other * d;
+    result.flush_mm = n.dot(surface - reference.line.centre);
+
+    // u turns with the reference line: the gap then changes by -(n . between), the flush by the distance
+    // along u.
+    const double s_reference = u.dot(surface - reference.line.centre);
+    const double turn = reference.line.angle_variance();
+    const double across = n.dot(between), slope = d.dot(n) / along_u;
+    const double edges = (reference.pitch * reference.pitch + other.pitch * other.pitch) / 12;
+    const double other_edge = other.pitch * other.pitch / 12;
+    result.covariance(0, 0) = edges + across * across * turn;
+    result.covariance(1, 1) = reference.line.variance_at(s_reference) +
+                              other.line.variance_at(s_other) / (along_u * along_u) +
+                              slope * slope * other_edge;
+    result.covariance(0, 1) = result.covariance(1, 0) = -across * s_reference * turn + slope * other_edge;
+    result.status = GapFlushStatus::ok;
+    return result;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,77 @@
+#pragma once
+// Gap and flush between two parts in one profile, as body and panel shops measure them (methods.md 2, 6).
+//
+//     reference side            other side
+//     ______________           /------------   flush > 0: the other side stands proud
+//                   \         |
+//                    |<- gap->|
+//
+// The line of the reference side's surface, fitted beside its edge, gives the directions: u along the surface
+// into the gap, n across it on the side of the sensor (+z). Each part's edge is its outermost place along u
+// (a fold's roundest point, or the last return plus half a pitch where the surface tears off). The other
+// side's surface line, fitted beside its edge, is continued to that edge.
+//     gap   = u . (other edge - reference edge)                       negative when the parts overlap
+//     flush = n . (other surface at its edge - reference line)        positive when the other side stands
+//     proud
+//
+// Noise model: independent noise across each surface, estimated from each line's residuals; an edge is known
+// to a pitch along u (variance pitch^2 / 12 each). Covariance of (gap, flush) in mm^2.
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/features/feature_points.h"
+#include "core/features/line_fit.h"
+
+namespace seamwright {
+
+enum class GapFlushStatus {
+    ok,
+    no_points,       // fewer usable points than two surfaces need
+    not_found,       // no two sides: the contour is not broken
+    ill_conditioned  // a surface line is too short or not straight
+};
+std::string_view to_string(GapFlushStatus status);
+
+struct GapFlushSettings {
+    enum class Reference { left, right } reference = Reference::left;
+    FeatureWindow window{-1e5, 1e5, -1e5, 1e5};
+    double surface_mm = 5;      // length of surface that a line takes
+    double edge_skip_mm = 1.5;  // beside the edge, left out of the line: the fold's radius
+    int minimum_points = 8;     // per side; shorter pieces (the gap's ground, dirt) are no side
+};
+
+struct GapFlush {
+    GapFlushStatus status = GapFlushStatus::not_found;
+    double gap_mm = 0, flush_mm = 0;
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of (gap, flush)
+    Eigen::Vector2d reference_edge_mm = Eigen::Vector2d::Zero(), other_edge_mm = Eigen::Vector2d::Zero();
+    Eigen::Vector2d along = Eigen::Vector2d::UnitX();  // u
+    std::string message;                               // empty when ok
+};
+
+// Buffers live in the object: nothing is allocated after the first calls; one thread per object. The two
+// sides are the two pieces with most points in the window. `profile` as for features.
+class GapFlushGauge {
+  public:
+    explicit GapFlushGauge(const GapFlushSettings& settings) : settings_(settings) {}
+    GapFlush measure(const Profile& profile);
+
+  private:
+    struct Side {
+        LineFit line;
+        Eigen::Vector2d edge;
+        double pitch = 0;
+    };
+    bool measure_line(const FeaturePoints::Piece& piece, double edge_along_x, double inward, LineFit& line);
+    void measure_edge(const FeaturePoints::Piece& piece, const Eigen::Vector2d& u, Side& side);
+
+    GapFlushSettings settings_;
+    FeaturePoints points_;
+    LineWorkspace workspace_;
+    std::vector<double> x_, z_, steps_;
+};
+
+}  // namespace seamwright

@@ -14,12 +14,12 @@ namespace seamwright {
 
 // The whole project without blobs (mesh, raw profiles): poses as {"xyz","abc","matrix"}, numbers exact,
 // non-finite ones as "nan", "inf", "-inf".
-nlohmann::json export_project(const Project& project);
+nlohmann::json export_project(const Project& project, bool with_profiles = false);
 // With runs (results, no captures) and events.
-Expected<nlohmann::json> export_file(const ProjectFile& file);
+Expected<nlohmann::json> export_file(const ProjectFile& file, bool with_profiles = false);
 // The reverse of export_project; what export left out is empty. Error: input, naming the place in the
 // document.
-Expected<Project> import_project(const nlohmann::json& document);
+Expected<Project> import_project(const nlohmann::json& document, const std::string& where = {});
 
 enum class ProfileFormat { csv, ply, pcd };
 // Profiles of a run, one file per spot (`<spot>.csv`: x_mm,z_mm[,intensity],valid,segment in the sensor

@@ -52,8 +52,9 @@ const Spot* find_spot(const Project& project, const std::string& id);
 // after the first profile of a size (a longer profile than ever before grows the buffers once).
 class SpotMeasurer {
   public:
-    // Refuses an unknown spot or sensor and a recipe its kind refuses. A missing calibration is no error here
-    // but the status of each measurement.
+    // Refuses an unknown spot or sensor and a recipe its kind refuses. A missing calibration is no error
+    // here: images are then not measured (SpotStatus::no_calibration), finished profiles give their feature
+    // in the sensor frame, which no correction uses.
     static Expected<SpotMeasurer> make(const Project& project, const std::string& spot_id);
     SpotMeasurer(SpotMeasurer&&) noexcept;
     SpotMeasurer& operator=(SpotMeasurer&&) noexcept;

@@ -97,6 +97,10 @@ void judge_spots(const GateRequest& request, Reasons& reasons) {
                               name_of(spot.robot), name_of(spot.calibrated_robot));
     }
     reasons.refuse_unless(any, "no spot of the region was measured");
+    for (const GateSpot& spot : request.spots)
+        reasons.refuse_unless(spot.robot == request.spots.front().robot,
+                              "spots {} and {} belong to different robots, one frame cannot serve both",
+                              request.spots.front().id, spot.id);
 }
 
 void judge_correction(const GateRequest& request, Reasons& reasons) {
@@ -160,6 +164,20 @@ std::string text_of(const Pose& pose) {
     const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear());
     return fmt::format("({:.4f}, {:.4f}, {:.4f}) mm, turned {:.5f} degrees", t.x(), t.y(), t.z(),
                        deg_from_rad(w.norm()));
+}
+
+// Writes the frame of before and makes sure that it stands there.
+std::pair<PushStatus, std::string> put_back(const Pose& before, const std::string& name, RobotLink& robot) {
+    if (auto written = robot.write_frame(name, before); !written)
+        return {PushStatus::not_restored,
+                "the old frame could not be restored: " + written.error().sentence()};
+    const Expected<Pose> back = robot.read_frame(name);
+    if (!back)
+        return {PushStatus::not_restored,
+                "the old frame was written but cannot be read back: " + back.error().sentence()};
+    if (!distance(*back, before).equal())
+        return {PushStatus::not_restored, "the old frame was written but does not read back"};
+    return {PushStatus::restored, "the old frame is restored"};
 }
 
 }  // namespace
@@ -249,18 +267,17 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
     }
 
     // What the controller holds is not known any more: the old frame goes back.
-    if (auto restored = robot.write_frame(pass.frame_name(), *before); !restored)
-        return give_up(PushStatus::not_restored, EventKind::alarm,
-                       trouble + "; the old frame could not be restored: " + restored.error().sentence());
-    const Expected<Pose> back = robot.read_frame(pass.frame_name());
-    if (!back)
-        return give_up(
-            PushStatus::not_restored, EventKind::alarm,
-            trouble + "; the old frame was written but cannot be read back: " + back.error().sentence());
-    if (!distance(*back, *before).equal())
-        return give_up(PushStatus::not_restored, EventKind::alarm,
-                       trouble + "; the old frame was written but does not read back");
-    return give_up(PushStatus::restored, EventKind::alarm, trouble + "; the old frame is restored");
+    const auto [status, outcome] = put_back(*before, pass.frame_name(), robot);
+    return give_up(status, EventKind::alarm, trouble + "; " + outcome);
+}
+
+void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record) {
+    assert(push.status == PushStatus::written && push.before);
+    const auto [status, outcome] = put_back(*push.before, push.frame_name, robot);
+    push.status = status;
+    push.message = "withdrawn: " + outcome;
+    if (auto logged = record(EventKind::alarm, push.frame_name, push.message); !logged)
+        push.message += "; the event could not be recorded: " + logged.error().sentence();
 }
 
 }  // namespace seamwright

@@ -87,4 +87,8 @@ using EventSink =
 // old frame cannot be read or the attempt cannot be recorded.
 PushRecord push_region(GatePass&& pass, RobotLink& robot, const EventSink& record);
 
+// Takes back a push that was written (precondition): a part is corrected with all its regions or with none.
+// The old frame is written and read back, an alarm recorded, `push` brought up to date.
+void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record);
+
 }  // namespace seamwright

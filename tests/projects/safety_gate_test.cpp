@@ -177,6 +177,8 @@ std::vector<Refusal> refusals() {
          "states no uncertainty"},
         {"OtherSensor", [](R r) { r.spots[1].sensor.serial = "777"; }, "the sensor at spot S2"},
         {"OtherRobot", [](R r) { r.spots[1].robot.serial = "777"; }, "the robot at spot S2"},
+        {"TwoRobots", [](R r) { r.spots[1].robot.serial = r.spots[1].calibrated_robot.serial = "777"; },
+         "different robots"},
         {"CalibrationOfNobody", [](R r) { r.spots[1].sensor = r.spots[1].calibrated_sensor = {}; },
          "the sensor at spot S2"},
         {"Uncalibrated", [](R r) { r.spots[1].calibration_id.clear(); }, "not calibrated"},
@@ -413,6 +415,24 @@ TEST_F(Push, NothingIsSentUnrecorded) {
     const PushRecord record = push();
     EXPECT_EQ(record.status, PushStatus::failed);
     EXPECT_THAT(record.message, HasSubstr("disk is full"));
+}
+
+TEST_F(Push, WithdrawPutsTheOldFrameBack) {
+    store_frames([this](int, const Pose& pose) -> Expected<void> {
+        frame = pose;
+        return {};
+    });
+    PushRecord record = push();
+    ASSERT_EQ(record.status, PushStatus::written);
+    withdraw_push(
+        record, robot,
+        [this](EventKind kind, const std::string& subject, const std::string& text) -> Expected<void> {
+            log.push_back({kind, subject, text});
+            return {};
+        });
+    EXPECT_EQ(record.status, PushStatus::restored);
+    EXPECT_TRUE(frame.isApprox(old_frame));
+    EXPECT_THAT(kinds(), ElementsAre(EventKind::push_attempt, EventKind::push, EventKind::alarm));
 }
 
 TEST_F(Push, APassIsGoodForOnePush) {

@@ -1,0 +1,207 @@
+#include "projects/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "projects/measure.h"
+#include "projects/project_json.h"
+#include "projects/safety_gate.h"
+
+namespace seamwright {
+namespace {
+
+// Everything that a run computes, as exact text; two texts are equal when every bit is.
+constexpr ArchiveOptions kExact{.profiles = true, .rigid_poses = false};
+template <class T>
+std::string exact(const T& value) {
+    return to_json_document(value, kExact).dump();
+}
+
+// The part of a region that follows from the measurements; gate and push also depend on the robot of that
+// moment.
+RegionRecord computed_part(const RegionRecord& record) {
+    RegionRecord part;
+    part.region_id = record.region_id;
+    part.correction = record.correction;
+    part.base_from_frame = record.base_from_frame;
+    return part;
+}
+
+// A setup with its spots made ready.
+class Recomputer {
+  public:
+    explicit Recomputer(Project setup) : setup_(std::move(setup)) {}
+
+    Expected<RunRecord> recompute(const RunRecord& stored) {
+        RunRecord again = stored;
+        for (SpotMeasurement& m : again.spots) {
+            if (m.capture < 0) continue;
+            if (static_cast<std::size_t>(m.capture) >= stored.captures.size())
+                return file_error(fmt::format("the capture of spot {} is missing", m.spot_id),
+                                  fmt::format("run {}", stored.number));
+            auto it = measurers_.find(m.spot_id);
+            if (it == measurers_.end()) {
+                auto made = SpotMeasurer::make(setup_, m.spot_id);
+                if (!made) return tl::unexpected(made.error());
+                it = measurers_.emplace(m.spot_id, std::move(*made)).first;
+            }
+            const std::string part_id = m.part_id;
+            const int capture = m.capture;
+            m = it->second.measure(stored.captures[static_cast<std::size_t>(capture)]);
+            m.part_id = part_id;
+            m.capture = capture;
+        }
+        std::vector<RegionRecord> regions = correct_regions(setup_, again.spots);
+        for (std::size_t i = 0; i < regions.size(); ++i) {
+            if (regions[i].correction)
+                regions[i].base_from_frame =
+                    corrected_frame(setup_.part.base_from_workobject, regions[i].correction->displacement,
+                                    setup_.regions[i].base_from_frame);
+            for (const RegionRecord& old : stored.regions)
+                if (old.region_id == regions[i].region_id) {
+                    regions[i].gate_passed = old.gate_passed;
+                    regions[i].refusals = old.refusals;
+                    regions[i].push = old.push;
+                }
+        }
+        again.regions = std::move(regions);
+        return again;
+    }
+
+  private:
+    Project setup_;
+    std::map<std::string, SpotMeasurer> measurers_;
+};
+
+std::string describe_change(const SpotMeasurement& a, const SpotMeasurement& b) {
+    if (a.status != b.status)
+        return fmt::format("{} -> {} {}", to_string(a.status), to_string(b.status), b.message);
+    return fmt::format("measured ({}, {}, {}) -> ({}, {}, {}) mm", a.measured_mm.x(), a.measured_mm.y(),
+                       a.measured_mm.z(), b.measured_mm.x(), b.measured_mm.y(), b.measured_mm.z());
+}
+
+std::string describe_change(const RegionRecord& a, const RegionRecord& b) {
+    if (a.correction.has_value() != b.correction.has_value())
+        return a.correction ? "corrected -> not corrected" : "not corrected -> corrected";
+    if (!a.correction) return "another frame";
+    if (a.correction->status != b.correction->status)
+        return fmt::format("{} -> {}", to_string(a.correction->status), to_string(b.correction->status));
+    const Pose& from = a.correction->displacement.workobject_from_movedworkobject;
+    const Pose& to = b.correction->displacement.workobject_from_movedworkobject;
+    return fmt::format("displacement changed by {} mm and {} degrees", distance_mm(from, to),
+                       deg_from_rad(angle_rad(from, to)));
+}
+
+struct Part {  // what one run came to
+    std::optional<Error> error;
+    std::int64_t captures = 0;
+    std::vector<ReplayDifference> differences;
+};
+
+Part replay_run(const ProjectFile& file, const RunSummary& run, std::map<std::int64_t, Recomputer>& setups) {
+    Part part;
+    const auto failed = [&](const Error& error) {
+        part.error = error;
+        return part;
+    };
+    auto setup = setups.find(run.setup);
+    if (setup == setups.end()) {
+        auto loaded = file.load_setup(run.setup);
+        if (!loaded) return failed(loaded.error());
+        setup = setups.emplace(run.setup, Recomputer(std::move(*loaded))).first;
+    }
+    auto stored = file.load_run(run.number);
+    if (!stored) return failed(stored.error());
+    auto again = setup->second.recompute(*stored);
+    if (!again) return failed(again.error());
+    part.captures = static_cast<std::int64_t>(stored->captures.size());
+    part.differences = compare(*stored, *again);
+    return part;
+}
+
+}  // namespace
+
+Expected<RunRecord> recompute(const RunRecord& stored, const Project& setup) {
+    return Recomputer(setup).recompute(stored);
+}
+
+std::vector<ReplayDifference> compare(const RunRecord& stored, const RunRecord& again) {
+    std::vector<ReplayDifference> differences;
+    const auto count = [&](const char* what, std::size_t a, std::size_t b) {
+        if (a != b) differences.push_back({stored.number, what, fmt::format("{} -> {}", a, b), 0});
+    };
+    count("number of spots", stored.spots.size(), again.spots.size());
+    count("number of regions", stored.regions.size(), again.regions.size());
+    for (std::size_t i = 0; i < std::min(stored.spots.size(), again.spots.size()); ++i) {
+        const SpotMeasurement &a = stored.spots[i], &b = again.spots[i];
+        if (exact(a) == exact(b)) continue;
+        differences.push_back({stored.number, "spot " + a.spot_id, describe_change(a, b),
+                               (a.measured_mm - b.measured_mm).norm()});
+    }
+    for (std::size_t i = 0; i < std::min(stored.regions.size(), again.regions.size()); ++i) {
+        const RegionRecord a = computed_part(stored.regions[i]), b = computed_part(again.regions[i]);
+        if (exact(a) == exact(b)) continue;
+        differences.push_back({stored.number, "region " + a.region_id, describe_change(a, b),
+                               distance_mm(a.base_from_frame, b.base_from_frame)});
+    }
+    return differences;
+}
+
+Expected<ReplayResult> replay(const std::filesystem::path& path, const ReplayOptions& options) {
+    if (options.jobs < 1 || options.jobs > 256)
+        return usage_error(fmt::format("{} jobs are not possible", options.jobs), "--jobs", "give 1 to 256");
+    auto file = ProjectFile::open(path, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    auto runs = file->runs();
+    if (!runs) return tl::unexpected(runs.error());
+    if (options.run) {
+        std::erase_if(*runs, [&](const RunSummary& run) { return run.number != options.run; });
+        if (runs->empty()) return input_error(fmt::format("there is no run {}", options.run), path.string());
+    }
+
+    // Runs are handed out one by one; each leaves its part at its own place, so the order of work does not
+    // show.
+    std::vector<Part> parts(runs->size());
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;  // of `done` and the caller's progress function
+    int done = 0;
+    const auto work = [&](const ProjectFile& connection) {
+        std::map<std::int64_t, Recomputer> setups;
+        for (;;) {
+            const std::size_t i = next.fetch_add(1);
+            if (i >= runs->size() || options.cancel.stop_requested()) return;
+            parts[i] = replay_run(connection, (*runs)[i], setups);
+            const std::lock_guard lock(mutex);
+            ++done;
+            if (options.progress) options.progress(done, static_cast<int>(runs->size()));
+        }
+    };
+    {
+        std::vector<std::jthread> threads;
+        std::vector<Expected<ProjectFile>> connections;
+        for (int i = 1; i < std::min<int>(options.jobs, static_cast<int>(runs->size())); ++i) {
+            connections.push_back(ProjectFile::open(path, FileAccess::read_only));
+            if (!connections.back()) return tl::unexpected(connections.back().error());
+        }
+        for (auto& connection : connections)
+            threads.emplace_back([&work, &connection] { work(*connection); });
+        work(*file);
+    }
+    ReplayResult result;
+    result.cancelled = options.cancel.stop_requested() && done < static_cast<int>(runs->size());
+    result.runs = done;
+    for (Part& part : parts) {
+        if (part.error) return tl::unexpected(*part.error);
+        result.captures += part.captures;
+        for (ReplayDifference& difference : part.differences)
+            result.differences.push_back(std::move(difference));
+    }
+    return result;
+}
+
+}  // namespace seamwright

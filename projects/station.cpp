@@ -1,0 +1,495 @@
+#include "projects/station.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "projects/measure.h"
+#include "projects/safety_gate.h"
+
+namespace seamwright {
+namespace {
+
+std::int64_t steady_now_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+// The sensor is wired to the robot's trigger output and needs no call.
+bool hardware_triggered(const SensorSetup& sensor) {
+    const auto it = sensor.settings.find("hardware_trigger");
+    return it != sensor.settings.end() && it->is_boolean() && it->get<bool>();
+}
+
+MeasuringMove move_of(const Spot& spot, const Pose& flange_from_sensor) {
+    MeasuringMove move;
+    move.spot_id = spot.id;
+    move.trigger = spot.base_from_flange;
+    // Along the sensor's Y, through the trigger, with the orientation held.
+    const Eigen::Vector3d travel = (spot.base_from_flange * flange_from_sensor).linear().col(1);
+    move.entry = move.exit = move.trigger;
+    move.entry.translation() -= spot.entry_mm * travel;
+    move.exit.translation() += spot.exit_mm * travel;
+    move.speed_mm_s = spot.speed_mm_s;
+    move.stop_at_trigger = spot.stop_at_trigger;
+    return move;
+}
+
+StoredImage keep_image(const StripeImage& image) {
+    StoredImage stored{image.width, image.height, image.bit_depth, {}};
+    const std::size_t row =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.bytes_per_pixel());
+    stored.pixels.reserve(row * static_cast<std::size_t>(image.height));
+    for (int y = 0; y < image.height; ++y) {
+        const std::byte* from = image.pixels + static_cast<std::size_t>(y) * image.row_bytes;
+        stored.pixels.insert(stored.pixels.end(), from, from + row);
+    }
+    return stored;
+}
+
+// Stops every started sensor, however the run ends.
+class StartedSensors {
+  public:
+    ~StartedSensors() {
+        for (ProfileSource* sensor : started_) sensor->stop();
+    }
+    Expected<void> start(ProfileSource& sensor) {
+        auto started = sensor.start();
+        if (started) started_.push_back(&sensor);
+        return started;
+    }
+
+  private:
+    std::vector<ProfileSource*> started_;
+};
+
+}  // namespace
+
+struct Station::Impl {
+    ProjectFile file;
+    Project project;
+    bool connected = false;
+    DeviceSession session;
+    std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
+    std::map<std::string, std::unique_ptr<RobotLink>> robots;
+
+    Impl(ProjectFile f, Project p) : file(std::move(f)), project(std::move(p)) {}
+
+    // One run in the making.
+    struct Job {
+        const RunOptions& options;
+        RunRecord run;
+        std::map<std::string, SpotMeasurer> measurers;
+        std::int64_t part_since_ns = 0;
+        int done = 0, total = 0;
+
+        void event(EventKind kind, const std::string& subject, const std::string& text) {
+            run.events.push_back({0, utc_now(), 0, kind, subject, text});
+        }
+        void progress(std::string text) const {
+            if (options.progress) options.progress({done, total, std::move(text)});
+        }
+        SpotMeasurement& measurement(const std::string& spot_id) {
+            return *std::find_if(run.spots.begin(), run.spots.end(),
+                                 [&](const SpotMeasurement& m) { return m.spot_id == spot_id; });
+        }
+    };
+
+    void disconnect() {
+        for (auto& [id, sensor] : sensors) sensor->stop();
+        sensors.clear();
+        robots.clear();
+        session = DeviceSession();
+        connected = false;
+    }
+
+    // Who answers, into the project. A robot that does not tell its name keeps the old one out of the way:
+    // none.
+    void take_identities() {
+        for (SensorSetup& setup : project.sensors)
+            if (const auto it = sensors.find(setup.id); it != sensors.end())
+                setup.identity = it->second->identity();
+        for (RobotSetup& setup : project.robots)
+            if (const auto it = robots.find(setup.id); it != robots.end()) {
+                auto identity = it->second->identity();
+                setup.identity = identity ? *identity : RobotIdentity{};
+            }
+    }
+
+    Expected<void> measure_spot(Job& job, const Spot& spot, const TriggerEvent& trigger) {
+        const SensorSetup& setup = *find_sensor(project, spot.sensor_id);
+        ProfileSource& sensor = *sensors.at(spot.sensor_id);
+        if (!hardware_triggered(setup))
+            if (auto fired = sensor.trigger(spot.id); !fired) return fired;
+        Expected<FramePtr> frame = sensor.wait_next(job.options.frame_timeout);
+        // A free-running sensor may still hold frames of before; they carry another spot's name or none at
+        // all.
+        while (frame && *frame && !(*frame)->spot_id.empty() && (*frame)->spot_id != spot.id) {
+            job.event(EventKind::device, setup.id,
+                      fmt::format("frame {} of spot {} came at spot {} and was dropped", (*frame)->sequence,
+                                  (*frame)->spot_id, spot.id));
+            frame = sensor.wait_next(job.options.frame_timeout);
+        }
+        if (!frame) return tl::unexpected(frame.error());
+        if (!*frame) return device_error("the sensor gave no frame", "sensor " + setup.id);
+        SpotMeasurer& measurer = job.measurers.at(spot.id);
+        SpotMeasurement& result = job.measurement(spot.id);
+        result = measurer.measure(**frame, trigger.base_from_flange);
+        result.part_id = job.run.part_id;
+        result.capture = static_cast<int>(job.run.captures.size());
+        job.run.captures.push_back(measurer.capture());
+        if (job.options.keep_images && !(*frame)->image.empty() && (*frame)->status == FrameStatus::ok)
+            job.run.captures.back().image = keep_image((*frame)->image);
+        if (result.status != SpotStatus::measured)
+            job.event(EventKind::note, spot.id,
+                      fmt::format("not measured ({}): {}", to_string(result.status), result.message));
+        return {};
+    }
+
+    // All spots of one robot, in the project's order.
+    Expected<void> measure_robot(Job& job, const std::string& robot_id) {
+        std::vector<const Spot*> spots;
+        std::vector<MeasuringMove> moves;
+        for (const Spot& spot : project.spots) {
+            if (!spot.enabled || spot.robot_id != robot_id) continue;
+            spots.push_back(&spot);
+            const Calibration* calibration = calibration_of(project, spot);
+            moves.push_back(move_of(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
+        }
+        RobotLink& robot = *robots.at(robot_id);
+        if (auto started = robot.start_measuring(moves); !started) return started;
+        std::set<std::string> open;
+        for (const Spot* spot : spots) open.insert(spot->id);
+        while (!open.empty()) {
+            if (job.options.cancel.stop_requested()) return {};
+            auto trigger = robot.wait_trigger(job.options.trigger_timeout);
+            if (!trigger) return tl::unexpected(trigger.error());
+            const auto spot = std::find_if(spots.begin(), spots.end(),
+                                           [&](const Spot* s) { return s->id == trigger->spot_id; });
+            if (spot == spots.end() || !open.count(trigger->spot_id))
+                return device_error(
+                    fmt::format("the robot fired for spot \"{}\", which is {}", trigger->spot_id,
+                                spot == spots.end() ? "not in the measuring program" : "measured already"),
+                    "robot " + robot_id, "compare the program on the controller with the project");
+            if (auto measured = measure_spot(job, **spot, *trigger); !measured) return measured;
+            open.erase(trigger->spot_id);
+            ++job.done;
+            job.progress(fmt::format("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
+        }
+        return {};
+    }
+
+    Expected<void> measure_all(Job& job) {
+        std::vector<std::string> robot_ids, sensor_ids;
+        for (const Spot& spot : project.spots) {
+            if (!spot.enabled) continue;
+            if (std::find(robot_ids.begin(), robot_ids.end(), spot.robot_id) == robot_ids.end())
+                robot_ids.push_back(spot.robot_id);
+            if (std::find(sensor_ids.begin(), sensor_ids.end(), spot.sensor_id) == sensor_ids.end())
+                sensor_ids.push_back(spot.sensor_id);
+        }
+        StartedSensors started;
+        for (const std::string& id : sensor_ids)
+            if (auto on = started.start(*sensors.at(id)); !on) return on;
+        for (const std::string& id : robot_ids) {
+            if (job.options.cancel.stop_requested()) return {};
+            if (auto measured = measure_robot(job, id); !measured) return measured;
+        }
+        return {};
+    }
+
+    GateRequest gate_request(const Job& job, const Region& region, const RegionRecord& record) {
+        GateRequest request;
+        request.region = region;
+        request.correction = *record.correction;
+        request.base_from_workobject = project.part.base_from_workobject;
+        request.part_id = job.run.part_id;
+        request.part_since_ns = job.part_since_ns;
+        std::string robot_id;
+        for (const std::string& id : region.spot_ids) {
+            const Spot* spot = find_spot(project, id);
+            if (!spot) continue;  // the gate misses it
+            GateSpot g;
+            g.id = id;
+            g.required = spot->required;
+            for (const SpotMeasurement& m : job.run.spots)
+                if (m.spot_id == id && m.status == SpotStatus::measured) {
+                    g.measured = true;
+                    g.part_id = m.part_id;
+                    g.measured_at_ns = m.host_time_ns;
+                }
+            if (const Calibration* calibration = calibration_of(project, *spot)) {
+                g.calibration_id = calibration->id;
+                g.calibration_verdict = calibration->verdict;
+                g.calibrated_sensor = calibration->sensor_identity;
+                g.calibrated_robot = calibration->robot_identity;
+            }
+            // Asked anew: a cable may have been put on another sensor since the start.
+            if (const auto it = sensors.find(spot->sensor_id); it != sensors.end())
+                g.sensor = it->second->identity();
+            if (const auto it = robots.find(spot->robot_id); it != robots.end())
+                if (auto identity = it->second->identity()) g.robot = *identity;
+            if (robot_id.empty()) robot_id = spot->robot_id;
+            request.spots.push_back(std::move(g));
+        }
+        request.mode = RobotMode::fault;  // a robot that does not answer is not ready
+        if (const auto it = robots.find(robot_id); it != robots.end())
+            if (auto mode = it->second->mode()) request.mode = *mode;
+        if (const RobotSetup* robot = find_robot(project, robot_id))
+            request.required_mode = robot->required_mode;
+        request.now_ns = steady_now_ns();
+        return request;
+    }
+
+    // Judges all regions before the first is pushed.
+    std::vector<std::optional<GatePass>> judge(Job& job) {
+        std::vector<std::optional<GatePass>> passes;
+        for (std::size_t i = 0; i < job.run.regions.size(); ++i) {
+            RegionRecord& record = job.run.regions[i];
+            const Region& region = project.regions[i];
+            passes.emplace_back();
+            if (record.correction) {
+                record.base_from_frame =
+                    corrected_frame(project.part.base_from_workobject, record.correction->displacement,
+                                    region.base_from_frame);
+                GateVerdict verdict = pass_gate(gate_request(job, region, record));
+                record.refusals = std::move(verdict.reasons);
+                if (verdict.pass) passes.back().emplace(std::move(*verdict.pass));
+            }
+            record.gate_passed = passes.back().has_value();
+            for (const std::string& reason : record.refusals)
+                job.event(EventKind::refusal, record.region_id, reason);
+        }
+        return passes;
+    }
+
+    // Which robot holds the frame of a region: that of its spots.
+    RobotLink& robot_of(const Region& region) {
+        return *robots.at(find_spot(project, region.spot_ids.front())->robot_id);
+    }
+
+    void push_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
+        const EventSink record = [&](EventKind kind, const std::string& subject,
+                                     const std::string& text) -> Expected<void> {
+            EventRecord event{0, utc_now(), job.run.number, kind, subject, text};
+            auto id = file.append_event(event);
+            if (!id) return tl::unexpected(id.error());
+            event.id = *id;
+            job.run.events.push_back(std::move(event));
+            return {};
+        };
+        // From the first write to the last nothing is cancelled: a part is corrected as a whole or not at
+        // all.
+        bool alarm = false;
+        for (std::size_t i = 0; i < passes.size(); ++i) {
+            RegionRecord& region = job.run.regions[i];
+            if (alarm) {
+                region.push.message = "not pushed: the push of another region went wrong";
+                continue;
+            }
+            region.push = push_region(std::move(*passes[i]), robot_of(project.regions[i]), record);
+            alarm = region.push.status != PushStatus::written;
+            job.progress(fmt::format("region {}: {}", region.region_id, to_string(region.push.status)));
+        }
+        for (std::size_t i = passes.size(); alarm && i-- > 0;) {
+            RegionRecord& region = job.run.regions[i];
+            if (region.push.status == PushStatus::written)
+                withdraw_push(region.push, robot_of(project.regions[i]), record);
+        }
+        if (alarm) job.run.status = RunStatus::alarm;
+    }
+
+    static std::string verdict(const RunRecord& run) {
+        const auto regions = run.regions.size();
+        switch (run.status) {
+            case RunStatus::ok:
+                return run.push ? fmt::format("{} regions corrected and pushed", regions)
+                                : fmt::format("{} regions corrected, nothing pushed (dry run)", regions);
+            case RunStatus::refused: {
+                std::string text;
+                for (const RegionRecord& region : run.regions)
+                    if (!region.gate_passed && !region.refusals.empty())
+                        text += (text.empty() ? "" : "; ") +
+                                fmt::format("region {}: {}", region.region_id, region.refusals.front());
+                return "refused: " + text;
+            }
+            case RunStatus::alarm:
+                for (const RegionRecord& region : run.regions)
+                    if (region.push.status != PushStatus::written &&
+                        region.push.status != PushStatus::not_pushed &&
+                        !region.push.message.starts_with("withdrawn"))
+                        return fmt::format("alarm: region {}: {}", region.region_id, region.push.message);
+                return "alarm";
+            case RunStatus::cancelled:
+                return "cancelled";
+            case RunStatus::interrupted:
+                return "the program ended before the pushes were done";
+            case RunStatus::device:
+                return run.message;
+        }
+        return {};
+    }
+};
+
+Station::Station(ProjectFile file, Project project)
+    : impl_(std::make_unique<Impl>(std::move(file), std::move(project))) {}
+Station::Station(Station&&) noexcept = default;
+Station& Station::operator=(Station&&) noexcept = default;
+Station::~Station() {
+    if (impl_) impl_->disconnect();
+}
+
+Expected<Station> Station::open(const std::filesystem::path& path, FileAccess access) {
+    auto file = ProjectFile::open(path, access);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    return Station(std::move(*file), std::move(*project));
+}
+
+const Project& Station::project() const {
+    return impl_->project;
+}
+ProjectFile& Station::file() {
+    return impl_->file;
+}
+bool Station::connected() const {
+    return impl_->connected;
+}
+void Station::disconnect() {
+    impl_->disconnect();
+}
+
+ProfileSource* Station::sensor(const std::string& id) {
+    const auto it = impl_->sensors.find(id);
+    return it == impl_->sensors.end() ? nullptr : it->second.get();
+}
+
+RobotLink* Station::robot(const std::string& id) {
+    const auto it = impl_->robots.find(id);
+    return it == impl_->robots.end() ? nullptr : it->second.get();
+}
+
+Expected<void> Station::edit(const Project& project) {
+    if (auto saved = impl_->file.save(project); !saved) return saved;
+    impl_->project = project;
+    return {};
+}
+
+Expected<void> Station::connect() {
+    Impl& i = *impl_;
+    i.disconnect();
+    const auto give_up = [&](Error error, const std::string& where) {
+        i.disconnect();
+        error.where = error.where.empty() ? where : where + ": " + error.where;
+        return tl::unexpected(std::move(error));
+    };
+    for (const SensorSetup& setup : i.project.sensors) {
+        auto sensor = open_sensor(setup.driver, setup.settings, i.session);
+        if (!sensor) return give_up(sensor.error(), "sensor " + setup.id);
+        i.sensors[setup.id] = std::move(*sensor);
+    }
+    for (const RobotSetup& setup : i.project.robots) {
+        auto robot = open_robot(setup.driver, setup.settings, i.session);
+        if (!robot) return give_up(robot.error(), "robot " + setup.id);
+        if (auto identity = (*robot)->identity(); !identity)
+            return give_up(identity.error(), "robot " + setup.id);
+        i.robots[setup.id] = std::move(*robot);
+    }
+    i.connected = true;
+    i.take_identities();
+    return {};
+}
+
+void Station::connect(std::map<std::string, std::unique_ptr<ProfileSource>> sensors,
+                      std::map<std::string, std::unique_ptr<RobotLink>> robots) {
+    impl_->disconnect();
+    impl_->sensors = std::move(sensors);
+    impl_->robots = std::move(robots);
+    impl_->connected = true;
+    impl_->take_identities();
+}
+
+Expected<RunRecord> Station::run(const RunOptions& options) {
+    Impl& i = *impl_;
+    if (!i.connected)
+        return usage_error("the station is not connected to its devices", i.file.path().string(),
+                           "connect first");
+    Impl::Job job{options, {}, {}, 0, 0, 0};
+    RunRecord& run = job.run;
+    for (const Spot& spot : i.project.spots) {
+        if (!spot.enabled) continue;
+        auto measurer = SpotMeasurer::make(i.project, spot.id);
+        if (!measurer) return tl::unexpected(measurer.error());
+        if (!i.sensors.count(spot.sensor_id) || !i.robots.count(spot.robot_id))
+            return input_error("its sensor or robot is not connected", "spot " + spot.id);
+        job.measurers.insert_or_assign(spot.id, std::move(*measurer));
+        SpotMeasurement m;
+        m.spot_id = spot.id;
+        m.message = "no frame came";
+        run.spots.push_back(std::move(m));
+    }
+    if (run.spots.empty())
+        return input_error("no spot is enabled", i.file.path().string(), "teach a spot first");
+
+    run.part_id = options.part_id;
+    if (run.part_id.empty()) {
+        auto before = i.file.runs();
+        if (!before) return tl::unexpected(before.error());
+        run.part_id = fmt::format("run {}", before->empty() ? 1 : before->back().number + 1);
+    }
+    run.push = options.push;
+    run.started_utc = utc_now();
+    job.part_since_ns = steady_now_ns();
+    job.total = static_cast<int>(run.spots.size());
+
+    auto measured = i.measure_all(job);
+    run.regions = correct_regions(i.project, run.spots);
+    std::vector<std::optional<GatePass>> passes;
+    if (!measured) {
+        run.status = RunStatus::device;
+        run.message = measured.error().sentence();
+        job.event(EventKind::device, "run", run.message);
+        for (RegionRecord& region : run.regions)
+            region.refusals.push_back("the measuring was not finished: " + run.message);
+    } else if (options.cancel.stop_requested()) {
+        run.status = RunStatus::cancelled;
+        job.event(EventKind::note, "run", "cancelled");
+        for (RegionRecord& region : run.regions) region.refusals.push_back("the run was cancelled");
+    } else {
+        passes = i.judge(job);
+        const bool all = !passes.empty() && std::all_of(passes.begin(), passes.end(),
+                                                        [](const auto& p) { return p.has_value(); });
+        run.status = all ? RunStatus::ok : RunStatus::refused;
+        if (run.regions.empty()) run.status = RunStatus::ok;  // only measured
+    }
+    for (std::size_t k = 0; k < run.regions.size(); ++k)
+        if (run.regions[k].correction)
+            run.regions[k].base_from_frame =
+                corrected_frame(i.project.part.base_from_workobject, run.regions[k].correction->displacement,
+                                i.project.regions[k].base_from_frame);
+
+    // The judged run is in the file before the first byte goes to a robot. If one region is refused none is
+    // pushed: half a part corrected is worse than a stopped line.
+    const bool pushing = options.push && run.status == RunStatus::ok && !passes.empty();
+    if (pushing) run.status = RunStatus::interrupted;
+    run.message = Impl::verdict(run);
+    run.finished_utc = utc_now();
+    auto number = i.file.append_run(run, i.project);
+    if (!number) return tl::unexpected(number.error());
+    run.number = *number;
+    for (EventRecord& event : run.events) event.run = run.number;
+    if (pushing) {
+        run.status = RunStatus::ok;
+        i.push_all(job, passes);
+        run.message = Impl::verdict(run);
+        run.finished_utc = utc_now();
+        if (auto updated = i.file.update_run(run); !updated) return tl::unexpected(updated.error());
+    }
+    return run;
+}
+
+}  // namespace seamwright

@@ -44,6 +44,12 @@ class Recomputer {
             if (static_cast<std::size_t>(m.capture) >= stored.captures.size())
                 return file_error(fmt::format("the capture of spot {} is missing", m.spot_id),
                                   fmt::format("run {}", stored.number));
+            const Capture& raw = stored.captures[static_cast<std::size_t>(m.capture)];
+            const bool empty = raw.status != FrameStatus::ok ||
+                               (raw.profile.size() == 0 && raw.candidates.lines == 0 && !raw.image);
+            // Nothing was kept because there was nothing to measure: the verdict of then stands. Had it been
+            // measured, the difference shows below.
+            if (empty && m.status != SpotStatus::measured) continue;
             auto it = measurers_.find(m.spot_id);
             if (it == measurers_.end()) {
                 auto made = SpotMeasurer::make(setup_, m.spot_id);
@@ -52,7 +58,7 @@ class Recomputer {
             }
             const std::string part_id = m.part_id;
             const int capture = m.capture;
-            m = it->second.measure(stored.captures[static_cast<std::size_t>(capture)]);
+            m = it->second.measure(raw);
             m.part_id = part_id;
             m.capture = capture;
         }

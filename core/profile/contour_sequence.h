@@ -36,6 +36,8 @@ struct Workspace {
     std::vector<int> path;              // candidate numbers of the cheapest sequence, rising
     std::vector<State> backward;        // filter: states seen from the other end, per element of the path
     std::vector<int> piece;             // filter: per candidate, smooth piece or -1
+    std::vector<char> vague;            // filter: accepted by vague predictions
+    std::vector<int> doubtful;          // filter: the candidates that are
     std::vector<int> chosen;            // tracking: candidate number within the line, or -1
     std::vector<double> samples_x, samples_z;
     std::vector<int> pieces;    // filter: segment of a piece

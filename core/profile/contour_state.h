@@ -18,6 +18,7 @@ namespace seamwright::contour {
 inline constexpr double kTurn = 0.04;  // rad, what the direction may turn from line to line (one sigma)
 inline constexpr double kSpacingReach = 3.5;  // spacing ratio a sharp edge may show; 1/cos 70 degrees = 2.9
 inline constexpr double kMinSpacingSigma = 0.05;
+inline constexpr double kMaxTurnNoise = 4;  // the same across the contour, in units of the measuring variance
 inline constexpr int kShortGap = 10;  // lines without points across which the direction is still believed
 inline constexpr int kMature = 3;     // points after which the direction carries the spacing
 
@@ -75,7 +76,7 @@ inline Deviation deviation(const Model& m, const State& s, double x, double z, i
     const double txx = s.vx * s.vx * inverse, tzz = s.vz * s.vz * inverse, txz = s.vx * s.vz * inverse;
     d.sigma_across2 = tzz * sx2 + txx * sz2;
     if (!(d.sigma_across2 > 0)) d.sigma_across2 = std::max(sx2, sz2);
-    const double q = kTurn * kTurn * s.spacing * s.spacing / d.sigma_across2;
+    const double q = std::min(kTurn * kTurn * s.spacing * s.spacing / d.sigma_across2, kMaxTurnNoise);
     const double n = i;
     d.straight = s.p11 + n * (2 * s.p12 + n * s.p22);
     d.p11 = d.straight + q * n * n * n * (1. / 3);

@@ -10,8 +10,10 @@ using namespace contour;
 constexpr double kAbsurd = 1e100;    // coordinates beyond are no return: their squares would overflow
 constexpr double kSpacingGap = 3.5;  // distance in spacings per line beyond which the contour is interrupted
 constexpr int kFitPoints = 6,
-              kLongFitPoints = 12;  // of the line at the end of a piece: near, across a long gap
-constexpr int kSettled = 5;         // points after which the tracker knows better
+              kLongFitPoints = 12;            // of the line at the end of a piece: near, across a long gap
+constexpr int kSettled = 5;                   // points after which the tracker knows better
+constexpr double kSharp = 1.5, kDoubt = 0.4;  // a sharp prediction's variance; share of the limit from which
+                                              // a point that needs more is doubtful
 constexpr int kUnchecked = 3;  // lines across which a smooth link is taken without looking from both sides
 constexpr double kLongGapSlope = 0.03;  // uncertainty of direction across longer gaps, rad
 
@@ -68,33 +70,137 @@ double distance2(const Model& m, const State& s, double ex, double ez, double S,
     return (ex * ex * czz - 2 * ex * ez * cxz + ez * ez * cxx) / (cxx * czz - cxz * cxz);
 }
 
+enum class Verdict : std::uint8_t {
+    out,
+    doubtful,  // in the band, but only because the predictions are vague
+    in
+};
+
 // Is the point in the band seen from the states before and after it (either may be missing)? Where both agree
 // they count together, sharper than either; beside that a point may continue one side straight on, which is
 // how points next to a sharp edge look.
-bool in_band(const Model& m, const State* before, int i_before, const State* after, int i_after, double x,
-             double z) {
-    const double limit = 2 * m.outlier_cost;
+Verdict in_band(const Model& m, const State* before, int i_before, const State* after, int i_after, double x,
+                double z) {
+    const double limit = 2 * m.outlier_cost, doubt = kDoubt * limit;
     Deviation f, b;
     if (before) f = deviation(m, *before, x, z, i_before);
     if (after) b = deviation(m, *after, x, z, i_after);
+    const auto judge = [&](bool accepted, const State& s, double ex, double ez, double along) {
+        if (!accepted) return Verdict::out;
+        return distance2(m, s, ex, ez, kSharp, along) < doubt ? Verdict::in : Verdict::doubtful;
+    };
     if (before && after) {
         const double along = std::min(f.along_variance, b.along_variance);
         const double excess = std::min(before->excess, after->excess);
         if (distance2(m, *before, f.ex - b.ex, f.ez - b.ez, f.p11 + b.p11, along) < limit * excess) {
             const double wf = b.p11 / (f.p11 + b.p11), wb = 1 - wf;
-            return distance2(m, *before, wf * f.ex + wb * b.ex, wf * f.ez + wb * b.ez, 1 + wf * f.p11,
-                             along) < limit * excess ||
-                   distance2(m, *before, f.ex, f.ez, 1 + f.straight, f.along_variance) < limit * excess ||
-                   distance2(m, *after, b.ex, b.ez, 1 + b.straight, b.along_variance) < limit * excess;
+            const double ex = wf * f.ex + wb * b.ex, ez = wf * f.ez + wb * b.ez;
+            const bool accepted =
+                distance2(m, *before, ex, ez, 1 + wf * f.p11, along) < limit * excess ||
+                distance2(m, *before, f.ex, f.ez, 1 + f.straight, f.along_variance) < limit * excess ||
+                distance2(m, *after, b.ex, b.ez, 1 + b.straight, b.along_variance) < limit * excess;
+            return judge(accepted, *before, ex, ez, along);
         }
     }
-    return (before && f.d2 < limit) || (after && b.d2 < limit);
+    if (before && f.d2 < limit) return judge(true, *before, f.ex, f.ez, f.along_variance);
+    return after ? judge(b.d2 < limit, *after, b.ex, b.ez, b.along_variance) : Verdict::out;
+}
+
+// Parabola x(t), z(t) through the given points, t = line - line0; `factor` is the variance of its value at t
+// = 0 in units of the measuring variance.
+struct LocalFit {
+    double x = 0, z = 0, vx = 0, vz = 0, ax = 0, az = 0, factor = 0;
+    bool ok = false;
+};
+
+LocalFit local_fit(const Workspace& w, const int* points, int n, int line0) {
+    constexpr int size = 3;
+    // Normal equations over t = line - line0, about the prediction at t = 0: 3 x 3 by elimination.
+    LocalFit fit;
+    double s[5] = {}, bx[3] = {}, bz[3] = {};
+    const Candidate& origin = w.candidates[std::size_t(points[0])];
+    for (int k = 0; k < n; ++k) {
+        const Candidate& p = w.candidates[std::size_t(points[k])];
+        const double t = p.line - line0, dx = p.x - origin.x, dz = p.z - origin.z;
+        double power = 1;
+        for (int j = 0; j < 5; ++j, power *= t) {
+            s[j] += power;
+            if (j < 3) bx[j] += power * dx, bz[j] += power * dz;
+        }
+    }
+    double a[3][6] = {};  // matrix | x | z | first unit vector, whose solution's first entry is the variance
+    for (int r = 0; r < size; ++r) {
+        for (int c = 0; c < size; ++c) a[r][c] = s[r + c];
+        a[r][3] = bx[r], a[r][4] = bz[r], a[r][5] = r == 0 ? 1 : 0;
+    }
+    for (int r = 0; r < size; ++r) {
+        if (!(a[r][r] > 1e-9 * s[2 * r])) return fit;
+        for (int q = 0; q < size; ++q) {
+            if (q == r) continue;
+            const double factor = a[q][r] / a[r][r];
+            for (int c = r; c < 6; ++c) a[q][c] -= factor * a[r][c];
+        }
+    }
+    fit.x = origin.x + a[0][3] / a[0][0], fit.z = origin.z + a[0][4] / a[0][0];
+    fit.vx = a[1][3] / a[1][1], fit.vz = a[1][4] / a[1][1];
+    fit.ax = a[2][3] / a[2][2], fit.az = a[2][4] / a[2][2];
+    fit.factor = a[0][5] / a[0][0];
+    fit.ok = true;
+    return fit;
+}
+
+// Points that passed only because the predictions were vague (short memory on coarse or steep contours):
+// compared with the parabola through their neighbours on both sides, where that fits the neighbours
+// themselves.
+void settle_doubtful(Workspace& w, const Model& m) {
+    constexpr int kSide = 4;
+    constexpr double kGoodFit = 2.0;
+    for (const int c : w.doubtful) {
+        const Candidate& p = w.candidates[std::size_t(c)];
+        const int piece = w.piece[std::size_t(c)];
+        int side[2][kSide], count[2] = {0, 0};
+        for (int d = 0; d < 2; ++d)
+            for (int k = c + (d ? 1 : -1); k >= 0 && k < int(w.candidates.size()) && count[d] < kSide;
+                 k += d ? 1 : -1) {
+                if (w.piece[std::size_t(k)] >= 0 && w.piece[std::size_t(k)] != piece) break;
+                if (std::abs(w.candidates[std::size_t(k)].line - p.line) > 2 * kShortGap) break;
+                if (w.piece[std::size_t(k)] == piece && !w.vague[std::size_t(k)]) side[d][count[d]++] = k;
+            }
+        if (count[0] < 3 || count[1] < 3) continue;
+        int both[2 * kSide], n = 0;
+        for (int d = 0; d < 2; ++d)
+            for (int k = 0; k < count[d]; ++k) both[n++] = side[d][k];
+        const LocalFit fit = local_fit(w, both, n, p.line);
+        if (!fit.ok) continue;
+        State s;
+        s.vx = fit.vx, s.vz = fit.vz;
+        const double along = m.initial_sigma * m.initial_sigma * (fit.vx * fit.vx + fit.vz * fit.vz);
+        double misfit = 0;
+        for (int k = 0; k < n; ++k) {
+            const Candidate& q = w.candidates[std::size_t(both[k])];
+            const double t = q.line - p.line;
+            const double ex = q.x - fit.x - t * (fit.vx + t * fit.ax),
+                         ez = q.z - fit.z - t * (fit.vz + t * fit.az);
+            misfit += distance2(m, s, ex, ez, 1, along);
+        }
+        if (misfit > kGoodFit * (n - 3)) continue;
+        if (distance2(m, s, p.x - fit.x, p.z - fit.z, 1 + fit.factor, along) > 2.4 * m.outlier_cost)
+            w.piece[std::size_t(c)] = -1;
+    }
 }
 
 // Decides every point again, seen from both sides, and sets w.piece (number of smooth pieces returned).
 int verify(Workspace& w, const Model& m) {
     const int n = int(w.path.size());
     w.piece.assign(w.candidates.size(), -1);
+    w.vague.assign(w.candidates.size(), 0);
+    w.doubtful.clear();
+    const auto put = [&](int c, int number, Verdict verdict) {
+        if (verdict == Verdict::out) return false;
+        w.piece[std::size_t(c)] = number;
+        if (verdict == Verdict::doubtful) w.vague[std::size_t(c)] = 1, w.doubtful.push_back(c);
+        return true;
+    };
     int piece = 0;
     for (int k = -1; k < n; ++k) {
         if (k > 0 && (w.nodes[std::size_t(w.path[std::size_t(k)])].link != Link::smooth ||
@@ -112,8 +218,10 @@ int verify(Workspace& w, const Model& m) {
             if (after && after->age < kMature) after = nullptr;
             const int ib = before ? p.line - w.candidates[std::size_t(w.path[std::size_t(k) - 1])].line : 0;
             const int ia = after ? w.candidates[std::size_t(next)].line - p.line : 0;
-            if ((!before && !after) || in_band(m, before, ib, after, ia, p.x, p.z))
-                w.piece[std::size_t(here)] = piece;
+            if (before || after)
+                put(here, piece, in_band(m, before, ib, after, ia, p.x, p.z));
+            else
+                put(here, piece, Verdict::in);
         }
         // The points left out between here and next.
         const State* before = here >= 0 ? &w.nodes[std::size_t(here)].state : nullptr;
@@ -128,12 +236,11 @@ int verify(Workspace& w, const Model& m) {
             const State* const from_left = ib <= kShortGap ? before : nullptr;
             const State* const from_right = ia <= kShortGap ? after : nullptr;
             if (next_starts) {
-                if (from_left && in_band(m, from_left, ib, nullptr, 0, p.x, p.z))
-                    w.piece[std::size_t(c)] = piece;
-                else if (from_right && in_band(m, nullptr, 0, from_right, ia, p.x, p.z))
-                    w.piece[std::size_t(c)] = piece + 1;
-            } else if ((from_left || from_right) && in_band(m, from_left, ib, from_right, ia, p.x, p.z)) {
-                w.piece[std::size_t(c)] = piece;
+                if (!(from_left && put(c, piece, in_band(m, from_left, ib, nullptr, 0, p.x, p.z))) &&
+                    from_right)
+                    put(c, piece + 1, in_band(m, nullptr, 0, from_right, ia, p.x, p.z));
+            } else if (from_left || from_right) {
+                put(c, piece, in_band(m, from_left, ib, from_right, ia, p.x, p.z));
             }
         }
     }
@@ -318,6 +425,7 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
     const Model model(estimate_scale(w, w.path, true, options), options);
     run_backward(w, model);
     const int pieces = verify(w, model);
+    settle_doubtful(w, model);
     number_segments(w, model, pieces, options.min_segment_points, profile);
     return {};
 }

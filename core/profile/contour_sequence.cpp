@@ -77,21 +77,24 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
     return scale;
 }
 
-void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
-    const int lines = int(w.first.size()) - 1, window = 2 * lookahead + 2;
+void cheapest_sequence(Workspace& w, const Model& m) {
+    const int lines = int(w.first.size()) - 1;
     w.nodes.resize(w.candidates.size());
     constexpr double infinite = std::numeric_limits<double>::infinity();
-    // Cheapest cost of all lines before the present one, ending at node `ended`; of those before the last
-    // one.
-    double past = infinite, older = infinite;
-    int ended = -1;
+    // Cheapest cost of what came before the present line: ending on the last line, or before it with the last
+    // left out.
+    struct End {
+        double cost;
+        int node;
+    } last{infinite, -1}, skipping{infinite, -1};
+    // No node before the last line can be continued for less: a straight line below the concave cost of a
+    // gap.
+    double older = infinite;
+    const double growth = (m.skip(m.window) - m.skip(1)) / (m.window - 1);
     for (int line = 0; line < lines; ++line) {
         const int begin = w.first[std::size_t(line)], end = w.first[std::size_t(line) + 1];
         const int before = line > 0 ? w.first[std::size_t(line) - 1] : begin;
-        double previous_best = infinite;
-        for (int j = before; j < begin; ++j)
-            previous_best = std::min(previous_best, w.nodes[std::size_t(j)].cost);
-        const double start_cost = line * m.outlier_cost;
+        const double start_cost = line > 0 ? m.skip_open + line * m.skip_line : 0;
         for (int c = begin; c < end; ++c) {
             const Candidate& point = w.candidates[std::size_t(c)];
             double best = infinite;
@@ -101,7 +104,7 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
             const auto try_smooth = [&](int j, double skipped) {
                 const Node& node = w.nodes[std::size_t(j)];
                 const int i = point.line - w.candidates[std::size_t(j)].line;
-                if (i > kShortGap) return;
+                if (i > m.longest_gap) return;
                 if (node.state.age < 2) {
                     const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
                     const double cost = node.cost + skipped +
@@ -116,9 +119,9 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
             };
             for (int j = before; j < begin; ++j) try_smooth(j, 0);
             // Nothing else can be cheaper: older nodes pay for the line between, an edge for itself.
-            if (!(best <= older && best <= start_cost && best <= previous_best + m.edge_cost)) {
-                double skipped = 0;
-                for (int back = 1; back <= window && back <= line; ++back, skipped += m.outlier_cost) {
+            if (!(best <= older && best <= start_cost && best <= last.cost + m.edge_cost)) {
+                for (int back = 1; back <= m.window && back <= line; ++back) {
+                    const double skipped = m.skip(back - 1);
                     const int j0 = w.first[std::size_t(line - back)],
                               j1 = w.first[std::size_t(line - back) + 1];
                     for (int j = j0; j < j1; ++j) {
@@ -127,7 +130,7 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                         if (back > 1) try_smooth(j, skipped);
                         if (node.state.age < 2 || node.cost + skipped + m.edge_cost >= best) continue;
                         const int i = point.line - w.candidates[std::size_t(j)].line;
-                        if (i > lookahead + 1) continue;
+                        if (i > m.edge_window) continue;
                         const double ratio = reach_ratio(m, node.state, point.x, point.z, i);
                         const double cost =
                             node.cost + skipped + m.edge_cost + 0.6 * m.outlier_cost * ratio * ratio;
@@ -135,7 +138,9 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                     }
                 }
                 if (start_cost < best) best = start_cost, from = -1, link = Link::start;
-                if (past + m.jump_cost < best) best = past + m.jump_cost, from = ended, link = Link::start;
+                const End& past = last.cost <= skipping.cost ? last : skipping;
+                if (past.cost + m.jump_cost < best)
+                    best = past.cost + m.jump_cost, from = past.node, link = Link::start;
             }
             Node& node = w.nodes[std::size_t(c)];
             node.cost = best + point.cost;
@@ -153,15 +158,18 @@ void cheapest_sequence(Workspace& w, const Model& m, int lookahead) {
                 if (link == Link::edge && w.nodes[std::size_t(from)].state.age < 2) node.link = Link::smooth;
             }
         }
-        older = past + m.outlier_cost;
-        past = older;
-        for (int c = begin; c < end; ++c) {
-            const double cost = w.nodes[std::size_t(c)].cost;
-            if (cost < past) past = cost, ended = c;
-        }
+        older = std::min(older + growth, last.cost + m.skip(1));
+        skipping.cost += m.skip_line;
+        if (const double cost = last.cost + m.skip_open + m.skip_line; cost < skipping.cost)
+            skipping = {cost, last.node};
+        last = {infinite, -1};
+        for (int c = begin; c < end; ++c)
+            if (const double cost = w.nodes[std::size_t(c)].cost; cost < last.cost) last = {cost, c};
     }
     w.path.clear();
-    for (int c = ended; c >= 0; c = w.nodes[std::size_t(c)].previous) w.path.push_back(c);
+    for (int c = last.cost <= skipping.cost ? last.node : skipping.node; c >= 0;
+         c = w.nodes[std::size_t(c)].previous)
+        w.path.push_back(c);
     std::reverse(w.path.begin(), w.path.end());
 }
 

@@ -51,6 +51,6 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
 
 // Fills nodes and path. At most one candidate per line belongs to the path; a line left out costs
 // outlier_cost.
-void cheapest_sequence(Workspace& w, const Model& model, int lookahead);
+void cheapest_sequence(Workspace& w, const Model& model);
 
 }  // namespace seamwright::contour

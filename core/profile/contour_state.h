@@ -32,11 +32,20 @@ struct Model {
     Scale scale;
     double band = 4, average = 0.15, initial_sigma = 0.15;
     double outlier_cost = 0, edge_cost = 0, jump_cost = 0;
+    // Cost of leaving n lines in a row out: open + n line; to come back to the same contour not more than
+    // most.
+    double skip_open = 0, skip_line = 0, skip_most = 1e300;
+    double skip(int n) const { return n > 0 ? std::min(skip_open + n * skip_line, skip_most) : 0; }
+    int window = 8, longest_gap = kShortGap;  // lines with points, and lines, over which a state may coast
+    int edge_window = 4;                      // the same for a sharp edge
     Model(const Scale& s, const FilterOptions& o)
         : scale(s), band(o.band_sigmas), average(o.average), initial_sigma(o.initial_sigma) {
         outlier_cost = 0.5 * band * band + 0.75;
         edge_cost = 2.2 * outlier_cost;
         jump_cost = (o.lookahead + 0.6) * outlier_cost;
+        skip_line = outlier_cost;
+        window = 2 * o.lookahead + 2;
+        edge_window = o.lookahead + 1;
     }
 };
 

@@ -377,7 +377,9 @@ void number_segments(Workspace& w, const Model& m, int pieces, int min_points, P
     }
 }
 
-Expected<void> check_options(const FilterOptions& o) {
+}  // namespace
+
+Expected<void> check(const FilterOptions& o) {
     const auto refuse = [](const char* what, const char* where, const char* mend) -> Expected<void> {
         return input_error(what, where, mend);
     };
@@ -399,10 +401,8 @@ Expected<void> check_options(const FilterOptions& o) {
     return {};
 }
 
-}  // namespace
-
 Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
-    if (auto ok = check_options(options); !ok) return ok;
+    if (auto ok = check(options); !ok) return ok;
     const std::size_t n = profile.x_mm.size();
     if (profile.z_mm.size() != n || (!profile.intensity.empty() && profile.intensity.size() != n))
         return input_error("the columns of the profile differ in length", "x_mm, z_mm, intensity",
@@ -421,7 +421,7 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
     if (w.candidates.empty()) return {};
 
     const Model rough(estimate_scale(w, w.path, false, options), options);
-    cheapest_sequence(w, rough, options.lookahead);
+    cheapest_sequence(w, rough);
     const Model model(estimate_scale(w, w.path, true, options), options);
     run_backward(w, model);
     const int pieces = verify(w, model);

@@ -47,6 +47,9 @@ double map_spacing(double s_meas, double s_0, double mu, double sigma, double sn
 // quadratic about s_0, good within about +-50 % of it. NaN where the quadratic equation has no usable root.
 double map_spacing_closed_form(double s_meas, double s_0, double mu, double sigma, double sn, int i = 1);
 
+// Refuses (Error) options out of range; filter_profile and track_stripe begin with it.
+Expected<void> check(const FilterOptions& options);
+
 // Marks `profile.segment`: 0.. in order for accepted points, kOutlier for outliers and missing returns. A
 // missing return (NaN, infinite or absurd coordinate) is a line without a point: the spacing to the next one
 // grows with it. Refuses (Error): arrays of different length, options out of range. An empty profile is no

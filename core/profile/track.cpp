@@ -6,9 +6,15 @@ namespace {
 using namespace contour;
 
 constexpr double kAbsurd = 1e100;
-// Preference for the stronger candidate, in units of squared sigma: so small that a hundred lines of a
-// reflection twice as bright do not pay for leaving the stripe and coming back.
-constexpr double kIntensityCost = 0.1;
+
+// Costs in the filter's unit (half a squared sigma), set so that the right explanation of a frame with
+// reflections is the cheapest: leaving out the lines where the stripe is missing and coming back must cost
+// less than a new segment on a reflection and another one back, and a hundred lines of a reflection half as
+// bright again must not pay for that.
+constexpr double kIntensityCost = 1;  // of choosing a candidate of no intensity beside a strong one
+constexpr double kSkipOpen = 1, kSkipLine = 2, kSkipMost = 60;  // of lines left out in a row
+constexpr double kEdge = 5, kJump = 10;  // of a sharp edge and a new segment, in outliers
+constexpr int kWindow = 40;              // lines over which the stripe may be lost and found again
 
 Workspace& workspace() {
     thread_local Workspace w;
@@ -18,6 +24,7 @@ Workspace& workspace() {
 }  // namespace
 
 Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions& options, Profile& profile) {
+    if (auto ok = check(options); !ok) return ok;
     if (input.lines < 0 || input.per_line < 1)
         return input_error("the candidates have no lines or no room per line", "lines, per_line",
                            "give lines >= 0 and per_line >= 1");
@@ -68,10 +75,35 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
     }
     w.first.push_back(int(w.candidates.size()));
     if (!w.candidates.empty()) {
-        const Model model(estimate_scale(w, w.path, false, options), options);
-        cheapest_sequence(w, model, options.lookahead);
+        Model model(estimate_scale(w, w.path, false, options), options);
+        // Leaving out a stretch must be cheaper than following a reflection there and coming back.
+        model.skip_line = kSkipLine;
+        model.skip_open = kSkipOpen;
+        model.skip_most = kSkipMost;
+        model.window = model.longest_gap = kWindow;
+        model.jump_cost = kJump * model.outlier_cost;
+        model.edge_cost = kEdge * model.outlier_cost;
+        model.edge_window = 2;
+        cheapest_sequence(w, model);
         for (const int c : w.path)
             take(std::size_t(w.candidates[std::size_t(c)].line), w.chosen[std::size_t(c)]);
+        // Lines left out between two of the path: the candidate nearest to the straight line between them.
+        for (std::size_t k = 1; k < w.path.size(); ++k) {
+            const int from = w.path[k - 1], to = w.path[k];
+            const Candidate &a = w.candidates[std::size_t(from)], &b = w.candidates[std::size_t(to)];
+            if (b.line - a.line > kWindow || w.nodes[std::size_t(to)].link == Link::start) continue;
+            int line = -1;
+            double nearest = 0;
+            for (int c = from + 1; c < to; ++c) {
+                const Candidate& p = w.candidates[std::size_t(c)];
+                if (p.line == a.line || p.line == b.line) continue;
+                const double t = double(p.line - a.line) / (b.line - a.line);
+                const double distance = std::hypot(p.x - a.x - t * (b.x - a.x), p.z - a.z - t * (b.z - a.z));
+                if (p.line == line && distance >= nearest) continue;
+                line = p.line, nearest = distance;
+                take(std::size_t(line), w.chosen[std::size_t(c)]);
+            }
+        }
     }
     return filter_profile(profile, options);
 }

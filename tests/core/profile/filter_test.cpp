@@ -2,15 +2,369 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/core/profile/synthetic_candidates.h"
 #include "tests/core/profile/synthetic_profiles.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+void* operator new(std::size_t n) {
+    ++allocations;
+    if (void* p = std::malloc(n ? n : 1)) return p;
+    throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+    std::free(p);
+}
 
 namespace seamwright {
 namespace {
 
+using synthetic::Maker;
+using synthetic::Recipe;
+using synthetic::Score;
+using synthetic::Truth;
+
+const double nan = std::numeric_limits<double>::quiet_NaN();
+const double inf = std::numeric_limits<double>::infinity();
+
+// The logarithm of the density of (3.7) over u = ln(s / s_0), in long double.
+struct Oracle {
+    long double s_meas, s_0, mu, sigma, sn;
+    int i;
+    long double value(long double u) const {
+        const long double e = (s_meas - s_0 * expl(u)) / sn, w = u - (mu - sigma * sigma / 2) * i;
+        return -e * e / 2 - u - w * w / (2 * sigma * sigma * i);
+    }
+    long double maximum() const {
+        const long double mode = (mu - 1.5L * sigma * sigma) * i;
+        long double lo = mode - 30, hi = mode;
+        if (s_meas > 0) lo = std::min(mode, logl(s_meas / s_0)), hi = std::max(mode, logl(s_meas / s_0));
+        const int n = 3000;
+        int best = 0;
+        for (int k = 1; k <= n; ++k)
+            if (value(lo + (hi - lo) * k / n) > value(lo + (hi - lo) * best / n)) best = k;
+        long double a = lo + (hi - lo) * (best - 1) / n - 1e-12L,
+                    b = lo + (hi - lo) * (best + 1) / n + 1e-12L;
+        for (int k = 0; k < 100; ++k) {
+            const long double p = a + (b - a) * 0.382L, q = a + (b - a) * 0.618L;
+            (value(p) < value(q) ? a : b) = value(p) < value(q) ? p : q;
+        }
+        return s_0 * expl((a + b) / 2);
+    }
+};
+
 TEST(MapSpacing, KnownValueOfTheThesis) {
     // Fig. 3.4: the exact maximum is 0.12846, the approximation alone prints 0.1284.
-    EXPECT_NEAR(map_spacing(0.13, 0.146, -0.111, 0.13, 0.02), 0.1284598, 1e-7);
+    const Oracle oracle{0.13L, 0.146L, -0.111L, 0.13L, 0.02L, 1};
+    const double exact = double(oracle.maximum());
+    EXPECT_NEAR(exact, 0.12846, 5e-6);
+    EXPECT_NEAR(map_spacing(0.13, 0.146, -0.111, 0.13, 0.02), exact, 1e-7);
     EXPECT_NEAR(map_spacing_closed_form(0.13, 0.146, -0.111, 0.13, 0.02), 0.1284, 5e-5);
+}
+
+TEST(MapSpacing, IsTheMaximumOverTheWholeRange) {
+    Maker random(3);
+    for (int k = 0; k < 2500; ++k) {
+        const double s_0 = std::pow(10, random.uniform(-4, 2));
+        const double s_meas =
+            s_0 * (k % 10 == 0 ? random.uniform(-3, 3) : std::pow(10, random.uniform(-2, 2)));
+        const double mu = random.uniform(-0.5, 0.5), sigma = std::pow(10, random.uniform(-3, 0.3));
+        const double sn = s_0 * std::pow(10, random.uniform(-3, 2));
+        const int i = 1 + k % 8;
+        const Oracle oracle{s_meas, s_0, mu, sigma, sn, i};
+        const double exact = double(oracle.maximum()), found = map_spacing(s_meas, s_0, mu, sigma, sn, i);
+        // Two maxima of equal height: either will do.
+        if (std::abs(found / exact - 1) > 1e-6) {
+            EXPECT_NEAR(double(oracle.value(logl(found / s_0)) - oracle.value(logl(exact / s_0))), 0, 1e-9)
+                << s_meas << ' ' << s_0 << ' ' << mu << ' ' << sigma << ' ' << sn << ' ' << i;
+        }
+    }
+}
+
+TEST(MapSpacing, ScalesWithTheUnitAndSurvivesDegenerateInput) {
+    const double s = map_spacing(0.13, 0.146, -0.111, 0.13, 0.02, 3);
+    EXPECT_NEAR(map_spacing(130, 146, -0.111, 0.13, 20, 3), 1000 * s, 1e-9 * 1000 * s);
+    EXPECT_DOUBLE_EQ(map_spacing(0.2, 0.1, 0, 0.1, 0), 0.2);
+    EXPECT_NEAR(map_spacing(0.2, 0.1, 0.1, 0, 0.01), 0.1 * std::exp(0.1), 1e-12);
+    EXPECT_DOUBLE_EQ(map_spacing(0.2, 0, 0, 0.1, 0.01), 0.2);
+    for (const double bad : {nan, inf, -inf, 1e300, -1e300, 0.0}) {
+        EXPECT_TRUE(std::isfinite(map_spacing(bad, 0.1, 0, 0.1, 0.01))) << bad;
+        (void)map_spacing(0.1, bad, 0, 0.1, 0.01);
+        (void)map_spacing(0.1, 0.1, 0, bad, 0.01);
+        (void)map_spacing(0.1, 0.1, 0, 0.1, bad);
+    }
+}
+
+Score score(const Recipe& recipe, int profiles, std::uint64_t seed) {
+    Score s;
+    for (int k = 0; k < profiles; ++k) {
+        Truth t = Maker(seed + std::uint64_t(k)).make(recipe);
+        EXPECT_TRUE(filter_profile(t.profile, {}).has_value());
+        s.add(t, t.profile.segment);
+    }
+    return s;
+}
+
+TEST(Filter, FindsOutliersAndJumpsOverNoiseAndSpacing) {
+    for (const double spacing : {0.02, 0.2})
+        for (const double noise : {0.01, 0.05}) {
+            Recipe r;
+            r.spacing = spacing, r.noise = noise;
+            const Score s = score(r, 8, 40);
+            EXPECT_GE(s.f1(), 0.98) << spacing << ' ' << noise;
+            EXPECT_GE(s.jumps_found, 0.97 * s.jumps) << spacing << ' ' << noise;
+            EXPECT_LE(s.jumps_invented, 2) << spacing << ' ' << noise;
+        }
+}
+
+TEST(Filter, LeavesASharpEdgeWhole) {
+    for (const double noise : {0.005, 0.02}) {
+        Maker random(5);
+        Profile p;
+        const double slope = std::tan(70 * std::numbers::pi / 180);
+        for (int k = 0; k < 200; ++k) {
+            p.x_mm.push_back(0.1 * k);
+            p.z_mm.push_back(slope * (10 - std::abs(0.1 * k - 10.03)) + noise * random.normal());
+        }
+        ASSERT_TRUE(filter_profile(p, {}).has_value());
+        EXPECT_EQ(std::count(p.segment.begin(), p.segment.end(), 0), 200) << noise;
+    }
+}
+
+TEST(Filter, BurstAtTheEndsAndAStepWithMissingReturns) {
+    Maker random(6);
+    Profile p;
+    for (int k = 0; k < 120; ++k) {
+        p.x_mm.push_back(0.1 * k);
+        p.z_mm.push_back((k < 60 ? 0 : 3) + 0.01 * random.normal());
+    }
+    for (const int k : {0, 1, 2}) p.z_mm[std::size_t(k)] += 2;
+    for (const int k : {117, 118, 119}) p.z_mm[std::size_t(k)] -= 1;
+    for (int k = 55; k < 65; ++k) p.z_mm[std::size_t(k)] = nan;
+    ASSERT_TRUE(filter_profile(p, {}).has_value());
+    for (int k = 0; k < 120; ++k) {
+        const int expected = k < 3 || k >= 117 || (k >= 55 && k < 65) ? kOutlier : k < 60 ? 0 : 1;
+        EXPECT_EQ(p.segment[std::size_t(k)], expected) << k;
+    }
+}
+
+TEST(Filter, AGapOfMissingReturnsOnOneContourIsNoJump) {
+    Maker random(7);
+    Profile p;
+    for (int k = 0; k < 200; ++k) {
+        const bool missing = (k > 50 && k < 56) || (k > 100 && k < 130);
+        p.x_mm.push_back(missing ? nan : 0.1 * k);
+        p.z_mm.push_back(missing ? nan : 0.04 * k + 0.01 * random.normal());
+    }
+    ASSERT_TRUE(filter_profile(p, {}).has_value());
+    for (int k = 0; k < 200; ++k)
+        EXPECT_EQ(p.segment[std::size_t(k)], std::isnan(p.z_mm[std::size_t(k)]) ? kOutlier : 0) << k;
+}
+
+// Share of equal marks (accepted or not).
+double agreement(const Profile& a, const Profile& b) {
+    std::size_t same = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) same += (a.segment[k] < 0) == (b.segment[k] < 0);
+    return double(same) / double(a.size());
+}
+
+TEST(Filter, Invariances) {
+    Recipe r;
+    r.isotropic = true;  // so that a rotated profile obeys the same law
+    r.max_slope_deg = 50;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Profile p = Maker(seed).make(r).profile;
+        ASSERT_TRUE(filter_profile(p, {}).has_value());
+        const auto transformed = [&](auto f) {
+            Profile q = p;
+            for (std::size_t k = 0; k < q.size(); ++k)
+                std::tie(q.x_mm[k], q.z_mm[k]) = f(p.x_mm[k], p.z_mm[k]);
+            EXPECT_TRUE(filter_profile(q, {}).has_value());
+            return q;
+        };
+        const auto pair = [](double x, double z) { return std::pair{x, z}; };
+        EXPECT_EQ(transformed([&](double x, double z) { return pair(1024 * x, 1024 * z); }).segment,
+                  p.segment);
+        EXPECT_GE(agreement(transformed([&](double x, double z) { return pair(x + 1000, z - 500); }), p),
+                  0.999);
+        EXPECT_EQ(transformed([&](double x, double z) { return pair(-x, z); }).segment, p.segment);
+        const double c = std::cos(0.3), s = std::sin(0.3);
+        EXPECT_GE(
+            agreement(transformed([&](double x, double z) { return pair(c * x - s * z, s * x + c * z); }), p),
+            0.99);
+
+        Profile mirrored = p;
+        std::reverse(mirrored.x_mm.begin(), mirrored.x_mm.end());
+        std::reverse(mirrored.z_mm.begin(), mirrored.z_mm.end());
+        ASSERT_TRUE(filter_profile(mirrored, {}).has_value());
+        std::reverse(mirrored.segment.begin(), mirrored.segment.end());
+        EXPECT_GE(agreement(mirrored, p), 0.99);
+
+        Profile padded = p;
+        for (auto* v : {&padded.x_mm, &padded.z_mm})
+            v->insert(v->begin(), 30, nan), v->insert(v->end(), 7, nan);
+        ASSERT_TRUE(filter_profile(padded, {}).has_value());
+        EXPECT_TRUE(std::equal(p.segment.begin(), p.segment.end(), padded.segment.begin() + 30));
+    }
+}
+
+TEST(Filter, SegmentsAreNumberedInOrder) {
+    Profile p = Maker(9).make({}).profile;
+    ASSERT_TRUE(filter_profile(p, {}).has_value());
+    std::int32_t highest = -1;
+    for (const auto s : p.segment) {
+        ASSERT_LE(s, highest + 1);
+        if (s >= 0) ASSERT_GE(s, highest);
+        highest = std::max(highest, s);
+    }
+    EXPECT_GE(highest, 1);
+}
+
+TEST(Filter, HostileInput) {
+    const auto filtered = [](std::vector<double> x, std::vector<double> z) {
+        Profile p;
+        p.x_mm = std::move(x), p.z_mm = std::move(z);
+        EXPECT_TRUE(filter_profile(p, {}).has_value());
+        EXPECT_EQ(p.segment.size(), p.size());
+        for (std::size_t k = 0; k < p.size(); ++k) {
+            if (!std::isfinite(p.z_mm[k]) || !std::isfinite(p.x_mm[k])) EXPECT_EQ(p.segment[k], kOutlier);
+        }
+        return p.segment;
+    };
+    EXPECT_TRUE(filtered({}, {}).empty());
+    filtered({1}, {2});
+    filtered({1, 2}, {2, 2});
+    EXPECT_EQ(filtered({1, 2, nan}, {nan, nan, nan}), std::vector<std::int32_t>(3, kOutlier));
+    EXPECT_EQ(filtered(std::vector<double>(50, 1.), std::vector<double>(50, 2.)),
+              std::vector<std::int32_t>(50, 0));
+    filtered({inf, -inf, 1, 2, 3}, {1, 1, 1, inf, 1});
+    filtered({1e300, -1e300, 1, 2, 3, 1e99}, {1, 1, 1e300, 1, 1, 1e99});
+    Maker random(10);
+    std::vector<double> x(3000), z(3000);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = random.uniform(-1, 1), z[k] = random.uniform(-1, 1);
+    filtered(x, z);  // nothing but noise, unsorted
+    for (std::size_t k = 0; k < x.size(); ++k)
+        x[k] = std::pow(10, random.uniform(-300, 300)), z[k] = std::pow(10, random.uniform(-300, 300));
+    filtered(x, z);
+}
+
+TEST(Filter, RefusesWithASentence) {
+    Profile p;
+    p.x_mm = {1, 2}, p.z_mm = {1};
+    const auto mismatch = filter_profile(p, {});
+    ASSERT_FALSE(mismatch.has_value());
+    EXPECT_FALSE(mismatch.error().sentence().empty());
+    p.z_mm = {1, 2};
+    p.intensity = {1};
+    EXPECT_FALSE(filter_profile(p, {}).has_value());
+    p.intensity.clear();
+    const auto refuses = [&](auto change) {
+        FilterOptions o;
+        change(o);
+        ProfileCandidates none;
+        Profile q;
+        return !filter_profile(p, o).has_value() && !track_stripe(none, o, q).has_value();
+    };
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.noise_mm = -1; }));
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.noise_mm = nan; }));
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.band_sigmas = 0; }));
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.lookahead = 0; }));
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.average = 2; }));
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.initial_sigma = 0; }));
+    EXPECT_TRUE(refuses([](FilterOptions& o) { o.min_segment_points = 0; }));
+}
+
+TEST(Filter, AllocatesNothingAfterTheFirstProfileOfASize) {
+    Recipe r;
+    r.points = 2048;
+    Profile p = Maker(11).make(r).profile;
+    ASSERT_TRUE(filter_profile(p, {}).has_value());
+    const auto scene = synthetic::reflections({}, 1);
+    Profile tracked;
+    ASSERT_TRUE(track_stripe(scene.candidates, {}, tracked).has_value());
+    const long before = allocations;
+    const bool ok =
+        filter_profile(p, {}).has_value() && track_stripe(scene.candidates, {}, tracked).has_value();
+    EXPECT_EQ(allocations - before, 0);
+    EXPECT_TRUE(ok);
+}
+
+void track_share(const synthetic::Scenery& scenery, int scenes, double& tracked, double& strongest) {
+    synthetic::KeptShare a, b;
+    for (int k = 1; k <= scenes; ++k) {
+        const auto scene = synthetic::reflections(scenery, std::uint64_t(k));
+        Profile p;
+        ASSERT_TRUE(track_stripe(scene.candidates, {}, p).has_value());
+        ASSERT_EQ(p.size(), std::size_t(scenery.lines));
+        a.add(scene, p);
+        b.add(scene, synthetic::strongest(scene.candidates));
+    }
+    tracked = a.share(), strongest = b.share();
+}
+
+TEST(Track, KeepsTheStripeUnderDoubleReflections) {
+    for (const double pitch : {1.0, 0.05}) {  // pixel and millimetre alike
+        synthetic::Scenery s;
+        s.pitch = pitch;
+        double tracked = 0, strongest = 0;
+        track_share(s, 25, tracked, strongest);
+        RecordProperty("strongest_percent", std::to_string(100 * strongest));
+        EXPECT_GE(tracked, 0.98);
+        EXPECT_LE(strongest, 0.9);
+    }
+}
+
+TEST(Track, AStepBesideAReflectionIsStillBetterThanTheStrongest) {
+    synthetic::Scenery s;
+    s.jumps = 2;
+    double tracked = 0, strongest = 0;
+    track_share(s, 25, tracked, strongest);
+    EXPECT_GE(tracked, strongest + 0.08);
+}
+
+TEST(Track, OrderOfCandidatesDoesNotMatter) {
+    synthetic::Scenery s;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        auto scene = synthetic::reflections(s, seed);
+        Profile a, b;
+        ASSERT_TRUE(track_stripe(scene.candidates, {}, a).has_value());
+        auto& c = scene.candidates;
+        for (int line = 0; line < c.lines; ++line) {
+            const auto n = c.count[std::size_t(line)];
+            for (auto* v : {&c.x_mm, &c.z_mm})
+                std::reverse(v->begin() + c.index(line, 0), v->begin() + c.index(line, n));
+            std::reverse(c.intensity.begin() + c.index(line, 0), c.intensity.begin() + c.index(line, n));
+        }
+        ASSERT_TRUE(track_stripe(c, {}, b).has_value());
+        EXPECT_EQ(a.segment, b.segment);
+    }
+}
+
+TEST(Track, HostileInput) {
+    ProfileCandidates c;
+    Profile p;
+    EXPECT_TRUE(track_stripe(c, {}, p).has_value());
+    c.lines = 3, c.per_line = 2;
+    EXPECT_FALSE(track_stripe(c, {}, p).has_value());
+    c.count = {2, 0, 1};
+    c.x_mm = {nan, inf, 0, 0, 2, 2}, c.z_mm = {1, 1, 0, 0, 2, 2};
+    ASSERT_TRUE(track_stripe(c, {}, p).has_value());
+    EXPECT_EQ(p.size(), 3u);
+    EXPECT_TRUE(std::isnan(p.z_mm[0]) && std::isnan(p.z_mm[1]));
+    c.count = {3, 0, 1};
+    EXPECT_FALSE(track_stripe(c, {}, p).has_value());
+    c.per_line = 0;
+    EXPECT_FALSE(track_stripe(c, {}, p).has_value());
+    c.lines = -1;
+    EXPECT_FALSE(track_stripe(c, {}, p).has_value());
 }
 
 }  // namespace

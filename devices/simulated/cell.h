@@ -14,7 +14,7 @@
 //    "twist_mm": 0}, "optics": {"width": 1280, "height": 1024, "bit_depth": 8|10|12|16, "stand_off_mm": 300,
 //    "triangulation_deg": 30,
 //               "field_mm": 100, "k1", "k2", "p1", "p2", "k3", "laser_width_mm": 0.2, "fan_deg": 30,
-//               "blur_px": 0.8},
+//               "blur_px": 0.8, "blooming": 0.1},
 //    "surface": {"albedo": 0.5, "gloss": 0.4, "shininess": 30, "dark_share": 0.02, "dark_albedo": 0.06,
 //    "dark_size_mm": 12,
 //                "mirror": 0.3},

@@ -131,7 +131,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     });
     f.object("optics", [&](Fields& o) {
         o.only({"width", "height", "bit_depth", "stand_off_mm", "triangulation_deg", "field_mm", "k1", "k2",
-                "p1", "p2", "k3", "laser_width_mm", "fan_deg", "blur_px"});
+                "p1", "p2", "k3", "laser_width_mm", "fan_deg", "blur_px", "blooming"});
         o.whole("width", s.optics.width, 64, 8192);
         o.whole("height", s.optics.height, 64, 8192);
         o.whole("bit_depth", s.optics.bit_depth, 8, 16);
@@ -146,6 +146,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         o.number("laser_width_mm", s.optics.laser_width_mm, 0.001, 5);
         o.number("fan_deg", s.optics.fan_deg, 1, 120);
         o.number("blur_px", s.optics.blur_px, 0.3, 5);
+        o.number("blooming", s.optics.blooming, 0, 1);
         const int depth = s.optics.bit_depth;
         if (!o.failed() && depth != 8 && depth != 10 && depth != 12 && depth != 16) {
             o.keep(input_error("must be 8, 10, 12 or 16", o.path("bit_depth")));

@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "devices/simulated/random.h"
 
@@ -13,6 +15,7 @@ namespace {
 constexpr double kStep_px = 0.35;
 constexpr double kSkip_mm = 0.01;  // end of a shadow ray that may touch its own surface
 constexpr int kBlock = 16;
+constexpr double kBoardLight = 40;  // a lamp on the board, in units of the ambient light on everything else
 
 // Standard normal numbers, to be read from a random place on.
 constexpr std::size_t kNoiseSize = std::size_t{1} << 17;
@@ -154,17 +157,25 @@ void StripeRenderer::trace(const MeshTree& part, const Pose& part_from_sensor, d
     const double reach = 1.5 * optics_.stand_off_mm;
     part.cut(plane, plane.dot(part_from_sensor.translation()), part_from_sensor.translation(), reach,
              segments_);
-    // The order of the tree's leaves must not decide sums of floats.
-    std::sort(segments_.begin(), segments_.end(),
-              [](const CutSegment& a, const CutSegment& b) { return a.triangle < b.triangle; });
+    // Along x, so that neighbours follow each other and the order of the tree's leaves decides nothing.
+    cuts_.clear();
+    for (const CutSegment& s : segments_) {
+        Cut c{sensor_from_part * s.a, sensor_from_part * s.b, s.triangle};
+        if (c.a.x() > c.b.x()) std::swap(c.a, c.b);
+        cuts_.push_back(c);
+    }
+    std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
+        return a.a.x() != b.a.x() ? a.a.x() < b.a.x() : a.triangle < b.triangle;
+    });
     const double half_fan = std::tan(rad_from_deg(0.5 * optics_.fan_deg));
     const double margin = 8, w = optics_.width + margin, h = optics_.height + margin;
     const auto inside = [&](const Eigen::Vector2d& p) {
         return p.x() > -margin && p.x() < w && p.y() > -margin && p.y() < h;
     };
     int bounce = 0;
-    for (const CutSegment& s : segments_) {
-        Eigen::Vector3d a = sensor_from_part * s.a, b = sensor_from_part * s.b;
+    std::optional<Eigen::Vector2d> last_ghost;
+    for (const Cut& s : cuts_) {
+        const Eigen::Vector3d &a = s.a, &b = s.b;
         const double clip = laser_.z() - 1;  // in front of laser and camera
         if (a.z() >= clip || b.z() >= clip) continue;
         const auto pa = model_.to_pixel({a.x(), a.z()}), pb = model_.to_pixel({b.x(), b.z()});
@@ -202,6 +213,7 @@ void StripeRenderer::trace(const MeshTree& part, const Pose& part_from_sensor, d
             }
             if (surface_.mirror <= 0 || ++bounce % 3 != 0) continue;
             const Eigen::Vector3d way = part_from_sensor.linear() * mirrored;
+            const auto before = std::exchange(last_ghost, std::nullopt);
             const auto hit = part.first_hit(p_part, way, 0.5, 200, s.triangle);
             if (!hit) continue;
             const Eigen::Vector3d q_part = p_part + hit->distance_mm * way;
@@ -212,11 +224,22 @@ void StripeRenderer::trace(const MeshTree& part, const Pose& part_from_sensor, d
                 continue;
             const Eigen::Vector2d ghost = model_.camera.project(model_.camera_from_laser * q);
             if (!ghost.allFinite() || !inside(ghost)) continue;
+            last_ghost = ghost;
+            // The light of three samples, spread from the last landing to this one where they are neighbours.
             const double e =
-                light * surface_.mirror * albedo_at(q_part, surface_seed) * -second.dot(mirrored);
-            samples_.push_back({static_cast<float>(ghost.x()), static_cast<float>(ghost.y()),
-                                static_cast<float>(p.x()), static_cast<float>(p.z()), static_cast<float>(e),
-                                static_cast<float>(3 * step), true});
+                light * surface_.mirror * albedo_at(q_part, surface_seed) * -second.dot(mirrored) * 3 * step;
+            const double spread = before ? (ghost - *before).norm() : 1e9;
+            const int spots =
+                spread < 30 ? std::max(1, static_cast<int>(std::ceil(spread / (2 * kStep_px)))) : 1;
+            for (int k = 0; k < spots; ++k) {
+                const Eigen::Vector2d at =
+                    spots > 1 ? Eigen::Vector2d(*before + (ghost - *before) * ((k + 1.0) / spots)) : ghost;
+                const double stretch = std::max(spread < 30 ? spread / spots : 1.0, 0.05);
+                samples_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()),
+                                    static_cast<float>(p.x()), static_cast<float>(p.z()),
+                                    static_cast<float>(e / spots / stretch), static_cast<float>(stretch),
+                                    true});
+            }
         }
     }
 }
@@ -305,24 +328,34 @@ void StripeRenderer::bloom_and_speckle(std::uint64_t seed) {
             }
         }
     }
-    // Charge over the limit runs along the column, alike to both sides.
-    for (int pass = 0; pass < 3 && !hot_.empty(); ++pass) {
-        spill_.clear();
-        for (const std::size_t i : hot_) spill_.push_back(std::max(0.0F, electrons_[i] - kSpillFrom) * 0.15F);
-        for (std::size_t k = 0; k < hot_.size(); ++k) {
-            const std::size_t i = hot_[k];
-            electrons_[i] -= spill_[k];
-            if (i >= stride_) electrons_[i - stride_] += 0.5F * spill_[k];
-            if (i + stride_ < electrons_.size()) electrons_[i + stride_] += 0.5F * spill_[k];
+    if (hot_.empty()) return;
+    // Charge above the limit is drained, but a share runs out along the column, alike to both sides, and
+    // fills what is not yet full.
+    std::sort(hot_.begin(), hot_.end(), [&](std::size_t a, std::size_t b) {
+        return a % stride_ != b % stride_ ? a % stride_ < b % stride_ : a < b;
+    });
+    const auto share = static_cast<float>(0.5 * optics_.blooming);
+    for (std::size_t k = 0; k < hot_.size();) {
+        const std::size_t top = hot_[k];
+        std::size_t bottom = top;
+        float excess = 0;
+        for (; k < hot_.size() && hot_[k] - bottom <= stride_ && hot_[k] % stride_ == top % stride_; ++k) {
+            bottom = hot_[k];
+            excess += electrons_[bottom] - kSpillFrom;
+            electrons_[bottom] = kSpillFrom;
         }
-        const std::size_t known = hot_.size();
-        for (std::size_t k = 0; k < known; ++k) {
-            for (const std::size_t i : {hot_[k] - stride_, hot_[k] + stride_}) {
-                if (i < electrons_.size() && electrons_[i] > kSpillFrom) hot_.push_back(i);
-            }
+        float up = share * excess, down = up;
+        for (std::size_t i = top; i >= stride_ && up > 0;) {
+            i -= stride_;
+            const float taken = std::min(up, std::max(0.0F, kSpillFrom - electrons_[i]));
+            electrons_[i] += taken;
+            up -= taken;
         }
-        std::sort(hot_.begin(), hot_.end());
-        hot_.erase(std::unique(hot_.begin(), hot_.end()), hot_.end());
+        for (std::size_t i = bottom + stride_; i < electrons_.size() && down > 0; i += stride_) {
+            const float taken = std::min(down, std::max(0.0F, kSpillFrom - electrons_[i]));
+            electrons_[i] += taken;
+            down -= taken;
+        }
     }
 }
 
@@ -418,7 +451,8 @@ void StripeRenderer::render(const MeshTree& part, const Pose& part_from_sensor, 
     draw();
     bloom_and_speckle(exposure.seed);
     if (board_.columns > 0) {
-        draw_board(part_from_sensor, 10 * noise_.ambient_electrons_per_ms * exposure.exposure_us / 1000);
+        draw_board(part_from_sensor,
+                   kBoardLight * noise_.ambient_electrons_per_ms * exposure.exposure_us / 1000);
     }
     expose(exposure, pixels);
     if (truth) *truth = samples_;

@@ -13,7 +13,7 @@
 // that spot is drawn too. Stray reflections stand for shiny things that are no part of the mesh (clamps,
 // fixture): a stretch of the stripe comes again, shifted, tilted, at 0.3 to 2 times its brightness. Dark
 // patches scale the albedo (oil, sealer, paint). Electrons of a pixel: ambient + stripe with speckle (2 px
-// grain), blooming over into the neighbours of the column above 1.5 times full well, shot noise, read noise,
+// grain), blooming along the column above 1.5 times full well, shot noise, read noise,
 // then gain, offset, rounding and clipping to the bit depth. Not modelled: motion blur, colour, rolling
 // shutter, more than one bounce, distortion of the laser line.
 //
@@ -38,6 +38,7 @@ struct OpticsSettings {
     double laser_width_mm = 0.2;  // full width at half maximum
     double fan_deg = 30;          // full opening
     double blur_px = 0.8;         // sigma
+    double blooming = 0.1;  // share of the charge above 1.5 times full well that runs out along the column
 };
 // Camera and laser plane of these optics. Camera: X along the sensor's X, at the laser's height, looking at
 // the sensor's origin.
@@ -121,7 +122,12 @@ class StripeRenderer {
     std::vector<float> electrons_;    // [height * stride]
     std::vector<float> ambient_;      // [height * stride] relative
     std::vector<StripeSample> samples_;
+    struct Cut {
+        Eigen::Vector3d a, b;  // sensor frame, a.x <= b.x
+        int triangle;
+    };
     std::vector<CutSegment> segments_;
+    std::vector<Cut> cuts_;
     std::vector<std::pair<int, int>> rows_drawn_;  // per 16-column block: first and last row touched
     std::vector<std::size_t> hot_;
     std::vector<float> spill_;

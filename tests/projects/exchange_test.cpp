@@ -7,6 +7,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/profile_csv.h"
+#include "projects/replay.h"
 #include "projects/station.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
@@ -243,47 +244,66 @@ TEST_F(Recorded, NamesThatAreNoFileNames) {
         EXPECT_THAT(entry.path().filename().string(), testing::MatchesRegex("[A-Za-z0-9_-]+\\.(csv|json)"));
 }
 
+// Middle of the saturated pixels of an image row: what anybody would take for the stripe.
+double saturated_middle(const StripeImage& image, int row) {
+    double sum = 0, count = 0;
+    for (int u = 0; u < image.width; ++u)
+        if (std::to_integer<int>(image.pixels[static_cast<std::size_t>(row) * image.row_bytes +
+                                              static_cast<std::size_t>(u)]) >= 250) {
+            sum += u;
+            ++count;
+        }
+    return sum / count;
+}
+
 // Real frames and poses, no calibration: measured in pixels, nothing can be pushed.
 TEST(RealFrames, FolderOfImagesGivesARunInPixels) {
     const char* overridden = std::getenv("SEAMWRIGHT_DATA");
     const fs::path data = fs::path(overridden ? overridden : SEAMWRIGHT_SHARED_DATA) / "etna" / "root";
     if (!fs::exists(data)) GTEST_SKIP() << "skipped: no real data";
     TemporaryFolder folder;
-    for (const char* kind : {"contour-end", "extremum"}) {
-        FolderImport o;
-        o.folder = data;
-        o.feature.kind = kind;
-        o.peaks.scan = ScanLines::rows;
-        o.sigma_mm = 1;
-        auto imported = import_folder(o);
-        ASSERT_TRUE(imported) << imported.error().sentence();
-        EXPECT_TRUE(imported->in_pixels);
-        EXPECT_EQ(imported->project.calibrations[0].method, "pixels");
-        for (const std::string& note : imported->notes) std::printf("%s\n", note.c_str());
-        const fs::path path = folder / (std::string(kind) + ".seam");
-        ASSERT_TRUE(ProjectFile::create(path, imported->project));
-        auto station = Station::open(path);
-        ASSERT_TRUE(station);
-        auto connected = station->connect();
-        ASSERT_TRUE(connected) << connected.error().sentence();
-        RunOptions options;
-        options.push = true;
-        options.keep_images = true;
-        auto run = station->run(options);
-        ASSERT_TRUE(run) << run.error().sentence();
-        int measured = 0;
-        for (const SpotMeasurement& m : run->spots) {
-            measured += m.status == SpotStatus::measured;
-            std::printf("%s %s (%.2f, %.2f) %d points\n", m.spot_id.c_str(),
-                        std::string(to_string(m.status)).c_str(), m.feature.point_mm.x(),
-                        m.feature.point_mm.y(), m.feature.points_used);
-        }
-        EXPECT_EQ(measured, static_cast<int>(run->spots.size()));
-        EXPECT_GE(measured, 7);
-        EXPECT_EQ(run->status, RunStatus::refused);
-        EXPECT_THAT(run->regions[0].refusals,
-                    testing::Contains(HasSubstr("undetermined, not good or usable")));
+    FolderImport o;
+    o.folder = data;
+    o.feature.kind = "contour-end";
+    o.feature.parameters = {
+        {"side", 1}, {"segment", 1}, {"fit_length_mm", 80}};  // pixels: end of the longest piece
+    o.peaks.scan = ScanLines::rows;
+    o.sigma_mm = 1;
+    auto imported = import_folder(o);
+    ASSERT_TRUE(imported) << imported.error().sentence();
+    EXPECT_TRUE(imported->in_pixels);
+    EXPECT_EQ(imported->project.calibrations[0].method, "pixels");
+    EXPECT_THAT(imported->notes, testing::Contains(HasSubstr("pixels")));
+    const fs::path path = folder / "etna.seam";
+    ASSERT_TRUE(ProjectFile::create(path, imported->project));
+    auto station = Station::open(path);
+    ASSERT_TRUE(station);
+    auto connected = station->connect();
+    ASSERT_TRUE(connected) << connected.error().sentence();
+    RunOptions options;
+    options.push = true;
+    options.keep_images = true;
+    auto run = station->run(options);
+    ASSERT_TRUE(run) << run.error().sentence();
+    EXPECT_EQ(run->spots.size(), 8u);
+    for (const SpotMeasurement& m : run->spots) {
+        ASSERT_EQ(m.status, SpotStatus::measured) << m.spot_id << ": " << m.message;
+        EXPECT_GE(m.feature.points_used, 40) << m.spot_id;
+        const StoredImage& image = *run->captures[static_cast<std::size_t>(m.capture)].image;
+        ASSERT_EQ(image.width, 1280);
+        // The line through two rows shortly before, continued to the end.
+        const int row = static_cast<int>(std::lround(m.feature.point_mm.x()));
+        const double near = saturated_middle(image.view(), row - 10),
+                     far = saturated_middle(image.view(), row - 60);
+        EXPECT_NEAR(m.feature.point_mm.y(), near + (near - far) / 50 * 10, 3) << m.spot_id;
     }
+    EXPECT_EQ(run->status, RunStatus::refused);
+    EXPECT_THAT(run->regions[0].refusals, testing::Contains(HasSubstr("undetermined, not good or usable")));
+    // From the stored images everything comes out again.
+    auto replayed = replay(path, {});
+    ASSERT_TRUE(replayed) << replayed.error().sentence();
+    EXPECT_EQ(replayed->captures, 8);
+    EXPECT_TRUE(replayed->differences.empty());
 }
 
 }  // namespace

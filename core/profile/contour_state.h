@@ -30,6 +30,7 @@ struct Scale {
 
 struct Model {
     Scale scale;
+    double sx2 = 0, sz2 = 0, inv_sx2 = 0, inv_sz2 = 0;
     double band = 4, average = 0.15, initial_sigma = 0.15;
     double outlier_cost = 0, edge_cost = 0, jump_cost = 0;
     // Cost of leaving n lines in a row out: open + n line; to come back to the same contour not more than
@@ -40,6 +41,8 @@ struct Model {
     int edge_window = 4;                      // the same for a sharp edge
     Model(const Scale& s, const FilterOptions& o)
         : scale(s), band(o.band_sigmas), average(o.average), initial_sigma(o.initial_sigma) {
+        sx2 = scale.sx * scale.sx, sz2 = scale.sz * scale.sz;
+        inv_sx2 = 1 / sx2, inv_sz2 = 1 / sz2;
         outlier_cost = 0.5 * band * band + 0.75;
         edge_cost = 2.2 * outlier_cost;
         jump_cost = (o.lookahead + 0.6) * outlier_cost;
@@ -79,7 +82,7 @@ inline State first_point(const Model& m, double x, double z) {
 
 inline Deviation deviation(const Model& m, const State& s, double x, double z, int i) {
     Deviation d;
-    const double sx2 = m.scale.sx * m.scale.sx, sz2 = m.scale.sz * m.scale.sz;
+    const double sx2 = m.sx2, sz2 = m.sz2;
     const double length2 = s.vx * s.vx + s.vz * s.vz;
     const double inverse = length2 > 0 ? 1 / length2 : 0;
     const double txx = s.vx * s.vx * inverse, tzz = s.vz * s.vz * inverse, txz = s.vx * s.vz * inverse;
@@ -116,7 +119,7 @@ inline void accept(const Model& m, State& s, const Deviation& d, int i) {
     s.x += d.grown * s.vx, s.z += d.grown * s.vz;
     if (s.age >= kMature && length > 0) {
         const double tx = s.vx / length, tz = s.vz / length;
-        const double wx = tx / (m.scale.sx * m.scale.sx), wz = tz / (m.scale.sz * m.scale.sz);
+        const double wx = tx * m.inv_sx2, wz = tz * m.inv_sz2;
         const double information = wx * tx + wz * tz;
         const double sn = std::sqrt(S / information) / i;
         const double measured = length * (d.grown / i) + (wx * ex + wz * ez) / (information * i);

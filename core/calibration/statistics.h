@@ -14,4 +14,10 @@ double chi_squared_quantile(double p, double freedom);
 // freedom).
 double student_quantile(double p, double freedom);
 
+// Limit of the F statistic (three numbers of the one left out, `freedom` of the rest) beyond which the most
+// suspicious of many observations counts as wrong: the 99.9 % point, raised for having picked the largest.
+inline double outlier_limit(double freedom) {
+    return 12 + 60 / freedom;
+}
+
 }  // namespace seamwright

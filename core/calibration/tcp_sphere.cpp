@@ -172,8 +172,7 @@ bool leave_out_wrong_pose(std::vector<Section>& sections, const Model& model, bo
     }
     if (suspect == nullptr) return false;
     const double f = (all - least) / 3 / (std::max(least, floor) / redundancy);
-    const double limit = 12 + 60 / redundancy;
-    if (f < limit || section_rms(*suspect, model_without) < 0.15) return false;
+    if (f < outlier_limit(redundancy) || section_rms(*suspect, model_without) < 0.15) return false;
     suspect->used = false;
     return true;
 }

@@ -1,0 +1,69 @@
+#pragma once
+// Where a camera (or area sensor) sits on the flange, or in the base, from poses of one fixed target.
+//
+// eye_in_hand: the camera rides on the flange, the target is fixed in the base:
+//     base_from_flange_i * flange_from_camera * camera_from_target_i = base_from_target        (X =
+//     flange_from_camera)
+// eye_to_hand: the camera is fixed in the base, the target rides on the flange:
+//     flange_from_base_i * base_from_camera * camera_from_target_i = flange_from_target         (X =
+//     base_from_camera)
+// Both are A_i X C_i = Y with X and Y unknown.
+//
+// Start: five closed forms (Park and Martin 1994: logarithms of the relative rotations; Horaud and Dornaika
+// 1995: their quaternions; Andreff 1999: Kronecker product for rotation and translation at once; Daniilidis
+// 1999: dual quaternions; Shah 2013: Kronecker product of the rotations of X and Y at once), on all pairs
+// and, when pairs contradict one another, on small subsets; the one with the smallest sum of absolute
+// residuals is kept. Refinement: X and Y jointly by Levenberg-Marquardt over
+//     r_t = A_i X t_Ci - t_Y  [mm],   r_r = log(R_Y^T R_Ai R_X R_Ci)  [rad],   sum |r_t|^2 / s_t^2 + |r_r|^2
+//     / s_r^2
+// where s_t and s_r are estimated from the residuals themselves (variance components), so neither unit nor
+// lever is weighed by hand.
+//
+// Noise model: isotropic independent errors of the target's position and orientation, seen in the frame of Y;
+// robot and camera errors both end there. Covariances carry Student's factor: value +- 1.96 sigma holds 95 %.
+// Degenerate: one orientation (X's translation is free), rotations about one axis (translation along it and
+// the turn about it are free): status undetermined, in words. A pair that the others contradict is found,
+// named and left out.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/calibration/calibration.h"
+#include "core/geometry/pose.h"
+
+namespace seamwright {
+
+enum class Mount { eye_in_hand, eye_to_hand };
+std::string_view name_of(Mount mount);
+std::optional<Mount> mount_named(std::string_view name);
+
+struct HandEyePair {
+    std::string id;
+    Pose base_from_flange = Pose::Identity();
+    Pose camera_from_target = Pose::Identity();
+};
+
+inline constexpr int kHandEyeFewestPairs = 3;  // different robot poses; eight or more are better
+
+enum class HandEyeStatus { ok, undetermined };
+std::string_view name_of(HandEyeStatus status);
+
+struct HandEyeResult {
+    HandEyeStatus status = HandEyeStatus::undetermined;
+    Pose x = Pose::Identity();  // flange_from_camera (eye_in_hand) or base_from_camera (eye_to_hand)
+    Pose y = Pose::Identity();  // base_from_target (eye_in_hand) or flange_from_target (eye_to_hand)
+    Matrix6 covariance_x = Matrix6::Zero(), covariance_y = Matrix6::Zero();
+    double rms_mm = 0, rms_deg = 0;       // |r_t|, |r_r| over the pairs used
+    double sigma_mm = 0, sigma_deg = 0;   // estimated s_t, s_r an axis
+    std::string start;                    // which closed form the refinement began from
+    std::vector<std::string> degenerate;  // plain words
+    std::vector<std::string> notices;
+    CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg] of X, then target_* of Y
+};
+
+// Bad input (fewer than three different pairs, metres, NaN, unknown id to exclude) is an Error.
+Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEyePair>& pairs,
+                                           const std::vector<std::string>& exclude = {});
+
+}  // namespace seamwright

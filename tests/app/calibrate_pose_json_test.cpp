@@ -1,0 +1,188 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/cli/calibrate/commands.h"
+#include "devices/exchange/pose_json.h"
+#include "tests/core/calibration/hand_eye_simulation.h"
+#include "tests/core/calibration/sphere_simulation.h"
+
+namespace seamwright {
+namespace {
+
+using namespace simulation;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+json sphere_json(const SphereCell& cell, const std::vector<SphereObservation>& observations) {
+    json data;
+    data["radius_mm"] = cell.radius;
+    for (const auto& o : observations) {
+        json profile = json::array();
+        for (size_t i = 0; i < o.profile.size(); ++i)
+            profile.push_back({o.profile.x_mm[i], number_json(o.profile.z_mm[i])});
+        data["observations"].push_back(
+            {{"id", o.id},
+             {"base_from_flange", {{"matrix", pose_json(o.base_from_flange)["matrix"]}}},
+             {"profile", profile}});
+    }
+    return data;
+}
+
+TEST(CalibrateJson, TcpSphereFollowsTheContract) {
+    Random random(1);
+    const SphereCell cell = any_cell(random);
+    const auto observations = sphere_observations(cell, 9, random);
+    auto outcome = calibrate_tcp_sphere_json(sphere_json(cell, observations), {});
+    ASSERT_TRUE(outcome.has_value()) << outcome.error().sentence();
+    EXPECT_EQ(outcome->exit_code, 0);
+    const json& r = outcome->result;
+    EXPECT_EQ(r["status"], "ok");
+    EXPECT_EQ(r["verdict"], "good");
+    const auto pose = parse_pose(r["flange_from_sensor"], "flange_from_sensor");
+    ASSERT_TRUE(pose.has_value());
+    EXPECT_LT(distance_mm(*pose, cell.flange_from_sensor), 0.1);
+    EXPECT_EQ(r["centre_base_mm"].size(), 3u);
+    EXPECT_EQ(r["per_pose"].size(), 9u);
+    EXPECT_EQ(r["per_pose"][0]["id"], "P1");
+    EXPECT_LT(r["rms_mm"].get<double>(), 0.05);
+    for (const char* key : {"xyz_mm", "abc_deg", "centre_mm"}) EXPECT_EQ(r["sigma"][key].size(), 3u) << key;
+    EXPECT_EQ(r["covariance"].size(), 9u);
+
+    const auto fewer = calibrate_tcp_sphere_json(sphere_json(cell, observations), {"P2"});
+    ASSERT_TRUE(fewer.has_value());
+    EXPECT_FALSE(fewer->result["per_pose"][1]["used"].get<bool>());
+}
+
+TEST(CalibrateJson, UndeterminedHasNoNumbersAndExitCodeOne) {
+    Random random(2);
+    SphereCell cell = any_cell(random);
+    cell.tilt_deg = cell.turn_deg = 0;
+    const auto outcome =
+        calibrate_tcp_sphere_json(sphere_json(cell, sphere_observations(cell, 9, random)), {});
+    ASSERT_TRUE(outcome.has_value());
+    EXPECT_EQ(outcome->exit_code, 1);
+    EXPECT_EQ(outcome->result["status"], "undetermined");
+    EXPECT_EQ(outcome->result["verdict"], "undetermined");
+    EXPECT_TRUE(outcome->result["flange_from_sensor"].is_null());
+    EXPECT_TRUE(outcome->result["radius_mm"].is_null());
+    EXPECT_FALSE(outcome->result["proposals"].empty());
+}
+
+TEST(CalibrateJson, TcpSphereRefusesHostileData) {
+    Random random(3);
+    const SphereCell cell = any_cell(random);
+    const json good = sphere_json(cell, sphere_observations(cell, 6, random));
+    const auto expect_error = [](const json& data, const char* word) {
+        const auto outcome = calibrate_tcp_sphere_json(data, {});
+        ASSERT_FALSE(outcome.has_value()) << word;
+        EXPECT_THAT(outcome.error().sentence(), HasSubstr(word));
+    };
+    expect_error(json::array(), "object");
+    expect_error(json(nullptr), "object");
+    json bad = good;
+    bad.erase("radius_mm");
+    expect_error(bad, "radius_mm");
+    bad = good;
+    bad["radius_mm"] = "12";
+    expect_error(bad, "radius_mm");
+    bad = good;
+    bad["observations"] = 5;
+    expect_error(bad, "observations");
+    bad = good;
+    bad["observations"][2] = 7;
+    expect_error(bad, "observations[2]");
+    bad = good;
+    bad["observations"][2].erase("base_from_flange");
+    expect_error(bad, "base_from_flange");
+    bad = good;
+    bad["observations"][1]["profile"][3] = {1, 2, 3};
+    expect_error(bad, "profile[3]");
+    bad = good;
+    bad["observations"][1]["profile"][3] = {"a", 2};
+    expect_error(bad, "profile[3]");
+    bad = good;
+    bad["observations"][1]["id"] = "P1";
+    expect_error(bad, "twice");
+    bad = good;
+    bad["observations"] = json::array();
+    expect_error(bad, "too few");
+}
+
+TEST(CalibrateJson, HandEyeBothMounts) {
+    for (unsigned seed = 0; seed < 8; ++seed) {
+        Random random(seed);
+        const HandEyeCell cell = any_hand_eye_cell(random);
+        json data;
+        data["mount"] = std::string(name_of(cell.mount));
+        for (const auto& pair : hand_eye_pairs(cell, 9, random))
+            data["pairs"].push_back({{"base_from_flange", pose_json(pair.base_from_flange)},
+                                     {"camera_from_target", pose_json(pair.camera_from_target)}});
+        const auto outcome = calibrate_hand_eye_json(data, {});
+        ASSERT_TRUE(outcome.has_value()) << outcome.error().sentence();
+        EXPECT_EQ(outcome->exit_code, 0) << outcome->result["reason"];
+        const char* key = cell.mount == Mount::eye_in_hand ? "flange_from_camera" : "base_from_camera";
+        const auto pose = parse_pose(outcome->result[key], key);
+        ASSERT_TRUE(pose.has_value());
+        EXPECT_LT(distance_mm(*pose, cell.x), 3);
+        EXPECT_EQ(outcome->result["per_pose"][8]["id"], "8");
+    }
+    EXPECT_FALSE(calibrate_hand_eye_json({{"mount", "sideways"}, {"pairs", json::array()}}, {}).has_value());
+    EXPECT_FALSE(calibrate_hand_eye_json({{"pairs", json::array()}}, {}).has_value());
+}
+
+TEST(CalibrateJson, PlateStaticAndDrift) {
+    Random random(4);
+    const Pose truth = make_pose(any_rotation(random), {2000, 300, 500});
+    json plate;
+    for (int i = 0; i < 6; ++i) {
+        const Eigen::Vector3d p(uniform(random, -100, 100), uniform(random, -100, 100), 0), w = truth * p;
+        plate["points"].push_back({{"plate", {p.x(), p.y(), p.z()}}, {"world", {w.x(), w.y(), w.z()}}});
+    }
+    const auto solved = calibrate_plate_json(plate, {});
+    ASSERT_TRUE(solved.has_value()) << solved.error().sentence();
+    EXPECT_EQ(solved->exit_code, 0);
+    EXPECT_LT(distance_mm(*parse_pose(solved->result["world_from_plate"], ""), truth), 1e-6);
+
+    const Pose plate_from_camera = make_pose(any_rotation(random), {0, 20, 300});
+    const Pose camera_from_laser = make_pose(any_rotation(random), {5, 60, 100});
+    json chain;
+    chain["world_from_plate"] = {{"pose", pose_json(truth)}, {"sigma_mm", 0.01}, {"sigma_deg", 0.001}};
+    chain["camera_from_plate"] = pose_json(plate_from_camera.inverse());
+    chain["camera_from_laser"] = pose_json(camera_from_laser);
+    const auto one = calibrate_static_json(chain, {});
+    ASSERT_TRUE(one.has_value()) << one.error().sentence();
+    EXPECT_EQ(one->exit_code, 0);
+    EXPECT_LT(distance_mm(*parse_pose(one->result["world_from_laser"], ""),
+                          truth * plate_from_camera * camera_from_laser),
+              1e-6);
+    chain["camera_from_laser"] = 3;
+    EXPECT_FALSE(calibrate_static_json(chain, {}).has_value());
+
+    const SphereCell cell = any_cell(random);
+    json drift;
+    drift["flange_from_sensor"] = pose_json(cell.flange_from_sensor);
+    drift["radius_mm"] = cell.radius;
+    for (int k = 0; k < 3; ++k) {
+        SphereCell now = cell;
+        now.centre_base += Eigen::Vector3d(70 * (k == 1), 60 * (k == 2), 0);
+        const json two = sphere_json(now, sphere_observations(now, 2, random));
+        for (json o : two["observations"]) {
+            o["id"] = std::to_string(k) + o["id"].get<std::string>();
+            o["centre_base_mm"] = vector_json(now.centre_base);
+            drift["observations"].push_back(o);
+        }
+    }
+    const auto held = check_drift_json(drift, {});
+    ASSERT_TRUE(held.has_value()) << held.error().sentence();
+    EXPECT_EQ(held->result["status"], "holds") << held->result["reason"];
+    drift["flange_from_sensor"] =
+        pose_json(retract(cell.flange_from_sensor, (Vector6() << 0.6, -0.5, 0.4, 0, 0, 0).finished()));
+    const auto moved = check_drift_json(drift, {});
+    ASSERT_TRUE(moved.has_value());
+    EXPECT_EQ(moved->result["status"], "drifted");
+    EXPECT_EQ(moved->exit_code, 1);
+    EXPECT_NEAR(moved->result["change_mm"].get<double>(), std::sqrt(0.77), 0.15);
+}
+
+}  // namespace
+}  // namespace seamwright

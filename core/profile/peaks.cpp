@@ -11,13 +11,16 @@ namespace seamwright {
 namespace detail {
 namespace {
 
-constexpr double kPixelSigmas = 4.0;  // candidate pixel
-constexpr double kPeakSigmas = 7.0;   // sum over the width of a peak, in its own standard deviations
-constexpr double kFrameShare = 0.01;  // of the strength that stripes have in the frame
-constexpr double kCut = 0.25;         // of the height, for the centre of gravity
-constexpr double kSharpness = 0.3;    // (width at 1/2 - width at 3/4)/width at 1/2; 0.356 of a Gaussian
-constexpr int kFootPixels = 5;        // background level on each side
+constexpr double kPixelSigmas = 4.0;    // candidate pixel
+constexpr double kPeakSigmas = 7.0;     // sum over the width of a peak, in its own standard deviations
+constexpr double kFrameShare = 0.001;   // of the strength that stripes have in the frame
+constexpr double kHotPixelWidth = 1.1;  // px; a single bright pixel has 1.0, the sharpest optics 1.2
+constexpr int kWindowSteps = 4;
+constexpr double kSharpness = 0.3;   // (width at 1/2 - width at 3/4)/width at 1/2; 0.356 of a Gaussian
+constexpr int kFootPixels = 8;       // background level on each side
+constexpr double kValleySigmas = 5;  // a valley of light beside a peak is deeper than that
 constexpr int kFitRounds = 3;
+constexpr double kMeanDifference = 1.128;  // of two Gaussian samples, in standard deviations
 
 // One image line. Grey values at stride `step`.
 template <class Pixel>
@@ -37,8 +40,12 @@ struct Lobe {
     double middle = 0;
     double cut = 0;                                   // grey value above `base`
     double half_left = 0, half_right = 0, width = 0;  // sub-pixel crossings
+    double narrowing = 0;                             // width at 1/2 minus width at 3/4 of the height
+    double reach = 0;                                 // how far from `middle` the light is its own
     double sharpness = 0;
-    bool clipped = false, truncated = false;
+    bool flat = false;     // the top pixels carry no position
+    bool clipped = false;  // cut off by the sensor
+    bool truncated = false;
     double height() const { return top - base; }
     double base_at(double x) const { return base + slope * (x - middle); }
 };
@@ -111,76 +118,62 @@ class LobeFinder {
         return raise_from_pedestal(lobe);
     }
 
-    // Background line, half-height crossings, clipping, and the cut of the centre of gravity.
-    void measure(Lobe& lobe) const {
+    // Clipping, background, half-height crossings. The background is measured where the flanks end, and the
+    // flanks above the background: a second round when the first moved it.
+    void measure(Lobe& lobe, double noise) const {
         find_top(lobe);
-        lobe.half_left = crossing(line_, lobe.left, -1, 0.5 * (lobe.top + lobe.base));
-        lobe.half_right = crossing(line_, lobe.right, 1, 0.5 * (lobe.top + lobe.base));
-        lobe.width = lobe.half_right - lobe.half_left;
-        double three_quarters = width_at(lobe, 0.75);
-        // Half the flanks between 1/2 and 3/4 height is 0.42 standard deviations of a Gaussian; five times
-        // that outside the half-height point is 3.3 standard deviations from the middle, also of a clipped
-        // one.
-        const int out = static_cast<int>(std::ceil(2.5 * std::max(0.0, lobe.width - three_quarters))) + 1;
-        double low_left = 0, low_right = 0;
-        const bool has_left = foot_level(line_, lobe.left - out, -1, low_left);
-        const bool has_right = foot_level(line_, lobe.right + out, 1, low_right);
-        if (!has_left && !has_right) low_left = low_right = lobe.base;
-        if (!has_left) low_left = low_right;
-        if (!has_right) low_right = low_left;
-        const double low = std::min({low_left, low_right, static_cast<double>(lobe.top)});
-        const double high = std::min(std::max(low_left, low_right), static_cast<double>(lobe.top));
-        lobe.middle = 0.5 * (lobe.half_left + lobe.half_right);
-        if (high - low <= 0.25 * (lobe.top - low)) {
-            // Light that varies evenly across the stripe.
-            lobe.base = 0.5 * (low + high);
-            const double span = (lobe.right + out + 2) - (lobe.left - out - 2);
-            lobe.slope = has_left && has_right ? (low_right - low_left) / span : 0.0;
-            lobe.cut = kCut * (lobe.top - lobe.base);
-        } else {
-            // A step, or a neighbour on one side: the cut stays above it.
-            lobe.base = low;
-            lobe.cut = std::max(kCut * (lobe.top - low), high + 0.15 * (lobe.top - high) - low);
+        for (int round = 0; round < 2; ++round) {
+            outline(lobe);
+            const double before = lobe.base;
+            find_background(lobe, noise);
+            if (std::abs(lobe.base - before) < 0.03 * lobe.height()) break;
         }
-        const double half = 0.5 * (lobe.top + lobe.base);
-        const int limit = line_.size;
-        const int from = std::clamp(static_cast<int>(std::lround(lobe.middle)), lobe.left, lobe.right);
-        int left = from, right = from;
-        if (line_[from] >= half && walk(line_, from, -1, half, lobe.top, limit, left) &&
-            walk(line_, from, 1, half, lobe.top, limit, right)) {
-            lobe.left = left;
-            lobe.right = right;
-            lobe.half_left = crossing(line_, left, -1, half);
-            lobe.half_right = crossing(line_, right, 1, half);
-            lobe.width = lobe.half_right - lobe.half_left;
-            three_quarters = width_at(lobe, 0.75);
-        }
-        lobe.sharpness = lobe.width > 0 ? std::max(0.0, lobe.width - three_quarters) / lobe.width : 0.0;
+        outline(lobe);
+        lobe.sharpness = sharpness(lobe);
         lobe.truncated = lobe.left == 0 || lobe.right == line_.size - 1;
     }
 
+    // Mean of positions weighted by grey value above background and a smooth window that ends where the
+    // stripe does, (1 - (d/R)^2)^2; the window stands at the mean itself, which Newton steps find. A hard cut
+    // would add up to 0.05 px of bias that follows the phase of the pixel grid.
     double centre_of_gravity(const Lobe& lobe) const {
-        const auto above = [&](int i) { return line_[i] - lobe.base_at(i) - lobe.cut; };
-        int left = lobe.top_first, right = lobe.top_last;
-        while (left > 0 && (above(left - 1) > 0 || (left > 1 && left > lobe.left && above(left - 2) > 0)))
-            --left;
-        while (
-            right + 1 < line_.size &&
-            (above(right + 1) > 0 || (right + 2 < line_.size && right < lobe.right && above(right + 2) > 0)))
-            ++right;
-        double sum = 0, moment = 0;
-        for (int i = left; i <= right; ++i) {
-            const double weight = std::max(0.0, above(i));
-            sum += weight;
-            moment += weight * (i - left);
+        const double reach = std::max(std::min(0.5 * lobe.width + 2.15 * lobe.narrowing + 0.25, lobe.reach),
+                                      0.5 * lobe.width + 0.5);
+        int first = std::max(0, static_cast<int>(std::ceil(lobe.middle - reach)) - 1);
+        int last = std::min(line_.size - 1, static_cast<int>(std::floor(lobe.middle + reach)) + 1);
+        if (lobe.cut > 0) {
+            int left = lobe.top_first, right = lobe.top_last;
+            while (left > first && (above_cut(lobe, left - 1) > 0 || (left > lobe.left && left - 1 > first)))
+                --left;
+            while (right < last &&
+                   (above_cut(lobe, right + 1) > 0 || (right < lobe.right && right + 1 < last)))
+                ++right;
+            first = left;
+            last = right;
         }
-        return sum > 0 ? left + moment / sum : lobe.middle;
+        double x = lobe.middle;  // of the half-height points
+        for (int step = 0; step < kWindowSteps; ++step) {
+            double force = 0, stiffness = 0;
+            for (int i = first; i <= last; ++i) {
+                const double u = (i - x) / reach, inside = 1 - u * u;
+                if (inside <= 0) continue;
+                const double grey =
+                    lobe.cut > 0 ? std::max(0.0, above_cut(lobe, i)) : line_[i] - lobe.base_at(i);
+                force += grey * inside * inside * u;
+                stiffness += grey * inside * (1 - 5 * u * u);
+            }
+            if (!(stiffness > 0)) return lobe.middle;
+            const double move = reach * force / stiffness;
+            x += std::clamp(move, -0.25 * lobe.width, 0.25 * lobe.width);
+            if (std::abs(move) < 1e-3) break;
+        }
+        return std::abs(x - lobe.middle) <= 0.5 * lobe.width ? x : lobe.middle;
     }
 
     // Weighted parabola through the logarithm; falls back to the middle of the half-height points.
     double gaussian(const Lobe& lobe) const {
         const double scale = std::max(lobe.height(), 1e-9);
-        const double floor = (lobe.clipped ? 0.1 : 0.2) * scale;
+        const double floor = (lobe.flat ? 0.1 : 0.2) * scale;
         const double centre = lobe.middle;
         int left = lobe.left, right = lobe.right;
         while (left > 0 && line_[left - 1] - lobe.base_at(left - 1) > floor) --left;
@@ -192,7 +185,7 @@ class LobeFinder {
             double s[5] = {}, t[3] = {};
             int used = 0;
             for (int i = left; i <= right; ++i) {
-                if (lobe.clipped && line_[i] >= lobe.top) continue;
+                if (lobe.flat && line_[i] >= lobe.top) continue;
                 const double y = (line_[i] - lobe.base_at(i)) / scale;
                 if (y < 0.02) continue;
                 const double x = (i - centre) / unit;
@@ -238,7 +231,9 @@ class LobeFinder {
             for (int k = -reach; k <= reach; ++k) {
                 const int i = std::clamp(centre + k, 0, line_.size - 1);
                 const double u = (centre + k - x) / sigma;
-                const double weight = std::exp(-0.5 * u * u), value = line_[i] - lobe.base_at(i);
+                const double above = line_[i] - lobe.base_at(i);
+                const double weight = std::exp(-0.5 * u * u),
+                             value = lobe.cut > 0 ? std::max(0.0, above) : above;
                 first += value * weight * u;             // d/dx of the smoothed line, times sigma
                 second += value * weight * (u * u - 1);  // second derivative, times sigma^2
             }
@@ -263,8 +258,85 @@ class LobeFinder {
         return sum;
     }
 
+    // 1 for a single hump between the half-height points; what rises and falls again in between (beyond what
+    // noise of this standard deviation does) lowers it.
+    double unimodality(const Lobe& lobe, double noise) const {
+        const double half = 0.5 * lobe.height();
+        double path = 2 * lobe.top - line_[lobe.left] - line_[lobe.right];
+        double variation = 0;
+        for (int i = lobe.left + 1; i <= lobe.right; ++i) variation += std::abs(line_[i] - line_[i - 1]);
+        const double excess = variation - path - kMeanDifference * noise * (lobe.right - lobe.left);
+        return excess > 0 ? half / (half + excess) : 1.0;
+    }
+
   private:
-    // Pixels of the top value; three side by side, or full scale, are a plateau cut off by the sensor.
+    double above_cut(const Lobe& lobe, int i) const { return line_[i] - lobe.base_at(i) - lobe.cut; }
+
+    // Half-height stretch about the top, its crossings and its narrowing towards three quarters.
+    void outline(Lobe& lobe) const {
+        const double half = 0.5 * (lobe.top + lobe.base);
+        walk(line_, lobe.top_first, -1, half, lobe.top, line_.size, lobe.left);
+        walk(line_, lobe.top_last, 1, half, lobe.top, line_.size, lobe.right);
+        lobe.half_left = crossing(line_, lobe.left, -1, half);
+        lobe.half_right = crossing(line_, lobe.right, 1, half);
+        lobe.width = lobe.half_right - lobe.half_left;
+        lobe.middle = 0.5 * (lobe.half_left + lobe.half_right);
+        lobe.narrowing = std::max(0.0, lobe.width - width_at(lobe, 0.75, lobe.top));
+    }
+
+    // Light beyond one flank (`edge` its outermost pixel at half height). Where it rises again before the
+    // flank has run out, for a neighbouring peak or a brighter surface, the valley is the background and
+    // `reach` ends there.
+    bool beyond_flank(const Lobe& lobe, int edge, int step, int out, double noise, double& level,
+                      double& reach) const {
+        const bool found = foot_level(line_, edge + step * out, step, level);
+        int valley = edge, lowest = line_[edge];
+        for (int k = 1; k <= out + kFootPixels / 2; ++k) {
+            const int i = edge + step * k;
+            if (i < 0 || i >= line_.size) break;
+            if (line_[i] < lowest) {
+                lowest = line_[i];
+                valley = i;
+            }
+        }
+        if (found && level - lowest > std::max(0.25 * (lobe.top - lowest), kValleySigmas * noise)) {
+            level = lowest;
+            reach = std::min(reach, std::abs(valley - lobe.middle));
+        }
+        return found;
+    }
+
+    void find_background(Lobe& lobe, double noise) const {
+        // Half the narrowing from 1/2 to 3/4 of the height is 0.42 standard deviations of a Gaussian; five
+        // times that outside the half-height point is 3.3 standard deviations from the middle, and on the
+        // flanks of a clipped one as far down.
+        const int out = static_cast<int>(std::ceil(2.5 * lobe.narrowing)) + 1;
+        double low_left = 0, low_right = 0;
+        lobe.reach = 1e9;
+        const bool has_left = beyond_flank(lobe, lobe.left, -1, out, noise, low_left, lobe.reach);
+        const bool has_right = beyond_flank(lobe, lobe.right, 1, out, noise, low_right, lobe.reach);
+        if (!has_left && !has_right) low_left = low_right = lobe.base;
+        if (!has_left) low_left = low_right;
+        if (!has_right) low_right = low_left;
+        const double low = std::min({low_left, low_right, static_cast<double>(lobe.top)});
+        const double high = std::min(std::max(low_left, low_right), static_cast<double>(lobe.top));
+        if (high - low <= 0.25 * (lobe.top - low)) {
+            // Light that varies evenly across the stripe.
+            lobe.base = 0.5 * (low + high);
+            lobe.slope = has_left && has_right && lobe.reach > line_.size
+                             ? (low_right - low_left) / (lobe.right - lobe.left + 2 * out + kFootPixels - 1)
+                             : 0.0;
+            lobe.cut = 0;
+        } else {
+            // A step of the background, or another peak on one side: only what stands above both counts.
+            lobe.base = high;
+            lobe.slope = 0;
+            lobe.cut = 0.15 * (lobe.top - high);
+        }
+    }
+
+    // Pixels of the top value. Some sensors clip below full scale: a plateau of one value over most of the
+    // width.
     void find_top(Lobe& lobe) const {
         lobe.top_first = lobe.top_last = -1;
         int run = 0, longest = 0;
@@ -277,39 +349,49 @@ class LobeFinder {
             run = on_top ? run + 1 : 0;
             longest = std::max(longest, run);
         }
-        lobe.clipped = lobe.top >= full_scale_ || longest >= 3;
+        lobe.flat = lobe.top >= full_scale_ || longest >= 3;
+        lobe.clipped = lobe.top >= full_scale_ || (longest >= 4 && 2 * longest >= lobe.right - lobe.left &&
+                                                   lobe.top > 0.7 * full_scale_);
     }
 
-    double width_at(const Lobe& lobe, double share) const {
-        const double level = lobe.base + share * lobe.height();
+    // Outermost width at a share of the height from background to `top`.
+    double width_at(const Lobe& lobe, double share, double top) const {
+        const double level = lobe.base + share * (top - lobe.base);
         int left = lobe.left, right = lobe.right;
         while (left < lobe.top_first && line_[left] < level) ++left;
         while (right > lobe.top_last && line_[right] < level) --right;
         return crossing(line_, right, 1, level) - crossing(line_, left, -1, level);
     }
 
-    // A narrow stripe on a bright square: the square reaches half height too. Its level becomes the
-    // background.
+    // How much the lobe narrows from half to three quarters of its height, relative to the former. The height
+    // is that of the middle half of the lobe, which noise moves less than its highest pixel.
+    double sharpness(const Lobe& lobe) const {
+        if (!(lobe.width > 0)) return 0;
+        const int quarter = (lobe.right - lobe.left) / 4;
+        double sum = 0;
+        for (int i = lobe.left + quarter; i <= lobe.right - quarter; ++i) sum += line_[i];
+        const double level = sum / (lobe.right - lobe.left - 2 * quarter + 1);
+        return std::max(0.0, width_at(lobe, 0.5, level) - width_at(lobe, 0.75, level)) / lobe.width;
+    }
+
+    // A narrow stripe on a bright square: the square reaches half height too. Its level, the median of the
+    // stretch, becomes the background when what stands above it is narrow, but wider than a grain of speckle.
     bool raise_from_pedestal(Lobe& lobe) const {
+        constexpr int kSamples = 64;
         for (int round = 0; round < 2; ++round) {
+            const int wide = lobe.right - lobe.left + 1;
+            if (wide <= 10 || lobe.height() < 4) break;
             find_top(lobe);
-            const double wide = lobe.right - lobe.left + 1;
-            const double narrow = width_at(lobe, 0.75);
-            if (wide <= 10 || narrow >= 0.35 * wide || lobe.height() < 4) break;
-            // Level of the pedestal: mean of its pixels outside three times the core.
-            const double centre = 0.5 * (lobe.top_first + lobe.top_last);
-            double sum = 0;
-            int n = 0;
-            for (int i = lobe.left; i <= lobe.right; ++i)
-                if (std::abs(i - centre) > 1.5 * narrow + 1) sum += line_[i], ++n;
-            if (n < 3) break;
-            const double level = sum / n, half = 0.5 * (lobe.top + level);
-            int left = lobe.top_first, right = lobe.top_last;
-            if (!walk(line_, lobe.top_first, -1, half, lobe.top, line_.size, left) ||
-                !walk(line_, lobe.top_last, 1, half, lobe.top, line_.size, right))
-                break;
+            int sample[kSamples];
+            const int n = std::min(wide, kSamples);
+            for (int i = 0; i < n; ++i) sample[i] = line_[lobe.left + i * wide / n];
+            std::nth_element(sample, sample + n / 2, sample + n);
+            const double level = sample[n / 2], half = 0.5 * (lobe.top + level);
+            int left = 0, right = 0;
+            walk(line_, lobe.top_first, -1, half, lobe.top, line_.size, left);
+            walk(line_, lobe.top_last, 1, half, lobe.top, line_.size, right);
             const double core = crossing(line_, right, 1, half) - crossing(line_, left, -1, half);
-            if (core < 2) break;  // a grain of speckle on a wide stripe
+            if (core < 2 || core > 0.25 * wide) break;
             lobe.left = left;
             lobe.right = right;
             lobe.base = level;
@@ -401,7 +483,7 @@ struct Extraction {
     }
 
     void keep(const LobeFinder<Line<Pixel>>& finder, int line_number, float noise, Lobe& lobe) {
-        finder.measure(lobe);
+        finder.measure(lobe, noise);
         if (lobe.height() < rule.of(noise) * (options.threshold > 0 ? 1.0 : 0.75)) return;
         if (!(lobe.width >= options.min_width_px && lobe.width <= options.max_width_px)) return;
         const double energy = finder.energy(lobe);
@@ -420,10 +502,12 @@ struct Extraction {
                 position = finder.steger(lobe);
                 break;
         }
-        const double shape = lobe.clipped ? 1.0 : std::clamp(lobe.sharpness / kSharpness, 0.02, 1.0);
+        double strength = energy * lobe.height() * finder.unimodality(lobe, noise);
+        if (!lobe.clipped) strength *= std::clamp(lobe.sharpness / kSharpness, 0.02, 1.0);
+        if (lobe.width < kHotPixelWidth) strength *= 0.1;
         const auto flags = static_cast<std::uint8_t>((lobe.clipped ? StripePeaks::kSaturated : 0) |
                                                      (lobe.truncated ? StripePeaks::kTruncated : 0));
-        keeper.add(line_number, static_cast<float>(energy * shape), static_cast<float>(position),
+        keeper.add(line_number, static_cast<float>(strength), static_cast<float>(position),
                    static_cast<float>(lobe.top), static_cast<float>(lobe.width), flags);
     }
 };
@@ -505,7 +589,7 @@ Expected<void> find_peaks(const StripeImage& image, const PeakOptions& options, 
     ThresholdRule rule;
     rule.fixed = options.threshold;
     rule.noise_factor = kPixelSigmas;
-    rule.floor = image.full_scale() / 256.0 + 1.0;
+    rule.floor = image.full_scale() / 256.0 + 2.0;
     measure_background(image, options.scan, options.max_width_px, kernel, work.scan);
     if (image.bytes_per_pixel() == 1) {
         extract<std::uint8_t>(image, options, rule, kernel, work, peaks);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "core/profile/peaks_detail.h"
 #include "core/profile/stripe_scan.h"
@@ -16,6 +17,7 @@ constexpr double kPeakSigmas = 7.0;     // sum over the width of a peak, in its 
 constexpr double kFrameShare = 0.001;   // of the strength that stripes have in the frame
 constexpr double kHotPixelWidth = 1.1;  // px; a single bright pixel has 1.0, the sharpest optics 1.2
 constexpr int kWindowSteps = 4;
+constexpr double kBroad = 10;        // px; what is narrower is no square
 constexpr double kSharpness = 0.3;   // (width at 1/2 - width at 3/4)/width at 1/2; 0.356 of a Gaussian
 constexpr int kFootPixels = 8;       // background level on each side
 constexpr double kValleySigmas = 5;  // a valley of light beside a peak is deeper than that
@@ -29,6 +31,30 @@ struct Line {
     std::ptrdiff_t step;  // bytes
     int size;
     int operator[](int i) const { return *reinterpret_cast<const Pixel*>(first + i * step); }
+};
+
+// The part of a line about a run, copied once: a column's pixels lie a row apart, and their cache lines evict
+// each other.
+template <class Pixel>
+class LineWindow {
+  public:
+    LineWindow(const Line<Pixel>& line, const Run& run) : size(line.size), line_(line) {
+        const int margin = kMargin + (run.end - run.begin);
+        first_ = std::max(0, run.begin - margin);
+        count_ = std::min({line.size, run.end + margin, first_ + kCapacity}) - first_;
+        for (int i = 0; i < count_; ++i) grey_[i] = line[first_ + i];
+    }
+    int operator[](int i) const {
+        const int at = i - first_;
+        return static_cast<unsigned>(at) < static_cast<unsigned>(count_) ? grey_[at] : line_[i];
+    }
+    const int size;
+
+  private:
+    static constexpr int kMargin = 16, kCapacity = 192;
+    Line<Pixel> line_;
+    int first_, count_;
+    int grey_[kCapacity];
 };
 
 // A lobe and all that is measured on it. Positions in px along the line, levels in grey values.
@@ -88,9 +114,35 @@ bool foot_level(const L& line, int from, int step, double& level) {
     int n = 0;
     for (int i = from; n < kFootPixels && i >= 0 && i < line.size; i += step) values[n++] = line[i];
     if (n < 2) return false;
-    std::sort(values, values + n);
+    if (n == kFootPixels) {
+        // A sorting network for eight: constant time, no branches.
+        static_assert(kFootPixels == 8);
+        const auto order = [&](int a, int b) {
+            const int lower = std::min(values[a], values[b]), upper = std::max(values[a], values[b]);
+            values[a] = lower;
+            values[b] = upper;
+        };
+        order(0, 1), order(2, 3), order(4, 5), order(6, 7);
+        order(0, 2), order(1, 3), order(4, 6), order(5, 7);
+        order(1, 2), order(5, 6), order(0, 4), order(3, 7);
+        order(1, 5), order(2, 6);
+        order(1, 4), order(3, 6);
+        order(2, 4), order(3, 5);
+        order(3, 4);
+    } else {
+        std::sort(values, values + n);
+    }
     level = n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
     return true;
+}
+
+// Whether the way from pixel `from` to `to`, in either direction, is more than a falling flank.
+template <class L>
+bool rises_again(const L& line, int from, int to) {
+    const int step = to < from ? -1 : 1;
+    for (int i = from; i != to; i += step)
+        if (line[i + step] > line[i]) return true;
+    return false;
 }
 
 template <class L>
@@ -122,14 +174,13 @@ class LobeFinder {
     // flanks above the background: a second round when the first moved it.
     void measure(Lobe& lobe, double noise) const {
         find_top(lobe);
-        for (int round = 0; round < 2; ++round) {
+        for (int round = 0; round < 3; ++round) {
             outline(lobe);
             const double before = lobe.base;
-            find_background(lobe, noise);
-            if (std::abs(lobe.base - before) < 0.03 * lobe.height()) break;
+            if (round < 2) find_background(lobe, noise);
+            if (std::abs(lobe.base - before) < 0.01 * lobe.height()) break;
         }
-        outline(lobe);
-        lobe.sharpness = sharpness(lobe);
+        lobe.sharpness = lobe.width > kBroad ? sharpness(lobe) : lobe.narrowing / lobe.width;
         lobe.truncated = lobe.left == 0 || lobe.right == line_.size - 1;
     }
 
@@ -151,21 +202,43 @@ class LobeFinder {
             first = left;
             last = right;
         }
+        // Grey values once, then the steps on four pixels at a time; positions from the middle pixel keep
+        // float exact enough.
+        using Four = float __attribute__((vector_size(16)));
+        constexpr int kCapacity = 256;
+        alignas(16) float grey[kCapacity + 4], place[kCapacity + 4];
+        const int stride = 1 + (last - first) / kCapacity;  // stripes beyond the capacity are sampled
+        const int origin = static_cast<int>(std::lround(lobe.middle));
+        int n = 0;
+        for (int i = first; i <= last; i += stride, ++n) {
+            const double above = above_cut(lobe, i);
+            grey[n] = static_cast<float>(lobe.cut > 0 ? std::max(0.0, above) : above);
+            place[n] = static_cast<float>(i - origin);
+        }
+        for (; n % 4; ++n) grey[n] = place[n] = 0;
         double x = lobe.middle;  // of the half-height points
+        const auto scale = static_cast<float>(1 / reach);
         for (int step = 0; step < kWindowSteps; ++step) {
-            double force = 0, stiffness = 0;
-            for (int i = first; i <= last; ++i) {
-                const double u = (i - x) / reach, inside = 1 - u * u;
-                if (inside <= 0) continue;
-                const double grey =
-                    lobe.cut > 0 ? std::max(0.0, above_cut(lobe, i)) : line_[i] - lobe.base_at(i);
-                force += grey * inside * inside * u;
-                stiffness += grey * inside * (1 - 5 * u * u);
+            const auto at = static_cast<float>(x - origin);
+            Four force = {}, stiffness = {};
+            for (int k = 0; k < n; k += 4) {
+                Four u, g;
+                std::memcpy(&u, place + k, sizeof u);
+                std::memcpy(&g, grey + k, sizeof g);
+                u = (u - at) * scale;
+                const Four square = u * u;
+                Four inside = 1.0f - square;
+                inside = inside > 0.0f ? inside : Four{};
+                g *= inside;
+                force += g * inside * u;
+                stiffness += g * (1.0f - 5.0f * square);
             }
-            if (!(stiffness > 0)) return lobe.middle;
-            const double move = reach * force / stiffness;
+            const double stiff = double(stiffness[0]) + stiffness[1] + stiffness[2] + stiffness[3];
+            const double pull = double(force[0]) + force[1] + force[2] + force[3];
+            if (!(stiff > 0)) return lobe.middle;
+            const double move = reach * pull / stiff;
             x += std::clamp(move, -0.25 * lobe.width, 0.25 * lobe.width);
-            if (std::abs(move) < 1e-3) break;
+            if (std::abs(move) < 0.02) break;  // the next step would be below 1e-3
         }
         return std::abs(x - lobe.middle) <= 0.5 * lobe.width ? x : lobe.middle;
     }
@@ -458,8 +531,8 @@ struct Extraction {
     }
 
     void run(const Run& run) {
-        const Line<Pixel> pixels = line(run.line);
-        const LobeFinder<Line<Pixel>> finder(pixels, options, image.full_scale());
+        const LineWindow<Pixel> pixels(line(run.line), run);
+        const LobeFinder<LineWindow<Pixel>> finder(pixels, options, image.full_scale());
         struct Interval {
             int begin, end;
         };
@@ -473,16 +546,19 @@ struct Extraction {
                                                                 : scan.tile_of(middle, run.line);
             Lobe lobe;
             const bool whole = finder.stretch(part.begin, part.end, scan.background[tile], lobe);
-            // What lies on either side of it in the run may hold lesser peaks.
-            const int left_end = std::min(lobe.left - 1, part.end),
-                      right_begin = std::max(lobe.right + 2, part.begin);
+            const Lobe seen = lobe;
             if (whole) keep(finder, run.line, scan.noise[tile], lobe);
-            if (left_end > part.begin && n < 16) open[n++] = {part.begin, left_end};
-            if (right_begin < part.end && n < 16) open[n++] = {right_begin, part.end};
+            // What lies on either side of it in the run may hold lesser peaks.
+            const int left_end = std::min(seen.left - 1, part.end),
+                      right_begin = std::max(seen.right + 2, part.begin);
+            if (left_end > part.begin && n < 16 && rises_again(pixels, seen.left, part.begin))
+                open[n++] = {part.begin, left_end};
+            if (right_begin < part.end && n < 16 && rises_again(pixels, seen.right, part.end - 1))
+                open[n++] = {right_begin, part.end};
         }
     }
 
-    void keep(const LobeFinder<Line<Pixel>>& finder, int line_number, float noise, Lobe& lobe) {
+    void keep(const LobeFinder<LineWindow<Pixel>>& finder, int line_number, float noise, Lobe& lobe) {
         finder.measure(lobe, noise);
         if (lobe.height() < rule.of(noise) * (options.threshold > 0 ? 1.0 : 0.75)) return;
         if (!(lobe.width >= options.min_width_px && lobe.width <= options.max_width_px)) return;

@@ -122,10 +122,13 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
         stored_flange_from_sensor.inverse() * (observation.base_from_flange.inverse() * known_centre_base_mm);
     const double height =
         std::sqrt(std::max(0.0, radius_mm * radius_mm - circle->radius_mm * circle->radius_mm));
-    const Eigen::Vector3d centre(circle->x_mm, expected.y() < 0 ? -height : height, circle->z_mm);
+    // Near the middle of the sphere the circle says next to nothing about y: keep the expected place there,
+    // with a sigma that takes no part.
+    const bool off_middle = std::abs(expected.y()) > 0.2 * radius_mm && height > 0.15 * radius_mm;
+    const double y = off_middle ? std::copysign(height, expected.y()) : expected.y();
+    const Eigen::Vector3d centre(circle->x_mm, y, circle->z_mm);
 
-    // Covariance of (a, b, rho) from the inliers' noise; y = sqrt(r^2 - rho^2) has sigma rho / |y| sigma_rho
-    // and is never known better than the second order term allows near the middle.
+    // Covariance of (a, b, rho) from the inliers' noise; y = sqrt(r^2 - rho^2) has sigma rho / |y| sigma_rho.
     Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
     for (const int i : circle->inliers) {
         const double dx = observation.profile.x_mm[static_cast<size_t>(i)] - circle->x_mm;
@@ -135,19 +138,19 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
     }
     const double noise = std::max(circle->noise_mm, 1e-4);
     const Eigen::Matrix3d fit = h.inverse() * noise * noise;
-    const double sigma_rho = std::sqrt(fit(2, 2));
-    const double slope = -circle->radius_mm / std::max(height, std::sqrt(2 * radius_mm * sigma_rho));
     Eigen::Matrix3d to_centre = Eigen::Matrix3d::Zero();  // (x, y, z) from (a, b, rho)
     to_centre(0, 0) = 1;
-    to_centre(1, 2) = slope;
+    to_centre(1, 2) = off_middle ? -circle->radius_mm / y : 0;
     to_centre(2, 1) = 1;
+    Eigen::Matrix3d of_centre = to_centre * fit * to_centre.transpose();
+    if (!off_middle) of_centre(1, 1) = radius_mm * radius_mm;
     DriftMeasurement measurement;
     measurement.id = observation.id;
     measurement.base_from_flange = observation.base_from_flange;
     measurement.known_base_mm = known_centre_base_mm;
     measurement.measured_flange_mm = stored_flange_from_sensor * centre;
     const Eigen::Matrix3d r = stored_flange_from_sensor.linear();
-    measurement.covariance = r * to_centre * fit * to_centre.transpose() * r.transpose() +
+    measurement.covariance = r * of_centre * r.transpose() +
                              (other_sigma_mm * other_sigma_mm + 1e-8) * Eigen::Matrix3d::Identity();
     return measurement;
 }

@@ -378,30 +378,21 @@ HoldOut verify(const Chain& chain, const Pose& x, const Pose& y, const Scales& s
     return result;
 }
 
-// Fit of the same data read otherwise; the usual mistakes of a first set-up.
+// The usual mistake of a first set-up: one direction reversed. A^-1 Y C^-1 = X says the same as A X C = Y, so
+// the other mount, and camera_from_target inverted, cannot be told apart.
 std::string likely_mistake(Mount mount, const std::vector<HandEyePair>& pairs, const std::vector<bool>& used,
                            double rms_mm) {
-    const auto rms_of = [&](Mount m, bool invert_camera, bool invert_robot) {
-        std::vector<HandEyePair> other = pairs;
-        for (auto& pair : other) {
-            if (invert_camera) pair.camera_from_target = pair.camera_from_target.inverse();
-            if (invert_robot) pair.base_from_flange = pair.base_from_flange.inverse();
-        }
-        const Chain chain = chain_of(m, other, used);
-        const Closed start = best_start(chain).closed;
-        double squares = 0;
-        for (size_t i = 0; i < chain.size(); ++i)
-            if (used[i]) squares += residual_mm(chain, i, start.x, start.y).squaredNorm();
-        return std::sqrt(squares / static_cast<double>(chain.used_count()));
-    };
     const Mount other = mount == Mount::eye_in_hand ? Mount::eye_to_hand : Mount::eye_in_hand;
-    if (rms_of(mount, true, false) < 0.2 * rms_mm)
-        return "the pairs fit when camera_from_target is inverted: target_from_camera seems to have been "
-               "given";
-    if (rms_of(other, false, false) < 0.2 * rms_mm)
-        return fmt::format("the pairs fit as {}: the mount or the direction of base_from_flange seems wrong",
-                           name_of(other));
-    return {};
+    const Chain chain = chain_of(other, pairs, used);
+    const Closed start = best_start(chain).closed;
+    double squares = 0;
+    for (size_t i = 0; i < chain.size(); ++i)
+        if (used[i]) squares += residual_mm(chain, i, start.x, start.y).squaredNorm();
+    if (!(std::sqrt(squares / static_cast<double>(chain.used_count())) < 0.2 * rms_mm)) return {};
+    return fmt::format(
+        "the pairs fit as {}, or with camera_from_target inverted: the mount or the direction of one list "
+        "seems wrong",
+        name_of(other));
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/features/feature_kinds.h"
@@ -30,7 +31,6 @@ namespace {
 
 constexpr int kFewest = 6;
 constexpr double kMadToSigma = 1.4826;
-constexpr int kMostCounted = 256;  // points that vote while the start is searched
 
 std::vector<ParameterInfo> parameters() {
     return with_window({
@@ -92,42 +92,54 @@ class CircleFinder final : public FeatureFinder {
         return circle.radius >= smallest_ && circle.radius <= largest_;
     }
 
-    // Angle that the points within `tolerance` of the rim span: full turn minus the largest gap between them.
-    double arc_of(const Circle& circle, double tolerance, int stride) const {
-        angles_.clear();
-        for (std::size_t i = 0; i < points_.x.size(); i += static_cast<std::size_t>(stride))
-            if (std::abs(circle.distance(points_.x[i], points_.z[i])) <= tolerance)
-                angles_.push_back(
-                    std::atan2(points_.z[i] - circle.centre.y(), points_.x[i] - circle.centre.x()));
-        if (angles_.size() < 3) return 0;
-        std::sort(angles_.begin(), angles_.end());
-        double gap = angles_.front() + 2 * kPi - angles_.back();
-        for (std::size_t i = 1; i < angles_.size(); ++i) gap = std::max(gap, angles_[i] - angles_[i - 1]);
-        return 2 * kPi - gap;
+    // The longest row of points within `tolerance` of the rim, in contour order; a few misses in between are dirt or
+    // missing returns. Returns its number of points and the angle that it spans.
+    int longest_run(const Circle& circle, double tolerance, double& arc) const {
+        constexpr int kMisses = 6;
+        const int n = static_cast<int>(points_.x.size());
+        int best = 0, count = 0, misses = 0;
+        double turned = 0, best_turned = 0, last = 0;
+        for (int i = 0; i < n; ++i) {
+            const double dx = points_.x[i] - circle.centre.x(), dz = points_.z[i] - circle.centre.y();
+            const double low = std::max(0.0, circle.radius - tolerance), high = circle.radius + tolerance;
+            const double r2 = dx * dx + dz * dz;
+            if (r2 < low * low || r2 > high * high) {
+                if (count > 0 && ++misses > kMisses) count = 0;
+                continue;
+            }
+            const double angle = std::atan2(dz, dx);
+            if (count == 0) {
+                turned = 0;
+            } else {
+                turned += std::abs(std::remainder(angle - last, 2 * kPi));
+            }
+            last = angle;
+            misses = 0;
+            ++count;
+            if (count > best) {
+                best = count;
+                best_turned = turned;
+            }
+        }
+        arc = std::min(best_turned, 2 * kPi);
+        return best;
     }
 
     bool start(Circle& best, double& best_arc) const {
         const int n = static_cast<int>(points_.x.size());
         const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
         const double tolerance = std::max(3 * noise, 1e-6);
-        const int stride = std::max(1, n / kMostCounted);
-        double best_score = 0;
-        int best_any = 0;
-        bool found = false;
+        int best_count = 0, best_any = 0;
         Circle any;
         const auto try_circle = [&](const Circle& c) {
-            int count = 0;
-            for (int i = 0; i < n; i += stride)
-                count += std::abs(c.distance(points_.x[i], points_.z[i])) <= tolerance;
-            if (count <= best_score && count <= best_any) return;
-            if (count < 3) return;
-            const double arc = arc_of(c, tolerance, stride);
+            double arc = 0;
+            const int count = longest_run(c, tolerance, arc);
+            if (count < kFewest) return;
             if (arc >= minimum_arc_) {
-                if (count > best_score) {
-                    best_score = count;
+                if (count > best_count) {
+                    best_count = count;
                     best = c;
                     best_arc = arc;
-                    found = true;
                 }
             } else if (count > best_any) {
                 best_any = count;
@@ -146,11 +158,36 @@ class CircleFinder final : public FeatureFinder {
                 if (share == 1.0 && p > 0) break;
             }
         }
-        if (found) return true;
+        if (best_count > 0) return true;
         // Something round, but not enough of it: the refinement will say how badly it is determined.
-        if (best_any < std::max(kFewest, n / stride / 3)) return false;
+        if (best_any < std::max(kFewest, n / 3)) return false;
         best = any;
         return true;
+    }
+
+    // Straights that cross the rim leave short rows, and where a straight joins the arc its first points still lie within
+    // the noise, all on one side: short rows go, long ones lose their ends where the contour goes on.
+    void trim_rows() const {
+        const int n = static_cast<int>(keep_.size());
+        constexpr int kMisses = 6;
+        int longest = 0;
+        rows_.clear();
+        for (int i = 0; i < n; ++i) {
+            if (!keep_[i]) continue;
+            if (rows_.empty() || i - rows_.back()[1] > kMisses) rows_.push_back({i, i, 0});
+            rows_.back()[1] = i;
+            longest = std::max(longest, ++rows_.back()[2]);
+        }
+        for (const auto& row : rows_) {
+            const int cut = row[2] < 0.15 * longest ? row[2] : std::max(2, static_cast<int>(0.06 * row[2]));
+            const bool ends_before = row[0] == 0, ends_after = row[1] == n - 1;
+            if (cut == row[2]) {
+                for (int i = row[0]; i <= row[1]; ++i) keep_[i] = 0;
+                continue;
+            }
+            for (int i = row[0]; !ends_before && i < row[0] + cut; ++i) keep_[i] = 0;
+            for (int i = row[1]; !ends_after && i > row[1] - cut; --i) keep_[i] = 0;
+        }
     }
 
     Feature refine(Feature feature, Circle circle) const {
@@ -178,6 +215,7 @@ class CircleFinder final : public FeatureFinder {
                 gate = std::max(std::min(3.5 * kMadToSigma * *middle * 1.05, first), 1e-9);
                 for (int i = 0; i < n; ++i)
                     keep_[i] = std::abs(circle.distance(points_.x[i], points_.z[i])) <= gate;
+                trim_rows();
             }
             normal.setZero();
             Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
@@ -224,7 +262,8 @@ class CircleFinder final : public FeatureFinder {
         }
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(feature.covariance_mm2);
         const double worst = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
-        const double arc = arc_of(circle, std::max(gate, 1e-9), 1);
+        double arc = 0;
+        longest_run(circle, std::max(gate, 1e-9), arc);
         if (arc < minimum_arc_ || !(worst < 0.1 * circle.radius)) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message =
@@ -239,7 +278,8 @@ class CircleFinder final : public FeatureFinder {
     FeatureWindow window_;
     double known_, smallest_, largest_, minimum_arc_;
     mutable FeaturePoints points_;
-    mutable std::vector<double> scratch_, angles_;
+    mutable std::vector<double> scratch_;
+    mutable std::vector<std::array<int, 3>> rows_;  // first, last, count
     mutable std::vector<std::uint8_t> keep_;
 };
 

@@ -121,8 +121,11 @@ class ContourEnd final : public FeatureFinder {
         const double s = outer + towards * 0.5 * pitch - line.direction.dot(line.centre);
         feature.point_mm = line.centre + s * line.direction;
         const Eigen::Vector2d normal(-line.direction.y(), line.direction.x());
+        // A sensor's noise is in z: on a slope it moves the last point along the line as well.
+        const double slope = line.direction.x() != 0 ? std::abs(line.direction.y() / line.direction.x()) : 1;
+        const double noise_along = line.sigma_mm * std::min(slope, 1.0);
         feature.covariance_mm2 = line.variance_at(s) * normal * normal.transpose() +
-                                 pitch * pitch / 12 * line.direction * line.direction.transpose();
+                                 (pitch * pitch / 12 + noise_along * noise_along) * line.direction * line.direction.transpose();
         feature.rms_mm = line.rms_mm;
         feature.points_used = line.used;
         feature.status = FeatureStatus::ok;

@@ -12,6 +12,8 @@ constexpr double kMadToSigma = 1.4826;
 // rounding.
 constexpr double kSmallestSigma_mm = 1e-4;
 constexpr int kNodesPerEdge = 64;
+// Sigmas of the next order's coefficient that a window may show.
+constexpr double kLineBend = 0.8, kParabolaBend = 1.5;
 
 double median(std::vector<double>& v) {
     if (v.empty()) return 0;
@@ -21,13 +23,15 @@ double median(std::vector<double>& v) {
 }
 
 // Sums over the point numbers of a window of m equally numbered points, counted from its middle:
-// s2 = sum xi^2, s4 = sum (xi^2 - s2/m)^2 (the orthogonal parabola).
+// s2 = sum xi^2, s4 = sum (xi^2 - mean2)^2 and s6 = sum (xi^3 - slope3 xi)^2 (the orthogonal parabola and cubic).
 struct WindowSums {
-    double s2, s4, mean2;
+    double s2, s4, s6, mean2, slope3;
     explicit WindowSums(int m)
         : s2(m * (double(m) * m - 1) / 12.0),
           s4(m * (double(m) * m - 1) * (double(m) * m - 4) / 180.0),
-          mean2((double(m) * m - 1) / 12.0) {}
+          s6(m * (double(m) * m - 1) * (double(m) * m - 4) * (double(m) * m - 9) / 2800.0),
+          mean2((double(m) * m - 1) / 12.0),
+          slope3((3 * double(m) * m - 7) / 20.0) {}
 };
 
 }  // namespace
@@ -117,8 +121,8 @@ void ContourModel::build(const Profile& profile) {
     const double middle = 0.5 * double(n);
     for (std::size_t i = 0; i < n; ++i) {
         const double k = double(i) - middle, x = x_[i], z = z_[i];
-        const std::array<double, 9> term{x, z, k * x, k * z, k * k * x, k * k * z, x * x, x * z, z * z};
-        for (int j = 0; j < 9; ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
+        const std::array<double, 11> term{x, z, k * x, k * z, k * k * x, k * k * z, x * x, x * z, z * z, k * k * k * x, k * k * k * z};
+        for (int j = 0; j < 11; ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
     }
     fit_edges();
     if (usable()) build_nodes();
@@ -127,13 +131,15 @@ void ContourModel::build(const Profile& profile) {
 bool ContourModel::fit_window(int point, int first, int count, int degree, Edge& edge, double& residual2,
                               double& bend) const {
     const WindowSums w(count);
-    std::array<double, 9> s;
-    for (int j = 0; j < 9; ++j) s[j] = sums_[first + count][j] - sums_[first][j];
+    std::array<double, 11> s;
+    for (int j = 0; j < 11; ++j) s[j] = sums_[first + count][j] - sums_[first][j];
     const double centre = first + 0.5 * (count - 1);
     const double c = centre - 0.5 * double(x_.size());
-    Eigen::Vector2d m0(s[0], s[1]), m1(s[2], s[3]), m2(s[4], s[5]);
+    Eigen::Vector2d m0(s[0], s[1]), m1(s[2], s[3]), m2(s[4], s[5]), m3(s[9], s[10]);
+    m3 += -3 * c * m2 + 3 * c * c * m1 - c * c * c * m0;
     m2 += -2 * c * m1 + c * c * m0;
     m1 -= c * m0;
+    m3 -= w.slope3 * m1;
     m2 -= w.mean2 * m0;
     const Eigen::Vector2d b0 = m0 / count, b1 = m1 / w.s2;
     const Eigen::Vector2d b2 = count > 2 ? Eigen::Vector2d(m2 / w.s4) : Eigen::Vector2d(0, 0);
@@ -155,7 +161,8 @@ bool ContourModel::fit_window(int point, int first, int count, int degree, Edge&
         bow = 2 * n.dot(b2) / (speed * speed);
     }
     residual2 = std::max(total, 0.0);
-    bend = count > 2 ? std::abs(n.dot(b2)) * std::sqrt(w.s4) : 0;
+    bend = degree == 1 ? (count > 2 ? std::abs(n.dot(m2)) / std::sqrt(w.s4) : 0)
+                       : (count > 3 ? std::abs(n.dot(m3)) / std::sqrt(w.s6) : 0);
     edge.cx = position.x();
     edge.cz = position.y();
     edge.tx = t.x();
@@ -189,6 +196,7 @@ void ContourModel::fit_edges() {
             double best_variance = weights(best, 0).value_variance;
             double best_residual2 = 0;
             const int first_allowed = run_first_[k], last_allowed = run_last_[k];
+            int refused = 0;
             for (int count = 4; count <= 64 && count <= last_allowed - first_allowed + 1; count *= 2) {
                 bool accepted = false;
                 const int centred = std::clamp(k - count / 2 + 1, first_allowed, last_allowed - count + 1);
@@ -203,10 +211,10 @@ void ContourModel::fit_edges() {
                         if (!fit_window(k, first, count, degree, edge, residual2, bend)) continue;
                         const double dof = count - degree - 1;
                         if (residual2 > variance * (dof + 2.5 * std::sqrt(2 * dof))) break;
+                        // The next order must not be seen above the noise: it is what would bend the fit. A
+                        // line, where it does, has four ninths of the parabola's variance.
+                        if (bend > (degree == 1 ? kLineBend : kParabolaBend) * sigma_) continue;
                         here = true;
-                        // A line where the parabola's bow is not seen above the noise: four ninths of its
-                        // variance.
-                        if (degree == 1 && bend > 1.5 * sigma_) continue;
                         const double v = weights(edge, 0).value_variance;
                         if (v < best_variance) {
                             best_variance = v;
@@ -217,7 +225,9 @@ void ContourModel::fit_edges() {
                     accepted = accepted || here;
                     if (here && place == 0) break;  // one-sided windows are for corners and ends
                 }
-                if (!accepted) break;
+                // Noise alone refuses a window now and then: two in a row mean shape.
+                refused = accepted ? 0 : refused + 1;
+                if (refused >= 2) break;
             }
             if (best.count > 4) {
                 pooled += best_residual2;

@@ -109,8 +109,8 @@ class ContourModel {
     std::vector<Edge> edges_;
     double sigma_ = 0, extent_ = 0, length_ = 0;
     ContourPitch pitch_;
-    // Running sums over the points for j = 0..2: k^j x, k^j z; and x x, x z, z z.
-    std::vector<std::array<double, 9>> sums_;
+    // Running sums over the points for j = 0..2: k^j x, k^j z; then x x, x z, z z; then k^3 x, k^3 z.
+    std::vector<std::array<double, 11>> sums_;
     // Search nodes, sorted along the longer side.
     bool along_z_ = false;
     std::vector<double> node_a_, node_b_;

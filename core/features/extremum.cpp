@@ -144,7 +144,11 @@ class Extremum final : public FeatureFinder {
             feature.covariance_mm2 = Eigen::Matrix2d::Identity() * 1e12;
             return feature;
         }
-        if (!bent || vertex < low || vertex > high || low > -0.15 || high < 0.15) {
+        // A ridge is no summit: the parabola's misfit stands out against both the noise and its own bow.
+        const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
+        const double sag = std::abs(a) * 0.25;
+        const bool ridge = feature.rms_mm > std::max(1.4 * noise, 0.045 * sag);
+        if (!bent || ridge || vertex < low || vertex > high || low > -0.15 || high < 0.15) {
             feature.message = "the contour has no smooth extremum there, it ends or has an edge";
             return feature;
         }
@@ -172,6 +176,7 @@ class Extremum final : public FeatureFinder {
     Which which_;
     double fit_length_;
     mutable FeaturePoints points_;
+    mutable std::vector<double> scratch_;
 };
 
 Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMadToSigma = 1.4826;
 constexpr int kFewestPoints = 5;
+constexpr int kFewestOnWall = 5;
 // The template counts as found when at least this share of its length has a partner...
 constexpr double kSmallestShare = 0.5;
 // ... and at least this share of what fixes its least determined direction.
@@ -25,6 +26,12 @@ constexpr double kRatingNoise = 0.02;
 struct Match {
     int scene = 0;
     ContourModel::Foot foot;
+};
+
+// The same jump in template and scene: says where along the upper surface we are, within a pitch of each.
+struct JumpMatch {
+    Eigen::Vector3d row;
+    double residual, variance;
 };
 
 // One linearisation of the finish.
@@ -41,12 +48,16 @@ struct ContourMatcher::Impl {
     Eigen::Vector2d reference = Eigen::Vector2d::Zero();
     Eigen::Matrix3d template_information = Eigen::Matrix3d::Zero();  // per mm of contour, template frame
     std::vector<double> arc;                                         // [edges] length before the edge
+    std::vector<JumpEnd> jumps;
 
     // Buffers that live as long as the matcher: after the first calls nothing is allocated.
     mutable RegistrationSearch finder;
     mutable SceneContour scene;
     mutable std::vector<SearchCandidate> candidates, along;
     mutable std::vector<Match> matches;
+    mutable std::vector<JumpMatch> jump_matches;
+    mutable std::vector<int> wall_hits;  // [edges]
+    mutable std::vector<Eigen::Vector3d> wall_gradient;  // [edges]
     mutable std::vector<double> sizes;
     mutable std::vector<std::uint8_t> covered;
     mutable std::vector<std::array<Eigen::Vector3d, 3>> influence;
@@ -74,6 +85,8 @@ struct ContourMatcher::Impl {
         return 1 + std::clamp(static_cast<int>(s / model.length_mm() * bins), 0, bins - 1);
     }
     void collect(const CentredPose& pose, double gate, int stride) const;
+    void drop_sparse_walls() const;
+    void collect_jumps(const CentredPose& pose, double gate) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
     Rating rate(const Finish& finish) const;
     Eigen::Vector3d weakest_twist(const CentredPose& pose, double& share) const;
@@ -91,6 +104,44 @@ void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int str
         if (qx < x0 || qx > x1 || qz < z0 || qz > z1) continue;
         const ContourModel::Foot foot = model.nearest(qx, qz, gate);
         if (foot.edge >= 0) matches.push_back({static_cast<int>(i), foot});
+    }
+}
+
+// A tilted wall is seen as a row of points. One or two points on it are clutter, and would fix what nothing fixes.
+void ContourMatcher::Impl::drop_sparse_walls() const {
+    if (jumps.empty()) return;
+    wall_hits.assign(model.edges().size(), 0);
+    for (const Match& m : matches)
+        if (model.edges()[m.foot.edge].wall) ++wall_hits[m.foot.edge];
+    std::erase_if(matches, [&](const Match& m) {
+        return model.edges()[m.foot.edge].wall && wall_hits[m.foot.edge] < kFewestOnWall;
+    });
+}
+
+void ContourMatcher::Impl::collect_jumps(const CentredPose& pose, double gate) const {
+    jump_matches.clear();
+    for (const JumpEnd& t : jumps) {
+        double best = std::numeric_limits<double>::infinity();
+        JumpMatch match{};
+        for (const JumpEnd& s : scene.jumps) {
+            if (s.height < 0.5 * t.height || s.height > 2 * t.height) continue;
+            const double ex = s.x - pose.dx, ez = s.z - pose.dz;
+            const double qx = pose.cosine * ex + pose.sine * ez - t.x, qz = -pose.sine * ex + pose.cosine * ez - t.z;
+            const double outwards = (pose.cosine * s.tx + pose.sine * s.tz) * t.tx +
+                                    (-pose.sine * s.tx + pose.cosine * s.tz) * t.tz;
+            if (outwards < 0.7) continue;
+            const double outside = qx * t.tx + qz * t.tz, across = qz * t.tx - qx * t.tz;
+            if (std::abs(outside) > gate + 2 * (s.pitch + t.pitch) || std::abs(across) > gate + 0.5 * t.height) continue;
+            const double d = std::hypot(outside, across);
+            if (d >= best) continue;
+            best = d;
+            // Moving the template's point (x, z) by (vx, vz) and a turn w: residual falls by t . (v + w (-z, x)).
+            match.row = {-t.tx, -t.tz, -(-t.tx * t.z + t.tz * t.x)};
+            match.residual = outside;
+            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 +
+                             scene.sigma_mm * scene.sigma_mm + model.sigma_mm() * model.sigma_mm();
+        }
+        if (best < std::numeric_limits<double>::infinity()) jump_matches.push_back(match);
     }
 }
 
@@ -140,6 +191,7 @@ ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& sta
     for (int it = 0; it < most_iterations; ++it) {
         ++iterations;
         collect(result.pose, current, stride);
+        if (settled && stride == 1) drop_sparse_walls();
         if (matches.size() < static_cast<std::size_t>(kFewestPoints)) break;
         sizes.clear();
         for (const Match& m : matches) sizes.push_back(std::abs(m.foot.residual));
@@ -165,6 +217,14 @@ ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& sta
             normal.gradient += w * m.foot.residual * row.across;
         }
         if (!(weight_sum > 0)) break;
+        if (!jumps.empty()) {
+            collect_jumps(result.pose, current);
+            const double variance = std::max(result.sigma * result.sigma, 1e-10);
+            for (const JumpMatch& j : jump_matches) {
+                normal.hessian.noalias() += variance / j.variance * j.row * j.row.transpose();
+                normal.gradient += variance / j.variance * j.residual * j.row;
+            }
+        }
         Eigen::Vector3d step = solve_truncated(normal, half);
         // The turn's Jacobian is taken at the curve's point in the template's frame; shifts are turned to the
         // scene.
@@ -258,6 +318,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     result.iterations = iterations;
 
     collect(pose, rating.gate, 1);
+    drop_sparse_walls();
     const auto n = static_cast<double>(matches.size());
     result.inliers = static_cast<int>(matches.size());
     if (matches.size() < static_cast<std::size_t>(kFewestPoints)) {
@@ -266,43 +327,84 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     }
     // Linearisation, in the template's frame: shift (x, z), turn about the centroid.
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), tilt = Eigen::Matrix3d::Zero();
-    double rss = 0, value_variance = 0;
+    double rss = 0;
+    // Noise across the contour as a function of its inclination: variance = level + slope * nz^2. A triangulation sensor
+    // is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn contour may be noisy alike in
+    // all directions. Level and slope come from a regression of the squared residuals.
+    double s1 = 0, s2 = 0, sr = 0;
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const double nz2 = edge.tx * edge.tx, r2 = m.foot.residual * m.foot.residual;
+        s1 += nz2;
+        s2 += nz2 * nz2;
+        sr += nz2 * r2;
+        rss += r2;
+    }
+    const double mean_nz2 = s1 / n, spread_nz2 = s2 / n - mean_nz2 * mean_nz2;
+    const double mean_r2 = rss / n;
+    double noise_slope = spread_nz2 > 1e-3 ? (sr / n - mean_nz2 * mean_r2) / spread_nz2 : 0;
+    noise_slope = std::clamp(noise_slope, 0.0, mean_nz2 > 0 ? mean_r2 / mean_nz2 : 0.0);
+    const double noise_level = mean_r2 - noise_slope * mean_nz2;
+    // Relative to the mean; the template, recorded with the same kind of sensor, is taken to behave alike.
+    const auto relative = [&](const ContourModel::Edge& edge) {
+        return mean_r2 > 0 ? std::max((noise_level + noise_slope * edge.tx * edge.tx) / mean_r2, 0.02) : 1.0;
+    };
+
     const double template_variance = model.sigma_mm() * model.sigma_mm();
-    // How every template point's noise enters the gradient: polynomials over windows of points, as difference
-    // arrays.
+    // How every template point's noise enters the gradient: polynomials over windows of points, as difference arrays.
     const int points = static_cast<int>(model.x().size());
     influence.assign(static_cast<std::size_t>(points) + 1,
                      {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
     const double middle = 0.5 * points;
+    double value_variance = 0, relative_sum = 0;
+    Eigen::Matrix3d gradient_covariance = Eigen::Matrix3d::Zero();
     for (const Match& m : matches) {
         const ContourModel::Edge& edge = model.edges()[m.foot.edge];
         const Row row = row_of(edge, m.foot.u);
+        const double level = relative(edge);
         information.noalias() += row.across * row.across.transpose();
+        gradient_covariance.noalias() += level * row.across * row.across.transpose();
+        relative_sum += level;
         const ContourModel::Weights w = model.weights(edge, m.foot.u);
-        tilt.noalias() += w.slope_variance * row.along * row.along.transpose();
-        value_variance += w.value_variance;
-        rss += m.foot.residual * m.foot.residual;
+        tilt.noalias() += w.slope_variance * level * row.along * row.along.transpose();
+        value_variance += w.value_variance * level;
         // a0 + a1 (k - c) + a2 (k - c)^2 as a polynomial in k - middle.
         const double c = edge.centre - middle;
+        const double size = std::sqrt(level);
         const std::array<double, 3> poly{w.a0 - w.a1 * c + w.a2 * c * c, w.a1 - 2 * w.a2 * c, w.a2};
         for (int j = 0; j < 3; ++j) {
-            influence[edge.first][j] += poly[j] * row.across;
-            influence[edge.first + edge.count][j] -= poly[j] * row.across;
+            influence[edge.first][j] += size * poly[j] * row.across;
+            influence[edge.first + edge.count][j] -= size * poly[j] * row.across;
         }
     }
-    result.rms_mm = std::sqrt(rss / n);
+    result.rms_mm = std::sqrt(mean_r2);
+    collect_jumps(pose, rating.gate);
     // residual^2 = scene noise^2 + template noise^2 * (variance of its fitted value)
     const double scene_variance =
-        std::max(rss / std::max(1.0, n - 3) - template_variance * value_variance / n, 0.05 * rss / n);
-    Eigen::Matrix3d gradient_covariance = scene_variance * information;
-    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
-                                       Eigen::Vector3d::Zero()};
+        std::max(rss / std::max(1.0, n - 3) - template_variance * value_variance / n, 0.05 * mean_r2);
+    gradient_covariance *= scene_variance * n / relative_sum;
+    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     for (int k = 0; k < points; ++k) {
         for (int j = 0; j < 3; ++j) sum[j] += influence[k][j];
         const double t = k - middle;
         const Eigen::Vector3d g = sum[0] + t * sum[1] + t * t * sum[2];
         gradient_covariance.noalias() += template_variance * g * g.transpose();
     }
+
+    for (const JumpMatch& j : jump_matches) {
+        const double weight = std::max(found.sigma * found.sigma, 1e-10) / j.variance;
+        information.noalias() += weight * j.row * j.row.transpose();
+        gradient_covariance.noalias() += weight * weight * j.variance * j.row * j.row.transpose();
+    }
+    // A wall's place in the template is known to a pitch, alike for all scene points on it.
+    wall_gradient.assign(model.edges().size(), Eigen::Vector3d::Zero());
+    for (const Match& m : matches)
+        if (model.edges()[m.foot.edge].wall)
+            wall_gradient[m.foot.edge] += row_of(model.edges()[m.foot.edge], m.foot.u).across;
+    for (std::size_t e = 0; e < model.edges().size(); ++e)
+        if (model.edges()[e].wall)
+            gradient_covariance.noalias() += model.pitch().along_x * model.pitch().along_x / 12 * wall_gradient[e] *
+                                             wall_gradient[e].transpose();
 
     // Directions that only the template's own noise seems to fix are not fixed: take its share out.
     tilt *= template_variance;
@@ -408,6 +510,14 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
         return input_error("the template has no connected piece of contour", "template",
                            "take points in sensor order");
     impl->template_information /= length;
+    const auto& tx = impl->model.x();
+    const auto& tz = impl->model.z();
+    for (const auto& edge : impl->model.edges()) {
+        if (!edge.wall) continue;
+        const bool rising = tz[edge.point + 1] > tz[edge.point];
+        impl->jumps.push_back(jump_end(tx, tz, rising ? edge.point : edge.point + 1,
+                                       rising ? edge.point + 1 : edge.point, 0, static_cast<int>(tx.size()) - 1));
+    }
     impl->finder = impl->search;
     return ContourMatcher(std::move(impl));
 }
@@ -465,8 +575,15 @@ Registration ContourMatcher::match(const Profile& scene, const SearchWindow& win
     }
     const Impl::Finish f = m.finish(best.pose, std::max(2 * best.gate, m.smallest_gate()), 1, 30);
     result = m.conclude(f, &window);
-    if (result.status == RegistrationStatus::ok && second.score > best.score - kRatingNoise)
-        result.status = RegistrationStatus::ambiguous;
+    if (result.status == RegistrationStatus::ok && second.score > best.score - 2 * kRatingNoise) {
+        // Both to their end and rated alike: a start that was merely on its way is no second place.
+        Impl::Finish other = m.finish(second.pose, start_gate, 1, 40);
+        other.gate = f.gate;
+        const double score = m.rate(other).score;
+        if (m.apart_mm(other.pose, f.pose) > std::max(m.search.step_mm(), 3 * f.gate) &&
+            score > m.rate(f).score - kRatingNoise)
+            result.status = RegistrationStatus::ambiguous;
+    }
     return result;
 }
 

@@ -84,7 +84,51 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin) {
         }
         pitch = contour_pitch(x, z, scratch_);
     }
-    sigma_mm = contour_noise_mm(x, z, scratch_);
+    solid_x_.clear();
+    solid_z_.clear();
+    const double near = 6 * pitch.distance;
+    const int count = static_cast<int>(n);
+    for (int i = 0; i < count; ++i) {
+        int support = 0;
+        for (int k = std::max(0, i - 3); k <= std::min(count - 1, i + 3); ++k) {
+            const double dx = x[k] - x[i], dz = z[k] - z[i];
+            if (k != i && dx * dx + dz * dz < near * near) ++support;
+        }
+        if (support < 2) continue;
+        solid_x_.push_back(x[i]);
+        solid_z_.push_back(z[i]);
+    }
+    sigma_mm = contour_noise_mm(solid_x_, solid_z_, scratch_);
+    jumps.clear();
+    const int solid = static_cast<int>(solid_x_.size());
+    for (int i = 0; i + 1 < solid; ++i) {
+        if (!pitch.is_wall(solid_x_[i + 1] - solid_x_[i], solid_z_[i + 1] - solid_z_[i])) continue;
+        const bool rising = solid_z_[i + 1] > solid_z_[i];
+        jumps.push_back(jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1));
+    }
+}
+
+JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first, int last) {
+    // Behind the upper point, away from the lower one, as far as the surface goes on (8 points at most).
+    const int step = upper - lower;
+    int behind = upper;
+    double length = 0;
+    for (int k = 0; k < 8 && behind + step >= first && behind + step <= last; ++k) {
+        const double d = std::hypot(x[behind + step] - x[behind], z[behind + step] - z[behind]);
+        if (k > 0 && d > 4 * length / k) break;
+        length += d;
+        behind += step;
+    }
+    JumpEnd end{x[upper], z[upper], double(-step), 0, 0, std::abs(z[upper] - z[lower])};
+    const double dx = x[upper] - x[behind], dz = z[upper] - z[behind], d = std::hypot(dx, dz);
+    if (d > 0) {
+        end.tx = dx / d;
+        end.tz = dz / d;
+        end.pitch = d / std::abs(upper - behind);
+    }
+    end.x += 0.5 * end.pitch * end.tx;
+    end.z += 0.5 * end.pitch * end.tz;
+    return end;
 }
 
 void SceneContour::add_polygon_edge(double x0, double z0, double x1, double z1) {
@@ -110,7 +154,6 @@ void SceneContour::add_polygon_edge(double x0, double z0, double x1, double z1) 
 }
 
 void SceneContour::reduce(double tolerance, double spacing) {
-    const int n = static_cast<int>(x.size());
     reduced.clear();
     const auto [lo, hi] = std::minmax_element(x.begin(), x.end());
     grid_step = 0.25 * spacing;
@@ -128,29 +171,23 @@ void SceneContour::reduce(double tolerance, double spacing) {
             reduce_contour(run_x_, run_z_, tolerance, kept_);
             append_polygon(run_x_, run_z_, kept_, spacing, reduced);
             for (std::size_t i = 1; i < kept_.size(); ++i)
-                add_polygon_edge(run_x_[kept_[i - 1]], run_z_[kept_[i - 1]], run_x_[kept_[i]],
-                                 run_z_[kept_[i]]);
+                add_polygon_edge(run_x_[kept_[i - 1]], run_z_[kept_[i - 1]], run_x_[kept_[i]], run_z_[kept_[i]]);
         }
         run_x_.clear();
         run_z_.clear();
     };
     run_x_.clear();
     run_z_.clear();
-    for (int i = 0; i < n; ++i) {
-        int support = 0;
-        for (int k = std::max(0, i - 3); k <= std::min(n - 1, i + 3); ++k)
-            if (k != i && std::abs(x[k] - x[i]) < near && std::hypot(x[k] - x[i], z[k] - z[i]) < near)
-                ++support;
-        if (support < 2) continue;
+    for (std::size_t i = 0; i < solid_x_.size(); ++i) {
         if (!run_x_.empty()) {
-            const double dx = x[i] - run_x_.back(), dz = z[i] - run_z_.back();
+            const double dx = solid_x_[i] - run_x_.back(), dz = solid_z_[i] - run_z_.back();
             // Walls stay in the polygon when they are low: the step is part of the shape.
             const bool bridged =
                 std::hypot(dx, dz) < near || (pitch.is_wall(dx, dz) && std::abs(dz) < 10 * spacing);
             if (!bridged) flush();
         }
-        run_x_.push_back(x[i]);
-        run_z_.push_back(z[i]);
+        run_x_.push_back(solid_x_[i]);
+        run_z_.push_back(solid_z_[i]);
     }
     flush();
     // Sorted by x for the windowed search of the EM-ICP.

@@ -37,12 +37,26 @@ struct ReducedContour {
     void clear();
 };
 
+// The end of the upper surface at a jump (a step whose wall the sensor does not see): the last point plus half a pitch
+// along the surface, known to a pitch (variance pitch^2 / 12). From above, the upper end is seen whatever the tilt; the
+// lower one may lie in the upper one's shadow.
+struct JumpEnd {
+    double x, z;
+    double tx, tz;   // unit, along the upper surface, outwards
+    double pitch;    // along the surface
+    double height;   // of the jump
+};
+// The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from up to
+// `most` points behind the upper one within the range [first, last].
+JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first, int last);
+
 // The scene made ready once per match.
 struct SceneContour {
     std::vector<double> x, z;  // usable points, relative to the template's origin
     ContourPitch pitch;
     double sigma_mm = 0;
     ReducedContour reduced;  // sorted by x
+    std::vector<JumpEnd> jumps;
     // Heights of the scene's polygon over a grid along x, up to kHeights each (overhangs, several layers).
     static constexpr int kHeights = 4;
     double grid_origin = 0, grid_step = 1;
@@ -59,6 +73,7 @@ struct SceneContour {
   private:
     void add_polygon_edge(double x0, double z0, double x1, double z1);
     std::vector<double> scratch_, run_x_, run_z_;
+    std::vector<double> solid_x_, solid_z_;  // the points that have neighbours
     std::vector<int> kept_;
     std::vector<std::array<double, 3>> sorted_;
 };

@@ -92,8 +92,8 @@ class CircleFinder final : public FeatureFinder {
         return circle.radius >= smallest_ && circle.radius <= largest_;
     }
 
-    // The longest row of points within `tolerance` of the rim, in contour order; a few misses in between are dirt or
-    // missing returns. Returns its number of points and the angle that it spans.
+    // The longest row of points within `tolerance` of the rim, in contour order; a few misses in between are
+    // dirt or missing returns. Returns its number of points and the angle that it spans.
     int longest_run(const Circle& circle, double tolerance, double& arc) const {
         constexpr int kMisses = 6;
         const int n = static_cast<int>(points_.x.size());
@@ -165,8 +165,9 @@ class CircleFinder final : public FeatureFinder {
         return true;
     }
 
-    // Straights that cross the rim leave short rows, and where a straight joins the arc its first points still lie within
-    // the noise, all on one side: short rows go, long ones lose their ends where the contour goes on.
+    // Straights that cross the rim leave short rows, and where a straight joins the arc its first points
+    // still lie within the noise, all on one side: short rows go, long ones lose their ends where the contour
+    // goes on.
     void trim_rows() const {
         const int n = static_cast<int>(keep_.size());
         constexpr int kMisses = 6;

@@ -124,8 +124,9 @@ class ContourEnd final : public FeatureFinder {
         // A sensor's noise is in z: on a slope it moves the last point along the line as well.
         const double slope = line.direction.x() != 0 ? std::abs(line.direction.y() / line.direction.x()) : 1;
         const double noise_along = line.sigma_mm * std::min(slope, 1.0);
-        feature.covariance_mm2 = line.variance_at(s) * normal * normal.transpose() +
-                                 (pitch * pitch / 12 + noise_along * noise_along) * line.direction * line.direction.transpose();
+        feature.covariance_mm2 =
+            line.variance_at(s) * normal * normal.transpose() +
+            (pitch * pitch / 12 + noise_along * noise_along) * line.direction * line.direction.transpose();
         feature.rms_mm = line.rms_mm;
         feature.points_used = line.used;
         feature.status = FeatureStatus::ok;

@@ -23,7 +23,8 @@ double median(std::vector<double>& v) {
 }
 
 // Sums over the point numbers of a window of m equally numbered points, counted from its middle:
-// s2 = sum xi^2, s4 = sum (xi^2 - mean2)^2 and s6 = sum (xi^3 - slope3 xi)^2 (the orthogonal parabola and cubic).
+// s2 = sum xi^2, s4 = sum (xi^2 - mean2)^2 and s6 = sum (xi^3 - slope3 xi)^2 (the orthogonal parabola and
+// cubic).
 struct WindowSums {
     double s2, s4, s6, mean2, slope3;
     explicit WindowSums(int m)
@@ -121,7 +122,8 @@ void ContourModel::build(const Profile& profile) {
     const double middle = 0.5 * double(n);
     for (std::size_t i = 0; i < n; ++i) {
         const double k = double(i) - middle, x = x_[i], z = z_[i];
-        const std::array<double, 11> term{x, z, k * x, k * z, k * k * x, k * k * z, x * x, x * z, z * z, k * k * k * x, k * k * k * z};
+        const std::array<double, 11> term{x,     z,     k * x, k * z,         k * k * x,    k * k * z,
+                                          x * x, x * z, z * z, k * k * k * x, k * k * k * z};
         for (int j = 0; j < 11; ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
     }
     fit_edges();

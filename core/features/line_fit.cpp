@@ -107,7 +107,8 @@ LineFit fit_line(std::span<const double> x, std::span<const double> z, LineWorks
         }
     line.rms_mm = std::sqrt(rss / line.used);
     line.sigma_mm = std::sqrt(rss / (line.used - 2));
-    // Few points know their own noise badly: errors over estimated sigma are Student's, wider than a Gaussian.
+    // Few points know their own noise badly: errors over estimated sigma are Student's, wider than a
+    // Gaussian.
     const int freedom = line.used - 2;
     line.widening = freedom > 4 ? double(freedom) / (freedom - 2) : 2.0;
     line.ok = true;

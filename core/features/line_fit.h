@@ -15,13 +15,15 @@ struct LineFit {
     Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  // unit, from the first towards the last point
     double sigma_mm = 0;  // noise of one point across, from the residuals with n - 2 degrees of freedom
     double rms_mm = 0;
-    double widening = 1;  // of variances, for sigma being estimated from few points
+    double widening = 1;               // of variances, for sigma being estimated from few points
     int used = 0;                      // points within 3.5 sigma
     double first_mm = 0, last_mm = 0;  // extent of the used points along the line, from the centre
     double spread_mm2 = 0;             // sum of squared distances from the centre along the line
     double length_mm() const { return last_mm - first_mm; }
     // Variance across the line at `s` along it from the centre.
-    double variance_at(double s) const { return widening * sigma_mm * sigma_mm * (1.0 / used + s * s / spread_mm2); }
+    double variance_at(double s) const {
+        return widening * sigma_mm * sigma_mm * (1.0 / used + s * s / spread_mm2);
+    }
     double angle_variance() const { return widening * sigma_mm * sigma_mm / spread_mm2; }  // rad^2
     double distance(const Eigen::Vector2d& p) const {  // signed, positive left of the direction
         const Eigen::Vector2d d = p - centre;

@@ -14,6 +14,8 @@ namespace {
 constexpr double kMadToSigma = 1.4826;
 constexpr int kFewestPoints = 5;
 constexpr int kFewestOnWall = 5;
+// Stated sigma of an undetermined motion, in mm at the template's farther parts.
+constexpr double kUndetermined_mm = 1e3;
 // The template counts as found when at least this share of its length has a partner...
 constexpr double kSmallestShare = 0.5;
 // ... and at least this share of what fixes its least determined direction.
@@ -56,7 +58,7 @@ struct ContourMatcher::Impl {
     mutable std::vector<SearchCandidate> candidates, along;
     mutable std::vector<Match> matches;
     mutable std::vector<JumpMatch> jump_matches;
-    mutable std::vector<int> wall_hits;  // [edges]
+    mutable std::vector<int> wall_hits;                  // [edges]
     mutable std::vector<Eigen::Vector3d> wall_gradient;  // [edges]
     mutable std::vector<double> sizes;
     mutable std::vector<std::uint8_t> covered;
@@ -72,11 +74,16 @@ struct ContourMatcher::Impl {
     struct Rating {
         CentredPose pose;
         double gate = 0, score = -1, share = 0;
+        int on = 0, off = 0;  // scene points near the template that lie on it, that do not
     };
 
-    double smallest_gate() const { return 4 * std::hypot(model.sigma_mm(), scene.sigma_mm); }
+    // No gate grows beyond this: noise that large hides any shape of the template's size.
+    double gate_limit() const { return std::max(0.02 * model.extent_mm(), 0.1); }
+    double smallest_gate() const {
+        return std::min(4 * std::hypot(model.sigma_mm(), scene.sigma_mm), gate_limit());
+    }
     double largest_final_gate() const {
-        return std::min(std::max(0.25, 1.5 * smallest_gate()), std::max(0.02 * model.extent_mm(), 0.1));
+        return std::min(std::max(0.25, 1.5 * smallest_gate()), gate_limit());
     }
 
     int bin_of(std::size_t edge, double u) const {
@@ -107,7 +114,8 @@ void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int str
     }
 }
 
-// A tilted wall is seen as a row of points. One or two points on it are clutter, and would fix what nothing fixes.
+// A tilted wall is seen as a row of points. One or two points on it are clutter, and would fix what nothing
+// fixes.
 void ContourMatcher::Impl::drop_sparse_walls() const {
     if (jumps.empty()) return;
     wall_hits.assign(model.edges().size(), 0);
@@ -126,20 +134,24 @@ void ContourMatcher::Impl::collect_jumps(const CentredPose& pose, double gate) c
         for (const JumpEnd& s : scene.jumps) {
             if (s.height < 0.5 * t.height || s.height > 2 * t.height) continue;
             const double ex = s.x - pose.dx, ez = s.z - pose.dz;
-            const double qx = pose.cosine * ex + pose.sine * ez - t.x, qz = -pose.sine * ex + pose.cosine * ez - t.z;
+            const double qx = pose.cosine * ex + pose.sine * ez - t.x,
+                         qz = -pose.sine * ex + pose.cosine * ez - t.z;
             const double outwards = (pose.cosine * s.tx + pose.sine * s.tz) * t.tx +
                                     (-pose.sine * s.tx + pose.cosine * s.tz) * t.tz;
             if (outwards < 0.7) continue;
             const double outside = qx * t.tx + qz * t.tz, across = qz * t.tx - qx * t.tz;
-            if (std::abs(outside) > gate + 2 * (s.pitch + t.pitch) || std::abs(across) > gate + 0.5 * t.height) continue;
+            if (std::abs(outside) > gate + 2 * (s.pitch + t.pitch) ||
+                std::abs(across) > gate + 0.5 * t.height)
+                continue;
             const double d = std::hypot(outside, across);
             if (d >= best) continue;
             best = d;
-            // Moving the template's point (x, z) by (vx, vz) and a turn w: residual falls by t . (v + w (-z, x)).
+            // Moving the template's point (x, z) by (vx, vz) and a turn w: residual falls by t . (v + w (-z,
+            // x)).
             match.row = {-t.tx, -t.tz, -(-t.tx * t.z + t.tz * t.x)};
             match.residual = outside;
-            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 +
-                             scene.sigma_mm * scene.sigma_mm + model.sigma_mm() * model.sigma_mm();
+            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 + scene.sigma_mm * scene.sigma_mm +
+                             model.sigma_mm() * model.sigma_mm();
         }
         if (best < std::numeric_limits<double>::infinity()) jump_matches.push_back(match);
     }
@@ -268,7 +280,7 @@ ContourMatcher::Impl::Rating ContourMatcher::Impl::rate(const Finish& found) con
     covered.assign(static_cast<std::size_t>(bins) + 2, 0);
     const int stride = std::max(1, static_cast<int>(scene.x.size() / 4000));
     collect(rating.pose, capture, stride);
-    int on = 0, off = 0;
+    int &on = rating.on, &off = rating.off;
     for (const Match& m : matches) {
         const auto& edge = model.edges()[m.foot.edge];
         if (std::abs(m.foot.residual) > rating.gate) {
@@ -328,9 +340,10 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     // Linearisation, in the template's frame: shift (x, z), turn about the centroid.
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), tilt = Eigen::Matrix3d::Zero();
     double rss = 0;
-    // Noise across the contour as a function of its inclination: variance = level + slope * nz^2. A triangulation sensor
-    // is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn contour may be noisy alike in
-    // all directions. Level and slope come from a regression of the squared residuals.
+    // Noise across the contour as a function of its inclination: variance = level + slope * nz^2. A
+    // triangulation sensor is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn
+    // contour may be noisy alike in all directions. Level and slope come from a regression of the squared
+    // residuals.
     double s1 = 0, s2 = 0, sr = 0;
     for (const Match& m : matches) {
         const ContourModel::Edge& edge = model.edges()[m.foot.edge];
@@ -351,7 +364,8 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     };
 
     const double template_variance = model.sigma_mm() * model.sigma_mm();
-    // How every template point's noise enters the gradient: polynomials over windows of points, as difference arrays.
+    // How every template point's noise enters the gradient: polynomials over windows of points, as difference
+    // arrays.
     const int points = static_cast<int>(model.x().size());
     influence.assign(static_cast<std::size_t>(points) + 1,
                      {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
@@ -383,7 +397,8 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     const double scene_variance =
         std::max(rss / std::max(1.0, n - 3) - template_variance * value_variance / n, 0.05 * mean_r2);
     gradient_covariance *= scene_variance * n / relative_sum;
-    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                       Eigen::Vector3d::Zero()};
     for (int k = 0; k < points; ++k) {
         for (int j = 0; j < 3; ++j) sum[j] += influence[k][j];
         const double t = k - middle;
@@ -403,8 +418,8 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
             wall_gradient[m.foot.edge] += row_of(model.edges()[m.foot.edge], m.foot.u).across;
     for (std::size_t e = 0; e < model.edges().size(); ++e)
         if (model.edges()[e].wall)
-            gradient_covariance.noalias() += model.pitch().along_x * model.pitch().along_x / 12 * wall_gradient[e] *
-                                             wall_gradient[e].transpose();
+            gradient_covariance.noalias() += model.pitch().along_x * model.pitch().along_x / 12 *
+                                             wall_gradient[e] * wall_gradient[e].transpose();
 
     // Directions that only the template's own noise seems to fix are not fixed: take its share out.
     tilt *= template_variance;
@@ -415,7 +430,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     const Eigen::Vector3d weak = scale.cwiseProduct(eigen.eigenvectors().col(0));
     const double seen = eigen.eigenvalues()[0];
     const double false_part = weak.dot(tilt * weak);
-    const bool sliding = seen < n * kStraight_rad * kStraight_rad || seen < 3 * false_part;
+    const bool sliding = seen < n * kStraight_rad * kStraight_rad || seen < 8 * false_part;
 
     const Eigen::Matrix2d r =
         (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
@@ -452,10 +467,15 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
     }
     result.covariance = to_scene * covariance * to_scene.transpose();
 
-    if (rating.share < kSmallestShare) {
+    // Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of
+    // it).
+    const bool scatter = rating.off > 1.5 * rating.on || result.rms_mm > 0.45 * rating.gate;
+    if (rating.share < kSmallestShare || scatter) {
         result.status = RegistrationStatus::no_match;
     } else if (sliding) {
         result.status = RegistrationStatus::sliding;
+        result.covariance +=
+            kUndetermined_mm * kUndetermined_mm * (to_scene * weak) * (to_scene * weak).transpose();
         Eigen::Vector2d q = reference - o;
         Eigen::Vector2d motion(weak.x() - weak.z() * q.y(), weak.y() + weak.z() * q.x());
         if (!(motion.norm() > 0.1 * weak.head<2>().norm() + 0.1 * std::abs(weak.z()) * half))
@@ -516,7 +536,8 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
         if (!edge.wall) continue;
         const bool rising = tz[edge.point + 1] > tz[edge.point];
         impl->jumps.push_back(jump_end(tx, tz, rising ? edge.point : edge.point + 1,
-                                       rising ? edge.point + 1 : edge.point, 0, static_cast<int>(tx.size()) - 1));
+                                       rising ? edge.point + 1 : edge.point, 0,
+                                       static_cast<int>(tx.size()) - 1));
     }
     impl->finder = impl->search;
     return ContourMatcher(std::move(impl));
@@ -525,8 +546,19 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
 Registration ContourMatcher::match(const Profile& scene, const SearchWindow& window) const {
     const Impl& m = *impl_;
     m.iterations = 0;
-    m.scene.gather(scene, m.model.origin());
     Registration result;
+    if (!std::isfinite(window.dx_mm) || !std::isfinite(window.dz_mm) || !std::isfinite(window.phi_rad) ||
+        !window.centre_mm.allFinite())
+        return result;
+    // What the template cannot reach is no part of the search: a stray point a kilometre off costs nothing.
+    const double arm =
+        std::max((m.reference - m.model.origin()).norm(),
+                 window.pivot == SearchPivot::reference_or_origin ? m.model.origin().norm() : 0.0);
+    const double turn = std::min(1.1 * std::abs(window.phi_rad) + 0.02, 3.2);
+    const double reach = m.model.extent_mm() + window.centre_mm.norm() +
+                         1.2 * std::hypot(window.dx_mm, window.dz_mm) +
+                         2 * arm * std::sin(0.5 * std::min(turn, 3.1)) + 3;
+    m.scene.gather(scene, m.model.origin(), Eigen::Vector2d::Zero(), reach);
     if (m.scene.x.size() < static_cast<std::size_t>(kFewestPoints)) {
         result.status = RegistrationStatus::no_points;
         return result;
@@ -567,8 +599,8 @@ Registration ContourMatcher::match(const Profile& scene, const SearchWindow& win
     const Eigen::Vector3d twist = m.weakest_twist(best.pose, share);
     if (share < 0.15) {
         const double step = 0.25 * m.search.step_mm();
-        const double reach = 2.5 * std::max(window.dx_mm, window.dz_mm);
-        m.finder.find_along(m.scene, best.pose, twist, reach, step,
+        const double along_reach = 2.5 * std::max(window.dx_mm, window.dz_mm);
+        m.finder.find_along(m.scene, best.pose, twist, along_reach, step,
                             std::max(0.3 * m.search.step_mm(), best.gate), window, m.model.origin(),
                             m.reference, kAlong, m.along);
         for (const SearchCandidate& c : m.along) consider(c.pose, start_gate);
@@ -590,14 +622,14 @@ Registration ContourMatcher::match(const Profile& scene, const SearchWindow& win
 Registration ContourMatcher::refine(const Profile& scene, const PlanarMotion& start) const {
     const Impl& m = *impl_;
     m.iterations = 0;
-    m.scene.gather(scene, m.model.origin());
     Registration result;
+    const Eigen::Vector2d d = start * m.model.origin() - m.model.origin();
+    if (!d.allFinite() || !std::isfinite(start.phi_rad)) return result;
+    m.scene.gather(scene, m.model.origin(), d, m.model.extent_mm() + 3);
     if (m.scene.x.size() < static_cast<std::size_t>(kFewestPoints)) {
         result.status = RegistrationStatus::no_points;
         return result;
     }
-    const Eigen::Vector2d d = start * m.model.origin() - m.model.origin();
-    if (!d.allFinite() || !std::isfinite(start.phi_rad)) return result;
     const Impl::Finish f = m.finish(CentredPose(d.x(), d.y(), start.phi_rad), 1.5, 1, 40);
     return m.conclude(f, nullptr);
 }

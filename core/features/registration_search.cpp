@@ -59,13 +59,15 @@ CentredPose moved_along(const CentredPose& pose, const Eigen::Vector3d& body_twi
             pose.phi + turn};
 }
 
-void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin) {
+void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, const Eigen::Vector2d& centre,
+                          double reach) {
     x.clear();
     z.clear();
     const bool marked = scene.filtered();
     for (std::size_t i = 0; i < scene.size() && i < scene.z_mm.size(); ++i) {
         const double px = scene.x_mm[i] - origin.x(), pz = scene.z_mm[i] - origin.y();
         if (!std::isfinite(px) || !std::isfinite(pz) || (marked && scene.segment[i] == kOutlier)) continue;
+        if (std::abs(px - centre.x()) > reach || std::abs(pz - centre.y()) > reach) continue;
         x.push_back(px);
         z.push_back(pz);
     }
@@ -108,7 +110,8 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin) {
     }
 }
 
-JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first, int last) {
+JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
+                 int last) {
     // Behind the upper point, away from the lower one, as far as the surface goes on (8 points at most).
     const int step = upper - lower;
     int behind = upper;
@@ -171,7 +174,8 @@ void SceneContour::reduce(double tolerance, double spacing) {
             reduce_contour(run_x_, run_z_, tolerance, kept_);
             append_polygon(run_x_, run_z_, kept_, spacing, reduced);
             for (std::size_t i = 1; i < kept_.size(); ++i)
-                add_polygon_edge(run_x_[kept_[i - 1]], run_z_[kept_[i - 1]], run_x_[kept_[i]], run_z_[kept_[i]]);
+                add_polygon_edge(run_x_[kept_[i - 1]], run_z_[kept_[i - 1]], run_x_[kept_[i]],
+                                 run_z_[kept_[i]]);
         }
         run_x_.clear();
         run_z_.clear();

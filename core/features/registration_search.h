@@ -37,18 +37,19 @@ struct ReducedContour {
     void clear();
 };
 
-// The end of the upper surface at a jump (a step whose wall the sensor does not see): the last point plus half a pitch
-// along the surface, known to a pitch (variance pitch^2 / 12). From above, the upper end is seen whatever the tilt; the
-// lower one may lie in the upper one's shadow.
+// The end of the upper surface at a jump (a step whose wall the sensor does not see): the last point plus
+// half a pitch along the surface, known to a pitch (variance pitch^2 / 12). From above, the upper end is seen
+// whatever the tilt; the lower one may lie in the upper one's shadow.
 struct JumpEnd {
     double x, z;
-    double tx, tz;   // unit, along the upper surface, outwards
-    double pitch;    // along the surface
-    double height;   // of the jump
+    double tx, tz;  // unit, along the upper surface, outwards
+    double pitch;   // along the surface
+    double height;  // of the jump
 };
-// The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from up to
-// `most` points behind the upper one within the range [first, last].
-JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first, int last);
+// The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from
+// up to `most` points behind the upper one within the range [first, last].
+JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int lower, int upper, int first,
+                 int last);
 
 // The scene made ready once per match.
 struct SceneContour {
@@ -63,9 +64,10 @@ struct SceneContour {
     std::vector<std::uint8_t> grid_count;
     std::vector<float> grid_z;
 
-    // Non-finite points and points marked as outliers are left out. Points in no order at all are sorted by x
-    // first.
-    void gather(const Profile& scene, const Eigen::Vector2d& origin);
+    // Non-finite points, points marked as outliers and points farther than `reach` from `centre` (both
+    // relative to `origin`, along x or z) are left out. Points in no order at all are sorted by x first.
+    void gather(const Profile& scene, const Eigen::Vector2d& origin, const Eigen::Vector2d& centre,
+                double reach);
     // Polygon, reduced points and height grid. Points without neighbours in the profile (spikes, clutter) are
     // left out of it, not of the finish.
     void reduce(double tolerance, double spacing);

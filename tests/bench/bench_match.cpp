@@ -1,13 +1,11 @@
-// Whole match of a 1000-point profile beside pcl::IterativeClosestPoint, the peer for it (methods.md 2: PCL's planar and
-// normal variants do not converge on planar data). The peer gets every help: several settings are tried, the one with
-// the smallest error counts, and of those within a tenth of that error the fastest.
+// Whole match of a 1000-point profile beside pcl::IterativeClosestPoint, the peer for it (methods.md 2: PCL's
+// planar and normal variants do not converge on planar data). The peer gets every help: several settings are
+// tried, the one with the smallest error counts, and of those within a tenth of that error the fastest.
 
-#define PCL_NO_PRECOMPILE
 #include <benchmark/benchmark.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
-#include <pcl/registration/impl/icp.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -99,7 +97,8 @@ Score score(Match match, int rounds) {
             errors.push_back(error_mm(m, cases()[i].truth));
         }
     for (const double e : errors) s.error += e / double(errors.size());
-    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
+                     times.end());
     s.seconds = times[times.size() / 2];
     return s;
 }
@@ -155,7 +154,8 @@ int main(int argc, char** argv) {
             for (const bool reciprocal : {false, true}) {
                 const PeerSetting s{distance, 1e-10, iterations, reciprocal};
                 tried.emplace_back(
-                    s, score([&](std::size_t i) { return peer_match(contour_clouds[i], scene_clouds[i], s); }, 1));
+                    s, score([&](std::size_t i) { return peer_match(contour_clouds[i], scene_clouds[i], s); },
+                             1));
             }
     double least = 1e9;
     for (const auto& t : tried) least = std::min(least, t.second.error);
@@ -169,7 +169,9 @@ int main(int argc, char** argv) {
         score([&](std::size_t i) { return matchers[i].match(cases()[i].scene, {}).scene_from_template; }, 20);
     const Score with_making = score(
         [&](std::size_t i) {
-            return ContourMatcher::make(cases()[i].contour, {0, 0})->match(cases()[i].scene, {}).scene_from_template;
+            return ContourMatcher::make(cases()[i].contour, {0, 0})
+                ->match(cases()[i].scene, {})
+                .scene_from_template;
         },
         5);
 

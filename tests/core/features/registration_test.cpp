@@ -1,37 +1,368 @@
+// Laws, known answers and hostile input of the registration. Success rates and statistics over many scenes
+// are in registration_long_test.cpp.
+
+#include "core/features/registration.h"
+
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+
 #include "contours.h"
+#include "core/features/contour_model.h"
 
 namespace seamwright::test {
 namespace {
 
-TEST(Registration, FindsAShapeFarOff) {
-    Random random(1);
-    const Shape t = hem(-20, 20), s = hem(-35, 35);
-    int found = 0;
-    const int trials = 100;
-    std::uniform_real_distribution<double> unit(-1, 1);
-    for (int i = 0; i < trials; ++i) {
-        Profile scene_template = sample(t, 0.05);
-        auto matcher = ContourMatcher::make(scene_template, {0, 0});
-        ASSERT_TRUE(matcher);
-        const PlanarMotion truth{10 * unit(random), 10 * unit(random), rad_from_deg(15 * unit(random))};
-        Profile scene = sample(s.moved(truth), 0.05, 0.3);
-        add_noise(scene, 0.02, random);
-        occlude(scene, 0.1, random);
-        add_clutter(scene, 0.2, random);
-        const Registration r = matcher->match(scene, {});
-        const bool good = std::abs(r.scene_from_template.dx_mm - truth.dx_mm) < 0.1 &&
-                          std::abs(r.scene_from_template.dz_mm - truth.dz_mm) < 0.1 &&
-                          std::abs(r.scene_from_template.phi_rad - truth.phi_rad) < 0.01 &&
-                          r.status == RegistrationStatus::ok;
-        found += good;
-        if (!good)
-            printf("%d: %s share %.3f rms %.4f  err %.3f %.3f %.4f\n", i, to_string(r.status).data(),
-                   r.inlier_share, r.rms_mm, r.scene_from_template.dx_mm - truth.dx_mm,
-                   r.scene_from_template.dz_mm - truth.dz_mm, r.scene_from_template.phi_rad - truth.phi_rad);
+PlanarMotion inverse(const PlanarMotion& m) {
+    PlanarMotion i{0, 0, -m.phi_rad};
+    const Eigen::Vector2d d = i * Eigen::Vector2d(m.dx_mm, m.dz_mm);
+    return {-d.x(), -d.y(), -m.phi_rad};
+}
+PlanarMotion product(const PlanarMotion& a, const PlanarMotion& b) {
+    const Eigen::Vector2d d = a * Eigen::Vector2d(b.dx_mm, b.dz_mm);
+    return {d.x(), d.y(), a.phi_rad + b.phi_rad};
+}
+Profile moved(Profile p, const PlanarMotion& m) {
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Eigen::Vector2d q = m * Eigen::Vector2d(p.x_mm[i], p.z_mm[i]);
+        p.x_mm[i] = q.x();
+        p.z_mm[i] = q.y();
     }
-    EXPECT_GE(found, 99);
+    return p;
+}
+void expect_near(const PlanarMotion& a, const PlanarMotion& b, double mm, double rad) {
+    EXPECT_NEAR(a.dx_mm, b.dx_mm, mm);
+    EXPECT_NEAR(a.dz_mm, b.dz_mm, mm);
+    EXPECT_NEAR(a.phi_rad, b.phi_rad, rad);
+}
+
+TEST(ReduceContour, KeepsEveryPointWithinTolerance) {
+    Random random(2);
+    Profile p = sample(hem(-20, 20), 0.05);
+    add_noise(p, 0.03, random);
+    std::vector<int> kept;
+    for (const double tolerance : {0.01, 0.05, 0.3, 2.0}) {
+        reduce_contour(p.x_mm, p.z_mm, tolerance, kept);
+        ASSERT_GE(kept.size(), 2U);
+        EXPECT_EQ(kept.front(), 0);
+        EXPECT_EQ(kept.back(), static_cast<int>(p.size()) - 1);
+        EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+        for (std::size_t k = 1; k < kept.size(); ++k) {
+            const Eigen::Vector2d a(p.x_mm[kept[k - 1]], p.z_mm[kept[k - 1]]),
+                b(p.x_mm[kept[k]], p.z_mm[kept[k]]);
+            for (int i = kept[k - 1]; i <= kept[k]; ++i) {
+                const Eigen::Vector2d q(p.x_mm[i], p.z_mm[i]);
+                const double t = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+                EXPECT_LE((q - a - t * (b - a)).norm(), tolerance * (1 + 1e-12));
+            }
+        }
+    }
+}
+
+TEST(ReduceContour, SmallAndDegenerateInput) {
+    std::vector<int> kept{7};
+    const std::vector<double> none, one{1}, same(50, 2.0);
+    reduce_contour(none, none, 0.1, kept);
+    EXPECT_TRUE(kept.empty());
+    reduce_contour(one, one, 0.1, kept);
+    EXPECT_EQ(kept, std::vector<int>{0});
+    reduce_contour(same, same, 0.1, kept);
+    EXPECT_EQ(kept, (std::vector<int>{0, 49}));
+    // A comb deeper than any stack would bear: every point is kept.
+    std::vector<double> x, z;
+    for (int i = 0; i < 3000; ++i) {
+        x.push_back(i);
+        z.push_back((i % 2) * (1.0 + i));
+    }
+    reduce_contour(x, z, 0.1, kept);
+    EXPECT_EQ(kept.size(), x.size());
+}
+
+// Oracle: every edge tried for every query.
+TEST(ContourModel, NearestPlaceAgreesWithBruteForce) {
+    Random random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Profile overhang;
+    for (int i = 0; i <= 400; ++i) {  // most of a circle, x turns back
+        const double a = rad_from_deg(-60 + 300.0 * i / 400);
+        overhang.x_mm.push_back(5 * std::cos(a));
+        overhang.z_mm.push_back(5 * std::sin(a));
+    }
+    for (const Profile& p : {sample(hem(-10, 10), 0.1), overhang, sample(step(-5, 5, 2), 0.05)}) {
+        ContourModel model;
+        model.build(p);
+        ASSERT_TRUE(model.usable());
+        int found = 0;
+        for (int q = 0; q < 400; ++q) {
+            const double x = 12 * unit(random), z = 6 * unit(random), radius = 1.5;
+            double best = radius;
+            for (const auto& e : model.edges()) {
+                const double dx = x - e.cx, dz = z - e.cz;
+                const double u = dx * e.tx + dz * e.tz;
+                const double residual = dz * e.tx - dx * e.tz - 0.5 * e.curvature * u * u;
+                const double out = std::max(std::abs(u) - e.half, 0.0);
+                if (out > 0.5 * model.pitch().distance && (u > 0 ? e.next : e.previous) < 0) continue;
+                best = std::min(best, std::hypot(out, residual));
+            }
+            const auto foot = model.nearest(x, z, radius);
+            if (best >= radius) {
+                EXPECT_LT(foot.edge, 0);
+                continue;
+            }
+            ++found;
+            ASSERT_GE(foot.edge, 0) << x << " " << z << " " << best;
+            const auto& e = model.edges()[foot.edge];
+            const double d = std::hypot(std::max(std::abs(foot.u) - e.half, 0.0), foot.residual);
+            // Nodes stand in for edges, so of two edges about equally near the other one may be taken.
+            EXPECT_NEAR(d, best, 0.02 + 0.05 * best);
+        }
+        EXPECT_GT(found, 20);
+    }
+}
+
+TEST(ContourModel, NoiseEstimateAndFittedCurve) {
+    Random random(4);
+    for (const double sigma : {0.005, 0.02, 0.05}) {
+        Profile p;
+        for (int i = 0; i < 1000; ++i) {
+            p.x_mm.push_back(0.05 * i);
+            p.z_mm.push_back(0.002 * p.x_mm.back() * p.x_mm.back());
+        }
+        add_noise(p, sigma, random);
+        ContourModel model;
+        model.build(p);
+        EXPECT_NEAR(model.sigma_mm(), sigma, 0.1 * sigma);
+        double sum = 0;
+        for (const auto& e : model.edges()) {
+            const double x = e.cx + model.origin().x(), z = e.cz + model.origin().y();
+            sum += std::pow(z - 0.002 * x * x, 2);
+        }
+        EXPECT_LT(std::sqrt(sum / double(model.edges().size())), 0.35 * sigma);
+    }
+}
+
+TEST(Registration, ExactMotionWithoutNoise) {
+    const Profile t = sample(hem(-15, 15), 0.05);
+    auto matcher = ContourMatcher::make(t, {0, 0});
+    ASSERT_TRUE(matcher);
+    for (const PlanarMotion& truth :
+         {PlanarMotion{0, 0, 0}, PlanarMotion{9, -8, 0.2}, PlanarMotion{-3, 7, -0.25}}) {
+        const Registration r = matcher->match(moved(t, truth), {});
+        EXPECT_EQ(r.status, RegistrationStatus::ok) << to_string(r.status);
+        expect_near(r.scene_from_template, truth, 1e-4, 1e-5);
+        EXPECT_GT(r.inlier_share, 0.97);
+    }
+}
+
+TEST(Registration, MovesWithTheScene) {
+    Random random(5);
+    Profile t = sample(hem(-15, 15), 0.05), s = sample(hem(-30, 30), 0.06);
+    add_noise(t, 0.02, random);
+    add_noise(s, 0.02, random);
+    auto matcher = ContourMatcher::make(t, {0, 0});
+    ASSERT_TRUE(matcher);
+    const Registration still = matcher->match(s, {});
+    ASSERT_EQ(still.status, RegistrationStatus::ok);
+    for (const PlanarMotion& m :
+         {PlanarMotion{4, 5, 0}, PlanarMotion{-6, 3, 0.15}, PlanarMotion{1, -7, -0.2}}) {
+        const Registration r = matcher->match(moved(s, m), {});
+        ASSERT_EQ(r.status, RegistrationStatus::ok);
+        // The same minimum, up to the few points that fall on either side of the gate.
+        expect_near(r.scene_from_template, product(m, still.scene_from_template), 2e-3, 1e-4);
+    }
+}
+
+TEST(Registration, TemplateFarFromTheOriginChangesNothing) {
+    Random random(6);
+    const PlanarMotion far{250, -480, 0};
+    Profile t = sample(joggle(-15, 15), 0.05), s = sample(joggle(-30, 30).moved({5, -4, 0.2}), 0.05);
+    add_noise(s, 0.02, random);
+    auto near_matcher = ContourMatcher::make(t, {0, 0});
+    auto far_matcher = ContourMatcher::make(moved(t, far), {250, -480});
+    ASSERT_TRUE(near_matcher && far_matcher);
+    const Registration a = near_matcher->match(s, {}), b = far_matcher->match(moved(s, far), {});
+    ASSERT_EQ(a.status, RegistrationStatus::ok);
+    ASSERT_EQ(b.status, RegistrationStatus::ok);
+    const PlanarMotion expected = product(product(far, a.scene_from_template), inverse(far));
+    expect_near(b.scene_from_template, expected, 1e-6, 1e-9);
+    // The covariance of the landmark is the same as well.
+    Eigen::Matrix<double, 2, 3> j;
+    const Eigen::Vector2d arm = b.scene_from_template * Eigen::Vector2d(250, -480) -
+                                Eigen::Vector2d(b.scene_from_template.dx_mm, b.scene_from_template.dz_mm);
+    j << 1, 0, -arm.y(), 0, 1, arm.x();
+    const Eigen::Matrix2d at_landmark = j * b.covariance * j.transpose();
+    EXPECT_LT((at_landmark - a.covariance.topLeftCorner<2, 2>()).norm(), 1e-3 * at_landmark.norm());
+}
+
+TEST(Registration, SwappedPairGivesTheInverse) {
+    Random random(7);
+    const PlanarMotion truth{2, 3, 0.1};
+    Profile a = sample(hem(-15, 15), 0.05), b = sample(hem(-15, 15).moved(truth), 0.05, 0.2);
+    add_noise(a, 0.01, random);
+    add_noise(b, 0.01, random);
+    auto forth = ContourMatcher::make(a, {0, 0}), back = ContourMatcher::make(b, {0, 0});
+    ASSERT_TRUE(forth && back);
+    const Registration f = forth->match(b, {}), g = back->match(a, {});
+    ASSERT_EQ(f.status, RegistrationStatus::ok);
+    ASSERT_EQ(g.status, RegistrationStatus::ok);
+    const PlanarMotion identity = product(g.scene_from_template, f.scene_from_template);
+    // Each is within its own noise of the truth.
+    const double mm = 4 * std::sqrt(f.covariance.topLeftCorner<2, 2>().trace());
+    expect_near(identity, {0, 0, 0}, std::max(mm, 0.005), 2e-3);
+}
+
+TEST(Registration, OtherPitchAndShuffledScene) {
+    const PlanarMotion truth{-4, 6, -0.15};
+    const Profile t = sample(hem(-15, 15), 0.05);
+    auto matcher = ContourMatcher::make(t, {0, 0});
+    ASSERT_TRUE(matcher);
+    for (const double pitch : {0.02, 0.04, 0.1, 0.2}) {
+        const Registration r = matcher->match(sample(hem(-30, 30).moved(truth), pitch), {});
+        EXPECT_EQ(r.status, RegistrationStatus::ok) << pitch;
+        expect_near(r.scene_from_template, truth, 0.02, 1e-3);
+    }
+    Random random(8);
+    Profile s = sample(hem(-30, 30).moved(truth), 0.05), shuffled = s;
+    std::vector<std::size_t> order(s.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::shuffle(order.begin(), order.end(), random);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        shuffled.x_mm[i] = s.x_mm[order[i]];
+        shuffled.z_mm[i] = s.z_mm[order[i]];
+    }
+    const Registration a = matcher->match(s, {}), b = matcher->match(shuffled, {});
+    EXPECT_EQ(b.status, RegistrationStatus::ok);
+    expect_near(a.scene_from_template, b.scene_from_template, 1e-6, 1e-8);
+}
+
+TEST(Registration, RefineFollowsSmallMotions) {
+    Random random(9);
+    const Profile t = sample(hem(-15, 15), 0.05);
+    auto matcher = ContourMatcher::make(t, {0, 0});
+    ASSERT_TRUE(matcher);
+    PlanarMotion truth{0, 0, 0}, tracked{0, 0, 0};
+    for (int i = 0; i < 40; ++i) {
+        truth = {truth.dx_mm + 0.3, truth.dz_mm - 0.2, truth.phi_rad + 0.004};
+        Profile s = sample(hem(-30, 30).moved(truth), 0.05);
+        add_noise(s, 0.02, random);
+        const Registration r = matcher->refine(s, tracked);
+        ASSERT_EQ(r.status, RegistrationStatus::ok) << i;
+        tracked = r.scene_from_template;
+        expect_near(tracked, truth, 0.04, 1e-3);
+    }
+}
+
+TEST(Registration, StraightTemplateSlidesAndSaysWhere) {
+    Random random(10);
+    Shape line, longer;
+    line.line_to(-10, -2);
+    line.line_to(10, 2);
+    longer.line_to(-30, -6);
+    longer.line_to(30, 6);
+    for (const double noise : {0.0, 0.02}) {
+        Profile t = sample(line, 0.05), s = sample(longer.moved({1, 2, 0.05}), 0.05);
+        add_noise(t, noise, random);
+        add_noise(s, noise, random);
+        auto matcher = ContourMatcher::make(t, {0, 0});
+        ASSERT_TRUE(matcher);
+        const Registration r = matcher->match(s, {});
+        ASSERT_EQ(r.status, RegistrationStatus::sliding) << noise << " " << to_string(r.status);
+        const double angle = std::atan2(0.2, 1) + 0.05;
+        const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
+        EXPECT_GT(std::abs(r.sliding_direction.dot(along)), 0.999);
+        EXPECT_NEAR(r.scene_from_template.phi_rad, 0.05, 2e-3);
+        const Eigen::Vector2d n(-std::sin(angle), std::cos(angle));
+        const Eigen::Matrix2d shift = r.covariance.topLeftCorner<2, 2>();
+        EXPECT_GT(shift.trace(), 1e3 * n.dot(shift * n));
+    }
+}
+
+TEST(Registration, TwoEqualPlacesAreAmbiguous) {
+    Random random(11);
+    Shape two;
+    two.line_to(-30, 0);
+    for (const double at : {-4.0, 4.0}) {
+        const Shape b = bead(at - 3.5, at + 3.5, at, 4, 1.5);
+        for (std::size_t i = 0; i < b.x.size(); ++i) two.line_to(b.x[i], b.z[i]);
+    }
+    two.line_to(30, 0);
+    Profile s = sample(two, 0.05);
+    add_noise(s, 0.02, random);
+    auto matcher = ContourMatcher::make(sample(bead(-3.5, 3.5, 0, 4, 1.5), 0.05), {0, 0});
+    ASSERT_TRUE(matcher);
+    EXPECT_EQ(matcher->match(s, {}).status, RegistrationStatus::ambiguous);
+    // With one of them outside of the window it is found.
+    SearchWindow window;
+    window.dx_mm = 2;
+    window.centre_mm = {4, 0};
+    const Registration r = matcher->match(s, window);
+    EXPECT_EQ(r.status, RegistrationStatus::ok);
+    EXPECT_NEAR(r.scene_from_template.dx_mm, 4, 0.03);
+}
+
+TEST(Registration, GarbageIsNoMatch) {
+    Random random(12);
+    auto matcher = ContourMatcher::make(sample(hem(-15, 15), 0.05), {0, 0});
+    ASSERT_TRUE(matcher);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int trial = 0; trial < 20; ++trial) {
+        Profile scatter;
+        for (int i = 0; i < 800; ++i) {
+            scatter.x_mm.push_back(-20 + 0.05 * i);
+            scatter.z_mm.push_back(10 * unit(random));
+        }
+        EXPECT_NE(matcher->match(scatter, {}).status, RegistrationStatus::ok);
+        // Another shape: straight parts fit, the fold is not there.
+        Profile other = sample(bead(-30, 30, 5 * unit(random), 5, 2), 0.05);
+        add_noise(other, 0.02, random);
+        EXPECT_NE(matcher->match(other, {}).status, RegistrationStatus::ok);
+        Shape flat;
+        flat.line_to(-30, 0);
+        flat.line_to(30, 0);
+        Profile plain = sample(flat, 0.05);
+        add_noise(plain, 0.02, random);
+        EXPECT_NE(matcher->match(plain, {}).status, RegistrationStatus::ok);
+    }
+}
+
+TEST(Registration, HostileInput) {
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
+    Profile none, one, few, same, nans, line;
+    one.x_mm = one.z_mm = {1};
+    few.x_mm = few.z_mm = {1, 2, 3, 4};
+    same.x_mm = same.z_mm = std::vector<double>(100, 3.0);
+    nans.x_mm = std::vector<double>(100, 1.0);
+    nans.z_mm = std::vector<double>(100, nan);
+    Profile unequal;
+    unequal.x_mm = {1, 2, 3};
+    unequal.z_mm = {1};
+    for (const Profile* p : {&none, &one, &few, &same, &nans, &unequal})
+        EXPECT_FALSE(ContourMatcher::make(*p, {0, 0}));
+    EXPECT_FALSE(ContourMatcher::make(sample(hem(-10, 10), 0.05), {nan, 0}));
+
+    auto matcher = ContourMatcher::make(sample(hem(-15, 15), 0.05), {0, 0});
+    ASSERT_TRUE(matcher);
+    EXPECT_EQ(matcher->match(none, {}).status, RegistrationStatus::no_points);
+    EXPECT_EQ(matcher->match(nans, {}).status, RegistrationStatus::no_points);
+    EXPECT_NE(matcher->match(same, {}).status, RegistrationStatus::ok);
+    EXPECT_EQ(matcher->match(one, {}).status, RegistrationStatus::no_points);
+    Profile huge = sample(hem(-30, 30), 0.05), spotted = huge;
+    for (double& z : huge.z_mm) z *= 1e12;
+    EXPECT_NE(matcher->match(huge, {}).status, RegistrationStatus::ok);
+    for (std::size_t i = 0; i < spotted.size(); i += 7) spotted.z_mm[i] = i % 2 ? nan : inf;
+    spotted.x_mm[50] = 1e9;
+    const Registration r = matcher->match(spotted, {});
+    EXPECT_EQ(r.status, RegistrationStatus::ok);
+    expect_near(r.scene_from_template, {0, 0, 0}, 0.02, 1e-3);
+    SearchWindow nowhere;
+    nowhere.dx_mm = nowhere.dz_mm = nowhere.phi_rad = 0;
+    EXPECT_EQ(matcher->match(sample(hem(-30, 30), 0.05), nowhere).status, RegistrationStatus::ok);
+    SearchWindow bad;
+    bad.dx_mm = nan;
+    EXPECT_EQ(matcher->match(spotted, bad).status, RegistrationStatus::no_match);
+    EXPECT_NE(matcher->refine(spotted, {nan, 0, 0}).status, RegistrationStatus::ok);
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+#include "counted_allocations.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+std::atomic<long> count{0};
+}
+namespace seamwright::test {
+long allocations() {
+    return count;
+}
+}  // namespace seamwright::test
+
+void* operator new(std::size_t size) {
+    ++count;
+    if (void* p = std::malloc(size)) return p;
+    throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+    std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+    std::free(p);
+}

@@ -1,0 +1,276 @@
+// Kinds of feature: known answers, statuses, refusals, hostile input, no allocation. Statistics of the
+// covariances are in features_long_test.cpp.
+
+#include "core/features/feature.h"
+
+#include <gtest/gtest.h>
+
+#include "contours.h"
+#include "core/features/gap_flush.h"
+#include "counted_allocations.h"
+
+namespace seamwright::test {
+namespace {
+
+std::unique_ptr<FeatureFinder> finder(const std::string& kind, ParameterValues values = {}) {
+    FeatureRecipe recipe;
+    recipe.kind = kind;
+    recipe.parameters = std::move(values);
+    if (kind == "template") recipe.template_profile = sample(hem(-15, 15), 0.05);
+    auto made = make_feature_finder(recipe);
+    EXPECT_TRUE(made) << (made ? "" : made.error().sentence());
+    return made ? std::move(*made) : nullptr;
+}
+
+TEST(FeatureRegistry, EveryKindIsMadeAndDescribesItself) {
+    ASSERT_EQ(feature_kinds().size(), 5U);
+    for (const FeatureKind& kind : feature_kinds()) {
+        EXPECT_EQ(feature_kind(kind.name), &kind);
+        EXPECT_FALSE(kind.help.empty());
+        for (const ParameterInfo& p : kind.parameters) {
+            EXPECT_LE(p.minimum, p.default_value) << kind.name << " " << p.name;
+            EXPECT_GE(p.maximum, p.default_value) << kind.name << " " << p.name;
+            EXPECT_FALSE(p.help.empty());
+        }
+        EXPECT_NE(finder(std::string(kind.name)), nullptr);
+    }
+    EXPECT_EQ(feature_kind("nothing"), nullptr);
+}
+
+TEST(FeatureRegistry, RefusesWithOneSentence) {
+    FeatureRecipe recipe;
+    recipe.kind = "edge";
+    auto r = make_feature_finder(recipe);
+    ASSERT_FALSE(r);
+    EXPECT_NE(r.error().sentence().find("contour-end"), std::string::npos);
+    recipe.kind = "corner";
+    recipe.parameters = {{"colour", 1}};
+    EXPECT_FALSE(make_feature_finder(recipe));
+    recipe.parameters = {{"window_x_min_mm", 5}, {"window_x_max_mm", 1}};
+    EXPECT_FALSE(make_feature_finder(recipe));
+    recipe.parameters = {{"blend_mm", std::nan("")}};
+    EXPECT_FALSE(make_feature_finder(recipe));
+    recipe.kind = "circle";
+    recipe.parameters = {{"radius_min_mm", 5}, {"radius_max_mm", 1}};
+    EXPECT_FALSE(make_feature_finder(recipe));
+    recipe.kind = "template";
+    recipe.parameters = {};
+    EXPECT_FALSE(make_feature_finder(recipe));  // no template
+}
+
+TEST(ContourEnd, EitherSideAndSegments) {
+    // Two sheets, the right one lower, and a gap.
+    Profile p;
+    for (int i = 0; i < 200; ++i) {
+        p.x_mm.push_back(-10 + 0.05 * i);
+        p.z_mm.push_back(5);
+    }
+    for (int i = 0; i < 100; ++i) {
+        p.x_mm.push_back(3 + 0.05 * i);
+        p.z_mm.push_back(1);
+    }
+    p.segment.assign(200, 0);
+    p.segment.insert(p.segment.end(), 100, 1);
+    const Feature left = finder("contour-end", {{"side", 0}})->find(p);
+    ASSERT_EQ(left.status, FeatureStatus::ok);
+    EXPECT_NEAR(left.point_mm.x(), -10.025, 1e-9);
+    EXPECT_NEAR(left.point_mm.y(), 5, 1e-9);
+    EXPECT_NEAR(finder("contour-end", {{"side", 1}})->find(p).point_mm.x(), 3 + 0.05 * 99 + 0.025, 1e-9);
+    for (const double choice : {1.0, 2.0}) {  // longest, highest: the left sheet's right end
+        const Feature f = finder("contour-end", {{"side", 1}, {"segment", choice}})->find(p);
+        ASSERT_EQ(f.status, FeatureStatus::ok);
+        EXPECT_NEAR(f.point_mm.x(), -10 + 0.05 * 199 + 0.025, 1e-9);
+        EXPECT_NEAR(std::sqrt(f.covariance_mm2(0, 0)), 0.05 / std::sqrt(12.0), 1e-6);
+    }
+    EXPECT_NEAR(finder("contour-end", {{"side", 1}, {"window_z_min_mm", 3}})->find(p).point_mm.x(), -0.025,
+                1e-9);
+    const Feature cut = finder("contour-end", {{"side", 1}, {"window_x_max_mm", -3}})->find(p);
+    EXPECT_EQ(cut.status, FeatureStatus::not_found);
+    EXPECT_FALSE(cut.message.empty());
+    EXPECT_EQ(finder("contour-end", {{"minimum_points", 500}})->find(p).status, FeatureStatus::no_points);
+    // The same, not filtered: the gap ends the segment.
+    p.segment.clear();
+    EXPECT_NEAR(finder("contour-end", {{"side", 1}, {"segment", 1}})->find(p).point_mm.x(), -0.025, 1e-9);
+}
+
+TEST(Corner, ExactWithoutNoiseAndParallelRefused) {
+    const Profile p = sample(corner(-20, 20).moved({1, 2, 0}), 0.07);
+    const Feature f = finder("corner")->find(p);
+    ASSERT_EQ(f.status, FeatureStatus::ok) << f.message;
+    EXPECT_NEAR(f.point_mm.x(), 1, 1e-6);
+    EXPECT_NEAR(f.point_mm.y(), 5, 1e-6);
+    ASSERT_TRUE(f.phi_rad);
+    EXPECT_NEAR(*f.phi_rad, 0.5 * (std::atan(0.25) - std::atan(0.4)), 1e-6);
+    Shape line;
+    line.line_to(-10, 0);
+    line.line_to(10, 1);
+    const Feature none = finder("corner")->find(sample(line, 0.05));
+    EXPECT_EQ(none.status, FeatureStatus::ill_conditioned);
+    // A third of the points of one side far off does not bend it.
+    Random random(3);
+    Profile dirty = p;
+    for (std::size_t i = 0; i < dirty.size() / 2; i += 4) dirty.z_mm[i] += 3;
+    const Feature g = finder("corner")->find(dirty);
+    ASSERT_EQ(g.status, FeatureStatus::ok);
+    EXPECT_NEAR(g.point_mm.x(), 1, 1e-6);
+}
+
+TEST(Circle, ExactShortArcAndKnownRadius) {
+    Shape arc, tiny;
+    arc.arc(3, -2, 6, 160, 30);
+    tiny.arc(3, -2, 60, 93, 87);
+    const Feature f = finder("circle")->find(sample(arc, 0.05));
+    ASSERT_EQ(f.status, FeatureStatus::ok) << f.message;
+    EXPECT_NEAR(f.point_mm.x(), 3, 1e-4);
+    EXPECT_NEAR(f.point_mm.y(), -2, 1e-4);
+    Random random(4);
+    Profile t = sample(tiny, 0.05);
+    add_noise(t, 0.02, random);
+    EXPECT_NE(finder("circle")->find(t).status, FeatureStatus::ok);
+    const Feature k = finder("circle", {{"radius_mm", 6}})->find(sample(arc, 0.05));
+    ASSERT_EQ(k.status, FeatureStatus::ok);
+    EXPECT_NEAR(k.point_mm.y(), -2, 1e-4);
+    Shape line;
+    line.line_to(-10, 0);
+    line.line_to(10, 1);
+    Profile flat = sample(line, 0.05);
+    add_noise(flat, 0.02, random);
+    EXPECT_NE(finder("circle")->find(flat).status, FeatureStatus::ok);
+}
+
+TEST(Extremum, EachOfTheFour) {
+    const Profile up = sample(bead(-10, 10, 1, 6, 2), 0.05);
+    Profile down = up, right = up, left = up;
+    for (double& z : down.z_mm) z = -z;
+    std::swap(right.x_mm, right.z_mm);
+    left = right;
+    for (double& x : left.x_mm) x = -x;
+    const Profile* profiles[] = {&up, &down, &left, &right};
+    const Eigen::Vector2d expected[] = {{1, 2}, {1, -2}, {-2, 1}, {2, 1}};
+    for (int which = 0; which < 4; ++which) {
+        const Feature f = finder("extremum", {{"which", double(which)}})->find(*profiles[which]);
+        ASSERT_EQ(f.status, FeatureStatus::ok) << which << f.message;
+        EXPECT_NEAR(f.point_mm.x(), expected[which].x(), 2e-3) << which;
+        EXPECT_NEAR(f.point_mm.y(), expected[which].y(), 2e-3) << which;
+    }
+    EXPECT_EQ(finder("extremum")->find(sample(corner(-10, 10), 0.05)).status, FeatureStatus::not_found);
+    Shape flat;
+    flat.line_to(-10, 0);
+    flat.line_to(10, 0);
+    Random random(5);
+    Profile noisy = sample(flat, 0.05);
+    add_noise(noisy, 0.02, random);
+    EXPECT_NE(finder("extremum")->find(noisy).status, FeatureStatus::ok);
+}
+
+TEST(TemplateFeature, CarriesItsReference) {
+    FeatureRecipe recipe;
+    recipe.kind = "template";
+    recipe.template_profile = sample(hem(-15, 15), 0.05);
+    recipe.template_reference_mm = {3, 12};
+    auto made = make_feature_finder(recipe);
+    ASSERT_TRUE(made);
+    const PlanarMotion truth{5, -6, 0.15};
+    const Feature f = (*made)->find(sample(hem(-30, 30).moved(truth), 0.05, 0.3));
+    ASSERT_EQ(f.status, FeatureStatus::ok) << f.message;
+    EXPECT_LT((f.point_mm - truth * recipe.template_reference_mm).norm(), 5e-3);
+    ASSERT_TRUE(f.phi_rad);
+    EXPECT_NEAR(*f.phi_rad, 0.15, 1e-4);
+}
+
+TEST(GapFlush, KnownGapEitherReference) {
+    Profile p;
+    for (int i = 0; i < 300; ++i) {
+        p.x_mm.push_back(-15 + 0.05 * i);
+        p.z_mm.push_back(0);
+    }
+    for (int i = 0; i < 300; ++i) {
+        p.x_mm.push_back(3 + 0.05 * i);
+        p.z_mm.push_back(0.8);
+    }
+    for (const double turn : {0.0, 0.2, -0.3}) {
+        Profile q = p;
+        const PlanarMotion m{4, -7, turn};
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            const Eigen::Vector2d v = m * Eigen::Vector2d(p.x_mm[i], p.z_mm[i]);
+            q.x_mm[i] = v.x();
+            q.z_mm[i] = v.y();
+        }
+        for (const bool right : {false, true}) {
+            GapFlushSettings settings;
+            settings.reference =
+                right ? GapFlushSettings::Reference::right : GapFlushSettings::Reference::left;
+            const GapFlush g = GapFlushGauge(settings).measure(q);
+            ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
+            EXPECT_NEAR(g.gap_mm, 3 - (-15 + 0.05 * 299) - 0.05, 1e-6);  // half a pitch at either edge
+            EXPECT_NEAR(g.flush_mm, right ? -0.8 : 0.8, 1e-6);
+        }
+    }
+    Profile whole = sample(hem(-10, 10), 0.05);
+    EXPECT_NE(GapFlushGauge({}).measure(Profile{}).status, GapFlushStatus::ok);
+    Shape line;
+    line.line_to(-10, 0);
+    line.line_to(10, 1);
+    EXPECT_EQ(GapFlushGauge({}).measure(sample(line, 0.05)).status, GapFlushStatus::not_found);
+}
+
+TEST(Features, HostileProfilesNeverGiveAGoodPoint) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Profile none, one, same, nans, two;
+    one.x_mm = one.z_mm = {1};
+    two.x_mm = two.z_mm = {1, 2};
+    same.x_mm = same.z_mm = std::vector<double>(200, 3.0);
+    nans.x_mm = std::vector<double>(200, 1.0);
+    nans.z_mm = std::vector<double>(200, nan);
+    Profile outliers = sample(hem(-10, 10), 0.05);
+    outliers.segment.assign(outliers.size(), kOutlier);
+    Profile infinite = sample(hem(-10, 10), 0.05);
+    for (double& z : infinite.z_mm) z = std::numeric_limits<double>::infinity();
+    for (const FeatureKind& kind : feature_kinds()) {
+        const auto f = finder(std::string(kind.name));
+        for (const Profile* p : {&none, &one, &two, &same, &nans, &outliers, &infinite}) {
+            const Feature r = f->find(*p);
+            EXPECT_NE(r.status, FeatureStatus::ok) << kind.name;
+            EXPECT_FALSE(r.message.empty()) << kind.name;
+        }
+        // Far away and very large: an answer or a status, but nothing that is not a number.
+        for (const double scale : {1e-6, 1.0, 1e6}) {
+            Profile p = sample(hem(-10, 10), 0.05);
+            for (double& x : p.x_mm) x = x * scale + 4e4;
+            for (double& z : p.z_mm) z *= scale;
+            const Feature r = f->find(p);
+            if (r.status == FeatureStatus::ok) {
+                EXPECT_TRUE(r.point_mm.allFinite()) << kind.name;
+                EXPECT_TRUE(r.covariance_mm2.allFinite()) << kind.name;
+            }
+        }
+    }
+}
+
+TEST(Features, FindAllocatesNothingAfterTheFirstCalls) {
+    Random random(6);
+    std::vector<Profile> profiles;
+    for (int i = 0; i < 6; ++i) {
+        Profile p = sample(hem(-20, 20).moved({i - 3.0, 2.0 - i, 0.03 * i}), 0.05);
+        add_noise(p, 0.02, random);
+        profiles.push_back(p);
+    }
+    for (const FeatureKind& kind : feature_kinds()) {
+        const auto f = finder(std::string(kind.name));
+        for (int round = 0; round < 2; ++round)
+            for (const Profile& p : profiles) f->find(p);
+        const long before = allocations();
+        int good = 0;
+        for (const Profile& p : profiles) good += f->find(p).status == FeatureStatus::ok;
+        // A refusal carries its sentence, which is text on the heap: only good answers must be free.
+        if (good == static_cast<int>(profiles.size())) {
+            EXPECT_EQ(allocations() - before, 0) << kind.name;
+        }
+        if (kind.name == "template" || kind.name == "contour-end") {
+            EXPECT_EQ(good, 6) << kind.name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace seamwright::test

@@ -10,6 +10,18 @@
 #include "devices/exchange/files.h"
 
 namespace seamwright {
+namespace {
+
+// By content. What is none of these would be handed by OpenCV to GDAL, which opens far more than images.
+bool is_known_format(const std::string& bytes) {
+    for (const char* start :
+         {"\x89PNG\r\n", "BM", "P1", "P2", "P3", "P4", "P5", "P6", "\xFF\xD8\xFF", "MM"}) {
+        if (bytes.starts_with(start)) return true;
+    }
+    return bytes.starts_with("II*");  // TIFF, little-endian
+}
+
+}  // namespace
 
 Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, int bit_depth) {
     frame.image = {};
@@ -20,6 +32,8 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
     const auto bytes = read_text_file(path, std::size_t{1} << 30);
     if (!bytes) return tl::unexpected(bytes.error());
     if (bytes->empty()) return file_error("the image file is empty", path.string());
+    if (!is_known_format(*bytes))
+        return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
     // The JPEG decoder fills what is missing with grey, which would be measured; the others refuse by
     // themselves.
     if (bytes->starts_with("\xFF\xD8") && bytes->rfind("\xFF\xD9") == std::string::npos) {

@@ -33,13 +33,16 @@ struct Line {
     int operator[](int i) const { return *reinterpret_cast<const Pixel*>(first + i * step); }
 };
 
-// The part of a line about a run, copied once: a column's pixels lie a row apart, and their cache lines evict
-// each other.
+// The part of a line about a run, copied once: a column's pixels lie a row
+// apart, and their cache lines evict each other.
 template <class Pixel>
 class LineWindow {
   public:
     LineWindow(const Line<Pixel>& line, const Run& run) : size(line.size), line_(line) {
-        const int margin = kMargin + (run.end - run.begin);
+        const int length = run.end - run.begin;
+        // Shortest runs are most often noise on a flank; should one need more, the
+        // line itself answers.
+        const int margin = length > 2 ? kMargin + length / 4 : 4;
         first_ = std::max(0, run.begin - margin);
         count_ = std::min({line.size, run.end + margin, first_ + kCapacity}) - first_;
         for (int i = 0; i < count_; ++i) grey_[i] = line[first_ + i];
@@ -51,13 +54,14 @@ class LineWindow {
     const int size;
 
   private:
-    static constexpr int kMargin = 16, kCapacity = 192;
+    static constexpr int kMargin = 14, kCapacity = 192;
     Line<Pixel> line_;
     int first_, count_;
     int grey_[kCapacity];
 };
 
-// A lobe and all that is measured on it. Positions in px along the line, levels in grey values.
+// A lobe and all that is measured on it. Positions in px along the line, levels
+// in grey values.
 struct Lobe {
     int top = 0;                      // highest grey value
     int top_first = 0, top_last = 0;  // first and last pixel of that value
@@ -76,8 +80,8 @@ struct Lobe {
     double base_at(double x) const { return base + slope * (x - middle); }
 };
 
-// Where the line crosses `level` between pixel `inside` (at or above) and its outer neighbour in direction
-// `step`.
+// Where the line crosses `level` between pixel `inside` (at or above) and its
+// outer neighbour in direction `step`.
 template <class L>
 double crossing(const L& line, int inside, int step, double level) {
     const int outside = inside + step;
@@ -87,9 +91,10 @@ double crossing(const L& line, int inside, int step, double level) {
     return inside + step * std::clamp((in - level) / (in - out), 0.0, 1.0);
 }
 
-// Walks from `from` in direction `step` while pixels are at or above `level` (one pixel below is bridged);
-// `last` becomes the last such pixel. False where a pixel above `highest` comes (the lobe belongs to that
-// one), or where the way is longer than `limit`.
+// Walks from `from` in direction `step` while pixels are at or above `level`
+// (one pixel below is bridged); `last` becomes the last such pixel. False where
+// a pixel above `highest` comes (the lobe belongs to that one), or where the
+// way is longer than `limit`.
 template <class L>
 bool walk(const L& line, int from, int step, double level, int highest, int limit, int& last) {
     last = from;
@@ -106,37 +111,27 @@ bool walk(const L& line, int from, int step, double level, int highest, int limi
     return false;
 }
 
-// Median of kFootPixels pixels beginning at `from` in direction `step`; false where they are outside the
+// Mean of kFootPixels pixels beginning at `from` in direction `step`, without
+// the highest and the lowest; false where fewer than three of them are on the
 // line.
 template <class L>
 bool foot_level(const L& line, int from, int step, double& level) {
-    int values[kFootPixels];
-    int n = 0;
-    for (int i = from; n < kFootPixels && i >= 0 && i < line.size; i += step) values[n++] = line[i];
-    if (n < 2) return false;
-    if (n == kFootPixels) {
-        // A sorting network for eight: constant time, no branches.
-        static_assert(kFootPixels == 8);
-        const auto order = [&](int a, int b) {
-            const int lower = std::min(values[a], values[b]), upper = std::max(values[a], values[b]);
-            values[a] = lower;
-            values[b] = upper;
-        };
-        order(0, 1), order(2, 3), order(4, 5), order(6, 7);
-        order(0, 2), order(1, 3), order(4, 6), order(5, 7);
-        order(1, 2), order(5, 6), order(0, 4), order(3, 7);
-        order(1, 5), order(2, 6);
-        order(1, 4), order(3, 6);
-        order(2, 4), order(3, 5);
-        order(3, 4);
-    } else {
-        std::sort(values, values + n);
+    const int inside = step > 0 ? line.size - from : from + 1;
+    const int n = from < 0 || from >= line.size ? 0 : std::min(kFootPixels, inside);
+    if (n < 3) return false;
+    int sum = 0, low = line[from], high = low;
+    for (int k = 0; k < n; ++k) {
+        const int grey = line[from + step * k];
+        sum += grey;
+        low = std::min(low, grey);
+        high = std::max(high, grey);
     }
-    level = n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+    level = static_cast<double>(sum - low - high) / (n - 2);
     return true;
 }
 
-// Whether the way from pixel `from` to `to`, in either direction, is more than a falling flank.
+// Whether the way from pixel `from` to `to`, in either direction, is more than
+// a falling flank.
 template <class L>
 bool rises_again(const L& line, int from, int to) {
     const int step = to < from ? -1 : 1;
@@ -151,9 +146,9 @@ class LobeFinder {
     LobeFinder(const L& line, const PeakOptions& options, int full_scale)
         : line_(line), options_(options), full_scale_(full_scale) {}
 
-    // The stretch at half height about the highest pixel of [begin, end). Returns false when that pixel
-    // belongs to a higher lobe beside it, or the lobe is too wide; `left` and `right` are then what has been
-    // looked at.
+    // The stretch at half height about the highest pixel of [begin, end). Returns
+    // false when that pixel belongs to a higher lobe beside it, or the lobe is
+    // too wide; `left` and `right` are then what has been looked at.
     bool stretch(int begin, int end, double background, Lobe& lobe) const {
         int at = begin;
         for (int i = begin + 1; i < end; ++i)
@@ -170,23 +165,27 @@ class LobeFinder {
         return raise_from_pedestal(lobe);
     }
 
-    // Clipping, background, half-height crossings. The background is measured where the flanks end, and the
-    // flanks above the background: a second round when the first moved it.
+    // Clipping, background, half-height crossings. The background is measured
+    // where the flanks end, and the flanks above the background: a second round
+    // when the first moved it.
     void measure(Lobe& lobe, double noise) const {
         find_top(lobe);
-        for (int round = 0; round < 3; ++round) {
-            outline(lobe);
+        outline(lobe);
+        for (int round = 0; round < 2; ++round) {
             const double before = lobe.base;
-            if (round < 2) find_background(lobe, noise);
-            if (std::abs(lobe.base - before) < 0.01 * lobe.height()) break;
+            find_background(lobe, noise);
+            const double moved = std::abs(lobe.base - before);
+            if (moved > 0.01 * lobe.height()) outline(lobe);
+            if (moved < 0.03 * lobe.height()) break;
         }
         lobe.sharpness = lobe.width > kBroad ? sharpness(lobe) : lobe.narrowing / lobe.width;
         lobe.truncated = lobe.left == 0 || lobe.right == line_.size - 1;
     }
 
-    // Mean of positions weighted by grey value above background and a smooth window that ends where the
-    // stripe does, (1 - (d/R)^2)^2; the window stands at the mean itself, which Newton steps find. A hard cut
-    // would add up to 0.05 px of bias that follows the phase of the pixel grid.
+    // Mean of positions weighted by grey value above background and a smooth
+    // window that ends where the stripe does, (1 - (d/R)^2)^2; the window stands
+    // at the mean itself, which Newton steps find. A hard cut would add up to
+    // 0.05 px of bias that follows the phase of the pixel grid.
     double centre_of_gravity(const Lobe& lobe) const {
         const double reach = std::max(std::min(0.5 * lobe.width + 2.15 * lobe.narrowing + 0.25, lobe.reach),
                                       0.5 * lobe.width + 0.5);
@@ -202,8 +201,8 @@ class LobeFinder {
             first = left;
             last = right;
         }
-        // Grey values once, then the steps on four pixels at a time; positions from the middle pixel keep
-        // float exact enough.
+        // Grey values once, then the steps on four pixels at a time; positions from
+        // the middle pixel keep float exact enough.
         using Four = float __attribute__((vector_size(16)));
         constexpr int kCapacity = 256;
         alignas(16) float grey[kCapacity + 4], place[kCapacity + 4];
@@ -243,7 +242,8 @@ class LobeFinder {
         return std::abs(x - lobe.middle) <= 0.5 * lobe.width ? x : lobe.middle;
     }
 
-    // Weighted parabola through the logarithm; falls back to the middle of the half-height points.
+    // Weighted parabola through the logarithm; falls back to the middle of the
+    // half-height points.
     double gaussian(const Lobe& lobe) const {
         const double scale = std::max(lobe.height(), 1e-9);
         const double floor = (lobe.flat ? 0.1 : 0.2) * scale;
@@ -293,7 +293,8 @@ class LobeFinder {
         return found;
     }
 
-    // Zero of the first derivative of the smoothed line, by safeguarded Newton steps.
+    // Zero of the first derivative of the smoothed line, by safeguarded Newton
+    // steps.
     double steger(const Lobe& lobe) const {
         const double sigma = std::max(options_.steger_sigma_px, 0.5 * lobe.width / std::sqrt(3.0));
         const int reach = static_cast<int>(std::ceil(4 * sigma));
@@ -331,8 +332,9 @@ class LobeFinder {
         return sum;
     }
 
-    // 1 for a single hump between the half-height points; what rises and falls again in between (beyond what
-    // noise of this standard deviation does) lowers it.
+    // 1 for a single hump between the half-height points; what rises and falls
+    // again in between (beyond what noise of this standard deviation does) lowers
+    // it.
     double unimodality(const Lobe& lobe, double noise) const {
         const double half = 0.5 * lobe.height();
         double path = 2 * lobe.top - line_[lobe.left] - line_[lobe.right];
@@ -345,7 +347,8 @@ class LobeFinder {
   private:
     double above_cut(const Lobe& lobe, int i) const { return line_[i] - lobe.base_at(i) - lobe.cut; }
 
-    // Half-height stretch about the top, its crossings and its narrowing towards three quarters.
+    // Half-height stretch about the top, its crossings and its narrowing towards
+    // three quarters.
     void outline(Lobe& lobe) const {
         const double half = 0.5 * (lobe.top + lobe.base);
         walk(line_, lobe.top_first, -1, half, lobe.top, line_.size, lobe.left);
@@ -357,9 +360,9 @@ class LobeFinder {
         lobe.narrowing = std::max(0.0, lobe.width - width_at(lobe, 0.75, lobe.top));
     }
 
-    // Light beyond one flank (`edge` its outermost pixel at half height). Where it rises again before the
-    // flank has run out, for a neighbouring peak or a brighter surface, the valley is the background and
-    // `reach` ends there.
+    // Light beyond one flank (`edge` its outermost pixel at half height). Where
+    // it rises again before the flank has run out, for a neighbouring peak or a
+    // brighter surface, the valley is the background and `reach` ends there.
     bool beyond_flank(const Lobe& lobe, int edge, int step, int out, double noise, double& level,
                       double& reach) const {
         const bool found = foot_level(line_, edge + step * out, step, level);
@@ -380,9 +383,10 @@ class LobeFinder {
     }
 
     void find_background(Lobe& lobe, double noise) const {
-        // Half the narrowing from 1/2 to 3/4 of the height is 0.42 standard deviations of a Gaussian; five
-        // times that outside the half-height point is 3.3 standard deviations from the middle, and on the
-        // flanks of a clipped one as far down.
+        // Half the narrowing from 1/2 to 3/4 of the height is 0.42 standard
+        // deviations of a Gaussian; five times that outside the half-height point
+        // is 3.3 standard deviations from the middle, and on the flanks of a
+        // clipped one as far down.
         const int out = static_cast<int>(std::ceil(2.5 * lobe.narrowing)) + 1;
         double low_left = 0, low_right = 0;
         lobe.reach = 1e9;
@@ -401,15 +405,16 @@ class LobeFinder {
                              : 0.0;
             lobe.cut = 0;
         } else {
-            // A step of the background, or another peak on one side: only what stands above both counts.
+            // A step of the background, or another peak on one side: only what stands
+            // above both counts.
             lobe.base = high;
             lobe.slope = 0;
             lobe.cut = 0.15 * (lobe.top - high);
         }
     }
 
-    // Pixels of the top value. Some sensors clip below full scale: a plateau of one value over most of the
-    // width.
+    // Pixels of the top value. Some sensors clip below full scale: a plateau of
+    // one value over most of the width.
     void find_top(Lobe& lobe) const {
         lobe.top_first = lobe.top_last = -1;
         int run = 0, longest = 0;
@@ -436,8 +441,9 @@ class LobeFinder {
         return crossing(line_, right, 1, level) - crossing(line_, left, -1, level);
     }
 
-    // How much the lobe narrows from half to three quarters of its height, relative to the former. The height
-    // is that of the middle half of the lobe, which noise moves less than its highest pixel.
+    // How much the lobe narrows from half to three quarters of its height,
+    // relative to the former. The height is that of the middle half of the lobe,
+    // which noise moves less than its highest pixel.
     double sharpness(const Lobe& lobe) const {
         if (!(lobe.width > 0)) return 0;
         const int quarter = (lobe.right - lobe.left) / 4;
@@ -447,8 +453,9 @@ class LobeFinder {
         return std::max(0.0, width_at(lobe, 0.5, level) - width_at(lobe, 0.75, level)) / lobe.width;
     }
 
-    // A narrow stripe on a bright square: the square reaches half height too. Its level, the median of the
-    // stretch, becomes the background when what stands above it is narrow, but wider than a grain of speckle.
+    // A narrow stripe on a bright square: the square reaches half height too. Its
+    // level, the median of the stretch, becomes the background when what stands
+    // above it is narrow, but wider than a grain of speckle.
     bool raise_from_pedestal(Lobe& lobe) const {
         constexpr int kSamples = 64;
         for (int round = 0; round < 2; ++round) {
@@ -601,7 +608,8 @@ void extract(const StripeImage& image, const PeakOptions& options, const Thresho
         &extraction);
 }
 
-// Leaves out what is weak beside the stripe of this frame: the upper quartile of the lines' strongest peaks.
+// Leaves out what is weak beside the stripe of this frame: the upper quartile
+// of the lines' strongest peaks.
 void drop_weak(Workspace& work, StripePeaks& peaks) {
     work.best.clear();
     for (int line = 0; line < peaks.lines; ++line)
@@ -692,8 +700,8 @@ Expected<ScanLines> guess_scan_lines(const StripeImage& image) {
         if (auto ok = find_peaks(image, options, peaks); !ok) return tl::unexpected(ok.error());
         for (int i = 1; i < peaks.lines; ++i) {
             if (!peaks.count[i - 1] || !peaks.count[i]) continue;
-            // A stripe flatter than 45 degrees moves less than a pixel a line; noise of its position is
-            // allowed for.
+            // A stripe flatter than 45 degrees moves less than a pixel a line; noise
+            // of its position is allowed for.
             if (std::abs(peaks.position_px[i] - peaks.position_px[i - 1]) < 1.5)
                 ++score[scan == ScanLines::rows];
         }

@@ -1,6 +1,19 @@
 #pragma once
-// The frozen contour (methods.md 4; thesis 5.2.1): does the contour stand still while the robot passes the spot?
+// The frozen contour (methods.md 4; thesis 5.2.1, footnote 5): does the contour stand still while the robot
+// passes the spot?
+//
+// Every profile of the pass is registered to the one at the trigger position (the nearest usable to travel
+// 0), giving the shift dx(y), dz(y) of the spot's reference point and the turn dphi(y) against travel y.
+// Polynomials of the lowest order that the data ask for (1..3, F test) are fitted robustly; their slopes at y
+// = 0 are the misalignment, their bend the local radius, what registration leaves over is shape change.
+//
+// Noise model: independent, equal noise of the registered shifts from profile to profile, estimated from the
+// fits' residuals; the trigger profile's own noise is common to all and only moves the constant, so it takes
+// no part in the fit.
 
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,15 +32,23 @@ struct TravelProfile {
 };
 
 struct AlignmentOptions {
-    double jitter_mm = 5.0;        // half width of the trigger jitter
-    double tolerance_mm = 0.05;    // error that the jitter may cause at most
-    double window_mm = 20.0;       // profiles beyond this travel are not judged
+    double jitter_mm = 5.0;      // half width of the trigger jitter
+    double tolerance_mm = 0.05;  // error that the jitter may cause at most
+    double window_mm = 20.0;     // profiles beyond this travel are not judged
+    // The point whose drift counts, sensor frame (x, z). Absent: the centroid of the trigger profile.
+    std::optional<Eigen::Vector2d> reference_mm;
 };
 
-enum class AlignmentStatus { frozen, drifting, shape_changes, not_enough_profiles };
+enum class AlignmentStatus {
+    frozen,              // the jitter causes at most the tolerance
+    drifting,            // it causes more; `cure` says which rotation mends it
+    shape_changes,       // stands still as a whole, but the profile changes its shape within the jitter
+    not_enough_profiles  // fewer than 5 usable profiles within the window, or less than 1 mm of travel
+};
 std::string_view to_string(AlignmentStatus status);
 
-// Registration of each profile to that of the trigger position.
+// Registration of each profile to that of the trigger position: motion of the reference point and turn (from
+// +x towards +z). `ok` false: not usable (NaN travel, no points, no match, outside the window).
 struct TravelOffset {
     double travel_mm = 0, dx_mm = 0, dz_mm = 0, dphi_deg = 0, rms_mm = 0;
     bool ok = false;
@@ -35,19 +56,31 @@ struct TravelOffset {
 
 struct AlignmentResult {
     AlignmentStatus status = AlignmentStatus::not_enough_profiles;
-    // Misalignment of the travel against the contour: yaw about the sensor's Z from dx/dy, pitch about X from dz/dy, roll
-    // about Y (change of phi over 1 mm of travel times the jitter, i.e. twist).
+    // Angles of the slopes, signed like them: yaw = atan(dx/dy), pitch = atan(dz/dy). The contour runs along
+    // (dx/dy, 1, dz/dy) in the sensor frame. Roll: turn of the profile (dphi, +x towards +z) over the
+    // jitter's half width, i.e. twist.
     double yaw_deg = 0, pitch_deg = 0, roll_deg = 0;
     double dx_mm_per_mm = 0, dz_mm_per_mm = 0;
+    // Infinite for a direction along which the profile slides on itself (straight line).
     double sigma_yaw_deg = 0, sigma_pitch_deg = 0;
-    double radius_mm = 0;            // of the contour's curvature over the travel; infinity when straight within noise
-    double expected_error_mm = 0;    // from jitter and slope (and curvature) at this spot
-    double shape_change_mm = 0;      // what remains after rigid registration
-    ContourCurve curve;              // for the correction, see correction.h
-    std::vector<TravelOffset> offsets;
-    std::string cure;                // "rotate the sensor about Z by -0.6 degrees"
+    // Rotation of the sensor, together with its travel, that lets the contour stand still: right-handed about
+    // the sensor's Z first, then about its turned X. About Z: -yaw; about X: pitch (times the cosine of yaw
+    // in the tangent).
+    double cure_about_z_deg = 0, cure_about_x_deg = 0;
+    double radius_mm = std::numeric_limits<double>::infinity();  // of the contour's curvature; infinity when
+                                                                 // straight within noise (3 sigma)
+    double expected_error_mm = 0;  // largest shift within the jitter, from slope and curvature
+    double shape_change_mm =
+        0;                 // rms of what remains after rigid registration, the profile's noise taken off
+    bool sliding = false;  // the profile is a straight line: only the drift across it is seen
+    ContourCurve curve;    // of the reference point, for the correction, see correction.h
+    std::vector<TravelOffset> offsets;  // in the order given
+    std::string cure;                   // "rotate the sensor about Z by -0.6 degrees"
 };
 
-Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass, const AlignmentOptions& options);
+// Refuses (Error): an empty pass, x and z of different length, options that are not positive and finite.
+// Order and duplicates of travel do not matter.
+Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
+                                          const AlignmentOptions& options);
 
 }  // namespace seamwright

@@ -182,8 +182,9 @@ struct RegionSolver::Impl {
         fill_spots(spots, r);
         if (!fit.converged) {
             r.message = fmt::format(
-                "no displacement explains the measures within {} iterations: check that the spots and poses "
-                "belong together",
+                "no displacement explains the measures within {} iterations, the spots contradict each "
+                "other: check that "
+                "measures and poses belong together",
                 options.max_iterations);
             return {};
         }

@@ -109,8 +109,8 @@ enum class CorrectionStatus {
     ok,
     under_determined,  // a free direction is not observed well enough, or the spots contradict each other
                        // beyond the sigma limit and cannot tell which is wrong; displacement is identity
-    over_limit,    // solved, but beyond the limits; displacement holds the solution
-    not_converged  // the step did not shrink below 1e-9 mm / 1e-12 rad within max_iterations
+    over_limit,        // solved, but beyond the limits; displacement holds the solution
+    not_converged      // the step did not shrink below 1e-9 mm / 1e-12 rad within max_iterations
 };
 std::string_view to_string(CorrectionStatus status);
 
@@ -184,7 +184,7 @@ struct RegionPlan {
     double sigma_at_spots_mm = 0;                 // of the weakest direction; infinity when singular
     Vector6 weakest_direction = Vector6::Zero();  // (translation of the spots' centroid, rotation vector
                                                   // times the spots' spread), unit length
-    std::string weakest;  // in plain words
+    std::string weakest;                          // in plain words
     std::vector<std::string> unobservable;
     int redundancy = 0;
     // Spots whose single wrong measure of kFindableErrorMm could not be found and named.

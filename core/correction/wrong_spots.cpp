@@ -12,8 +12,12 @@ namespace {
 
 // Likelihood-ratio distance (in chi-square) by which the best explanation must beat the next.
 constexpr double kClear = 9.0;
-// Exhaustive search up to so many refits per size of the set.
-constexpr double kMostRefits = 6000;
+// Exhaustive search up to so many refits times spots per size of the set.
+constexpr double kMostWork = 30000;
+// Leaving out several spots could explain mere noise away when sigma is stated too small. So the rest must
+// have twice as much redundancy as went, or (down to once as much) every spot left out must be off by more
+// than 20 sigma.
+constexpr double kGross = 400.0;
 // A direction of a spot's residual with less redundancy than this says nothing.
 constexpr double kNoRedundancy = 1e-6;
 
@@ -120,6 +124,8 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
 bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, double level,
                               std::vector<double>& factor, RegionSystem::Fit& fit, bool& tied) {
     const std::size_t n = system.size();
+    int observed = 0;
+    for (std::size_t i = 0; i < n; ++i) observed += system.spot(i).observed;
     std::vector<std::size_t> set(count);
     for (std::size_t i = 0; i < count; ++i) set[i] = i;
     double best = std::numeric_limits<double>::infinity(), second = best;
@@ -129,28 +135,32 @@ bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, dou
         trial_.assign(n, 1.0);
         for (const std::size_t i : set) trial_[i] = 0;
         system.fit(trial_, candidate);
-        if (candidate.converged) {
-            const Spread spread = system.spread(candidate.lin, candidate.state);
-            if (spread.regular) {
-                const Agreement a = agreement(system, candidate, spread, trial_);
-                const double rest = static_cast<double>(n - count);
-                bool fits = a.smallest_p >= level / rest && a.global_p >= kGlobalDisagreement;
-                // Each one left out must be wrong by itself, or a smaller set would do.
-                for (const std::size_t i : set) {
-                    if (!fits) break;
-                    const Studentised t = predicted(system, i, candidate, spread);
-                    fits = chi_square_p(t.value, t.degrees) < level / static_cast<double>(n);
-                }
-                if (fits) {
-                    if (a.sum_squares < best) {
-                        second = best;
-                        best = a.sum_squares;
-                        best_fit = candidate;
-                        best_set = set;
-                    } else {
-                        second = std::min(second, a.sum_squares);
-                    }
-                }
+        const Spread spread = candidate.converged ? system.spread(candidate.lin, candidate.state) : Spread{};
+        const Agreement a = agreement(system, candidate, spread, trial_);
+        const int lost = observed - a.observed;
+        if (a.redundancy <= 0 || (count > 1 && a.redundancy < lost)) {
+            tied = tied || a.redundancy <= 0;
+        } else if (!spread.regular) {
+            // The rest does not determine the displacement: this set cannot be acquitted unless the rest
+            // disagrees.
+            if (a.global_p >= kGlobalDisagreement) second = std::min(second, a.sum_squares);
+        } else {
+            const double rest = static_cast<double>(n - count);
+            bool fits = a.smallest_p >= level / rest && a.global_p >= kGlobalDisagreement;
+            // Each one left out must be wrong by itself, or a smaller set would do.
+            for (const std::size_t i : set) {
+                if (!fits) break;
+                const Studentised t = predicted(system, i, candidate, spread);
+                fits = chi_square_p(t.value, t.degrees) < level / static_cast<double>(n) &&
+                       (count == 1 || a.redundancy >= 2 * lost || t.value > kGross);
+            }
+            if (fits && a.sum_squares < best) {
+                second = std::min(second, best);
+                best = a.sum_squares;
+                best_fit = candidate;
+                best_set = set;
+            } else if (fits) {
+                second = std::min(second, a.sum_squares);
             }
         }
         // Next combination in lexicographic order.
@@ -164,7 +174,7 @@ bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, dou
             }
         }
     }
-    if (best_set.empty()) return false;
+    if (tied || best_set.empty()) return false;
     if (second - best < kClear) {
         tied = true;
         return false;
@@ -217,7 +227,7 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
     RegionSystem::Fit hard;
     for (int round = 0; round < 10; ++round) {
         const std::size_t used = count_used(trial_);
-        if (2 * used <= n || used == 0) return false;
+        if (3 * (n - used) > n) return false;  // a third may be wrong, not more
         system.fit(trial_, hard);
         if (!hard.converged) return false;
         const Spread spread = system.spread(hard.lin, hard.state);
@@ -233,6 +243,14 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
         }
         if (changed) continue;
         const Agreement a = agreement(system, hard, spread, trial_);
+        int lost = 0;
+        double smallest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < n; ++k) {
+            if (trial_[k] > 0) continue;
+            lost += system.spot(k).observed;
+            smallest = std::min(smallest, predicted(system, k, hard, spread).value);
+        }
+        if (a.redundancy < lost || (a.redundancy < 2 * lost && smallest <= kGross)) return false;
         if (a.smallest_p < level / static_cast<double>(used) || a.global_p < kGlobalDisagreement || used == n)
             return false;
         if (!system.observability(hard.lin, hard.state).ok) return false;
@@ -300,7 +318,7 @@ Verdict WrongSpotSearch::run(const RegionSystem& system, double significance, Re
     bool tied = false;
     bool searched = true;
     for (std::size_t count = 1; count <= 3 && 2 * count < n; ++count) {
-        if (binomial(n, count) > kMostRefits) {
+        if (binomial(n, count) * static_cast<double>(n) > kMostWork) {
             searched = false;
             break;
         }

@@ -66,8 +66,15 @@ inline Eigen::Vector3d pierce(const SpotObservation& s, const Pose& displacement
     return p - d * (p.y() / d.y());
 }
 
+// Spots that observe Y see the displaced reference itself, the others the edge.
 inline void measure(std::vector<SpotObservation>& spots, const Pose& displacement) {
-    for (SpotObservation& s : spots) s.measured_mm = pierce(s, displacement);
+    for (SpotObservation& s : spots) {
+        const Pose& w = s.workobject_from_sensor;
+        if (s.weights.y() > 0)
+            s.measured_mm = w.inverse() * displacement * w * s.reference_mm;
+        else
+            s.measured_mm = pierce(s, displacement);
+    }
 }
 
 inline void add_noise(std::vector<SpotObservation>& spots, Rng& rng, double sigma) {

@@ -40,11 +40,7 @@ TEST(SolveRegion, RecoversRandomDoorsWithoutNoise) {
                 if (rng() % 4 == 0) s.weights = {1, 1, 1};
             }
             const Pose truth = random_displacement(rng, c.mm, c.deg, c.offset);
-            for (SpotObservation& s : spots)
-                s.measured_mm = s.weights.y() > 0
-                                    ? Eigen::Vector3d(s.workobject_from_sensor.inverse() * truth *
-                                                      s.workobject_from_sensor * s.reference_mm)
-                                    : pierce(s, truth);
+            measure(spots, truth);
             const RegionCorrection r = solved(spots);
             if (r.status == CorrectionStatus::under_determined) {
                 ++refused;

@@ -1,0 +1,342 @@
+#include "core/alignment/alignment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/correction/contour_fit.h"
+#include "core/features/registration.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kFewestProfiles = 5;
+constexpr double kShortestTravel_mm = 1.0;
+// A profile counts as the same contour when this share of the trigger's is found in it.
+constexpr double kSmallestShare = 0.5;
+// Below this share within the jitter the contour does not stay the same.
+constexpr double kSteadyShare = 0.8;
+constexpr double kSignificant = 3.0;
+
+struct Registered {
+    Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+    double phi = 0, rms = 0, share = 0;
+    Eigen::Vector2d slides = Eigen::Vector2d::Zero();  // direction, zero when the profile has a shape
+    bool ok = false;
+};
+
+std::size_t usable_points(const Profile& p) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const bool outlier = p.filtered() && p.segment[i] == kOutlier;
+        count += std::isfinite(p.x_mm[i]) && std::isfinite(p.z_mm[i]) && !outlier;
+    }
+    return count;
+}
+
+Eigen::Vector2d centroid(const Profile& p) {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double count = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (!std::isfinite(p.x_mm[i]) || !std::isfinite(p.z_mm[i]) ||
+            (p.filtered() && p.segment[i] == kOutlier))
+            continue;
+        sum += Eigen::Vector2d(p.x_mm[i], p.z_mm[i]);
+        count += 1;
+    }
+    return sum / std::max(1.0, count);
+}
+
+// A registration is taken over when the contour was found and, for a straight one, only across it.
+bool accept(const Registration& r, const Eigen::Vector2d& reference, Registered& out) {
+    if ((r.status != RegistrationStatus::ok && r.status != RegistrationStatus::sliding) ||
+        r.inlier_share < kSmallestShare)
+        return false;
+    out.shift = r.scene_from_template * reference - reference;
+    out.phi = r.scene_from_template.phi_rad;
+    out.rms = r.rms_mm;
+    out.share = r.inlier_share;
+    out.slides.setZero();
+    if (r.status == RegistrationStatus::sliding) {
+        out.slides = r.sliding_direction;
+        out.shift -= out.slides * out.slides.dot(out.shift);
+    }
+    out.ok = out.shift.allFinite() && std::isfinite(out.phi);
+    return out.ok;
+}
+
+// From the trigger outwards, each profile starts where its inner neighbours point to.
+void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
+           const std::vector<std::size_t>& outwards, const Eigen::Vector2d& reference,
+           std::vector<Registered>& out) {
+    PlanarMotion last, before;
+    double last_y = 0, before_y = 0;
+    int known = 0;
+    for (const std::size_t i : outwards) {
+        if (usable_points(pass[i].profile) < static_cast<std::size_t>(kFewestProfiles)) continue;
+        const double y = pass[i].travel_mm;
+        PlanarMotion start = last;
+        if (known >= 2 && std::abs(last_y - before_y) > 1e-9) {
+            const double ahead = std::clamp((y - last_y) / (last_y - before_y), -2.0, 2.0);
+            start.dx_mm += ahead * (last.dx_mm - before.dx_mm);
+            start.dz_mm += ahead * (last.dz_mm - before.dz_mm);
+            start.phi_rad += ahead * (last.phi_rad - before.phi_rad);
+        }
+        Registration r = matcher.refine(pass[i].profile, start);
+        if (!accept(r, reference, out[i])) {
+            SearchWindow window;
+            window.dx_mm = window.dz_mm = 2.0 + 0.3 * std::abs(y);
+            window.phi_rad = 0.1;
+            window.centre_mm = last * reference - reference;
+            r = matcher.match(pass[i].profile, window);
+            if (!accept(r, reference, out[i])) continue;
+        }
+        before = last;
+        before_y = last_y;
+        last = r.scene_from_template;
+        last_y = y;
+        ++known;
+    }
+}
+
+double median(std::vector<double> v) {
+    if (v.empty()) return 0;
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::nth_element(v.begin(), middle, v.end());
+    return *middle;
+}
+
+double quantile(std::vector<double> v, double share) {
+    if (v.empty()) return 0;
+    const auto place = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+    std::nth_element(v.begin(), place, v.end());
+    return *place;
+}
+
+double rise(const PolynomialFit& f, double y, double from, double to) {
+    const double s = std::clamp(y, from, to);
+    const auto& c = f.coefficient;
+    const double slope = c[1] + s * (2 * c[2] + s * 3 * c[3]);
+    return s * (c[1] + s * (c[2] + s * c[3])) + slope * (y - s);
+}
+
+std::string degrees(double v) {
+    return fmt::format("{:+.2f} degrees", v);
+}
+
+}  // namespace
+
+std::string_view to_string(AlignmentStatus status) {
+    switch (status) {
+        case AlignmentStatus::frozen:
+            return "frozen";
+        case AlignmentStatus::drifting:
+            return "drifting";
+        case AlignmentStatus::shape_changes:
+            return "shape_changes";
+        case AlignmentStatus::not_enough_profiles:
+            return "not_enough_profiles";
+    }
+    return "unknown";
+}
+
+Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
+                                          const AlignmentOptions& options) {
+    if (pass.empty())
+        return input_error("there are no profiles", "alignment pass", "record the pass from entry to exit");
+    for (const double v : {options.jitter_mm, options.tolerance_mm, options.window_mm}) {
+        if (!(v > 0) || !std::isfinite(v))
+            return input_error("jitter, tolerance and window must be positive numbers", "alignment options",
+                               "give millimetres above 0");
+    }
+    if (options.reference_mm && !options.reference_mm->allFinite())
+        return input_error("the reference point is not finite", "alignment options",
+                           "give x and z in millimetres");
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        if (pass[i].profile.x_mm.size() != pass[i].profile.z_mm.size())
+            return input_error("x and z have different numbers of points",
+                               fmt::format("profile {} of the pass", i), "give one x and one z a point");
+    }
+    AlignmentResult result;
+    result.offsets.resize(pass.size());
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        result.offsets[i].travel_mm = pass[i].travel_mm;
+        if (std::abs(pass[i].travel_mm) <= options.window_mm) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
+        return std::abs(pass[a].travel_mm) < std::abs(pass[b].travel_mm);
+    });
+
+    // The trigger profile: the nearest to 0 that has about as many points as the pass usually shows.
+    std::vector<double> counts;
+    for (const std::size_t i : order) counts.push_back(static_cast<double>(usable_points(pass[i].profile)));
+    const double usual = median(counts);
+    std::optional<ContourMatcher> matcher;
+    std::size_t trigger = 0;
+    Eigen::Vector2d reference = Eigen::Vector2d::Zero();
+    for (const std::size_t i : order) {
+        if (static_cast<double>(usable_points(pass[i].profile)) < 0.8 * usual) continue;
+        reference = options.reference_mm ? *options.reference_mm : centroid(pass[i].profile);
+        auto made = ContourMatcher::make(pass[i].profile, reference);
+        if (!made) continue;
+        matcher.emplace(std::move(*made));
+        trigger = i;
+        break;
+    }
+    const auto too_few = [&](std::size_t usable) {
+        result.status = AlignmentStatus::not_enough_profiles;
+        result.cure = fmt::format(
+            "only {} of {} profiles within {:g} mm of travel are usable: record at least {} over "
+            "more than {:g} mm before and after the trigger position",
+            usable, pass.size(), options.window_mm, kFewestProfiles + 1, kShortestTravel_mm);
+        return result;
+    };
+    if (!matcher) return too_few(0);
+
+    std::vector<Registered> found(pass.size());
+    const double y0 = pass[trigger].travel_mm;
+    for (const bool forward : {true, false}) {
+        std::vector<std::size_t> outwards;
+        for (const std::size_t i : order) {
+            if (i != trigger && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
+        }
+        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
+            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
+        });
+        track(*matcher, pass, outwards, reference, found);
+    }
+
+    // A straight profile slides on itself: when most say so, all are judged across their common direction
+    // only.
+    Eigen::Vector2d along = Eigen::Vector2d::Zero();
+    std::size_t usable = 0, sliding = 0;
+    for (const Registered& r : found) {
+        usable += r.ok;
+        if (!r.ok || r.slides.isZero()) continue;
+        ++sliding;
+        along += r.slides.dot(along) < 0 ? Eigen::Vector2d(-r.slides) : r.slides;
+    }
+    if (2 * sliding > usable) {
+        result.sliding = true;
+        along.normalize();
+        for (Registered& r : found) r.shift -= along * along.dot(r.shift);
+    } else {
+        for (Registered& r : found) r.ok = r.ok && r.slides.isZero();
+    }
+    std::vector<double> y, dx, dz, phi;
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        const Registered& r = found[i];
+        TravelOffset& o = result.offsets[i];
+        if (i == trigger) o.ok = true;
+        if (!r.ok) continue;
+        o = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
+        y.push_back(o.travel_mm);
+        dx.push_back(o.dx_mm);
+        dz.push_back(o.dz_mm);
+        phi.push_back(o.dphi_deg);
+    }
+    if (y.size() < static_cast<std::size_t>(kFewestProfiles)) return too_few(y.size() + 1);
+    const auto [low, high] = std::minmax_element(y.begin(), y.end());
+    const double from = std::min(0.0, *low), to = std::max(0.0, *high);
+    if (*high - *low < kShortestTravel_mm) return too_few(y.size() + 1);
+    const PolynomialFit fx = fit_lowest_order(y, dx, 1, 3), fz = fit_lowest_order(y, dz, 1, 3),
+                        fp = fit_lowest_order(y, phi, 1, 1);
+    if (!fx.ok || !fz.ok || !fp.ok) return too_few(y.size() + 1);
+
+    const double sx = fx.coefficient[1], sz = fz.coefficient[1];
+    result.dx_mm_per_mm = sx;
+    result.dz_mm_per_mm = sz;
+    result.yaw_deg = deg_from_rad(std::atan(sx));
+    result.pitch_deg = deg_from_rad(std::atan(sz));
+    result.roll_deg = fp.coefficient[1] * options.jitter_mm;
+    result.sigma_yaw_deg = deg_from_rad(fx.coefficient_sigma[1] / (1 + sx * sx));
+    result.sigma_pitch_deg = deg_from_rad(fz.coefficient_sigma[1] / (1 + sz * sz));
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (result.sliding) {
+        if (std::abs(along.x()) > 0.1) result.sigma_yaw_deg = infinity;
+        if (std::abs(along.y()) > 0.1) result.sigma_pitch_deg = infinity;
+    }
+    // R_z(a) R_x(b) takes the sensor's Y to the contour's direction (sx, 1, sz).
+    const double a = -std::atan(sx);
+    result.cure_about_z_deg = deg_from_rad(a);
+    result.cure_about_x_deg = deg_from_rad(std::atan(sz * std::cos(a)));
+
+    const auto bend = [](const PolynomialFit& f) {
+        return std::abs(f.coefficient[2]) > kSignificant * f.coefficient_sigma[2] ? 2 * f.coefficient[2]
+                                                                                  : 0.0;
+    };
+    const Eigen::Vector3d tangent(sx, 1, sz), second(bend(fx), 0, bend(fz));
+    const double curvature = tangent.cross(second).norm() / std::pow(tangent.norm(), 3);
+    result.radius_mm = curvature > 1e-9 ? 1 / curvature : infinity;
+
+    for (int k = -50; k <= 50; ++k) {
+        const double at = options.jitter_mm * k / 50.0;
+        result.expected_error_mm =
+            std::max(result.expected_error_mm, std::hypot(rise(fx, at, from, to), rise(fz, at, from, to)));
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        result.curve.x_coefficients[static_cast<Eigen::Index>(k)] = fx.coefficient[k + 1];
+        result.curve.z_coefficients[static_cast<Eigen::Index>(k)] = fz.coefficient[k + 1];
+    }
+    result.curve.valid_from_mm = from;
+    result.curve.valid_to_mm = to;
+
+    // Noise is what the best registered profiles keep; the rest of the worst within the jitter is change of
+    // shape.
+    std::vector<double> all_rms, near_rms, near_share;
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        if (!found[i].ok) continue;
+        all_rms.push_back(found[i].rms);
+        if (std::abs(pass[i].travel_mm) > options.jitter_mm) continue;
+        near_rms.push_back(found[i].rms);
+        near_share.push_back(found[i].share);
+    }
+    if (near_rms.empty()) near_rms = all_rms;
+    const double noise = quantile(all_rms, 0.1), worst = quantile(near_rms, 0.9);
+    result.shape_change_mm = std::sqrt(std::max(0.0, worst * worst - noise * noise));
+    const bool share_lost = !near_share.empty() && quantile(near_share, 0.1) < kSteadyShare;
+
+    const bool drifts = result.expected_error_mm > options.tolerance_mm;
+    const bool changes = result.shape_change_mm > options.tolerance_mm || share_lost;
+    result.status = drifts    ? AlignmentStatus::drifting
+                    : changes ? AlignmentStatus::shape_changes
+                              : AlignmentStatus::frozen;
+    const auto say = [&](const std::string& sentence) {
+        result.cure += (result.cure.empty() ? "" : "; ") + sentence;
+    };
+    if (drifts) {
+        // What the bend alone costs cannot be turned away.
+        double rest = 0;
+        for (int k = -50; k <= 50; ++k) {
+            const double at = options.jitter_mm * k / 50.0;
+            rest = std::max(rest,
+                            std::hypot(rise(fx, at, from, to) - sx * at, rise(fz, at, from, to) - sz * at));
+        }
+        const double share = options.tolerance_mm / options.jitter_mm / 4;
+        std::string turn;
+        if (std::abs(sx) > share) turn = "about Z by " + degrees(result.cure_about_z_deg);
+        if (std::abs(sz) > share)
+            turn += (turn.empty() ? "about X by " : " and then about its X by ") +
+                    degrees(result.cure_about_x_deg);
+        if (!turn.empty()) say("rotate the sensor, with its travel, " + turn);
+        if (rest > options.tolerance_mm)
+            say(
+                fmt::format("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
+                            "within the jitter: let "
+                            "the correction use the contour curve, or trigger more exactly",
+                            result.radius_mm, rest));
+    }
+    if (changes)
+        say("the profile changes its shape along the travel: teach the spot where the contour stays the "
+            "same");
+    if (result.sliding)
+        say(fmt::format(
+            "the profile is a straight line along ({:.2f}, {:.2f}) in x, z: drift along it cannot be seen",
+            along.x(), along.y()));
+    return result;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,289 @@
+// A simulated profiled edge, passed by a sensor that is turned by known angles: numbers, verdict and cure.
+
+#include "core/alignment/alignment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/geometry/pose.h"
+
+namespace seamwright {
+namespace {
+
+using ::testing::HasSubstr;
+using Rng = std::mt19937_64;
+
+double normal(Rng& rng) {
+    return std::normal_distribution<double>()(rng);
+}
+
+// Cross-section of a hemmed edge with a bead, in x and z, about 24 mm wide.
+std::vector<Eigen::Vector2d> edge_section() {
+    std::vector<Eigen::Vector2d> out;
+    for (double u = -14; u < 6; u += 0.08)
+        out.emplace_back(u, 0.1 * u + 2.0 * std::exp(-0.5 * std::pow((u + 6) / 1.2, 2)));
+    for (double t = 0; t < 1.9; t += 0.03)
+        out.emplace_back(6 + 2.5 * std::sin(t), 0.6 - 2.5 * (1 - std::cos(t)));
+    return out;
+}
+
+// The section drawn along the work object's Y, seen by a sensor of rotation `workobject_from_sensor` that
+// travels along its own Y through the origin. `radius` bends the contour about an axis parallel to Z at x =
+// -radius.
+std::vector<TravelProfile> pass(const Eigen::Matrix3d& workobject_from_sensor, double step, double noise,
+                                Rng& rng, const std::vector<Eigen::Vector2d>& section = edge_section()) {
+    std::vector<TravelProfile> out;
+    for (double y = -20; y <= 20 + 1e-9; y += step) {
+        TravelProfile t;
+        t.travel_mm = y;
+        for (const Eigen::Vector2d& s : section) {
+            Eigen::Vector3d p = workobject_from_sensor.transpose() * Eigen::Vector3d(s.x(), 0, s.y());
+            const Eigen::Vector3d d = workobject_from_sensor.transpose().col(1);
+            p.y() -= y;
+            p -= d * (p.y() / d.y());
+            t.profile.x_mm.push_back(p.x() + noise * normal(rng));
+            t.profile.z_mm.push_back(p.z() + noise * normal(rng));
+        }
+        out.push_back(t);
+    }
+    return out;
+}
+
+std::vector<TravelProfile> bent_pass(double radius, double noise, Rng& rng) {
+    std::vector<TravelProfile> out;
+    for (double y = -20; y <= 20 + 1e-9; y += 1) {
+        TravelProfile t;
+        t.travel_mm = y;
+        for (const Eigen::Vector2d& s : edge_section()) {
+            const double r = radius + s.x();
+            t.profile.x_mm.push_back(-radius + std::sqrt(r * r - y * y) + noise * normal(rng));
+            t.profile.z_mm.push_back(s.y() + noise * normal(rng));
+        }
+        out.push_back(t);
+    }
+    return out;
+}
+
+AlignmentResult checked(const std::vector<TravelProfile>& p, const AlignmentOptions& o = {}) {
+    const auto r = check_alignment(p, o);
+    EXPECT_TRUE(r.has_value()) << (r ? "" : r.error().sentence());
+    return r ? *r : AlignmentResult{};
+}
+
+Eigen::Matrix3d turn(double z_deg, double x_deg) {
+    return (Eigen::AngleAxisd(rad_from_deg(z_deg), Eigen::Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(rad_from_deg(x_deg), Eigen::Vector3d::UnitX()))
+        .toRotationMatrix();
+}
+
+TEST(Alignment, AnAlignedPassIsFrozen) {
+    Rng rng(1);
+    const AlignmentResult r = checked(pass(Eigen::Matrix3d::Identity(), 1, 0.02, rng));
+    EXPECT_EQ(r.status, AlignmentStatus::frozen) << r.cure;
+    EXPECT_LT(std::abs(r.yaw_deg), 0.05);
+    EXPECT_LT(std::abs(r.pitch_deg), 0.05);
+    EXPECT_LT(r.expected_error_mm, 0.01);
+    EXPECT_LT(r.shape_change_mm, 0.02);
+    EXPECT_TRUE(std::isinf(r.radius_mm));
+    EXPECT_EQ(r.cure, "");
+    for (const TravelOffset& o : r.offsets) EXPECT_TRUE(o.ok);
+}
+
+// A sensor turned by +yaw about its Z sees the contour drift to +x; one turned by +x about X sees it sink.
+TEST(Alignment, SlopesAndAnglesAreThoseOfTheTurn) {
+    Rng rng(2);
+    for (const auto& [z, x] :
+         {std::pair{1.5, 0.0}, {-0.7, 0.0}, {0.0, 1.2}, {0.0, -2.0}, {2.0, -1.0}, {-5.0, 4.0}}) {
+        const Eigen::Matrix3d r0 = turn(z, x);
+        const AlignmentResult r = checked(pass(r0, 1, 0.01, rng));
+        const Eigen::Vector3d contour = r0.transpose().col(1);
+        EXPECT_NEAR(r.dx_mm_per_mm, contour.x() / contour.y(), 3e-4);
+        EXPECT_NEAR(r.dz_mm_per_mm, contour.z() / contour.y(), 3e-4);
+        EXPECT_NEAR(r.yaw_deg, deg_from_rad(std::atan(contour.x() / contour.y())), 0.02);
+        EXPECT_NEAR(r.pitch_deg, deg_from_rad(std::atan(contour.z() / contour.y())), 0.02);
+        const double error = 5.0 * std::hypot(contour.x(), contour.z()) / contour.y();
+        EXPECT_NEAR(r.expected_error_mm, error, 0.01 + 0.02 * error);
+        EXPECT_EQ(r.status, error > 0.05 ? AlignmentStatus::drifting : AlignmentStatus::frozen);
+        EXPECT_EQ(r.yaw_deg > 0, z > 0 || (z == 0 && r.yaw_deg > 0));
+    }
+}
+
+// The cure, applied, freezes the contour.
+TEST(Alignment, TheCureCures) {
+    Rng rng(3);
+    for (const auto& [z, x] : {std::pair{1.5, 0.0}, {0.0, -2.0}, {2.0, -1.0}, {-5.0, 4.0}, {7.0, 7.0}}) {
+        const Eigen::Matrix3d r0 = turn(x, z) * turn(z, x);
+        const AlignmentResult before = checked(pass(r0, 1, 0.005, rng));
+        ASSERT_EQ(before.status, AlignmentStatus::drifting);
+        EXPECT_THAT(before.cure, HasSubstr("rotate the sensor"));
+        const AlignmentResult after =
+            checked(pass(r0 * turn(before.cure_about_z_deg, before.cure_about_x_deg), 1, 0.005, rng));
+        EXPECT_EQ(after.status, AlignmentStatus::frozen) << after.cure;
+        EXPECT_LT(std::abs(after.yaw_deg), 0.03);
+        EXPECT_LT(std::abs(after.pitch_deg), 0.03);
+        EXPECT_LT(after.expected_error_mm, 0.01);
+    }
+}
+
+TEST(Alignment, StatedSigmaOfTheAnglesIsHonest) {
+    Rng rng(4);
+    const int trials = 120;
+    double yaw = 0, pitch = 0;
+    const Eigen::Matrix3d r0 = turn(0.8, 0.5);
+    const Eigen::Vector3d contour = r0.transpose().col(1);
+    for (int i = 0; i < trials; ++i) {
+        const AlignmentResult r = checked(pass(r0, 2, 0.03, rng));
+        yaw +=
+            std::pow((r.yaw_deg - deg_from_rad(std::atan(contour.x() / contour.y()))) / r.sigma_yaw_deg, 2) /
+            trials;
+        pitch +=
+            std::pow((r.pitch_deg - deg_from_rad(std::atan(contour.z() / contour.y()))) / r.sigma_pitch_deg,
+                     2) /
+            trials;
+    }
+    // Student's t with about 18 degrees: variance 1.12; the mean over 120 trials scatters by 0.17.
+    EXPECT_NEAR(yaw, 1.12, 0.55);
+    EXPECT_NEAR(pitch, 1.12, 0.55);
+}
+
+TEST(Alignment, CurvatureIsFoundAndAStraightContourHasNone) {
+    Rng rng(5);
+    for (const double radius : {350.0, 1000.0}) {
+        const AlignmentResult r = checked(bent_pass(radius, 0.01, rng));
+        EXPECT_NEAR(r.radius_mm, radius, 0.06 * radius);
+        EXPECT_NEAR(r.curve.x_coefficients[1], -0.5 / radius, 0.06 * 0.5 / radius);
+        EXPECT_NEAR(r.expected_error_mm, radius - std::sqrt(radius * radius - 25), 0.006);
+        EXPECT_EQ(r.status, AlignmentStatus::frozen) << r.cure;  // 5 mm of jitter: 0.036 mm
+    }
+    AlignmentOptions wide;
+    wide.jitter_mm = 10;
+    const AlignmentResult r = checked(bent_pass(350, 0.01, rng), wide);
+    EXPECT_EQ(r.status, AlignmentStatus::drifting);
+    EXPECT_NEAR(r.expected_error_mm, 0.143, 0.006);
+    EXPECT_THAT(r.cure, HasSubstr("radius"));
+    int bent = 0;
+    for (int i = 0; i < 40; ++i) bent += std::isfinite(checked(pass(turn(0.5, 0), 2, 0.02, rng)).radius_mm);
+    EXPECT_LE(bent, 1);
+}
+
+// A straight line as profile: only the drift across it is seen, and it is said.
+TEST(Alignment, AStraightProfileIsJudgedAcrossItOnly) {
+    Rng rng(6);
+    std::vector<Eigen::Vector2d> line;
+    for (double u = -15; u < 15; u += 0.1) line.emplace_back(u, 0.0);
+    const AlignmentResult r = checked(pass(turn(3, 1.5), 1, 0.02, rng, line));
+    EXPECT_TRUE(r.sliding);
+    EXPECT_NEAR(r.pitch_deg, -1.5, 0.1);
+    EXPECT_NEAR(r.dx_mm_per_mm, 0, 2e-3);
+    EXPECT_TRUE(std::isinf(r.sigma_yaw_deg));
+    EXPECT_TRUE(std::isfinite(r.sigma_pitch_deg));
+    EXPECT_EQ(r.status, AlignmentStatus::drifting);
+    EXPECT_THAT(r.cure, HasSubstr("straight line"));
+}
+
+TEST(Alignment, AProfileThatChangesItsShapeIsNoticed) {
+    Rng rng(7);
+    std::vector<TravelProfile> p = pass(Eigen::Matrix3d::Identity(), 1, 0.01, rng);
+    for (TravelProfile& t : p) {
+        // A second bead that grows along the travel.
+        for (std::size_t i = 0; i < t.profile.size(); ++i)
+            t.profile.z_mm[i] += 0.06 * t.travel_mm * std::sin(1.7 * t.profile.x_mm[i]);
+    }
+    const AlignmentResult r = checked(p);
+    EXPECT_NE(r.status, AlignmentStatus::frozen);
+    EXPECT_GT(r.shape_change_mm, 0.05);
+    EXPECT_THAT(r.cure, HasSubstr("shape"));
+}
+
+TEST(Alignment, OrderDuplicatesGapsAndBadProfilesDoNotMatter) {
+    Rng rng(8);
+    const Eigen::Matrix3d r0 = turn(1.5, -1.0);
+    std::vector<TravelProfile> p = pass(r0, 0.5, 0.01, rng);
+    const AlignmentResult want = checked(p);
+    std::vector<TravelProfile> mixed = p;
+    for (const std::size_t k : {3u, 30u, 50u}) mixed.push_back(p[k]);  // duplicates
+    std::shuffle(mixed.begin(), mixed.end(), rng);
+    const double nan = std::nan("");
+    std::erase_if(mixed,
+                  [](const TravelProfile& t) { return std::abs(t.travel_mm) < 0.9; });  // no trigger profile
+    mixed.push_back({nan, p[10].profile});
+    mixed.push_back({0.1, {}});
+    TravelProfile blind{0.0, p[40].profile};
+    std::fill(blind.profile.z_mm.begin(), blind.profile.z_mm.end(), nan);
+    mixed.push_back(blind);
+    TravelProfile other = p[20];
+    for (double& z : other.profile.z_mm) z = 40 * normal(rng);
+    mixed.push_back(other);
+    for (TravelProfile& t : mixed) {  // some points missing, some wild
+        for (std::size_t i = 0; i < t.profile.size(); ++i) {
+            if (rng() % 25 == 0) t.profile.z_mm[i] = nan;
+            if (rng() % 60 == 0) t.profile.z_mm[i] += 15;
+        }
+    }
+    const AlignmentResult r = checked(mixed);
+    EXPECT_EQ(r.status, AlignmentStatus::drifting);
+    EXPECT_NEAR(r.yaw_deg, want.yaw_deg, 0.05);
+    EXPECT_NEAR(r.pitch_deg, want.pitch_deg, 0.05);
+    ASSERT_EQ(r.offsets.size(), mixed.size());
+    for (std::size_t i = 0; i < mixed.size(); ++i) {
+        if (!std::isnan(mixed[i].travel_mm)) {
+            EXPECT_EQ(r.offsets[i].travel_mm, mixed[i].travel_mm);
+        }
+    }
+    EXPECT_FALSE(r.offsets[mixed.size() - 4].ok);
+    EXPECT_FALSE(r.offsets[mixed.size() - 3].ok);
+    EXPECT_FALSE(r.offsets[mixed.size() - 2].ok);
+}
+
+TEST(Alignment, DriftIsThatOfTheReferencePoint) {
+    Rng rng(9);
+    AlignmentOptions o;
+    o.reference_mm = Eigen::Vector2d(8.5, -1.9);
+    const AlignmentResult r = checked(pass(turn(1, 0), 1, 0.01, rng), o);
+    EXPECT_NEAR(r.yaw_deg, 1.0, 0.03);
+}
+
+TEST(Alignment, TooLittleIsSaid) {
+    Rng rng(10);
+    std::vector<TravelProfile> p = pass(Eigen::Matrix3d::Identity(), 1, 0.01, rng);
+    EXPECT_EQ(checked({p.begin(), p.begin() + 3}).status, AlignmentStatus::not_enough_profiles);
+    std::vector<TravelProfile> same(20, p[20]);
+    EXPECT_EQ(checked(same).status, AlignmentStatus::not_enough_profiles);
+    for (TravelProfile& t : p) t.travel_mm += 1000;
+    EXPECT_EQ(checked(p).status, AlignmentStatus::not_enough_profiles);
+    for (TravelProfile& t : p) t.travel_mm = std::nan("");
+    const AlignmentResult r = checked(p);
+    EXPECT_EQ(r.status, AlignmentStatus::not_enough_profiles);
+    EXPECT_THAT(r.cure, HasSubstr("record"));
+}
+
+TEST(Alignment, HostileInputIsRefused) {
+    Rng rng(11);
+    std::vector<TravelProfile> p = pass(Eigen::Matrix3d::Identity(), 4, 0.01, rng);
+    EXPECT_FALSE(check_alignment({}, {}).has_value());
+    for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        AlignmentOptions o;
+        o.jitter_mm = bad;
+        EXPECT_FALSE(check_alignment(p, o).has_value());
+        o = {};
+        o.tolerance_mm = bad;
+        EXPECT_FALSE(check_alignment(p, o).has_value());
+        o = {};
+        o.window_mm = bad;
+        EXPECT_FALSE(check_alignment(p, o).has_value());
+    }
+    p[2].profile.z_mm.pop_back();
+    EXPECT_THAT(check_alignment(p, {}).error().sentence(), HasSubstr("profile 2"));
+    // Infinite and huge coordinates are no points, not a crash.
+    p = pass(Eigen::Matrix3d::Identity(), 2, 0.01, rng);
+    p[5].profile.x_mm[7] = std::numeric_limits<double>::infinity();
+    p[6].profile.z_mm[7] = 1e300;
+    EXPECT_TRUE(check_alignment(p, {}).has_value());
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/correction/contour_fit.h"
+#include "core/features/contour_model.h"
 #include "core/features/registration.h"
 
 namespace seamwright {
@@ -27,12 +29,14 @@ struct Registered {
     bool ok = false;
 };
 
+bool usable(const Profile& p, std::size_t i) {
+    return std::isfinite(p.x_mm[i]) && std::isfinite(p.z_mm[i]) &&
+           !(p.filtered() && p.segment[i] == kOutlier);
+}
+
 std::size_t usable_points(const Profile& p) {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        const bool outlier = p.filtered() && p.segment[i] == kOutlier;
-        count += std::isfinite(p.x_mm[i]) && std::isfinite(p.z_mm[i]) && !outlier;
-    }
+    for (std::size_t i = 0; i < p.size(); ++i) count += usable(p, i);
     return count;
 }
 
@@ -40,17 +44,37 @@ Eigen::Vector2d centroid(const Profile& p) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     double count = 0;
     for (std::size_t i = 0; i < p.size(); ++i) {
-        if (!std::isfinite(p.x_mm[i]) || !std::isfinite(p.z_mm[i]) ||
-            (p.filtered() && p.segment[i] == kOutlier))
-            continue;
+        if (!usable(p, i)) continue;
         sum += Eigen::Vector2d(p.x_mm[i], p.z_mm[i]);
         count += 1;
     }
     return sum / std::max(1.0, count);
 }
 
+// Direction of a profile that is a straight line within 1.5 times its noise; zero when it has a shape.
+// Registration alone would read a shape into the noise of a long line.
+Eigen::Vector2d straight_direction(const Profile& p) {
+    std::vector<double> x, z, scratch;
+    const Eigen::Vector2d middle = centroid(p);
+    Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (!usable(p, i)) continue;
+        x.push_back(p.x_mm[i]);
+        z.push_back(p.z_mm[i]);
+        const Eigen::Vector2d d = Eigen::Vector2d(x.back(), z.back()) - middle;
+        moment += d * d.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(moment);
+    const double rms = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) /
+                                 static_cast<double>(std::max<std::size_t>(1, x.size())));
+    const double noise = contour_noise_mm(x, z, scratch);
+    if (rms > 1.5 * noise + 1e-6 * std::sqrt(eigen.eigenvalues()[1])) return Eigen::Vector2d::Zero();
+    return eigen.eigenvectors().col(1);
+}
+
 // A registration is taken over when the contour was found and, for a straight one, only across it.
-bool accept(const Registration& r, const Eigen::Vector2d& reference, Registered& out) {
+bool accept(const Registration& r, const Eigen::Vector2d& reference, const Eigen::Vector2d& straight,
+            Registered& out) {
     if ((r.status != RegistrationStatus::ok && r.status != RegistrationStatus::sliding) ||
         r.inlier_share < kSmallestShare)
         return false;
@@ -58,11 +82,8 @@ bool accept(const Registration& r, const Eigen::Vector2d& reference, Registered&
     out.phi = r.scene_from_template.phi_rad;
     out.rms = r.rms_mm;
     out.share = r.inlier_share;
-    out.slides.setZero();
-    if (r.status == RegistrationStatus::sliding) {
-        out.slides = r.sliding_direction;
-        out.shift -= out.slides * out.slides.dot(out.shift);
-    }
+    out.slides = r.status == RegistrationStatus::sliding ? r.sliding_direction : straight;
+    out.shift -= out.slides * out.slides.dot(out.shift);
     out.ok = out.shift.allFinite() && std::isfinite(out.phi);
     return out.ok;
 }
@@ -70,7 +91,7 @@ bool accept(const Registration& r, const Eigen::Vector2d& reference, Registered&
 // From the trigger outwards, each profile starts where its inner neighbours point to.
 void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
            const std::vector<std::size_t>& outwards, const Eigen::Vector2d& reference,
-           std::vector<Registered>& out) {
+           const Eigen::Vector2d& straight, std::vector<Registered>& out) {
     PlanarMotion last, before;
     double last_y = 0, before_y = 0;
     int known = 0;
@@ -85,17 +106,22 @@ void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
             start.phi_rad += ahead * (last.phi_rad - before.phi_rad);
         }
         Registration r = matcher.refine(pass[i].profile, start);
-        if (!accept(r, reference, out[i])) {
+        if (!accept(r, reference, straight, out[i])) {
             SearchWindow window;
             window.dx_mm = window.dz_mm = 2.0 + 0.3 * std::abs(y);
             window.phi_rad = 0.1;
             window.centre_mm = last * reference - reference;
             r = matcher.match(pass[i].profile, window);
-            if (!accept(r, reference, out[i])) continue;
+            if (!accept(r, reference, straight, out[i])) continue;
         }
         before = last;
         before_y = last_y;
-        last = r.scene_from_template;
+        // The motion as taken over, so that a straight line does not creep along itself.
+        const double c = std::cos(out[i].phi), sn = std::sin(out[i].phi);
+        const Eigen::Vector2d moved =
+            reference + out[i].shift -
+            Eigen::Vector2d(c * reference.x() - sn * reference.y(), sn * reference.x() + c * reference.y());
+        last = {moved.x(), moved.y(), out[i].phi};
         last_y = y;
         ++known;
     }
@@ -186,16 +212,17 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         trigger = i;
         break;
     }
-    const auto too_few = [&](std::size_t usable) {
+    const auto too_few = [&](std::size_t enough) {
         result.status = AlignmentStatus::not_enough_profiles;
         result.cure = fmt::format(
             "only {} of {} profiles within {:g} mm of travel are usable: record at least {} over "
             "more than {:g} mm before and after the trigger position",
-            usable, pass.size(), options.window_mm, kFewestProfiles + 1, kShortestTravel_mm);
+            enough, pass.size(), options.window_mm, kFewestProfiles + 1, kShortestTravel_mm);
         return result;
     };
     if (!matcher) return too_few(0);
 
+    const Eigen::Vector2d straight = straight_direction(pass[trigger].profile);
     std::vector<Registered> found(pass.size());
     const double y0 = pass[trigger].travel_mm;
     for (const bool forward : {true, false}) {
@@ -206,20 +233,20 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
             return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
         });
-        track(*matcher, pass, outwards, reference, found);
+        track(*matcher, pass, outwards, reference, straight, found);
     }
 
     // A straight profile slides on itself: when most say so, all are judged across their common direction
     // only.
     Eigen::Vector2d along = Eigen::Vector2d::Zero();
-    std::size_t usable = 0, sliding = 0;
+    std::size_t registered = 0, sliding = 0;
     for (const Registered& r : found) {
-        usable += r.ok;
+        registered += r.ok;
         if (!r.ok || r.slides.isZero()) continue;
         ++sliding;
         along += r.slides.dot(along) < 0 ? Eigen::Vector2d(-r.slides) : r.slides;
     }
-    if (2 * sliding > usable) {
+    if (2 * sliding > registered) {
         result.sliding = true;
         along.normalize();
         for (Registered& r : found) r.shift -= along * along.dot(r.shift);

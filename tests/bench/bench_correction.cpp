@@ -78,7 +78,8 @@ Pose solve_ceres(const std::vector<SpotObservation>& spots, Matrix6* covariance)
         ceres::Covariance::Options how;
         how.algorithm_type = ceres::DENSE_SVD;
         ceres::Covariance c(how);
-        if (c.Compute({{d, d}}, &problem)) {
+        const std::vector<std::pair<const double*, const double*>> block{{d, d}};
+        if (c.Compute(block, &problem)) {
             Eigen::Matrix<double, 6, 6, Eigen::RowMajor> m;
             c.GetCovarianceBlock(d, d, m.data());
             *covariance = m;

@@ -251,7 +251,7 @@ TEST(SolveRegion, VerdictIsIndependentOfTheOrigin) {
         for (SpotObservation& s : spots) s.workobject_from_sensor = far * s.workobject_from_sensor;
         const RegionCorrection there = solved(spots);
         EXPECT_EQ(here.status, there.status);
-        EXPECT_NEAR(there.sigma_at_spots_mm / here.sigma_at_spots_mm, 1.0, 1e-6);
+        EXPECT_NEAR(there.sigma_at_spots_mm / here.sigma_at_spots_mm, 1.0, 1e-3);
     }
 }
 

@@ -9,6 +9,13 @@
 
 #include "devices/exchange/files.h"
 
+#if defined(__SANITIZE_THREAD__)
+// GDAL, which OpenCV registers among its codecs, takes its own locks in both orders while it starts.
+extern "C" const char* __tsan_default_suppressions() {
+    return "deadlock:libgdal.so";
+}
+#endif
+
 namespace seamwright {
 namespace {
 

@@ -164,7 +164,10 @@ class LobeFinder {
             const double before = lobe.base;
             find_background(lobe, noise);
             const double moved = std::abs(lobe.base - before);
-            if (moved > 0.01 * lobe.height()) outline(lobe);
+            if (moved > 0.01 * lobe.height()) {
+                extend(lobe);
+                outline(lobe);
+            }
             if (moved < 0.03 * lobe.height()) break;
         }
         lobe.sharpness = lobe.width > kBroad ? sharpness(lobe) : lobe.narrowing / lobe.width;
@@ -332,11 +335,16 @@ class LobeFinder {
   private:
     double above_cut(const Lobe& lobe, int i) const { return line_[i] - lobe.base_at(i) - lobe.cut; }
 
-    // Half-height stretch about the top, its crossings and its narrowing towards three quarters.
-    void outline(Lobe& lobe) const {
+    // Half-height stretch about the top.
+    void extend(Lobe& lobe) const {
         const double half = 0.5 * (lobe.top + lobe.base);
         walk(line_, lobe.top_first, -1, half, lobe.top, line_.size, lobe.left);
         walk(line_, lobe.top_last, 1, half, lobe.top, line_.size, lobe.right);
+    }
+
+    // Crossings of half height at the ends of the stretch, and how it narrows towards three quarters.
+    void outline(Lobe& lobe) const {
+        const double half = 0.5 * (lobe.top + lobe.base);
         lobe.half_left = crossing(line_, lobe.left, -1, half);
         lobe.half_right = crossing(line_, lobe.right, 1, half);
         lobe.width = lobe.half_right - lobe.half_left;

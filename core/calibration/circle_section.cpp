@@ -19,6 +19,11 @@ struct Points {
     int size() const { return static_cast<int>(x.size()); }
 };
 
+// hypot() guards against overflow at ten times the cost; profiles are millimetres.
+double distance(double dx, double dz) {
+    return std::sqrt(dx * dx + dz * dz);
+}
+
 double median_of(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -69,7 +74,7 @@ void choose_inliers(const Points& p, const Circle& c, double band, std::vector<i
     inliers.clear();
     for (int i = 0; i < p.size(); ++i) {
         const auto k = static_cast<size_t>(i);
-        if (std::abs(std::hypot(p.x[k] - c.x, p.z[k] - c.z) - c.r) < band) inliers.push_back(i);
+        if (std::abs(distance(p.x[k] - c.x, p.z[k] - c.z) - c.r) < band) inliers.push_back(i);
     }
 }
 
@@ -83,7 +88,7 @@ double fit(const Points& p, const std::vector<int>& inliers, Circle& c) {
         squares = 0;
         for (int i : inliers) {
             const auto k = static_cast<size_t>(i);
-            const double dx = p.x[k] - c.x, dz = p.z[k] - c.z, d = std::hypot(dx, dz);
+            const double dx = p.x[k] - c.x, dz = p.z[k] - c.z, d = distance(dx, dz);
             if (d < 1e-9) return -1;
             const Eigen::Vector3d j(-dx / d, -dz / d, -1);
             const double e = d - c.r;

@@ -66,7 +66,7 @@ void reduced_residual(const Section& section, const Model& model, Eigen::Vector3
     jv.row(1) = js.row(2);
     jv.row(2) = 2 * dx * js.row(0) + 2 * dz * js.row(2) + 2 * s.y() * js.row(1);
     jv(2, 9) -= 2 * model.radius;
-    *jacobian = section.root * jv;
+    jacobian->noalias() = section.root.lazyProduct(jv);
 }
 
 double reduced_cost(const std::vector<Section>& sections, const Model& model, double scale2) {
@@ -245,7 +245,7 @@ double solve_reduced(const std::vector<Section>& sections, Model& model, bool ra
             const double q = u.squaredNorm() / section.count();
             double weight = 1 / section.count();
             if (!std::isinf(scale2)) weight *= (scale2 / (q + scale2)) * (scale2 / (q + scale2));
-            h.noalias() += weight * j.transpose() * j;
+            h.noalias() += (weight * j.transpose()).lazyProduct(j);
             g.noalias() += weight * j.transpose() * u;
             used += 1;
         }
@@ -287,13 +287,19 @@ std::vector<Start> search(const std::vector<Section>& sections, double radius, b
     std::sort(coarse.begin(), coarse.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
     if (coarse.size() > 24) coarse.resize(24);
     std::vector<Start> found;
+    const auto same = [](const Start& one, const Start& other, double rad, double mm) {
+        return angle_rad(one.model.flange_from_sensor, other.model.flange_from_sensor) < rad &&
+               distance_mm(one.model.flange_from_sensor, other.model.flange_from_sensor) < mm;
+    };
     for (auto& start : coarse) {
+        // Most starts have already run into a minimum that is known.
+        if (std::any_of(found.begin(), found.end(),
+                        [&](const Start& other) { return same(start, other, 0.05, 10); }))
+            continue;
         for (const double scale : {10.0, 3.0, 1.0})
             start.cost = solve_reduced(sections, start.model, radius_free, scale, 25);
-        const bool known = std::any_of(found.begin(), found.end(), [&start](const Start& other) {
-            return angle_rad(start.model.flange_from_sensor, other.model.flange_from_sensor) < 0.02 &&
-                   distance_mm(start.model.flange_from_sensor, other.model.flange_from_sensor) < 5;
-        });
+        const bool known = std::any_of(found.begin(), found.end(),
+                                       [&](const Start& other) { return same(start, other, 0.02, 5); });
         if (!known && std::isfinite(start.cost)) found.push_back(start);
     }
     std::sort(found.begin(), found.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
@@ -320,7 +326,9 @@ std::vector<Start> global_start(const std::vector<Section>& sections, double rad
     if (best == static_cast<int>(used.size()) || used.size() <= few) return found;
     // Some profiles show something else: search within small subsets, count who agrees, polish on all.
     std::mt19937 random(7u);
+    int since_better = 0;  // once most profiles agree, a dozen subsets without a better answer are enough
     for (int trial = 0; trial < 40 && best < static_cast<int>(used.size()) - 1; ++trial) {
+        if (++since_better > 12 && 2 * best > static_cast<int>(used.size())) break;
         std::vector<Section> subset;
         std::vector<size_t> pick = used;
         for (size_t k = 0; k < few; ++k) {
@@ -334,6 +342,7 @@ std::vector<Start> global_start(const std::vector<Section>& sections, double rad
             const int count = agreeing(sections, start.model);
             if (count <= std::max(best, static_cast<int>(few) - 1)) continue;
             best = count;
+            since_better = 0;
             start.cost = solve_reduced(sections, start.model, radius_free, 1.0, 25);
             found.insert(found.begin(), start);
         }
@@ -412,9 +421,13 @@ System accumulate(const std::vector<Section>& sections, const Model& model, bool
         Eigen::Matrix<double, 4, 10> j = Eigen::Matrix<double, 4, 10>::Zero();
         j.topRows<3>() = centre_jacobian(section, model);
         j(3, 9) = 1;
-        system.information.noalias() += j.transpose() * block(sum, static_cast<double>(n)) * j;
+        const auto add = [&j](const Eigen::Matrix4d& m, Matrix10& to) {
+            const Eigen::Matrix<double, 4, 10> mj = m.lazyProduct(j);
+            to.noalias() += j.transpose().lazyProduct(mj);
+        };
+        add(block(sum, static_cast<double>(n)), system.information);
         const double squares = meat[9].sum();
-        if (with_meat) system.meat.noalias() += j.transpose() * block(meat, squares) * j;
+        if (with_meat) add(block(meat, squares), system.meat);
         system.gradient.noalias() +=
             j.transpose() * Eigen::Vector4d(sum[9].sum(), sum[10].sum(), sum[11].sum(), -sum[12].sum());
         system.squares += squares;

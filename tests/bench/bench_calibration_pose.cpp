@@ -5,8 +5,8 @@
 #include <ceres/rotation.h>
 
 #include <array>
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "tests/core/calibration/hand_eye_simulation.h"
 #include "tests/core/calibration/sphere_simulation.h"

@@ -145,7 +145,10 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
     constexpr size_t kKept = 5;
     std::vector<Candidate> best;
     const int stride = std::max(1, n / 160);
-    for (int trial = 0; trial < 400; ++trial) {
+    constexpr int kTrials = 400, kFewestTrials = 150;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        // A circle that holds a third of all points has been hit many times by then.
+        if (trial >= kFewestTrials && !best.empty() && best.front().score * stride > 0.33 * n) break;
         const int smallest = std::max(4, n / 25);
         const int window = trial % 4 == 3 ? n : std::min(n, smallest + below(std::max(1, n / 2)));
         if (window < 3) continue;

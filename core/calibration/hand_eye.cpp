@@ -92,8 +92,8 @@ Normal normal_equations(const Chain& chain, const Pose& x, const Pose& y, const 
             weight = k / (q + k) * k / (q + k);
         }
         const double wt = weight / (s.mm * s.mm), wr = weight / (s.rad * s.rad);
-        normal.translation.noalias() += wt * jt.transpose() * jt;
-        normal.rotation.noalias() += wr * jr.transpose() * jr;
+        normal.translation.noalias() += (wt * jt.transpose()).lazyProduct(jt);
+        normal.rotation.noalias() += (wr * jr.transpose()).lazyProduct(jr);
         normal.gradient.noalias() += wt * jt.transpose() * residual_mm(chain, i, x, y) +
                                      wr * jr.transpose() * residual_rad(chain, i, x, y);
     }

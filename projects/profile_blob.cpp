@@ -278,6 +278,7 @@ Expected<std::vector<CaptureBlob>> pack_captures(std::span<const Capture> captur
             if (!blobs.empty())
                 close_blob(blobs.back().bytes, static_cast<std::uint32_t>(blobs.back().captures));
             blobs.push_back({0, open_blob(kCaptureRecords)});
+            blobs.back().bytes.reserve(target_bytes + target_bytes / 8);
         }
         Writer w(blobs.back().bytes);
         write_capture(w, capture);

@@ -356,4 +356,12 @@ Expected<std::string> dump_document(const nlohmann::json& document, const std::s
     }
 }
 
+std::string dump_messages(const nlohmann::json& document) {
+    return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string utf8_text(const std::string& text) {
+    return nlohmann::json::parse(dump_messages(text)).get<std::string>();
+}
+
 }  // namespace seamwright

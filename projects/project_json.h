@@ -19,5 +19,9 @@ Expected<T> from_json_document(const nlohmann::json& document, const std::string
 
 // Text of a document. Error: a text inside is not UTF-8.
 Expected<std::string> dump_document(const nlohmann::json& document, const std::string& where);
+// The same with U+FFFD in the place of what is not UTF-8: for messages of devices, which must never keep a
+// run from being recorded.
+std::string dump_messages(const nlohmann::json& document);
+std::string utf8_text(const std::string& text);
 
 }  // namespace seamwright

@@ -162,6 +162,28 @@ TEST(ProjectFile, RunsRoundTripExactly) {
     EXPECT_TRUE(file->check().empty());
 }
 
+// A controller's message in Latin-1 must not keep a run from being recorded.
+TEST(ProjectFile, MessagesInOtherBytesAreKeptReadable) {
+    TemporaryFolder folder;
+    auto file = ProjectFile::create(folder / "a.seam", sample_project());
+    RunRecord run = sample_run(1);
+    run.message = run.part_id = run.spots[0].message = run.regions[0].refusals[0] = run.events[0].text =
+        "St\xf6rung";
+    Project setup = sample_project();
+    setup.sensors[0].identity.serial = "\xff";
+    auto number = file->append_run(run, setup);
+    ASSERT_TRUE(number) << number.error().sentence();
+    run.number = *number;
+    ASSERT_TRUE(file->update_run(run));
+    ASSERT_TRUE(file->append_event({0, "", 0, EventKind::alarm, "\xfe", "\xff"}));
+    auto loaded = file->load_run(*number);
+    ASSERT_TRUE(loaded) << loaded.error().sentence();
+    EXPECT_EQ(loaded->message, "St\xef\xbf\xbdrung");
+    EXPECT_EQ(loaded->regions[0].refusals[0], loaded->message);
+    EXPECT_TRUE(file->load_run_setup(*number));
+    EXPECT_TRUE(file->check().empty());
+}
+
 TEST(ProjectFile, EventsKeepTheirOrder) {
     TemporaryFolder folder;
     auto file = ProjectFile::create(folder / "a.seam", Project{});

@@ -119,6 +119,7 @@ TEST(SimulatedDoor, MeasuredRecordedImportedMeasured) {
 
     project.sensors[0].settings = project.robots[0].settings = displaced;
     const RunRecord run = run_project(folder / "car.seam", project);
+    EXPECT_EQ(run.status, RunStatus::ok) << run.message;
     ASSERT_TRUE(run.regions[0].correction);
     const Pose d = run.regions[0].correction->displacement.workobject_from_movedworkobject;
     // The error lies within the stated covariance (chi square, six degrees of freedom, 0.1 %), and is small

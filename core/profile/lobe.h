@@ -358,6 +358,8 @@ class LobeFinder {
     bool beyond_flank(const Lobe& lobe, int edge, int step, int out, double noise, double& level,
                       double& reach) const {
         const bool found = foot_level(line_, edge + step * out, step, level);
+        // Where the flank ends on the background there is no valley to look for.
+        if (found && level - lobe.base < std::min(0.1 * lobe.height(), 2 * noise)) return true;
         int valley = edge, lowest = line_[edge];
         for (int k = 1; k <= out + kFootPixels / 2; ++k) {
             const int i = edge + step * k;

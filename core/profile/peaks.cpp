@@ -70,8 +70,19 @@ struct Extraction {
         return {image.pixels + row * number, static_cast<std::ptrdiff_t>(sizeof(Pixel)), image.width};
     }
 
+    // A run of one or two pixels with a higher one within two pixels belongs to that one, whatever lies
+    // between (see walk); noise makes many of them where a flank falls through the threshold.
+    static bool on_a_flank(const Line<Pixel>& pixels, const Run& run) {
+        const int top = std::max(pixels[run.begin], pixels[run.end - 1]);
+        for (const int i : {run.begin - 2, run.begin - 1, run.end, run.end + 1})
+            if (i >= 0 && i < pixels.size && pixels[i] > top) return true;
+        return false;
+    }
+
     void run(const Run& run) {
-        const LineWindow<Pixel> pixels(line(run.line), run);
+        const Line<Pixel> whole_line = line(run.line);
+        if (run.end - run.begin <= 2 && on_a_flank(whole_line, run)) return;
+        const LineWindow<Pixel> pixels(whole_line, run);
         const LobeFinder<LineWindow<Pixel>> finder(pixels, options, image.full_scale());
         struct Interval {
             int begin, end;

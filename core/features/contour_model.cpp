@@ -130,52 +130,65 @@ void ContourModel::build(const Profile& profile) {
     if (usable()) build_nodes();
 }
 
-bool ContourModel::fit_window(int point, int first, int count, int degree, Edge& edge, double& residual2,
-                              double& bend) const {
+ContourModel::Window ContourModel::window(int first, int count) const {
     const WindowSums w(count);
     std::array<double, 11> s;
     for (int j = 0; j < 11; ++j) s[j] = sums_[first + count][j] - sums_[first][j];
-    const double centre = first + 0.5 * (count - 1);
-    const double c = centre - 0.5 * double(x_.size());
+    Window r;
+    r.first = first;
+    r.count = count;
+    r.centre = first + 0.5 * (count - 1);
+    const double c = r.centre - 0.5 * double(x_.size());
     Eigen::Vector2d m0(s[0], s[1]), m1(s[2], s[3]), m2(s[4], s[5]), m3(s[9], s[10]);
     m3 += -3 * c * m2 + 3 * c * c * m1 - c * c * c * m0;
     m2 += -2 * c * m1 + c * c * m0;
     m1 -= c * m0;
     m3 -= w.slope3 * m1;
     m2 -= w.mean2 * m0;
-    const Eigen::Vector2d b0 = m0 / count, b1 = m1 / w.s2;
-    const Eigen::Vector2d b2 = count > 2 ? Eigen::Vector2d(m2 / w.s4) : Eigen::Vector2d(0, 0);
-    const double xi = point + 0.5 - centre;
-    Eigen::Vector2d position = b0 + b1 * xi, slope = b1;
-    double bow = 0;
+    r.b0 = m0 / count;
+    r.b1 = m1 / w.s2;
+    r.b2 = count > 2 ? Eigen::Vector2d(m2 / w.s4) : Eigen::Vector2d(0, 0);
+    r.b3 = count > 3 ? Eigen::Vector2d(m3 / w.s6) : Eigen::Vector2d(0, 0);
+    r.xx = s[6];
+    r.xz = s[7];
+    r.zz = s[8];
+    return r;
+}
+
+bool ContourModel::fit_window(int point, const Window& window, int degree, Edge& edge, double& residual2,
+                              double& bend) const {
+    const WindowSums w(window.count);
+    const double xi = point + 0.5 - window.centre;
+    Eigen::Vector2d position = window.b0 + window.b1 * xi, slope = window.b1;
     if (degree == 2) {
-        position += b2 * (xi * xi - w.mean2);
-        slope += 2 * xi * b2;
+        position += window.b2 * (xi * xi - w.mean2);
+        slope += 2 * xi * window.b2;
     }
     const double speed = slope.norm();
     if (!(speed > 1e-12)) return false;
     const Eigen::Vector2d t = slope / speed, n(-t.y(), t.x());
-    auto across = [&](const Eigen::Vector2d& v) { return n.dot(v) * n.dot(v); };
-    double total = n.x() * n.x() * s[6] + 2 * n.x() * n.y() * s[7] + n.y() * n.y() * s[8];
-    total -= count * across(b0) + w.s2 * across(b1);
+    const auto across = [&](const Eigen::Vector2d& v) { return n.dot(v) * n.dot(v); };
+    residual2 = n.x() * n.x() * window.xx + 2 * n.x() * n.y() * window.xz + n.y() * n.y() * window.zz -
+                window.count * across(window.b0) - w.s2 * across(window.b1);
+    edge.curvature = 0;
     if (degree == 2) {
-        total -= w.s4 * across(b2);
-        bow = 2 * n.dot(b2) / (speed * speed);
+        residual2 -= w.s4 * across(window.b2);
+        edge.curvature = 2 * n.dot(window.b2) / (speed * speed);
+        bend = std::sqrt(across(window.b3) * w.s6);
+    } else {
+        bend = std::sqrt(across(window.b2) * w.s4);
     }
-    residual2 = std::max(total, 0.0);
-    bend = degree == 1 ? (count > 2 ? std::abs(n.dot(m2)) / std::sqrt(w.s4) : 0)
-                       : (count > 3 ? std::abs(n.dot(m3)) / std::sqrt(w.s6) : 0);
+    residual2 = std::max(residual2, 0.0);
     edge.cx = position.x();
     edge.cz = position.y();
     edge.tx = t.x();
     edge.tz = t.y();
-    edge.curvature = bow;
     edge.half = 0.5 * speed;
     edge.index_mm = 1 / speed;
     edge.xi = xi;
-    edge.centre = centre;
-    edge.first = first;
-    edge.count = count;
+    edge.centre = window.centre;
+    edge.first = window.first;
+    edge.count = window.count;
     edge.degree = degree;
     return true;
 }
@@ -193,7 +206,7 @@ void ContourModel::fit_edges() {
         }
         Edge best{};
         double residual2 = 0, bend = 0;
-        if (!fit_window(k, k, 2, 1, best, residual2, bend)) continue;
+        if (!fit_window(k, window(k, 2), 1, best, residual2, bend)) continue;
         if (link_[k] == 1) {
             double best_variance = weights(best, 0).value_variance;
             double best_residual2 = 0;
@@ -208,9 +221,10 @@ void ContourModel::fit_edges() {
                     if (first < first_allowed || first + count - 1 > last_allowed) continue;
                     if (place > 0 && first == centred) continue;
                     bool here = false;
+                    const Window moments = window(first, count);
                     for (int degree = 2; degree >= 1; --degree) {
                         Edge edge{};
-                        if (!fit_window(k, first, count, degree, edge, residual2, bend)) continue;
+                        if (!fit_window(k, moments, degree, edge, residual2, bend)) continue;
                         const double dof = count - degree - 1;
                         if (residual2 > variance * (dof + 2.5 * std::sqrt(2 * dof))) break;
                         // The next order must not be seen above the noise: it is what would bend the fit. A

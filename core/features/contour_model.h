@@ -99,7 +99,16 @@ class ContourModel {
   private:
     void fit_edges();
     void build_nodes();
-    bool fit_window(int point, int first, int count, int degree, Edge& edge, double& residual2,
+    // Coefficients of the orthogonal polynomials over a window of points, and its raw second moments.
+    struct Window {
+        Eigen::Vector2d b0, b1, b2, b3;
+        double centre, xx, xz, zz;
+        int first, count;
+    };
+    Window window(int first, int count) const;
+    // The fit between `point` and the next; its sum of squared residuals and the next order's coefficient,
+    // normalised to the noise of one point. False where the points coincide.
+    bool fit_window(int point, const Window& window, int degree, Edge& edge, double& residual2,
                     double& bend) const;
 
     Eigen::Vector2d origin_ = Eigen::Vector2d::Zero(), lower_ = origin_, upper_ = origin_;

@@ -24,6 +24,8 @@ constexpr double kSmallestInformationShare = 0.12;
 constexpr double kStraight_rad = 2e-3;
 // Poses whose ratings differ by less fit about equally well.
 constexpr double kRatingNoise = 0.02;
+// Coarse ratings worse by this are not followed up.
+constexpr double kHopeless = 0.2;
 
 struct Match {
     int scene = 0;
@@ -95,7 +97,7 @@ struct ContourMatcher::Impl {
     void drop_sparse_walls() const;
     void collect_jumps(const CentredPose& pose, double gate) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
-    Rating rate(const Finish& finish) const;
+    Rating rate(const Finish& finish, int stride) const;
     Eigen::Vector3d weakest_twist(const CentredPose& pose, double& share) const;
     Registration conclude(const Finish& finish, const SearchWindow* window) const;
     double apart_mm(const CentredPose& a, const CentredPose& b) const;
@@ -114,13 +116,18 @@ void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int str
     }
 }
 
-// A tilted wall is seen as a row of points. One or two points on it are clutter, and would fix what nothing
-// fixes.
+// A tilted wall is seen as a row of neighbouring points. Single points on it are clutter, and would fix what
+// nothing fixes.
 void ContourMatcher::Impl::drop_sparse_walls() const {
     if (jumps.empty()) return;
     wall_hits.assign(model.edges().size(), 0);
-    for (const Match& m : matches)
-        if (model.edges()[m.foot.edge].wall) ++wall_hits[m.foot.edge];
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        const int edge = matches[i].foot.edge;
+        if (!model.edges()[edge].wall) continue;
+        const bool neighbours =
+            i > 0 && matches[i - 1].foot.edge == edge && matches[i - 1].scene + 1 == matches[i].scene;
+        wall_hits[edge] += neighbours ? kFewestOnWall : 1;
+    }
     std::erase_if(matches, [&](const Match& m) {
         return model.edges()[m.foot.edge].wall && wall_hits[m.foot.edge] < kFewestOnWall;
     });
@@ -254,7 +261,7 @@ ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& sta
             // Partners change with every step, so the last digits may go round in a circle: stop when steps
             // are far below the noise of the result or no longer shrink.
             const double noise = result.sigma / std::sqrt(double(matches.size()));
-            if (size < std::max(0.01 * noise, 1e-9)) break;
+            if (size < std::max((stride > 1 ? 0.2 : 0.02) * noise, 1e-9)) break;
             growing = size >= last_step ? growing + 1 : 0;
             if (growing >= 3) break;
             last_step = size;
@@ -269,16 +276,15 @@ ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& sta
     return result;
 }
 
-ContourMatcher::Impl::Rating ContourMatcher::Impl::rate(const Finish& found) const {
+ContourMatcher::Impl::Rating ContourMatcher::Impl::rate(const Finish& found, int stride) const {
     Rating rating;
     rating.pose = found.pose;
     rating.gate = std::clamp(found.gate, smallest_gate(), std::max(smallest_gate(), largest_final_gate()));
     // Scene points near the template that do not lie on it speak against the pose as missing partners do.
     const double capture = std::max(3 * rating.gate, std::min(2.0, 0.08 * model.extent_mm()));
-    const double bin = 1.5 * std::max(model.pitch().distance, scene.pitch.distance);
+    const double bin = 1.5 * std::max(model.pitch().distance, stride * scene.pitch.distance);
     bins = static_cast<int>(std::min(model.length_mm() / bin, 1e5)) + 1;
     covered.assign(static_cast<std::size_t>(bins) + 2, 0);
-    const int stride = std::max(1, static_cast<int>(scene.x.size() / 4000));
     collect(rating.pose, capture, stride);
     int &on = rating.on, &off = rating.off;
     for (const Match& m : matches) {
@@ -320,7 +326,7 @@ double ContourMatcher::Impl::apart_mm(const CentredPose& a, const CentredPose& b
 
 Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWindow* window) const {
     Registration result;
-    const Rating rating = rate(found);
+    const Rating rating = rate(found, 1);
     const CentredPose& pose = found.pose;
     const Eigen::Vector2d& o = model.origin();
     const Eigen::Vector2d turned(pose.cosine * o.x() - pose.sine * o.y(),
@@ -569,11 +575,14 @@ Registration ContourMatcher::match(const Profile& scene, const SearchWindow& win
     constexpr int kStarts = 8, kFinished = 3, kAlong = 4;
     m.finder.find(m.scene, window, m.model.origin(), m.reference, kStarts, m.candidates);
     const int stride = std::max(1, static_cast<int>(m.scene.x.size()) / 250);
+    const int rating_stride = std::max(1, static_cast<int>(m.scene.x.size()) / 500);
     const double start_gate = 1.2 * m.search.step_mm();
     Impl::Rating best, second;
     auto consider = [&](const CentredPose& start, double gate) {
+        // What lies within the basin of the best one would end there.
+        if (best.score >= 0 && m.apart_mm(best.pose, start) < 0.7 * m.search.step_mm()) return;
         const Impl::Finish f = m.finish(start, gate, stride, 20);
-        const Impl::Rating r = m.rate(f);
+        const Impl::Rating r = m.rate(f, rating_stride);
         const MotionBox box = motion_box(window, m.model.origin(), m.reference, r.pose.phi);
         if (!box.contains(r.pose.dx, r.pose.dz, 0.1 * std::max(window.dx_mm, window.dz_mm) + 0.5) ||
             std::abs(r.pose.phi) > 1.1 * window.phi_rad + 0.01)
@@ -600,10 +609,13 @@ Registration ContourMatcher::match(const Profile& scene, const SearchWindow& win
     if (share < 0.15) {
         const double step = 0.25 * m.search.step_mm();
         const double along_reach = 2.5 * std::max(window.dx_mm, window.dz_mm);
-        m.finder.find_along(m.scene, best.pose, twist, along_reach, step,
-                            std::max(0.3 * m.search.step_mm(), best.gate), window, m.model.origin(),
+        const double tolerance = std::max(0.3 * m.search.step_mm(), best.gate);
+        m.finder.find_along(m.scene, best.pose, twist, along_reach, step, tolerance, window, m.model.origin(),
                             m.reference, kAlong, m.along);
-        for (const SearchCandidate& c : m.along) consider(c.pose, start_gate);
+        // Far fewer partners than here, shape and all: not worth a finish.
+        const double here = m.finder.rate(m.scene, best.pose, tolerance);
+        for (const SearchCandidate& c : m.along)
+            if (c.score > here - kHopeless) consider(c.pose, start_gate);
     }
     const Impl::Finish f = m.finish(best.pose, std::max(2 * best.gate, m.smallest_gate()), 1, 30);
     result = m.conclude(f, &window);
@@ -611,9 +623,9 @@ Registration ContourMatcher::match(const Profile& scene, const SearchWindow& win
         // Both to their end and rated alike: a start that was merely on its way is no second place.
         Impl::Finish other = m.finish(second.pose, start_gate, 1, 40);
         other.gate = f.gate;
-        const double score = m.rate(other).score;
+        const double score = m.rate(other, 1).score;
         if (m.apart_mm(other.pose, f.pose) > std::max(m.search.step_mm(), 3 * f.gate) &&
-            score > m.rate(f).score - kRatingNoise)
+            score > m.rate(f, 1).score - kRatingNoise)
             result.status = RegistrationStatus::ambiguous;
     }
     return result;

@@ -8,8 +8,8 @@
 #include <pcl/registration/icp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <vector>
 
 #include "tests/core/features/contours.h"
@@ -18,7 +18,12 @@ namespace {
 
 using namespace seamwright;
 using namespace seamwright::test;
-using Clock = std::chrono::steady_clock;
+// Processor time of this program: a busy machine slows both sides alike, but not at the same moments.
+double now() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
 
 struct Case {
     Profile contour, scene;
@@ -91,9 +96,9 @@ Score score(Match match, int rounds) {
     std::vector<double> errors, times;
     for (int round = 0; round < rounds; ++round)
         for (std::size_t i = 0; i < cases().size(); ++i) {
-            const auto start = Clock::now();
+            const double start = now();
             const PlanarMotion m = match(i);
-            times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+            times.push_back(now() - start);
             errors.push_back(error_mm(m, cases()[i].truth));
         }
     for (const double e : errors) s.error += e / double(errors.size());
@@ -149,8 +154,8 @@ int main(int argc, char** argv) {
         matchers.push_back(std::move(*matcher));
     }
     std::vector<std::pair<PeerSetting, Score>> tried;
-    for (const double distance : {0.5, 1.0, 3.0, 5.0})
-        for (const int iterations : {50, 200})
+    for (const double distance : {1.0, 3.0, 5.0})
+        for (const int iterations : {20, 50, 100, 200})
             for (const bool reciprocal : {false, true}) {
                 const PeerSetting s{distance, 1e-10, iterations, reciprocal};
                 tried.emplace_back(

@@ -559,6 +559,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
         if (free_cost < 0.2 * fixed_cost && std::abs(free_model.radius - model.radius) > 0.05)
             free_radius = free_model.radius;
     }
+    // With less than six poses left a wrong one among them still fits; leaving it out shows it.
+    const double hold_out_limit = used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
     if (std::isfinite(free_radius)) {
         judgement = {
             Verdict::poor,
@@ -568,7 +570,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     } else if (used < 0.5 * static_cast<double>(candidates)) {
         judgement = {Verdict::poor, "most profiles contradict the solution found from the others",
                      "check the robot poses and that the sphere did not move"};
-    } else if (result.rms_mm > kPoorFit_mm || hold_out > 2 * kPoorFit_mm) {
+    } else if (result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit) {
         judgement = {
             Verdict::poor,
             fmt::format("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",

@@ -94,6 +94,15 @@ struct ContourMatcher::Impl {
         return 1 + std::clamp(static_cast<int>(s / model.length_mm() * bins), 0, bins - 1);
     }
     void collect(const CentredPose& pose, double gate, int stride) const;
+    // A flank so steep that neighbours on it lie far apart: its points are on it, so its place is known.
+    bool sampled_wall(std::size_t edge) const {
+        const auto& e = model.edges()[edge];
+        for (const int other : {e.previous, e.next})
+            if (other >= 0 && model.edges()[other].wall &&
+                std::abs(e.tx * model.edges()[other].tx + e.tz * model.edges()[other].tz) > 0.98)
+                return true;
+        return false;
+    }
     void drop_sparse_walls() const;
     void collect_jumps(const CentredPose& pose, double gate) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
@@ -423,7 +432,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
         if (model.edges()[m.foot.edge].wall)
             wall_gradient[m.foot.edge] += row_of(model.edges()[m.foot.edge], m.foot.u).across;
     for (std::size_t e = 0; e < model.edges().size(); ++e)
-        if (model.edges()[e].wall)
+        if (model.edges()[e].wall && !sampled_wall(e))
             gradient_covariance.noalias() += model.pitch().along_x * model.pitch().along_x / 12 *
                                              wall_gradient[e] * wall_gradient[e].transpose();
 
@@ -538,8 +547,9 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
     impl->template_information /= length;
     const auto& tx = impl->model.x();
     const auto& tz = impl->model.z();
-    for (const auto& edge : impl->model.edges()) {
-        if (!edge.wall) continue;
+    for (std::size_t e = 0; e < impl->model.edges().size(); ++e) {
+        const auto& edge = impl->model.edges()[e];
+        if (!edge.wall || impl->sampled_wall(e)) continue;
         const bool rising = tz[edge.point + 1] > tz[edge.point];
         impl->jumps.push_back(jump_end(tx, tz, rising ? edge.point : edge.point + 1,
                                        rising ? edge.point + 1 : edge.point, 0,

@@ -2,38 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <opencv2/calib3d.hpp>
 
 namespace seamwright {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-cv::Mat cv_rotation(const Pose& p) {
-    cv::Mat m(3, 3, CV_64F);
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) m.at<double>(i, j) = p.linear()(i, j);
-    return m;
-}
-
-cv::Mat cv_translation(const Pose& p) {
-    cv::Mat m(3, 1, CV_64F);
-    for (int i = 0; i < 3; ++i) m.at<double>(i) = p.translation()(i);
-    return m;
-}
-
-// Mean pose: translations averaged, rotations by iterated tangent mean.
-Pose mean_pose(const std::vector<Pose>& poses) {
-    Pose mean = poses.front();
-    for (int i = 0; i < 20; ++i) {
-        Vector6 step = Vector6::Zero();
-        for (const auto& p : poses) step += difference(p, mean);
-        step /= static_cast<double>(poses.size());
-        mean = retract(mean, step);
-        if (step.norm() < 1e-12) break;
-    }
-    return mean;
-}
 
 // Inverse of the left Jacobian of rotation, first order in the (small) residual.
 Eigen::Matrix3d log_jacobian(const Eigen::Vector3d& w) {
@@ -266,50 +239,6 @@ PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleS
     fit.converged = minimise_blocks(fit.state, fit.normal, evaluate, apply, 60, 1e-9);
     fit.covariance = shared_covariance(fit.normal);
     return fit;
-}
-
-std::optional<HandEyeStart> start_hand_eye(const std::vector<Pose>& base_from_flange,
-                                           const std::vector<Pose>& camera_from_target) {
-    if (base_from_flange.size() < 3 || base_from_flange.size() != camera_from_target.size())
-        return std::nullopt;
-    std::vector<cv::Mat> ra, ta, rb, tb;
-    for (std::size_t i = 0; i < base_from_flange.size(); ++i) {
-        ra.push_back(cv_rotation(base_from_flange[i]));
-        ta.push_back(cv_translation(base_from_flange[i]));
-        rb.push_back(cv_rotation(camera_from_target[i]));
-        tb.push_back(cv_translation(camera_from_target[i]));
-    }
-    std::optional<HandEyeStart> best;
-    double best_spread = kInfinity;
-    for (const auto method :
-         {cv::CALIB_HAND_EYE_PARK, cv::CALIB_HAND_EYE_TSAI, cv::CALIB_HAND_EYE_DANIILIDIS}) {
-        cv::Mat r, t;
-        try {
-            cv::calibrateHandEye(ra, ta, rb, tb, r, t, method);
-        } catch (const cv::Exception&) {
-            continue;
-        }
-        Pose x = Pose::Identity();
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) x.linear()(i, j) = r.at<double>(i, j);
-            x.translation()(i) = t.at<double>(i);
-        }
-        if (!x.matrix().allFinite() || std::abs(x.linear().determinant() - 1) > 1e-3) continue;
-        std::vector<Pose> targets;
-        for (std::size_t i = 0; i < base_from_flange.size(); ++i)
-            targets.push_back(base_from_flange[i] * x * camera_from_target[i]);
-        const Pose mean = mean_pose(targets);
-        double spread = 0;
-        for (const auto& p : targets) {
-            const Vector6 d = difference(p, mean);
-            spread += d.head<3>().squaredNorm() + 1e4 * d.tail<3>().squaredNorm();  // 10 mrad weighs as 1 mm
-        }
-        if (spread < best_spread) {
-            best_spread = spread;
-            best = HandEyeStart{x, mean};
-        }
-    }
-    return best;
 }
 
 }  // namespace seamwright

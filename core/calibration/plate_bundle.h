@@ -85,13 +85,4 @@ std::optional<Eigen::Vector3d> meet_plate(const CameraModel& camera, const Eigen
                                           const Pose& camera_from_target, const PlateShape& shape,
                                           bool on_bow);
 
-// Start for the hand-eye from closed forms (several, the most consistent kept); nullopt with fewer than 3
-// poses or without rotation. Returns flange_from_camera and base_from_target.
-struct HandEyeStart {
-    Pose flange_from_camera;
-    Pose base_from_target;
-};
-std::optional<HandEyeStart> start_hand_eye(const std::vector<Pose>& base_from_flange,
-                                           const std::vector<Pose>& camera_from_target);
-
 }  // namespace seamwright

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <set>
 
+#include "core/calibration/hand_eye.h"
+#include "core/calibration/pose_set.h"
 #include "core/calibration/stripe_line.h"
 #include "core/calibration/stripe_plane.h"
 
@@ -154,20 +156,33 @@ class Solver {
             return {};
         }
         resolve_symmetry(with);
+        std::vector<HandEyePair> pairs;
         std::vector<Pose> a, b;
         for (const auto k : with) {
             a.push_back(*bundle_.base_from_flange[k]);
             b.push_back(state_.camera_from_target[k]);
+            pairs.push_back({data_.views[k].id, a.back(), b.back()});
         }
-        const auto he = start_hand_eye(a, b);
-        if (!he) {
-            robot_note_ = "the robot's poses turn about one axis only";
+        if (auto ok = check_millimetres(a, "base_from_flange"); !ok) return ok;
+        auto start = calibrate_hand_eye(Mount::eye_in_hand, pairs);
+        if (!start) {
+            robot_note_ = start.error().what;
             return {};
         }
-        if (auto ok = check_scale(a, b, he->flange_from_camera.linear()); !ok) return ok;
-        state_.flange_from_camera = he->flange_from_camera;
-        state_.base_from_target = he->base_from_target;
-        drop_wrong_poses(with);
+        if (start->status != HandEyeStatus::ok) {
+            robot_note_ = start->degenerate.empty() ? "the robot's poses do not determine it"
+                                                    : start->degenerate.front();
+            return {};
+        }
+        if (auto ok = check_scale(a, b, start->x.linear()); !ok) return ok;
+        state_.flange_from_camera = start->x;
+        state_.base_from_target = start->y;
+        for (std::size_t i = 0; i < with.size(); ++i)
+            if (!start->report.poses[i].used) {
+                bundle_.base_from_flange[with[i]].reset();
+                result_.frames[view_frame_[with[i]]].note =
+                    "its robot pose contradicts the others and was left out";
+            }
         return {};
     }
 
@@ -277,52 +292,6 @@ class Solver {
                 b.push_back(state_.camera_from_target[k]);
             }
         return check_scale(a, b, state_.flange_from_camera->linear());
-    }
-
-    // A robot pose that belongs to another frame stands out against the median of all.
-    void drop_wrong_poses(const std::vector<std::size_t>& with) {
-        for (int round = 0; round < 2 && with.size() >= 5; ++round) {
-            std::vector<Pose> a, b;
-            std::vector<std::size_t> kept;
-            for (const auto k : with)
-                if (bundle_.base_from_flange[k]) kept.push_back(k);
-            std::vector<double> off;
-            Eigen::Vector3d middle;
-            for (int axis = 0; axis < 3; ++axis) {
-                std::vector<double> v;
-                for (const auto k : kept)
-                    v.push_back((*bundle_.base_from_flange[k] * *state_.flange_from_camera *
-                                 state_.camera_from_target[k])
-                                    .translation()(axis));
-                std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-                middle(axis) = v[v.size() / 2];
-            }
-            for (const auto k : kept)
-                off.push_back((((*bundle_.base_from_flange[k] * *state_.flange_from_camera *
-                                 state_.camera_from_target[k])
-                                    .translation()) -
-                               middle)
-                                  .norm());
-            std::vector<double> sorted = off;
-            std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                             sorted.end());
-            const double limit = std::max(10.0, 5 * sorted[sorted.size() / 2]);
-            const auto worst =
-                static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
-            if (off[worst] < limit || kept.size() <= 4) return;
-            bundle_.base_from_flange[kept[worst]].reset();
-            result_.frames[view_frame_[kept[worst]]].note =
-                fmt::format("its robot pose is {:.0f} mm off the others and was left out", off[worst]);
-            for (const auto k : kept)
-                if (bundle_.base_from_flange[k]) {
-                    a.push_back(*bundle_.base_from_flange[k]);
-                    b.push_back(state_.camera_from_target[k]);
-                }
-            if (const auto he = start_hand_eye(a, b)) {
-                state_.flange_from_camera = he->flange_from_camera;
-                state_.base_from_target = he->base_from_target;
-            }
-        }
     }
 
     // Mean squared corner error of each view, predicted by the others.

@@ -76,4 +76,25 @@ Expected<CalibrateOutcome> calibrate_static_json(const nlohmann::json& data,
 Expected<CalibrateOutcome> check_drift_json(const nlohmann::json& data,
                                             const std::vector<std::string>& exclude);
 
+// Folder of images that show a chessboard ("7x6" inner corners) and the stripe; robot poses beside them
+// (poseNNNN.txt, .yaml, .json as read_pose_file() reads them) give the hand-eye. `exclude` names images
+// without extension; they are not even read.
+// -> {"status","images","boards_found","camera","reprojection_rms_px","laser_plane":{"normal","distance_mm"},
+//     "camera_from_laser","on_plane_share" (frames that share the
+//     plane),"on_plane_share_all_frames","plane_rms_mm",
+//     "hand_eye":{"flange_from_camera","target_spread_mm",..},"plate":{"shape","stretch","shear","bow_mm"},"frames":[..],...}
+Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& directory,
+                                                          const std::string& board, double pitch_mm,
+                                                          const std::vector<std::string>& exclude);
+
+// {"size":[w,h],"views":[{"id"?,"points":[{"object":[3],"pixel":[2]}]}]} ->
+// {"status","camera","reprojection_rms_px","sigma_px","covered_share","views":[{"id","camera_from_target","sigma"}],...}
+Expected<CalibrateOutcome> calibrate_camera_json(const nlohmann::json& data,
+                                                 const std::vector<std::string>& exclude);
+// The same from a folder of images; `pattern` is chessboard, circles or charuco. Adds "images",
+// "boards_found", "not_found".
+Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory, const std::string& board,
+                                                   double pitch_mm, const std::string& pattern,
+                                                   const std::vector<std::string>& exclude);
+
 }  // namespace seamwright

@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "app/cli/calibrate/commands.h"
+
+namespace seamwright {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+fs::path real_data() {
+    const char* given = std::getenv("SEAMWRIGHT_DATA");
+    return fs::path(given ? given : SEAMWRIGHT_DATA_DIR);
+}
+
+fs::path scratch(const std::string& name) {
+    const fs::path p = fs::path(testing::TempDir()) / ("seamwright_plate_" + name);
+    fs::remove_all(p);
+    fs::create_directories(p);
+    return p;
+}
+
+TEST(StripeCameraCommand, RootAnswersByTheContract) {
+    const fs::path folder = real_data() / "etna" / "root";
+    if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no real data";
+    const auto r = calibrate_stripe_camera_folder(folder.string(), "7x6", 10, {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    const json& j = r->result;
+    EXPECT_EQ(r->exit_code, 0);
+    EXPECT_EQ(j["status"], "ok");
+    EXPECT_EQ(j["images"], 8);
+    EXPECT_EQ(j["boards_found"], 8);
+    EXPECT_GE(j["on_plane_share"].get<double>(), 0.95);
+    EXPECT_LE(j["hand_eye"]["target_spread_mm"].get<double>(), 1.0);
+    for (const char* k : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"})
+        EXPECT_TRUE(j["camera"].contains(k)) << k;
+    EXPECT_EQ(j["laser_plane"]["normal"].size(), 3u);
+    EXPECT_EQ(j["frames"].size(), 8u);
+}
+
+// robot_cal_tools publishes fx 542.324 fy 543.515 cx 320.474 cy 226.039.
+TEST(CameraCommand, CircleGridWithOneBigDot) {
+    const fs::path folder = real_data() / "robot_cal_tools" / "test_set_10x10" / "images";
+    if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no real data";
+    const auto r = calibrate_camera_folder(folder.string(), "10x10", 25.4, "circles", {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    const json& c = r->result["camera"];
+    EXPECT_EQ(r->result["boards_found"], 15);
+    EXPECT_NEAR(c["fx"].get<double>(), 542.324, 5.4);
+    EXPECT_NEAR(c["fy"].get<double>(), 543.515, 5.4);
+    EXPECT_NEAR(c["cx"].get<double>(), 320.474, 3.2);
+    EXPECT_NEAR(c["cy"].get<double>(), 226.039, 2.26);
+}
+
+// left_intrinsics.yml of OpenCV's examples: f = 535.916, rms 0.3926 px.
+TEST(CameraCommand, OpenCVsLeftChessboards) {
+    const fs::path examples = "/usr/share/doc/opencv-doc/examples/data";
+    if (!fs::exists(examples / "left01.jpg")) GTEST_SKIP() << "skipped: no opencv-doc";
+    const fs::path folder = scratch("left");
+    for (int i = 1; i <= 14; ++i) {
+        const std::string name = std::string("left") + (i < 10 ? "0" : "") + std::to_string(i) + ".jpg";
+        if (fs::exists(examples / name)) fs::copy_file(examples / name, folder / name);
+    }
+    const auto r = calibrate_camera_folder(folder.string(), "9x6", 25, "chessboard", {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_EQ(r->result["boards_found"], 13);
+    EXPECT_NEAR(r->result["camera"]["fx"].get<double>() / 535.916, 1, 0.005);
+    EXPECT_LE(r->result["reprojection_rms_px"].get<double>(), 0.42);
+    fs::remove_all(folder);
+}
+
+TEST(PlateFolders, BadInputIsOneSentence) {
+    const auto said = [](const Expected<CalibrateOutcome>& r) {
+        return r ? std::string("accepted") : r.error().sentence();
+    };
+    EXPECT_THAT(said(calibrate_stripe_camera_folder("/nowhere", "7x6", 10, {})), HasSubstr("no folder"));
+    const fs::path empty = scratch("empty");
+    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", 10, {})), HasSubstr("no image"));
+    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7by6", 10, {})), HasSubstr("7by6"));
+    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", 0.01, {})), HasSubstr("metres"));
+    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", -1, {})), HasSubstr("positive"));
+    EXPECT_THAT(said(calibrate_camera_folder(empty.string(), "7x6", 10, "squares", {})),
+                HasSubstr("squares"));
+    std::ofstream(empty / "frame1.png") << "this is no image";
+    const auto broken = calibrate_stripe_camera_folder(empty.string(), "7x6", 10, {});
+    EXPECT_THAT(said(broken), HasSubstr("frame1"));
+    EXPECT_EQ(broken.error().kind, ErrorKind::input);
+    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", 10, {"frame7"})),
+                HasSubstr("frame7"));
+    fs::remove_all(empty);
+}
+
+TEST(CameraCommand, RefusesMalformedData) {
+    for (const char* text : {"[]", "{}", R"({"size":[640]})", R"({"size":[640,480],"views":3})",
+                             R"({"size":[640,480],"views":[]})", R"({"size":[0,480],"views":[]})",
+                             R"({"size":[640,480],"views":[{"points":[{"object":[0,0],"pixel":[1,1]}]}]})",
+                             R"({"size":[640,480],"views":[{"id":"a","points":[]}]})"}) {
+        const auto r = calibrate_camera_json(json::parse(text), {});
+        ASSERT_FALSE(r) << text;
+        EXPECT_FALSE(r.error().sentence().empty());
+    }
+}
+
+}  // namespace
+}  // namespace seamwright

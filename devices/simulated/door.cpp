@@ -9,7 +9,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLength = 1000, kHeight = 750;
 constexpr double kHalfX = 455, kHalfY = 365, kShear = 0.10, kExponent = 5;
 constexpr double kFlangeTop = 1.5, kFlangeEnd = 9.0, kLand = 0.7;
 constexpr double kFoldRadius = 1.15, kFoldHeight = 0.35;

@@ -97,4 +97,16 @@ Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory,
                                                    double pitch_mm, const std::string& pattern,
                                                    const std::vector<std::string>& exclude);
 
+// {"camera":{fx,fy,cx,cy,k1,k2,..},"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}]} ->
+// {"status","camera_from_laser","rms_px","sigma","covariance_pose",...}
+Expected<CalibrateOutcome> calibrate_laser_plane_json(const nlohmann::json& data,
+                                                      const std::vector<std::string>& exclude);
+
+// {"size":[w,h],"lines":[[[u,v],..],..],"full"?} -> {"status","lens" (camera with f = half the
+// diagonal),"centre_px","K1","K2" (px),
+//     "straightness_before_px","straightness_after_px","corner_shift_px","corner_sigma_px",...}; lines are
+//     excluded by number.
+Expected<CalibrateOutcome> calibrate_lens_json(const nlohmann::json& data,
+                                               const std::vector<std::string>& exclude);
+
 }  // namespace seamwright

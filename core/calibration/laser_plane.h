@@ -1,0 +1,40 @@
+#pragma once
+// Camera to laser plane (4.1.2-4.1.3): a point of the calibration body seen in the image (u, v) and measured
+// in the sensor's profile (x, 0, z), in several positions. Six parameters of camera_from_laser by
+// Levenberg-Marquardt on the pixel residuals; (4.9) corrected: the projection is divided by the scale w. No
+// start value is asked for: the profile points lie in one plane, so the homography to the image decomposes
+// into the pose (both mirror poses are tried).
+//
+// Noise model: pixels independent, one sigma, estimated. Degenerate: points on one line (the pose may turn
+// about it).
+
+#include <string>
+#include <vector>
+
+#include "core/calibration/calibration.h"
+#include "core/error.h"
+#include "core/profile/sensor_model.h"
+
+namespace seamwright {
+
+struct LaserPair {
+    std::string id;
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+    Eigen::Vector2d laser_mm = Eigen::Vector2d::Zero();  // x, z
+};
+
+struct LaserPlaneResult {
+    Pose camera_from_laser = Pose::Identity();
+    Matrix6 covariance = Matrix6::Zero();
+    double rms_px = 0;
+    CalibrationReport report;  // x, y, z (mm), rx, ry, rz (deg)
+};
+
+// At least 4 pairs (10 and more advised). A pair that the others contradict is named and left out (from 6
+// pairs on). Error: fewer than 4 pairs, NaN, unknown or double ids. Verdict undetermined: points on one line,
+// sigma beyond 5 mm or 2 degrees.
+Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
+                                                 const std::vector<LaserPair>& pairs,
+                                                 const std::vector<std::string>& exclude);
+
+}  // namespace seamwright

@@ -1,0 +1,49 @@
+#pragma once
+// Lens distortion from straight laser lines on a plane (4.1.1): the lens is the one that makes them straight.
+//
+// Model (4.1)-(4.2): u_d = u_u (1 + K1 r^2 + K2 r^4) about the centre, r in px; inside the solver r is scaled
+// by half the image diagonal, or K1 and K2 would differ by ten orders of magnitude. Cost per line: the
+// Karhunen-Loeve ratio lambda_min / lambda_max of its undistorted points (4.3)-(4.4), corrected: centred
+// covariance, and the ratio of the smallest to the largest (the source prints lambda_min / lambda_min). The
+// ratio is weighed by points and squared length, so that the sum is one of squared distances in px and noise
+// of one sigma has the right weight; a mere change of scale costs nothing.
+//
+// Determined: distortion and centre. Not determined: the focal length, and the centre where there is no
+// distortion (it is held to the middle of the image with a sigma of a tenth of the width). Degenerate: lines
+// through the centre only, lines in one corner, fewer than 3 lines.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/calibration/calibration.h"
+#include "core/error.h"
+#include "core/profile/sensor_model.h"
+
+namespace seamwright {
+
+struct LensData {
+    int width = 0, height = 0;
+    std::vector<std::vector<Eigen::Vector2d>> lines;  // px
+};
+
+struct LensOptions {
+    std::vector<int> exclude;  // line numbers
+    bool full = false;         // Brown-Conrady: k3, p1, p2 too (2.7)-(2.8)
+};
+
+struct LensResult {
+    // fx = fy = half the diagonal, so that k1, k2 .. are those of the scaled radius; undistort() gives
+    // straight lines.
+    CameraModel lens;
+    double k1_px = 0, k2_px = 0;                                   // K1 (1/px^2) and K2 (1/px^4) of (4.1)
+    double straightness_before_px = 0, straightness_after_px = 0;  // rms distance from the fitted lines
+    double corner_shift_px = 0,
+           corner_sigma_px = 0;  // distortion in the image's corner and its sigma (worst corner)
+    CalibrationReport report;    // centre_u, centre_v (px), k1, k2 (scaled radius), k3, p1, p2
+};
+
+// Error: no size, lines with fewer than 5 points, NaN, points outside the image. Verdict undetermined: fewer
+// than 3 lines, or the distortion in a corner known to worse than 3 px.
+Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options);
+
+}  // namespace seamwright

@@ -136,6 +136,22 @@ struct RegionSolver::Impl {
         }
     }
 
+    bool refused_as_taught(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                           RegionCorrection& r) {
+        taught.load(spots, options, true);
+        Linearization lin;
+        const State start;
+        taught.linearize(start, factor, lin);
+        const Spread before = taught.spread(lin, start);
+        if (before.regular && taught.surely_observable(before)) return false;
+        const Observability seen = taught.observability(lin, start);
+        if (seen.ok) return false;
+        fit = {};
+        fill_spots(spots, r);
+        refuse(seen, start, before, r);
+        return true;
+    }
+
     Expected<void> solve(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                          RegionCorrection& r) {
         if (auto good = check_region(spots, options, true); !good) return good;
@@ -155,29 +171,27 @@ struct RegionSolver::Impl {
         system.load(spots, options, false);
         fit = {};
 
-        // Judged on the taught geometry first: a hopeless region is not iterated, and a wild measure must not
-        // lend it a lever that it does not have.
-        taught.load(spots, options, true);
-        Linearization lin;
-        const State start;
-        taught.linearize(start, factor, lin);
         int observed = 0;
-        for (std::size_t n = 0; n < spots.size(); ++n) observed += taught.spot(n).observed;
-        r.redundancy = observed - taught.free_count();
-        const Spread before = taught.spread(lin, start);
-        if (!before.regular || !taught.surely_observable(before)) {
-            const Observability seen = taught.observability(lin, start);
-            if (!seen.ok) {
-                fill_spots(spots, r);
-                refuse(seen, start, before, r);
-                return {};
-            }
-        }
-
+        for (std::size_t n = 0; n < spots.size(); ++n) observed += system.spot(n).observed;
+        r.redundancy = observed - system.free_count();
         system.fit(factor, fit);
         Verdict verdict = Verdict::agree;
-        if (options.reject_outliers && (r.redundancy > 0))
-            verdict = search.run(system, options.outlier_significance, fit, factor);
+        Spread spread = fit.converged ? system.spread(fit.lin, fit.state) : Spread{};
+        Agreement a = agreement(system, fit, spread, factor);
+        const bool agreed = fit.converged && a.plausible &&
+                            a.smallest_p >= options.outlier_significance / static_cast<double>(spots.size());
+        if (!agreed || r.redundancy < 6 || !system.surely_observable(spread)) {
+            // Judged on the taught geometry: a wild measure that nothing contradicts must not lend the region
+            // a lever that it does not have.
+            if (refused_as_taught(spots, options, r)) return {};
+        }
+        if (!agreed && options.reject_outliers && r.redundancy > 0) {
+            verdict = search.run(system, options.outlier_significance, a, fit, factor);
+            if (verdict == Verdict::found || verdict == Verdict::noisy) {
+                spread = system.spread(fit.lin, fit.state);
+                a = agreement(system, fit, spread, factor);
+            }
+        }
         r.iterations = fit.iterations;
         fill_spots(spots, r);
         if (!fit.converged) {
@@ -188,11 +202,9 @@ struct RegionSolver::Impl {
                 options.max_iterations);
             return {};
         }
-        const Spread spread = system.spread(fit.lin, fit.state);
-        const Agreement a = agreement(system, fit, spread, factor);
         r.redundancy = a.redundancy;
         if (a.redundancy > 0) r.variance_factor = a.sum_squares / a.redundancy;
-        r.consistent = a.global_p >= kGlobalDisagreement && verdict != Verdict::contradictory;
+        r.consistent = a.plausible && verdict != Verdict::contradictory;
         const double inflation =
             verdict == Verdict::contradictory ? std::max(1.0, std::sqrt(r.variance_factor)) : 1.0;
         const bool sure = inflation == 1.0 && spread.regular && system.surely_observable(spread);

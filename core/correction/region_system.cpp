@@ -38,6 +38,59 @@ Eigen::Matrix3d rotation_vector_from_abc(const Eigen::Vector3d& abc) {
     return g;
 }
 
+// Cholesky factor of a matrix with unit diagonal, written out because this is the inner loop of a run. False
+// when a pivot says that the matrix is singular.
+bool factorise(const Matrix6& m, Matrix6& l) {
+    for (int j = 0; j < 6; ++j) {
+        double pivot = m.coeff(j, j);
+        for (int k = 0; k < j; ++k) pivot -= l.coeff(j, k) * l.coeff(j, k);
+        if (!(pivot > kSingular)) return false;
+        const double root = std::sqrt(pivot), inverse = 1 / root;
+        l.coeffRef(j, j) = root;
+        for (int i = j + 1; i < 6; ++i) {
+            double sum = m.coeff(i, j);
+            for (int k = 0; k < j; ++k) sum -= l.coeff(i, k) * l.coeff(j, k);
+            l.coeffRef(i, j) = sum * inverse;
+        }
+    }
+    return true;
+}
+
+Vector6 solve_factorised(const Matrix6& l, const Vector6& right) {
+    Vector6 x = right;
+    for (int i = 0; i < 6; ++i) {
+        for (int k = 0; k < i; ++k) x.coeffRef(i) -= l.coeff(i, k) * x.coeff(k);
+        x.coeffRef(i) /= l.coeff(i, i);
+    }
+    for (int i = 5; i >= 0; --i) {
+        for (int k = i + 1; k < 6; ++k) x.coeffRef(i) -= l.coeff(k, i) * x.coeff(k);
+        x.coeffRef(i) /= l.coeff(i, i);
+    }
+    return x;
+}
+
+// (L L^T)^-1 = L^-T L^-1.
+Matrix6 invert_factorised(const Matrix6& l) {
+    Matrix6 k = Matrix6::Zero();
+    for (int j = 0; j < 6; ++j) {
+        k.coeffRef(j, j) = 1 / l.coeff(j, j);
+        for (int i = j + 1; i < 6; ++i) {
+            double sum = 0;
+            for (int m = j; m < i; ++m) sum -= l.coeff(i, m) * k.coeff(m, j);
+            k.coeffRef(i, j) = sum / l.coeff(i, i);
+        }
+    }
+    Matrix6 out;
+    for (int j = 0; j < 6; ++j) {
+        for (int i = j; i < 6; ++i) {
+            double sum = 0;
+            for (int m = i; m < 6; ++m) sum += k.coeff(m, i) * k.coeff(m, j);
+            out.coeffRef(i, j) = out.coeffRef(j, i) = sum;
+        }
+    }
+    return out;
+}
+
 // Value and slope of c1 s + c2 s^2 + c3 s^3 at s inside [from, to], continued along the tangent outside.
 void follow(const Eigen::Vector3d& c, double s, double from, double to, double& value, double& slope) {
     const double inside = std::clamp(s, from, to);
@@ -180,15 +233,14 @@ Spread RegionSystem::spread(const Linearization& lin, const State& state) const 
         if (!(h(i, i) > 0) || !std::isfinite(h(i, i))) return out;
         scale[i] = 1 / std::sqrt(h(i, i));
     }
-    const Eigen::LDLT<Matrix6> ldlt(scale.asDiagonal() * h * scale.asDiagonal());
-    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > kSingular)) return out;
-    Matrix6 inverse = scale.asDiagonal() * ldlt.solve(Matrix6(scale.asDiagonal()));
+    Matrix6 factor;
+    if (!factorise(scale.asDiagonal() * h * scale.asDiagonal(), factor)) return out;
+    const Matrix6 inverse = scale.asDiagonal() * invert_factorised(factor) * scale.asDiagonal();
     if (all_free_) {
         out.bread = inverse;
     } else {
         out.bread = b * inverse * b.transpose();  // columns of fixed parameters are 0 in b
     }
-    out.bread = 0.5 * (out.bread + out.bread.transpose()).eval();
     out.covariance = binary_ ? out.bread : Matrix6(out.bread * lin.meat * out.bread);
     out.regular = true;
     return out;
@@ -209,8 +261,24 @@ bool RegionSystem::surely_observable(const Spread& s) const {
 }
 
 double RegionSystem::weakest_sigma_mm(const Spread& s) const {
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(s.covariance, Eigen::EigenvaluesOnly);
-    return std::sqrt(std::max(0.0, eigen.eigenvalues()[5]));
+    // Largest eigenvalue by powers: C^32 by squaring, then twelve steps; good to 0.1 % whatever the other
+    // eigenvalues.
+    const double trace = s.covariance.trace();
+    if (!(trace > 0)) return 0;
+    Matrix6 power = s.covariance / trace;
+    for (int k = 0; k < 5; ++k) {
+        const Matrix6 square = power.lazyProduct(power);
+        power = square / square.trace();
+    }
+    Eigen::Index largest;
+    power.diagonal().maxCoeff(&largest);
+    Vector6 v = power.col(largest);
+    for (int k = 0; k < 12; ++k) {
+        const Vector6 next = power.lazyProduct(v);
+        v = next / next.cwiseAbs().maxCoeff();
+    }
+    const Vector6 image = s.covariance.lazyProduct(v);
+    return std::sqrt(std::max(0.0, v.dot(image) / v.squaredNorm()));
 }
 
 Observability RegionSystem::observability(const Linearization& lin, const State& state,
@@ -306,7 +374,17 @@ void RegionSystem::outer(const Matrix6& covariance_xi, const State& state, Matri
                 to_abc.row(which[static_cast<std::size_t>(k)]) = pseudo.row(k);
         }
     } else {
-        to_abc = kuka_jacobian(state.rotation);
+        // Closed form of kuka_jacobian away from the gimbal lock: the axes of A, B, C are Z, the turned Y,
+        // and R X.
+        const Eigen::Vector3d x = state.rotation.col(0);
+        const double cos_b = std::hypot(x.x(), x.y());
+        if (cos_b > 1e-3) {
+            Eigen::Matrix3d axes;
+            axes << 0, -x.y() / cos_b, x.x(), 0, x.x() / cos_b, x.y(), 1, 0, x.z();
+            to_abc = axes.inverse();
+        } else {
+            to_abc = kuka_jacobian(state.rotation);
+        }
     }
     for (int i = 0; i < 3; ++i) {
         if (!options_.free[static_cast<std::size_t>(i)]) {
@@ -337,6 +415,7 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
     double damping = 0;
     double last_gain = std::numeric_limits<double>::infinity();
     Linearization trial_lin;
+    Matrix6 lower;
     while (out.iterations < options_.max_iterations && std::isfinite(out.lin.cost)) {
         ++out.iterations;
         const Matrix6 b = xi_from_parameters(out.state);
@@ -349,13 +428,12 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
         }
         Matrix6 scaled = scale.asDiagonal() * h * scale.asDiagonal();
         scaled.diagonal().array() += damping;
-        const Eigen::LDLT<Matrix6> ldlt(scaled);
-        if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > kSingular)) {
+        if (!factorise(scaled, lower)) {
             damping = std::max(10 * damping, 1e-8);
             if (damping > 1e8) return;
             continue;
         }
-        const Vector6 theta = -(scale.asDiagonal() * ldlt.solve(scale.asDiagonal() * g));
+        const Vector6 theta = -(scale.asDiagonal() * solve_factorised(lower, scale.asDiagonal() * g));
         const Vector6 xi = all_free_ ? theta : Vector6(b * theta);
         const double gain = -g.dot(theta);  // predicted decrease of the cost
         State trial = out.state;

@@ -96,6 +96,7 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
     Agreement out;
     Eigen::Vector3d e;
     Rows rows;
+    double largest = 0;  // statistic with two degrees
     for (std::size_t n = 0; n < system.size(); ++n) {
         if (!(factor[n] > 0)) continue;
         system.residual(n, fit.state, e, rows);
@@ -105,6 +106,19 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
             if (s.weights[i] > 0) out.sum_squares += e[i] * e[i] / (s.sigma * s.sigma);
         }
         if (!spread.regular) continue;
+        if (s.weights.x() == 1 && s.weights.y() == 0 && s.weights.z() == 1 && system.weights_are_binary()) {
+            // The usual spot: x and z, covariance sigma^2 I - J C J^T inverted in closed form.
+            const Vector6 jx = rows.row(0).transpose(), jz = rows.row(2).transpose();
+            const Vector6 cx = spread.bread.lazyProduct(jx), cz = spread.bread.lazyProduct(jz);
+            const double v = 1 / (s.sigma * s.sigma);
+            const double xx = 1 - v * jx.dot(cx), xz = -v * jx.dot(cz), zz = 1 - v * jz.dot(cz);
+            const double det = xx * zz - xz * xz;
+            if (xx > 1e-3 && zz > 1e-3 && det > 1e-3 * xx * zz) {
+                const double t = v * (zz * e.x() * e.x() - 2 * xz * e.x() * e.z() + xx * e.z() * e.z()) / det;
+                largest = std::max(largest, t);
+                continue;
+            }
+        }
         // Residual = (I - J K) noise with the gain K = bread J^T Omega.
         const Eigen::Matrix3d j = rows * spread.bread * rows.transpose();
         const Eigen::Matrix3d gain = j * Eigen::Matrix3d(s.weights.cwiseAbs2().asDiagonal());
@@ -114,8 +128,11 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
         const Studentised t = studentise(s, e, covariance);
         out.smallest_p = std::min(out.smallest_p, chi_square_p(t.value, t.degrees));
     }
+    out.smallest_p = std::min(out.smallest_p, chi_square_p(largest, 2));
     out.redundancy = out.observed - system.free_count();
-    out.global_p = chi_square_p(out.sum_squares, out.redundancy);
+    // Below mean + 2 standard deviations the tail is never small; the incomplete gamma function is dear.
+    out.plausible = out.sum_squares < out.redundancy + 2 * std::sqrt(2.0 * std::max(0, out.redundancy)) ||
+                    chi_square_p(out.sum_squares, out.redundancy) >= kGlobalDisagreement;
     return out;
 }
 
@@ -143,10 +160,10 @@ bool WrongSpotSearch::explain(const RegionSystem& system, std::size_t count, dou
         } else if (!spread.regular) {
             // The rest does not determine the displacement: this set cannot be acquitted unless the rest
             // disagrees.
-            if (a.global_p >= kGlobalDisagreement) second = std::min(second, a.sum_squares);
+            if (a.plausible) second = std::min(second, a.sum_squares);
         } else {
             const double rest = static_cast<double>(n - count);
-            bool fits = a.smallest_p >= level / rest && a.global_p >= kGlobalDisagreement;
+            bool fits = a.smallest_p >= level / rest && a.plausible;
             // Each one left out must be wrong by itself, or a smaller set would do.
             for (const std::size_t i : set) {
                 if (!fits) break;
@@ -251,8 +268,7 @@ bool WrongSpotSearch::graduated(const RegionSystem& system, double level, std::v
             smallest = std::min(smallest, predicted(system, k, hard, spread).value);
         }
         if (a.redundancy < lost || (a.redundancy < 2 * lost && smallest <= kGross)) return false;
-        if (a.smallest_p < level / static_cast<double>(used) || a.global_p < kGlobalDisagreement || used == n)
-            return false;
+        if (a.smallest_p < level / static_cast<double>(used) || !a.plausible || used == n) return false;
         if (!system.observability(hard.lin, hard.state).ok) return false;
         factor = trial_;
         fit = hard;
@@ -306,13 +322,11 @@ bool WrongSpotSearch::stands_out(const RegionSystem& system, double level, std::
     return any;
 }
 
-Verdict WrongSpotSearch::run(const RegionSystem& system, double significance, RegionSystem::Fit& fit,
-                             std::vector<double>& factor) {
+Verdict WrongSpotSearch::run(const RegionSystem& system, double significance, const Agreement& all,
+                             RegionSystem::Fit& fit, std::vector<double>& factor) {
     const std::size_t n = system.size();
-    const Spread spread = fit.converged ? system.spread(fit.lin, fit.state) : Spread{};
-    const Agreement all = agreement(system, fit, spread, factor);
     if (fit.converged && all.smallest_p >= significance / static_cast<double>(n)) {
-        return all.global_p >= kGlobalDisagreement ? Verdict::agree : Verdict::noisy;
+        return all.plausible ? Verdict::agree : Verdict::noisy;
     }
     if (all.redundancy <= 0) return Verdict::agree;
     bool tied = false;

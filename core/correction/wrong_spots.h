@@ -16,7 +16,7 @@ inline constexpr double kGlobalDisagreement = 1e-4;
 struct Agreement {
     double smallest_p =
         1;  // of the studentised spot residuals, chi-square with the spot's redundant directions
-    double global_p = 1;     // of the sum of squares, chi-square with `redundancy`
+    bool plausible = true;   // the sum of squares, chi-square with `redundancy`, is not beyond chance
     double sum_squares = 0;  // of residual / sigma over observed coordinates
     int observed = 0, redundancy = 0;
 };
@@ -34,8 +34,9 @@ enum class Verdict {
 
 class WrongSpotSearch {
   public:
-    // `fit` and `factor` (all 1) describe the fit with all spots; both are replaced when spots are left out.
-    Verdict run(const RegionSystem& system, double significance, RegionSystem::Fit& fit,
+    // `fit` and `factor` (all 1) describe the fit with all spots; both are replaced when spots are left
+    // out. `all` is the agreement of that fit.
+    Verdict run(const RegionSystem& system, double significance, const Agreement& all, RegionSystem::Fit& fit,
                 std::vector<double>& factor);
 
   private:

@@ -29,6 +29,13 @@ double sigma_of(std::vector<double>& differences, bool clean) {
     return sigma / std::sqrt(6.);
 }
 
+// Logarithm of a jump's size in spacings; 0 where there is none.
+double jump_size(const Model& m, const Candidate& from, const Candidate& to) {
+    const double dx = to.x - from.x, dz = to.z - from.z;
+    const double usual = m.scale.spacing * (to.line - from.line) + m.scale.largest();
+    return std::log1p(std::sqrt(dx * dx + dz * dz) / usual);
+}
+
 }  // namespace
 
 Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path,
@@ -89,7 +96,7 @@ void cheapest_sequence(Workspace& w, const Model& m) {
     } last{infinite, -1}, skipping{infinite, -1};
     // No node before the last line can be continued for less: a straight line below the concave cost of a
     // gap.
-    double older = infinite;
+    double older = infinite, cheapest_last = infinite;
     const double growth = (m.skip(m.window) - m.skip(1)) / (m.window - 1);
     for (int line = 0; line < lines; ++line) {
         const int begin = w.first[std::size_t(line)], end = w.first[std::size_t(line) + 1];
@@ -119,7 +126,8 @@ void cheapest_sequence(Workspace& w, const Model& m) {
             };
             for (int j = before; j < begin; ++j) try_smooth(j, 0);
             // Nothing else can be cheaper: older nodes pay for the line between, an edge for itself.
-            if (!(best <= older && best <= start_cost && best <= last.cost + m.edge_cost)) {
+            if (!(best <= older && best <= start_cost &&
+                  best <= cheapest_last + std::min(m.edge_cost, m.jump_cost))) {
                 for (int back = 1; back <= m.window && back <= line; ++back) {
                     const double skipped = m.skip(back - 1);
                     const int j0 = w.first[std::size_t(line - back)],
@@ -137,10 +145,21 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                         if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
                     }
                 }
-                if (start_cost < best) best = start_cost, from = -1, link = Link::start;
-                const End& past = last.cost <= skipping.cost ? last : skipping;
-                if (past.cost + m.jump_cost < best)
-                    best = past.cost + m.jump_cost, from = past.node, link = Link::start;
+                const double enter = w.enter.empty() ? 0 : w.enter[std::size_t(c)];
+                if (start_cost + enter < best) best = start_cost + enter, from = -1, link = Link::start;
+                const auto try_jump = [&](double cost, int j) {
+                    cost += m.jump_cost + enter;
+                    if (!(cost < best)) return;
+                    if (m.jump_size_cost > 0)
+                        cost += m.jump_size_cost * jump_size(m, w.candidates[std::size_t(j)], point);
+                    if (cost < best) best = cost, from = j, link = Link::start;
+                };
+                try_jump(skipping.cost, skipping.node);
+                if (m.jump_size_cost > 0)
+                    for (int j = before; j < begin; ++j)
+                        try_jump(w.nodes[std::size_t(j)].cost + w.leave[std::size_t(j)], j);
+                else
+                    try_jump(last.cost, last.node);
             }
             Node& node = w.nodes[std::size_t(c)];
             node.cost = best + point.cost;
@@ -158,13 +177,18 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                 if (link == Link::edge && w.nodes[std::size_t(from)].state.age < 2) node.link = Link::smooth;
             }
         }
-        older = std::min(older + growth, last.cost + m.skip(1));
+        older = std::min(older + growth, cheapest_last + m.skip(1));
         skipping.cost += m.skip_line;
         if (const double cost = last.cost + m.skip_open + m.skip_line; cost < skipping.cost)
             skipping = {cost, last.node};
         last = {infinite, -1};
-        for (int c = begin; c < end; ++c)
-            if (const double cost = w.nodes[std::size_t(c)].cost; cost < last.cost) last = {cost, c};
+        cheapest_last = infinite;
+        for (int c = begin; c < end; ++c) {
+            const double cost = w.nodes[std::size_t(c)].cost;
+            cheapest_last = std::min(cheapest_last, cost);
+            const double left = w.leave.empty() ? cost : cost + w.leave[std::size_t(c)];
+            if (left < last.cost) last = {left, c};
+        }
     }
     w.path.clear();
     for (int c = last.cost <= skipping.cost ? last.node : skipping.node; c >= 0;

@@ -39,6 +39,8 @@ struct Workspace {
     std::vector<char> vague;            // filter: accepted by vague predictions
     std::vector<int> doubtful;          // filter: the candidates that are
     std::vector<int> chosen;            // tracking: candidate number within the line, or -1
+    std::vector<double> enter, leave;  // tracking: per candidate, cost of a new segment that begins or an old
+                                       // one that ends there, beside jump_cost; empty: none
     std::vector<double> samples_x, samples_z;
     std::vector<int> pieces;    // filter: segment of a piece
     std::vector<int> segments;  // filter: stack of open segments, three numbers each

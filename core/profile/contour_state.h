@@ -33,6 +33,7 @@ struct Model {
     double sx2 = 0, sz2 = 0, inv_sx2 = 0, inv_sz2 = 0;
     double band = 4, average = 0.15, initial_sigma = 0.15;
     double outlier_cost = 0, edge_cost = 0, jump_cost = 0;
+    double jump_size_cost = 0;  // more for every factor e of a jump's size beyond a spacing
     // Cost of leaving n lines in a row out: open + n line; to come back to the same contour not more than
     // most.
     double skip_open = 0, skip_line = 0, skip_most = 1e300;

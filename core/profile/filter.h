@@ -58,10 +58,12 @@ Expected<void> check(const FilterOptions& options);
 Expected<void> filter_profile(Profile& profile, const FilterOptions& options);
 
 // Chooses one candidate per line (the most probable sequence under the model: dynamic programming over lines,
-// time linear in lines and quadratic in per_line), then as above. `profile` gets one point a line: the chosen
-// candidate; the strongest, marked kOutlier, where none belongs to the stripe; NaN where the line has none.
-// The unit may be millimetre or pixel. The order of candidates within a line does not matter; a missing
-// `intensity` means equal ones.
+// time linear in lines and quadratic in per_line), then as above. A reflection is told from the stripe by
+// beginning or ending where the stripe goes on, by standing far off, and by another brightness than lines
+// with one candidate have nearby; the strongest candidate of a line has no advantage. `profile` gets one
+// point a line: the chosen candidate; the strongest, marked kOutlier, where none belongs to the stripe; NaN
+// where the line has none. The unit may be millimetre or pixel. The order of candidates within a line does
+// not matter; a missing `intensity` means equal ones.
 Expected<void> track_stripe(const ProfileCandidates& candidates, const FilterOptions& options,
                             Profile& profile);
 

@@ -7,14 +7,150 @@ using namespace contour;
 
 constexpr double kAbsurd = 1e100;
 
-// Costs in the filter's unit (half a squared sigma), set so that the right explanation of a frame with
-// reflections is the cheapest: leaving out the lines where the stripe is missing and coming back must cost
-// less than a new segment on a reflection and another one back, and a hundred lines of a reflection half as
-// bright again must not pay for that.
-constexpr double kIntensityCost = 1;  // of choosing a candidate of no intensity beside a strong one
+// Costs in the filter's unit (half a squared sigma; "outliers" are m.outlier_cost of it), set so that the
+// right explanation of a frame with reflections is the cheapest. What tells a reflection from the stripe:
+//   - it begins or ends while the stripe goes on: leaving a track before its end, or entering one behind its
+//     beginning, costs more than a step of the stripe, where one track ends and another begins;
+//   - it stands far off: a step costs by the logarithm of its size;
+//   - it is brighter or darker than the stripe is nearby. Being the strongest of a line says nothing.
 constexpr double kSkipOpen = 1, kSkipLine = 2, kSkipMost = 60;  // of lines left out in a row
-constexpr double kEdge = 5, kJump = 10;  // of a sharp edge and a new segment, in outliers
-constexpr int kWindow = 40;              // lines over which the stripe may be lost and found again
+constexpr double kEdge = 5, kJump = 2.5;  // of a sharp edge and a new segment, in outliers
+constexpr double kJumpSize = 0.75;        // of each factor e in the distance of a new segment, in outliers
+constexpr double kUnfinished = 10;        // of leaving or entering a track in its middle, in outliers
+constexpr int kWholeTrack = 24;           // points of a track passed over from which that is its middle
+constexpr int kWindow = 40;               // lines over which the stripe may be lost and found again
+constexpr int kTrackGap = 6;              // lines over which a track may be interrupted
+constexpr double kIntensityCost = 1;      // of a candidate of foreign brightness
+constexpr double kForeign = 0.7;          // logarithm of the brightness ratio from which it is foreign,
+constexpr double kForeignSpread = 3;      // or, far from lines that tell, this many of their deviations
+constexpr double kBrightLines = 64;       // over which brightness is averaged
+constexpr double kDimmest = 1e-3, kBrightest = 1e9;  // grey values, whatever a caller hands in
+constexpr double kBrightPrior = 8;                   // weight of the whole frame's, in lines
+
+// A stretch of candidates that continue each other smoothly, whatever they are: stripe or reflection.
+struct Track {
+    State state;
+    int last = 0;    // candidate
+    int points = 0;  // so far
+};
+
+struct Tracks {
+    std::vector<Track> tracks;
+    std::vector<int> open;                 // tracks that may still continue
+    std::vector<int> track_of, number_of;  // per candidate: its track, and how many of it come before
+    struct Pair {
+        double d2;
+        int track, candidate;
+    };
+    std::vector<Pair> pairs;
+};
+
+// Follows every track from line to line, each candidate going to the track that predicts it best.
+void follow_tracks(const Workspace& w, const Model& m, Tracks& t) {
+    t.tracks.clear(), t.open.clear();
+    t.track_of.assign(w.candidates.size(), -1);
+    t.number_of.assign(w.candidates.size(), 0);
+    for (std::size_t line = 0; line + 1 < w.first.size(); ++line) {
+        const int begin = w.first[line], end = w.first[line + 1];
+        const int here = w.candidates[std::size_t(begin)].line;
+        std::erase_if(t.open, [&](int k) {
+            return here - w.candidates[std::size_t(t.tracks[std::size_t(k)].last)].line > kTrackGap;
+        });
+        t.pairs.clear();
+        for (const int k : t.open) {
+            const Track& track = t.tracks[std::size_t(k)];
+            const int i = here - w.candidates[std::size_t(track.last)].line;
+            for (int c = begin; c < end; ++c) {
+                const Candidate& p = w.candidates[std::size_t(c)];
+                double d2;
+                if (track.state.age < 2) {
+                    const double ratio = reach_ratio(m, track.state, p.x, p.z, i);
+                    d2 = ratio < 1 ? m.outlier_cost * (1 + ratio) : 1e300;
+                } else {
+                    d2 = deviation(m, track.state, p.x, p.z, i).d2;
+                }
+                if (d2 < 2 * m.outlier_cost) t.pairs.push_back({d2, k, c});
+            }
+        }
+        std::sort(t.pairs.begin(), t.pairs.end(),
+                  [](const Tracks::Pair& a, const Tracks::Pair& b) { return a.d2 < b.d2; });
+        for (const auto& pair : t.pairs) {
+            Track& track = t.tracks[std::size_t(pair.track)];
+            const Candidate& p = w.candidates[std::size_t(pair.candidate)];
+            const int i = here - w.candidates[std::size_t(track.last)].line;
+            if (i == 0 || t.track_of[std::size_t(pair.candidate)] >= 0) continue;
+            if (track.state.age < 2)
+                accept_any_direction(m, track.state, p.x, p.z, i);
+            else
+                accept(m, track.state, deviation(m, track.state, p.x, p.z, i), i);
+            t.track_of[std::size_t(pair.candidate)] = pair.track;
+            t.number_of[std::size_t(pair.candidate)] = track.points++;
+            track.last = pair.candidate;
+        }
+        for (int c = begin; c < end; ++c) {
+            if (t.track_of[std::size_t(c)] >= 0) continue;
+            const Candidate& p = w.candidates[std::size_t(c)];
+            t.track_of[std::size_t(c)] = int(t.tracks.size());
+            t.open.push_back(int(t.tracks.size()));
+            t.tracks.push_back({first_point(m, p.x, p.z), c, 1});
+        }
+    }
+}
+
+// Frames of one size differ in their number of candidates; room for the most there can be.
+void reserve(Workspace& w, Tracks& t, std::size_t lines, std::size_t per_line) {
+    const std::size_t all = lines * per_line, open = (kTrackGap + 1) * std::min<std::size_t>(per_line, 255);
+    w.candidates.reserve(all), w.nodes.reserve(all), w.chosen.reserve(all);
+    w.enter.reserve(all), w.leave.reserve(all);
+    w.first.reserve(lines + 1), w.path.reserve(lines);
+    w.samples_x.reserve(lines), w.samples_z.reserve(lines);
+    t.tracks.reserve(all), t.track_of.reserve(all), t.number_of.reserve(all);
+    t.open.reserve(open), t.pairs.reserve(open * std::min<std::size_t>(per_line, 16));
+}
+
+// Turns the grey values in `cost` into costs. What the stripe looks like is learned from lines with one
+// candidate only, near ones above all, and a reflection told by being brighter or darker than that; far from
+// such lines their mean is the reference, as sharp as they agree with each other.
+void price_brightness(Workspace& w) {
+    const std::size_t lines = w.first.size() - 1;
+    auto& sum = w.samples_x;
+    auto& weight = w.samples_z;
+    for (auto& p : w.candidates)
+        p.cost = std::log(p.cost > kDimmest ? std::min(p.cost, kBrightest) : kDimmest);
+    const auto only = [&](std::size_t k) { return w.first[k + 1] - w.first[k] == 1; };
+    double mean = 0, square = 0, lone = 0;
+    for (std::size_t k = 0; k < lines; ++k) {
+        const double level = w.candidates[std::size_t(w.path[k])].cost;
+        const double share = only(k) ? 1 : 1e-3;  // the strongest of a line speaks where no line has but one
+        mean += share * level, square += share * level * level, lone += share;
+    }
+    mean /= lone;
+    const double spread = std::sqrt(std::max(0., square / lone - mean * mean));
+    const double vague = std::max(kForeign, kForeignSpread * spread);
+    sum.assign(lines, kBrightPrior * mean), weight.assign(lines, kBrightPrior);
+    for (const bool backward : {false, true}) {
+        double s = 0, n = 0;
+        for (std::size_t i = 0; i < lines; ++i) {
+            const std::size_t k = backward ? lines - 1 - i : i;
+            if (only(k)) s += w.candidates[std::size_t(w.first[k])].cost, n += 1;
+            sum[k] += s, weight[k] += n;
+            s *= 1 - 1. / kBrightLines, n *= 1 - 1. / kBrightLines;
+        }
+    }
+    for (std::size_t k = 0; k < lines; ++k) {
+        const double usual = sum[k] / weight[k], unsure = kBrightPrior / weight[k];
+        const double ratio = unsure * vague + (1 - unsure) * kForeign;
+        for (int c = w.first[k]; c < w.first[k + 1]; ++c) {
+            double& cost = w.candidates[std::size_t(c)].cost;
+            cost = kIntensityCost * std::min(1., std::abs(cost - usual) / ratio);
+        }
+    }
+}
+
+Tracks& tracks() {
+    thread_local Tracks t;
+    return t;
+}
 
 Workspace& workspace() {
     thread_local Workspace w;
@@ -35,6 +171,8 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
                            "give lines counts and lines * per_line values");
 
     Workspace& w = workspace();
+    Tracks& all_tracks = tracks();
+    reserve(w, all_tracks, lines, std::size_t(input.per_line));
     w.candidates.clear(), w.first.clear(), w.path.clear();
     w.chosen.clear();  // slot of each candidate
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -68,12 +206,9 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
         w.first.push_back(begin);
         w.path.push_back(best);
         take(std::size_t(line), w.chosen[std::size_t(best)]);
-        for (std::size_t c = std::size_t(begin); c < w.candidates.size(); ++c) {
-            const double share = strongest > 0 ? std::clamp(w.candidates[c].cost / strongest, 0., 1.) : 1;
-            w.candidates[c].cost = kIntensityCost * (1 - share);
-        }
     }
     w.first.push_back(int(w.candidates.size()));
+    price_brightness(w);
     if (!w.candidates.empty()) {
         Model model(estimate_scale(w, w.path, false, options), options);
         // Leaving out a stretch must be cheaper than following a reflection there and coming back.
@@ -82,8 +217,20 @@ Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions&
         model.skip_most = kSkipMost;
         model.window = model.longest_gap = kWindow;
         model.jump_cost = kJump * model.outlier_cost;
+        model.jump_size_cost = kJumpSize * model.outlier_cost;
         model.edge_cost = kEdge * model.outlier_cost;
         model.edge_window = 2;
+        follow_tracks(w, model, all_tracks);
+        w.enter.resize(w.candidates.size()), w.leave.resize(w.candidates.size());
+        const auto unfinished = [&](int points) {
+            return kUnfinished * model.outlier_cost * std::min(1., double(points) / kWholeTrack);
+        };
+        for (std::size_t c = 0; c < w.candidates.size(); ++c) {
+            const int number = all_tracks.number_of[c];
+            w.enter[c] = unfinished(number);
+            w.leave[c] =
+                unfinished(all_tracks.tracks[std::size_t(all_tracks.track_of[c])].points - 1 - number);
+        }
         cheapest_sequence(w, model);
         for (const int c : w.path)
             take(std::size_t(w.candidates[std::size_t(c)].line), w.chosen[std::size_t(c)]);

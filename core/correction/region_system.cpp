@@ -111,6 +111,8 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
         PreparedSpot& s = spots_[n];
         s.sensor_from_workobject = in.workobject_from_sensor.linear().transpose();
         s.sensor_origin = in.workobject_from_sensor.translation();
+        s.axes = in.workobject_from_sensor.linear();
+        s.offset = in.reference_mm + s.sensor_from_workobject * s.sensor_origin;
         s.measured = in.workobject_from_sensor * (from_reference ? in.reference_mm : in.measured_mm);
         s.reference = in.reference_mm;
         s.weights = in.weights;
@@ -168,19 +170,39 @@ void RegionSystem::add_information(std::size_t n, const Rows& rows, double facto
 }
 
 void RegionSystem::linearize(const State& state, std::span<const double> factor, Linearization& out) const {
+    // Inner loop of a run: as residual() and add_information(), but only the observed rows. With the sensor's
+    // axis a = R s_i on the displaced part, e_i = (r_i + s_i . origin) - a . (p - t).
     out = Linearization{};
+    const Eigen::Vector3d centre = state.rotation * centroid_;
     Eigen::Vector3d e;
     Rows rows;
     for (std::size_t n = 0; n < spots_.size(); ++n) {
         if (!(factor[n] > 0)) continue;
-        residual(n, state, e, rows);
-        add_information(n, rows, factor[n], out.information, out.meat);
         const PreparedSpot& s = spots_[n];
+        if (s.curve) residual(n, state, e, rows);
+        const Eigen::Vector3d from_origin = s.measured - state.translation;
+        const Eigen::Vector3d lever = (from_origin - centre) / spread_;
+        const double scale = factor[n] / (s.sigma * s.sigma);
         for (int i = 0; i < 3; ++i) {
-            if (!(s.weights[i] > 0)) continue;
-            const double w = s.weights[i] * s.weights[i] * factor[n] / (s.sigma * s.sigma);
-            out.gradient += (w * e[i]) * rows.row(i).transpose();
-            out.cost += w * e[i] * e[i];
+            const double weight = s.weights.coeff(i);
+            if (!(weight > 0)) continue;
+            const double w = weight * weight * scale;
+            Vector6 row;
+            double off;
+            if (s.curve) {
+                row = rows.row(i).transpose();
+                off = e.coeff(i);
+            } else {
+                const Eigen::Vector3d axis = state.rotation.lazyProduct(s.axes.col(i));
+                row.head<3>() = axis;
+                row.tail<3>() = lever.cross(axis);
+                off = s.offset.coeff(i) - axis.dot(from_origin);
+            }
+            const Vector6 scaled = w * row;
+            out.information.noalias() += scaled.lazyProduct(row.transpose());
+            out.gradient += off * scaled;
+            out.cost += w * off * off;
+            if (!binary_) out.meat.noalias() += (s.sigma * s.sigma) * scaled.lazyProduct(scaled.transpose());
         }
     }
 }
@@ -413,7 +435,7 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
     out = Fit{};
     linearize(out.state, factor, out.lin);
     double damping = 0;
-    double last_gain = std::numeric_limits<double>::infinity();
+    double last_gain = std::numeric_limits<double>::infinity(), last_size = 0;
     Linearization trial_lin;
     Matrix6 lower;
     while (out.iterations < options_.max_iterations && std::isfinite(out.lin.cost)) {
@@ -438,14 +460,21 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
         const double gain = -g.dot(theta);  // predicted decrease of the cost
         State trial = out.state;
         step(trial, theta, xi);
-        const bool small = xi.head<3>().norm() < kStepMm && xi.tail<3>().norm() < kStepRad * spread_;
+        // In units of the step that counts as none. Steps shrink at least linearly near the minimum, so the
+        // next one is known: when it would be none, this one is the last.
+        const double size =
+            std::max(xi.head<3>().norm() / kStepMm, xi.tail<3>().norm() / (kStepRad * spread_));
+        const bool small = size < 1 || (size < 1e4 && size * size < 0.1 * last_size);
         if (damping == 0 && small) {
             out.state = trial;
             out.converged = true;
             return;
         }
         linearize(trial, factor, trial_lin);
-        if (std::isfinite(trial_lin.cost) && trial_lin.cost <= out.lin.cost + 1e-12 * (1 + out.lin.cost)) {
+        // Near the minimum the change of the cost drowns in its rounding, which grows with the distance of
+        // the origin: there the step is trusted.
+        const double slack = gain < 1e-9 * (1 + out.lin.cost) ? 1e-6 : 1e-12;
+        if (std::isfinite(trial_lin.cost) && trial_lin.cost <= out.lin.cost + slack * (1 + out.lin.cost)) {
             out.state = trial;
             out.lin = trial_lin;
             damping = damping < 1e-7 ? 0 : 0.1 * damping;
@@ -455,6 +484,7 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
                 return;
             }
             last_gain = gain;
+            last_size = damping == 0 ? size : 0;
         } else {
             damping = std::max(10 * damping, 1e-4);
             if (damping > 1e12) return;

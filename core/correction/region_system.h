@@ -57,6 +57,8 @@ struct Observability {
 struct PreparedSpot {
     Eigen::Matrix3d sensor_from_workobject;   // rotation only
     Eigen::Vector3d sensor_origin, measured;  // in the work object
+    Eigen::Matrix3d axes;                     // the sensor's axes in the work object, columns
+    Eigen::Vector3d offset;                   // reference + sensor_from_workobject * sensor_origin
     Eigen::Vector3d reference, weights;
     double sigma = 1;
     const ContourCurve* curve = nullptr;  // null: straight along Y

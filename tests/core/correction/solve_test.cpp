@@ -255,6 +255,22 @@ TEST(SolveRegion, VerdictIsIndependentOfTheOrigin) {
     }
 }
 
+// Rounding of far coordinates must not keep a noisy region from converging.
+TEST(SolveRegion, ConvergesQuicklyWithNoiseWhereverTheOriginLies) {
+    Rng rng(61);
+    for (const double far : {0.0, 1e3, 2e4, 1e5}) {
+        for (int trial = 0; trial < 200; ++trial) {
+            const Eigen::Vector3d offset = far * gaussian(rng).normalized();
+            std::vector<SpotObservation> spots = door(rng, 6 + trial % 12, offset);
+            measure(spots, random_displacement(rng, 10, 1, offset));
+            add_noise(spots, rng, 0.05);
+            const RegionCorrection r = solved(spots);
+            EXPECT_NE(r.status, CorrectionStatus::not_converged) << far << " " << r.message;
+            EXPECT_LE(r.iterations, 20) << far;
+        }
+    }
+}
+
 TEST(SolveRegion, OverLimitHoldsTheSolution) {
     Rng rng(7);
     std::vector<SpotObservation> spots = door(rng, 8);

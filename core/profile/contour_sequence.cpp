@@ -98,10 +98,49 @@ void cheapest_sequence(Workspace& w, const Model& m) {
     // gap.
     double older = infinite, cheapest_last = infinite;
     const double growth = (m.skip(m.window) - m.skip(1)) / (m.window - 1);
+    const auto close_line = [&](int begin, int end) {
+        older = std::min(older + growth, cheapest_last + m.skip(1));
+        skipping.cost += m.skip_line;
+        if (const double cost = last.cost + m.skip_open + m.skip_line; cost < skipping.cost)
+            skipping = {cost, last.node};
+        last = {infinite, -1};
+        cheapest_last = infinite;
+        for (int c = begin; c < end; ++c) {
+            const double cost = w.nodes[std::size_t(c)].cost;
+            cheapest_last = std::min(cheapest_last, cost);
+            const double left = w.leave.empty() ? cost : cost + w.leave[std::size_t(c)];
+            if (left < last.cost) last = {left, c};
+        }
+    };
     for (int line = 0; line < lines; ++line) {
         const int begin = w.first[std::size_t(line)], end = w.first[std::size_t(line) + 1];
         const int before = line > 0 ? w.first[std::size_t(line) - 1] : begin;
         const double start_cost = line > 0 ? m.skip_open + line * m.skip_line : 0;
+        // No way that leaves a line out, turns sharply or jumps is cheaper than this.
+        const double others =
+            std::min({older, start_cost, cheapest_last + std::min(m.edge_cost, m.jump_cost)});
+        if (end - begin == 1 && begin - before == 1) {
+            // One candidate after one candidate that it continues: most of every profile.
+            const Node& past = w.nodes[std::size_t(before)];
+            const Candidate& point = w.candidates[std::size_t(begin)];
+            const int i = point.line - w.candidates[std::size_t(before)].line;
+            if (past.state.age >= 2 && i <= m.longest_gap) {
+                const Deviation d = deviation(m, past.state, point.x, point.z, i);
+                const double half = 0.5 * d.d2, cost = past.cost + half;
+                if (half < m.outlier_cost && cost <= others) {
+                    State state = past.state;
+                    accept(m, state, d, i);
+                    Node& node = w.nodes[std::size_t(begin)];
+                    node.state = state;
+                    node.cost = cost + point.cost;
+                    node.previous = before;
+                    node.link = Link::smooth;
+                    node.calm = i == 1 && is_calm(m, past.state, d);
+                    close_line(begin, end);
+                    continue;
+                }
+            }
+        }
         for (int c = begin; c < end; ++c) {
             const Candidate& point = w.candidates[std::size_t(c)];
             double best = infinite;
@@ -165,6 +204,7 @@ void cheapest_sequence(Workspace& w, const Model& m) {
             node.cost = best + point.cost;
             node.previous = from;
             node.link = link;
+            node.calm = false;
             if (link == Link::start) {
                 node.state = first_point(m, point.x, point.z);
             } else {
@@ -177,18 +217,7 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                 if (link == Link::edge && w.nodes[std::size_t(from)].state.age < 2) node.link = Link::smooth;
             }
         }
-        older = std::min(older + growth, cheapest_last + m.skip(1));
-        skipping.cost += m.skip_line;
-        if (const double cost = last.cost + m.skip_open + m.skip_line; cost < skipping.cost)
-            skipping = {cost, last.node};
-        last = {infinite, -1};
-        cheapest_last = infinite;
-        for (int c = begin; c < end; ++c) {
-            const double cost = w.nodes[std::size_t(c)].cost;
-            cheapest_last = std::min(cheapest_last, cost);
-            const double left = w.leave.empty() ? cost : cost + w.leave[std::size_t(c)];
-            if (left < last.cost) last = {left, c};
-        }
+        close_line(begin, end);
     }
     w.path.clear();
     for (int c = last.cost <= skipping.cost ? last.node : skipping.node; c >= 0;

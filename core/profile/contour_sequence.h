@@ -27,6 +27,7 @@ struct Node {
     double cost = 0;
     int previous = -1;
     Link link = Link::start;
+    bool calm = false;  // deep in the band of a sharp prediction, right after its predecessor
 };
 
 struct Workspace {
@@ -35,6 +36,7 @@ struct Workspace {
     std::vector<int> first;             // of each line with candidates, and one past the last
     std::vector<int> path;              // candidate numbers of the cheapest sequence, rising
     std::vector<State> backward;        // filter: states seen from the other end, per element of the path
+    std::vector<char> wanted;           // filter: of these, which are computed
     std::vector<int> piece;             // filter: per candidate, smooth piece or -1
     std::vector<char> vague;            // filter: accepted by vague predictions
     std::vector<int> doubtful;          // filter: the candidates that are

@@ -20,7 +20,9 @@ inline constexpr double kSpacingReach = 3.5;  // spacing ratio a sharp edge may 
 inline constexpr double kMinSpacingSigma = 0.05;
 inline constexpr double kMaxTurnNoise = 4;  // the same across the contour, in units of the measuring variance
 inline constexpr int kShortGap = 10;  // lines without points across which the direction is still believed
-inline constexpr int kMature = 3;     // points after which the direction carries the spacing
+inline constexpr int kSettled = 5;  // points after which the tracker knows better than a line through the end
+inline constexpr double kCalm = 0.5, kCalmVariance = 1.5, kCalmExcess = 1.5;  // see is_calm()
+inline constexpr int kMature = 3;  // points after which the direction carries the spacing
 
 // What the profile itself says: noise of x and z, typical spacing per line.
 struct Scale {
@@ -30,7 +32,8 @@ struct Scale {
 
 struct Model {
     Scale scale;
-    double sx2 = 0, sz2 = 0, inv_sx2 = 0, inv_sz2 = 0;
+    double sx2 = 0, sz2 = 0, sxz = 0, inv_sxz = 0;    // squares of sx and sz, their product and its inverse
+    double least_spacing2 = 0, largest_spacing2 = 0;  // what a spacing may shrink and grow to, squared
     double band = 4, average = 0.15, initial_sigma = 0.15;
     double outlier_cost = 0, edge_cost = 0, jump_cost = 0;
     double jump_size_cost = 0;  // more for every factor e of a jump's size beyond a spacing
@@ -43,7 +46,9 @@ struct Model {
     Model(const Scale& s, const FilterOptions& o)
         : scale(s), band(o.band_sigmas), average(o.average), initial_sigma(o.initial_sigma) {
         sx2 = scale.sx * scale.sx, sz2 = scale.sz * scale.sz;
-        inv_sx2 = 1 / sx2, inv_sz2 = 1 / sz2;
+        sxz = sx2 * sz2, inv_sxz = 1 / sxz;
+        least_spacing2 = 0.01 * scale.spacing * scale.spacing;
+        largest_spacing2 = 100 * scale.spacing * scale.spacing;
         outlier_cost = 0.5 * band * band + 0.75;
         edge_cost = 2.2 * outlier_cost;
         jump_cost = (o.lookahead + 0.6) * outlier_cost;
@@ -55,10 +60,11 @@ struct Model {
 
 struct State {
     double x = 0, z = 0, vx = 0, vz = 0;
-    double p11 = 1, p12 = 0, p22 = 0;             // covariance in units of the measuring covariance
-    double spacing = 0, drift = 0, variance = 0;  // GBM: s_0, mu, sigma^2
-    double excess = 1;                            // average of the squared normalised deviation, at least 1
-    int age = 0;                                  // points since the direction was last unknown
+    double p11 = 1, p12 = 0, p22 = 0;              // covariance in units of the measuring covariance
+    double spacing2 = 0, drift = 0, variance = 0;  // GBM: s_0^2, mu, sigma^2
+    double excess = 1;                             // average of the squared normalised deviation, at least 1
+    int age = 0;                                   // points since the direction was last unknown
+    double spacing() const { return std::sqrt(spacing2); }
 };
 
 // Where the next point is expected, i lines ahead, and how far off a given point is.
@@ -67,80 +73,113 @@ struct Deviation {
     double grown = 1;       // predicted distance in present spacings
     double ex = 0, ez = 0;  // point minus prediction
     double p11 = 0, p12 = 0, p22 = 0;
-    double along_variance = 0;  // of the spacing process, mm^2
-    double sigma_across2 = 0;   // measuring variance across the contour
-    double d2 = 0;              // squared normalised distance
+    double along = 0;  // variance of the spacing process in units of (vx, vz) squared
+    double across = 0,
+           inv_across = 0;  // measuring variance across the contour times that square; inverse or 0
+    double d2 = 0;          // squared normalised distance
 };
 
 inline State first_point(const Model& m, double x, double z) {
     State s;
     s.x = x, s.z = z;
-    s.spacing = m.scale.spacing;
+    s.spacing2 = m.scale.spacing * m.scale.spacing;
     s.variance = m.initial_sigma * m.initial_sigma;
     s.age = 1;
     return s;
 }
 
-inline Deviation deviation(const Model& m, const State& s, double x, double z, int i) {
+// Measuring variance across the direction (vx, vz), times that vector's square.
+inline double across_variance(const Model& m, const State& s) {
+    return s.vz * s.vz * m.sx2 + s.vx * s.vx * m.sz2;
+}
+
+// Squared normalised distance of (ex, ez) under the covariance S diag(sx^2, sz^2) + along (vx, vz)(vx, vz)^T,
+// by its determinant S (S sx^2 sz^2 + along across).
+inline double squared_distance(const Model& m, const State& s, double ex, double ez, double S, double along,
+                               double across) {
+    const double off = ex * s.vz - ez * s.vx;
+    return (S * (ex * ex * m.sz2 + ez * ez * m.sx2) + along * off * off) / (S * (S * m.sxz + along * across));
+}
+
+[[gnu::always_inline]] inline Deviation deviation(const Model& m, const State& s, double x, double z, int i) {
     Deviation d;
-    const double sx2 = m.sx2, sz2 = m.sz2;
-    const double length2 = s.vx * s.vx + s.vz * s.vz;
-    const double inverse = length2 > 0 ? 1 / length2 : 0;
-    const double txx = s.vx * s.vx * inverse, tzz = s.vz * s.vz * inverse, txz = s.vx * s.vz * inverse;
-    d.sigma_across2 = tzz * sx2 + txx * sz2;
-    if (!(d.sigma_across2 > 0)) d.sigma_across2 = std::max(sx2, sz2);
-    const double q = std::min(kTurn * kTurn * s.spacing * s.spacing / d.sigma_across2, kMaxTurnNoise);
-    const double n = i;
+    const double n = i, length2 = s.vx * s.vx + s.vz * s.vz;
+    d.across = across_variance(m, s);
+    double turn, clamped = 1;  // the latter: where the spacing was held within its bounds
+    if (d.across > 0) {
+        d.inv_across = 1 / d.across;
+        turn = kTurn * kTurn * s.spacing2 * length2 * d.inv_across;
+        if (s.spacing2 != length2) clamped = s.spacing2 / length2;
+    } else {
+        turn = kTurn * kTurn * s.spacing2 / std::max(m.sx2, m.sz2);
+    }
+    const double q = std::min(turn, kMaxTurnNoise);
     d.straight = s.p11 + n * (2 * s.p12 + n * s.p22);
     d.p11 = d.straight + q * n * n * n * (1. / 3);
     d.p12 = s.p12 + n * s.p22 + 0.5 * q * n * n;
     d.p22 = s.p22 + q * n;
     // (3.4), (3.5) for the distance of i lines: drift as the mean growth over them.
-    double& grown = d.grown = n;
-    if (i > 1 && s.drift != 0) grown = n * (1 + std::clamp(0.5 * s.drift * (n - 1), -0.3, 0.3));
-    d.ex = x - s.x - grown * s.vx;
-    d.ez = z - s.z - grown * s.vz;
+    d.grown = n;
+    if (i > 1 && s.drift != 0) d.grown = n * (1 + std::clamp(0.5 * s.drift * (n - 1), -0.3, 0.3));
+    d.ex = x - s.x - d.grown * s.vx;
+    d.ez = z - s.z - d.grown * s.vz;
     const double relative = s.variance * n;
-    d.along_variance = (relative + 0.5 * relative * relative) * n * n * s.spacing * s.spacing;
-    const double S = 1 + d.p11;
-    const double cxx = S * sx2 + d.along_variance * txx, czz = S * sz2 + d.along_variance * tzz;
-    const double cxz = d.along_variance * txz;
-    const double determinant = cxx * czz - cxz * cxz;
-    d.d2 = (d.ex * d.ex * czz - 2 * d.ex * d.ez * cxz + d.ez * d.ez * cxx) / (determinant * s.excess);
+    d.along = (relative + 0.5 * relative * relative) * n * n * clamped;
+    d.d2 = squared_distance(m, s, d.ex, d.ez, 1 + d.p11, d.along, d.across);
+    if (s.excess > 1) d.d2 /= s.excess;
     return d;
+}
+
+// In the band by so much, and predicted so sharply, that the view from the other side would not change it.
+inline bool is_calm(const Model& m, const State& s, const Deviation& d) {
+    return s.age >= kSettled && d.p11 < kCalmVariance && s.excess < kCalmExcess &&
+           d.d2 < kCalm * m.outlier_cost;
+}
+
+// MAP ratio s / s_0 of (3.7) for a measured ratio rm, K = v / rho^2 and `mode` of the prediction's logarithm:
+// (rm - r) r K = ln r - mode. Near 1 the linear equation and one chord step, within 1e-3 of the maximum
+// (tests/core/profile/filter_test.cpp), else map_spacing.
+inline double map_ratio(double rm, double K, double mode, const State& s, int i) {
+    const double inverse = 1 / (1 + K);
+    const double start = (rm * K + 1 + mode) * inverse, e = start - 1;
+    if (rm < 1.7 && std::abs(e) < 0.25) {
+        const double logarithm = e * (1 + e * (-0.5 + e * (1. / 3 + e * (-0.25 + e * 0.2))));
+        return start * (1 + ((rm - start) * start * K - (logarithm - mode)) * inverse);
+    }
+    return map_spacing(rm, 1, s.drift, std::sqrt(s.variance), std::sqrt(s.variance * i / K), i);
 }
 
 // The state after a point that fits; `d` is its deviation. What the spacing process explains is taken along
 // the contour by MAP (its measured spacing is the generalised least squares estimate of the advance, with the
 // noise of the prediction in it); the rest is measuring noise and passes the gains of the regression.
-inline void accept(const Model& m, State& s, const Deviation& d, int i) {
-    const double S = 1 + d.p11, g1 = d.p11 / S, g2 = d.p12 / S;
-    const double length = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+[[gnu::always_inline]] inline void accept(const Model& m, State& s, const Deviation& d, int i) {
+    const double inv_S = 1 / (1 + d.p11), g1 = d.p11 * inv_S, g2 = d.p12 * inv_S;
     double ex = d.ex, ez = d.ez;
     s.x += d.grown * s.vx, s.z += d.grown * s.vz;
-    if (s.age >= kMature && length > 0) {
-        const double tx = s.vx / length, tz = s.vz / length;
-        const double wx = tx * m.inv_sx2, wz = tz * m.inv_sz2;
-        const double information = wx * tx + wz * tz;
-        const double sn = std::sqrt(S / information) / i;
-        const double measured = length * (d.grown / i) + (wx * ex + wz * ez) / (information * i);
-        const double estimate = map_spacing(measured, length, s.drift, std::sqrt(s.variance), sn, i);
-        const double growth = std::clamp(estimate / length - 1, -0.5, 0.5) / i;
+    if (s.age >= kMature && d.inv_across > 0) {
+        const double n = i, per_line = i == 1 ? 1 : 1 / n;
+        const double expected = d.grown * per_line;
+        const double measured = expected + (s.vx * ex * m.sz2 + s.vz * ez * m.sx2) * d.inv_across * per_line;
+        const double v = s.variance * n;
+        const double K = v * d.across * n * n * inv_S * m.inv_sxz;
+        const double ratio = map_ratio(measured, K, s.drift * n - 1.5 * v, s, i);
+        const double growth = std::clamp(ratio - 1, -0.5, 0.5) * per_line;
         const double surprise = growth - s.drift;
         s.variance = std::max((1 - m.average) * s.variance + m.average * surprise * surprise,
                               kMinSpacingSigma * kMinSpacingSigma);
         s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -0.1, 0.1);
-        const double advance = estimate - length * (d.grown / i);
-        s.x += tx * advance * i, s.z += tz * advance * i;
-        ex -= tx * advance * i, ez -= tz * advance * i;
-        s.vx += tx * (estimate - length), s.vz += tz * (estimate - length);
+        const double advance = (ratio - expected) * n;
+        const double ax = s.vx * advance, az = s.vz * advance;
+        s.x += ax, s.z += az;
+        ex -= ax, ez -= az;
+        s.vx *= ratio, s.vz *= ratio;
     }
     s.x += g1 * ex, s.z += g1 * ez;
     s.vx += g2 * ex, s.vz += g2 * ez;
-    s.spacing = std::clamp(std::sqrt(s.vx * s.vx + s.vz * s.vz), 0.1 * m.scale.spacing, 10 * m.scale.spacing);
-    s.p11 = d.p11 / S, s.p12 = d.p12 / S, s.p22 = d.p22 - d.p12 * g2;
+    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, m.least_spacing2, m.largest_spacing2);
+    s.p11 = g1, s.p12 = g2, s.p22 = d.p22 - d.p12 * g2;
     ++s.age;
-    s.excess = std::max(1., s.excess + 0.05 * (0.5 * d.d2 * s.excess - s.excess));
+    s.excess = std::max(1., s.excess * (0.95 + 0.025 * d.d2));
 }
 
 // A point that lies within reach of the foot point in any direction: the thesis's test of the spacing alone.
@@ -149,7 +188,7 @@ inline void accept(const Model& m, State& s, const Deviation& d, int i) {
 inline double reach_ratio(const Model& m, const State& s, double x, double z, int i) {
     const double dx = x - s.x, dz = z - s.z;
     const double reach =
-        kSpacingReach * std::max(s.spacing, 0.5 * m.scale.spacing) * i + m.band * 1.5 * m.scale.largest();
+        kSpacingReach * std::max(s.spacing(), 0.5 * m.scale.spacing) * i + m.band * 1.5 * m.scale.largest();
     return std::sqrt(dx * dx + dz * dz) / reach;
 }
 
@@ -163,8 +202,8 @@ inline void accept_any_direction(const Model& m, State& s, double x, double z, i
     s.vz = weight(m.scale.sz) * (z - s.z) / i;
     s.x = x, s.z = z;
     s.p11 = 1, s.p12 = w / i, s.p22 = 2 * w / (double(i) * i);
-    const double length = std::sqrt(s.vx * s.vx + s.vz * s.vz);
-    s.spacing = std::clamp(length, 0.3 * m.scale.spacing, 3 * m.scale.spacing);
+    const double usual2 = m.scale.spacing * m.scale.spacing;
+    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, 0.09 * usual2, 9 * usual2);
     s.drift = 0;
     s.variance = m.initial_sigma * m.initial_sigma;
     s.excess = 1;

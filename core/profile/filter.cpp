@@ -11,9 +11,9 @@ constexpr double kAbsurd = 1e100;    // coordinates beyond are no return: their 
 constexpr double kSpacingGap = 3.5;  // distance in spacings per line beyond which the contour is interrupted
 constexpr int kFitPoints = 6,
               kLongFitPoints = 12;            // of the line at the end of a piece: near, across a long gap
-constexpr int kSettled = 5;                   // points after which the tracker knows better
 constexpr double kSharp = 1.5, kDoubt = 0.4;  // a sharp prediction's variance; share of the limit from which
                                               // a point that needs more is doubtful
+constexpr int kWarmUp = 16;                   // points after which the tracker has forgotten where it began
 constexpr int kUnchecked = 3;  // lines across which a smooth link is taken without looking from both sides
 constexpr double kLongGapSlope = 0.03;  // uncertainty of direction across longer gaps, rad
 
@@ -35,39 +35,42 @@ double line_difference(const Workspace& w, int a, int b) {
     return std::abs(w.candidates[std::size_t(b)].line - w.candidates[std::size_t(a)].line);
 }
 
-// The same tracker along the path from its other end.
+// The same tracker along the path from its other end, where anything is to be decided: beside points that are
+// not calm, and kWarmUp points before those to learn the contour.
 void run_backward(Workspace& w, const Model& m) {
     const int n = int(w.path.size());
     w.backward.resize(std::size_t(n));
-    for (int k = n - 1; k >= 0; --k) {
+    w.wanted.assign(std::size_t(n), 0);
+    for (int k = 0, until = -1; k < n; ++k) {
         const int c = w.path[std::size_t(k)];
-        const Candidate& point = w.candidates[std::size_t(c)];
-        State& state = w.backward[std::size_t(k)];
-        if (k == n - 1 || w.nodes[std::size_t(w.path[std::size_t(k) + 1])].link == Link::start) {
+        if (!w.nodes[std::size_t(c)].calm || (k > 0 && w.path[std::size_t(k) - 1] != c - 1))
+            until = k + kWarmUp;
+        w.wanted[std::size_t(k)] = k <= until;
+    }
+    State state;
+    for (int k = n - 1; k >= 0; --k) {
+        if (!w.wanted[std::size_t(k)]) continue;
+        const Candidate& point = w.candidates[std::size_t(w.path[std::size_t(k)])];
+        const int after = k + 1 < n && w.wanted[std::size_t(k) + 1] ? w.path[std::size_t(k) + 1] : -1;
+        if (after < 0 || w.nodes[std::size_t(after)].link == Link::start) {
             state = first_point(m, point.x, point.z);
-            continue;
-        }
-        state = w.backward[std::size_t(k) + 1];
-        const int i = w.candidates[std::size_t(w.path[std::size_t(k) + 1])].line - point.line;
-        if (state.age >= 2) {
-            const Deviation d = deviation(m, state, point.x, point.z, i);
-            if (0.5 * d.d2 < m.outlier_cost) {
-                accept(m, state, d, i);
-                continue;
+        } else {
+            const int i = w.candidates[std::size_t(after)].line - point.line;
+            bool fits = false;
+            if (state.age >= 2) {
+                const Deviation d = deviation(m, state, point.x, point.z, i);
+                fits = 0.5 * d.d2 < m.outlier_cost;
+                if (fits) accept(m, state, d, i);
             }
+            if (!fits) accept_any_direction(m, state, point.x, point.z, i);
         }
-        accept_any_direction(m, state, point.x, point.z, i);
+        w.backward[std::size_t(k)] = state;
     }
 }
 
-// Squared normalised distance of a deviation across an advance (vx, vz), S times the measuring covariance.
+// The same for any S and spread of the spacing.
 double distance2(const Model& m, const State& s, double ex, double ez, double S, double along) {
-    const double sx2 = m.scale.sx * m.scale.sx, sz2 = m.scale.sz * m.scale.sz;
-    const double length2 = s.vx * s.vx + s.vz * s.vz;
-    const double per_length = length2 > 0 ? along / length2 : 0;
-    const double cxx = S * sx2 + per_length * s.vx * s.vx, czz = S * sz2 + per_length * s.vz * s.vz;
-    const double cxz = per_length * s.vx * s.vz;
-    return (ex * ex * czz - 2 * ex * ez * cxz + ez * ez * cxx) / (cxx * czz - cxz * cxz);
+    return squared_distance(m, s, ex, ez, S, along, across_variance(m, s));
 }
 
 enum class Verdict : std::uint8_t {
@@ -90,20 +93,20 @@ Verdict in_band(const Model& m, const State* before, int i_before, const State* 
         return distance2(m, s, ex, ez, kSharp, along) < doubt ? Verdict::in : Verdict::doubtful;
     };
     if (before && after) {
-        const double along = std::min(f.along_variance, b.along_variance);
+        const double along = std::min(f.along, b.along);
         const double excess = std::min(before->excess, after->excess);
         if (distance2(m, *before, f.ex - b.ex, f.ez - b.ez, f.p11 + b.p11, along) < limit * excess) {
             const double wf = b.p11 / (f.p11 + b.p11), wb = 1 - wf;
             const double ex = wf * f.ex + wb * b.ex, ez = wf * f.ez + wb * b.ez;
             const bool accepted =
                 distance2(m, *before, ex, ez, 1 + wf * f.p11, along) < limit * excess ||
-                distance2(m, *before, f.ex, f.ez, 1 + f.straight, f.along_variance) < limit * excess ||
-                distance2(m, *after, b.ex, b.ez, 1 + b.straight, b.along_variance) < limit * excess;
+                distance2(m, *before, f.ex, f.ez, 1 + f.straight, f.along) < limit * excess ||
+                distance2(m, *after, b.ex, b.ez, 1 + b.straight, b.along) < limit * excess;
             return judge(accepted, *before, ex, ez, along);
         }
     }
-    if (before && f.d2 < limit) return judge(true, *before, f.ex, f.ez, f.along_variance);
-    return after ? judge(b.d2 < limit, *after, b.ex, b.ez, b.along_variance) : Verdict::out;
+    if (before && f.d2 < limit) return judge(true, *before, f.ex, f.ez, f.along);
+    return after ? judge(b.d2 < limit, *after, b.ex, b.ez, b.along) : Verdict::out;
 }
 
 // Parabola x(t), z(t) through the given points, t = line - line0; `factor` is the variance of its value at t
@@ -174,7 +177,7 @@ void settle_doubtful(Workspace& w, const Model& m) {
         if (!fit.ok) continue;
         State s;
         s.vx = fit.vx, s.vz = fit.vz;
-        const double along = m.initial_sigma * m.initial_sigma * (fit.vx * fit.vx + fit.vz * fit.vz);
+        const double along = m.initial_sigma * m.initial_sigma;
         double misfit = 0;
         for (int k = 0; k < n; ++k) {
             const Candidate& q = w.candidates[std::size_t(both[k])];
@@ -211,6 +214,11 @@ int verify(Workspace& w, const Model& m) {
         const bool next_starts = next >= 0 && w.nodes[std::size_t(next)].link == Link::start;
         if (here >= 0) {
             const Candidate& p = w.candidates[std::size_t(here)];
+            if (w.nodes[std::size_t(here)].calm &&
+                here + 1 == (next >= 0 ? next : int(w.candidates.size()))) {
+                w.piece[std::size_t(here)] = piece;
+                continue;
+            }
             const bool starts = k == 0 || w.nodes[std::size_t(here)].link == Link::start;
             const State* before = starts ? nullptr : &w.nodes[std::size_t(w.path[std::size_t(k) - 1])].state;
             const State* after = next < 0 || next_starts ? nullptr : &w.backward[std::size_t(k) + 1];
@@ -276,7 +284,7 @@ State end_line(const Workspace& w, int c, int step, int points, const State& fal
     s.vx = -sx / spread, s.vz = -sz / spread;  // lines count inwards, the advance points outwards
     s.x = mx + mean * s.vx, s.z = mz + mean * s.vz;
     s.p11 = 1. / n + mean * mean / spread, s.p12 = mean / spread, s.p22 = 1 / spread;
-    s.spacing = std::sqrt(s.vx * s.vx + s.vz * s.vz);
+    s.spacing2 = s.vx * s.vx + s.vz * s.vz;
     s.age = n;
     return s;
 }
@@ -293,7 +301,7 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
     if (far || left.age < kSettled) left = end_line(w, ca, -1, far ? kLongFitPoints : kFitPoints, left);
     if (far || right.age < kSettled) right = end_line(w, cb, +1, far ? kLongFitPoints : kFitPoints, right);
     const double distance = std::hypot(b.x - a.x, b.z - a.z);
-    const double spacing = std::max({left.spacing, right.spacing, 0.5 * m.scale.spacing});
+    const double spacing = std::max({left.spacing(), right.spacing(), 0.5 * m.scale.spacing});
     if (!(distance < kSpacingGap * spacing * n + m.band * 1.5 * m.scale.largest())) return false;
     if (left.age < kMature || right.age < kMature) return n <= kShortGap;
 
@@ -301,9 +309,9 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
         const double length2 = s.vx * s.vx + s.vz * s.vz;
         const double sigma2 =
             (s.vz * s.vz * m.scale.sx * m.scale.sx + s.vx * s.vx * m.scale.sz * m.scale.sz) / length2;
-        const double turn = far ? 0 : kTurn * kTurn * s.spacing * s.spacing * n * n * n / 3;
+        const double turn = far ? 0 : kTurn * kTurn * s.spacing2 * n * n * n / 3;
         const double p = s.p11 + n * (2 * s.p12 + n * s.p22) + other.p11;
-        return far ? 3 * std::sqrt(sigma2 * p) + kLongGapSlope * n * s.spacing
+        return far ? 3 * std::sqrt(sigma2 * p) + kLongGapSlope * n * s.spacing()
                    : m.band * std::sqrt(sigma2 * p + turn);
     };
     const double dx = right.x - left.x, dz = right.z - left.z;
@@ -316,7 +324,7 @@ bool continuous(const Workspace& w, const Model& m, int ka, int kb) {
     const double alpha = (dx * right.vz - dz * right.vx) / cross,
                  beta = (dx * left.vz - dz * left.vx) / cross;
     const double slack =
-        0.75 + m.band * m.scale.largest() * std::sqrt(left.spacing * right.spacing) / std::abs(cross);
+        0.75 + m.band * m.scale.largest() * std::sqrt(left.spacing() * right.spacing()) / std::abs(cross);
     return alpha > -slack && alpha < n + slack && beta > -slack && beta < n + slack;
 }
 

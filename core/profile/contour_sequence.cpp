@@ -98,6 +98,17 @@ void cheapest_sequence(Workspace& w, const Model& m) {
     // gap.
     double older = infinite, cheapest_last = infinite;
     const double growth = (m.skip(m.window) - m.skip(1)) / (m.window - 1);
+    Held held;
+    int held_for = -1;
+    const double calm_d2 = kCalm * m.outlier_cost;
+    const auto put = [&](int c, int previous, const State& state, double cost, bool calm) {
+        Node& node = w.nodes[std::size_t(c)];
+        node.state = state;
+        node.cost = cost;
+        node.previous = previous;
+        node.link = Link::smooth;
+        node.calm = calm;
+    };
     const auto close_line = [&](int begin, int end) {
         older = std::min(older + growth, cheapest_last + m.skip(1));
         skipping.cost += m.skip_line;
@@ -124,18 +135,25 @@ void cheapest_sequence(Workspace& w, const Model& m) {
             const Node& past = w.nodes[std::size_t(before)];
             const Candidate& point = w.candidates[std::size_t(begin)];
             const int i = point.line - w.candidates[std::size_t(before)].line;
+            State state = past.state;
+            double d2 = 0;
+            if (i == 1 && held_for == before &&
+                follow(m, held, state, point.x, point.z, std::min(calm_d2, 2 * (others - past.cost)), d2)) {
+                put(begin, before, state, past.cost + 0.5 * d2 + point.cost, past.state.excess < kCalmExcess);
+                held_for = begin;
+                close_line(begin, end);
+                continue;
+            }
             if (past.state.age >= 2 && i <= m.longest_gap) {
-                const Deviation d = deviation(m, past.state, point.x, point.z, i);
-                const double half = 0.5 * d.d2, cost = past.cost + half;
-                if (half < m.outlier_cost && cost <= others) {
-                    State state = past.state;
+                const Deviation d = deviation(m, state, point.x, point.z, i);
+                const double cost = past.cost + 0.5 * d.d2;
+                if (0.5 * d.d2 < m.outlier_cost && cost <= others) {
+                    const bool calm = i == 1 && is_calm(m, state, d);
                     accept(m, state, d, i);
-                    Node& node = w.nodes[std::size_t(begin)];
-                    node.state = state;
-                    node.cost = cost + point.cost;
-                    node.previous = before;
-                    node.link = Link::smooth;
-                    node.calm = i == 1 && is_calm(m, past.state, d);
+                    put(begin, before, state, cost + point.cost, calm);
+                    held.points = 0;
+                    if (calm) hold(m, state, d, held);
+                    held_for = begin;
                     close_line(begin, end);
                     continue;
                 }

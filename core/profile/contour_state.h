@@ -22,7 +22,8 @@ inline constexpr double kMaxTurnNoise = 4;  // the same across the contour, in u
 inline constexpr int kShortGap = 10;  // lines without points across which the direction is still believed
 inline constexpr int kSettled = 5;  // points after which the tracker knows better than a line through the end
 inline constexpr double kCalm = 0.5, kCalmVariance = 1.5, kCalmExcess = 1.5;  // see is_calm()
-inline constexpr int kMature = 3;  // points after which the direction carries the spacing
+inline constexpr int kSteady = 12, kHeldPoints = 7;  // see Held; points after which the gains stand still
+inline constexpr int kMature = 3;                    // points after which the direction carries the spacing
 
 // What the profile itself says: noise of x and z, typical spacing per line.
 struct Scale {
@@ -180,6 +181,58 @@ inline double map_ratio(double rm, double K, double mode, const State& s, int i)
     s.p11 = g1, s.p12 = g2, s.p22 = d.p22 - d.p12 * g2;
     ++s.age;
     s.excess = std::max(1., s.excess * (0.95 + 0.025 * d.d2));
+}
+
+// What changes slowly from point to point of a contour followed calmly: the factors of deviation() and
+// accept(), kept for the next kHeldPoints points one line apart.
+struct Held {
+    int points = 0;                                // left
+    double S = 0, along = 0, inv_determinant = 0;  // of the distance
+    double inv_across = 0, share = 0, shift = 0;   // of the spacing: ratio - 1 = share (measured - 1) + shift
+    double g1 = 0, g2 = 0;
+};
+
+// `d` is the deviation, one line ahead, of the point that `s` has just accepted.
+inline void hold(const Model& m, const State& s, const Deviation& d, Held& h) {
+    h.points = s.age > kSteady && d.inv_across > 0 && d.d2 < kCalm * m.outlier_cost ? kHeldPoints : 0;
+    if (h.points == 0) return;
+    h.S = 1 + d.p11, h.along = d.along;
+    const double inv_S = 1 / h.S;
+    h.inv_determinant = 1 / (h.S * (h.S * m.sxz + h.along * d.across) * s.excess);
+    h.inv_across = d.inv_across;
+    const double K = s.variance * d.across * inv_S * m.inv_sxz, inverse = 1 / (1 + K);
+    h.share = K * inverse;
+    h.shift = (s.drift - 1.5 * s.variance) * inverse;
+    h.g1 = d.p11 * inv_S, h.g2 = d.p12 * inv_S;
+}
+
+// Accepts a point one line ahead with held factors and the linear form of map_ratio(). False, and nothing
+// done, where none are held or the point is not calm. `d2` as in Deviation.
+[[gnu::always_inline]] inline bool follow(const Model& m, Held& h, State& s, double x, double z,
+                                          double most_d2, double& d2) {
+    if (h.points == 0) return false;
+    double ex = x - s.x - s.vx, ez = z - s.z - s.vz;
+    const double off = ex * s.vz - ez * s.vx, wx = ex * m.sz2, wz = ez * m.sx2;
+    d2 = (h.S * (ex * wx + ez * wz) + h.along * off * off) * h.inv_determinant;
+    if (!(d2 < most_d2)) {
+        h.points = 0;
+        return false;
+    }
+    --h.points;
+    const double growth = std::clamp(h.share * ((s.vx * wx + s.vz * wz) * h.inv_across) + h.shift, -0.5, 0.5);
+    const double surprise = growth - s.drift;
+    s.variance = std::max((1 - m.average) * s.variance + m.average * surprise * surprise,
+                          kMinSpacingSigma * kMinSpacingSigma);
+    s.drift = std::clamp((1 - m.average) * s.drift + m.average * growth, -0.1, 0.1);
+    const double ax = s.vx * growth, az = s.vz * growth;
+    ex -= ax, ez -= az;
+    s.vx += ax, s.vz += az;
+    s.x += s.vx + h.g1 * ex, s.z += s.vz + h.g1 * ez;
+    s.vx += h.g2 * ex, s.vz += h.g2 * ez;
+    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, m.least_spacing2, m.largest_spacing2);
+    ++s.age;
+    s.excess = std::max(1., s.excess * (0.95 + 0.025 * d2));
+    return true;
 }
 
 // A point that lies within reach of the foot point in any direction: the thesis's test of the spacing alone.

@@ -48,19 +48,24 @@ void run_backward(Workspace& w, const Model& m) {
         w.wanted[std::size_t(k)] = k <= until;
     }
     State state;
+    Held held;
     for (int k = n - 1; k >= 0; --k) {
         if (!w.wanted[std::size_t(k)]) continue;
         const Candidate& point = w.candidates[std::size_t(w.path[std::size_t(k)])];
         const int after = k + 1 < n && w.wanted[std::size_t(k) + 1] ? w.path[std::size_t(k) + 1] : -1;
+        const int i = after < 0 ? 0 : w.candidates[std::size_t(after)].line - point.line;
+        double d2 = 0;
         if (after < 0 || w.nodes[std::size_t(after)].link == Link::start) {
             state = first_point(m, point.x, point.z);
-        } else {
-            const int i = w.candidates[std::size_t(after)].line - point.line;
+            held.points = 0;
+        } else if (!(i == 1 && follow(m, held, state, point.x, point.z, kCalm * m.outlier_cost, d2))) {
             bool fits = false;
+            held.points = 0;
             if (state.age >= 2) {
                 const Deviation d = deviation(m, state, point.x, point.z, i);
                 fits = 0.5 * d.d2 < m.outlier_cost;
                 if (fits) accept(m, state, d, i);
+                if (fits && i == 1) hold(m, state, d, held);
             }
             if (!fits) accept_any_direction(m, state, point.x, point.z, i);
         }

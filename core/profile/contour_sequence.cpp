@@ -5,7 +5,7 @@
 namespace seamwright::contour {
 namespace {
 
-constexpr int kMaxSamples = 1024;
+constexpr int kRoughSamples = 256, kSamples = 1024;  // of a first look, and along a path
 constexpr double kMedianToSigma = 1 / 0.6744897501960817;
 constexpr double kUpperToSigma = 1 / 1.1503493803760083;  // of the 75 % quantile of |normal|
 constexpr double kNoiseFloor = 0.01;  // of the spacing: below it the direction decides, not the noise
@@ -41,7 +41,7 @@ double jump_size(const Model& m, const Candidate& from, const Candidate& to) {
 Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path,
                      const FilterOptions& options) {
     Scale scale;
-    const int n = int(pick.size());
+    const int n = int(pick.size()), samples = along_path ? kSamples : kRoughSamples;
     const auto at = [&](int k) -> const Candidate& {
         return w.candidates[std::size_t(pick[std::size_t(k)])];
     };
@@ -51,7 +51,7 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
     const int baseline = n >= 24 ? 8 : 1;
     a.clear();
     double magnitude = 0;
-    for (int k = 0, step = std::max(1, n / kMaxSamples); k + baseline < n; k += step) {
+    for (int k = 0, step = std::max(1, n / samples); k + baseline < n; k += step) {
         const double dx = at(k + baseline).x - at(k).x, dz = at(k + baseline).z - at(k).z;
         a.push_back(std::sqrt(dx * dx + dz * dz) / (at(k + baseline).line - at(k).line));
         magnitude = std::max({magnitude, std::abs(at(k).x), std::abs(at(k).z)});
@@ -61,7 +61,7 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
 
     for (const bool strict : {true, false}) {
         a.clear(), b.clear();
-        for (int k = 1, step = std::max(1, n / kMaxSamples); k + 1 < n; k += step) {
+        for (int k = 1, step = std::max(1, n / samples); k + 1 < n; k += step) {
             const Candidate &p = at(k - 1), &c = at(k), &q = at(k + 1);
             if (strict && (c.line - p.line != 1 || q.line - c.line != 1)) continue;
             if (along_path && (w.nodes[std::size_t(pick[std::size_t(k)])].link != Link::smooth ||
@@ -182,9 +182,23 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                     best = cost, from = j, link = Link::smooth, best_deviation = d;
             };
             for (int j = before; j < begin; ++j) try_smooth(j, 0);
-            // Nothing else can be cheaper: older nodes pay for the line between, an edge for itself.
             if (!(best <= older && best <= start_cost &&
                   best <= cheapest_last + std::min(m.edge_cost, m.jump_cost))) {
+                const double enter = w.enter.empty() ? 0 : w.enter[std::size_t(c)];
+                if (start_cost + enter < best) best = start_cost + enter, from = -1, link = Link::start;
+                const auto try_jump = [&](double cost, int j) {
+                    cost += m.jump_cost + enter;
+                    if (!(cost < best)) return;
+                    if (m.jump_size_cost > 0)
+                        cost += m.jump_size_cost * jump_size(m, w.candidates[std::size_t(j)], point);
+                    if (cost < best) best = cost, from = j, link = Link::start;
+                };
+                try_jump(skipping.cost, skipping.node);
+                if (m.jump_size_cost > 0)
+                    for (int j = before; j < begin; ++j)
+                        try_jump(w.nodes[std::size_t(j)].cost + w.leave[std::size_t(j)], j);
+                else
+                    try_jump(last.cost, last.node);
                 for (int back = 1; back <= m.window && back <= line; ++back) {
                     const double skipped = m.skip(back - 1);
                     const int j0 = w.first[std::size_t(line - back)],
@@ -202,21 +216,6 @@ void cheapest_sequence(Workspace& w, const Model& m) {
                         if (ratio < 1 && cost < best) best = cost, from = j, link = Link::edge;
                     }
                 }
-                const double enter = w.enter.empty() ? 0 : w.enter[std::size_t(c)];
-                if (start_cost + enter < best) best = start_cost + enter, from = -1, link = Link::start;
-                const auto try_jump = [&](double cost, int j) {
-                    cost += m.jump_cost + enter;
-                    if (!(cost < best)) return;
-                    if (m.jump_size_cost > 0)
-                        cost += m.jump_size_cost * jump_size(m, w.candidates[std::size_t(j)], point);
-                    if (cost < best) best = cost, from = j, link = Link::start;
-                };
-                try_jump(skipping.cost, skipping.node);
-                if (m.jump_size_cost > 0)
-                    for (int j = before; j < begin; ++j)
-                        try_jump(w.nodes[std::size_t(j)].cost + w.leave[std::size_t(j)], j);
-                else
-                    try_jump(last.cost, last.node);
             }
             Node& node = w.nodes[std::size_t(c)];
             node.cost = best + point.cost;

@@ -21,8 +21,8 @@ inline constexpr double kMinSpacingSigma = 0.05;
 inline constexpr double kMaxTurnNoise = 4;  // the same across the contour, in units of the measuring variance
 inline constexpr int kShortGap = 10;  // lines without points across which the direction is still believed
 inline constexpr int kSettled = 5;  // points after which the tracker knows better than a line through the end
-inline constexpr double kCalm = 0.5, kCalmVariance = 1.5, kCalmExcess = 1.5;  // see is_calm()
-inline constexpr int kSteady = 12, kHeldPoints = 7;  // see Held; points after which the gains stand still
+inline constexpr double kCalm = 0.8, kCalmVariance = 2, kCalmExcess = 1.5;  // see is_calm()
+inline constexpr int kSteady = 6, kHeldPoints = 11;  // see Held; points after which the gains stand still
 inline constexpr int kMature = 3;                    // points after which the direction carries the spacing
 
 // What the profile itself says: noise of x and z, typical spacing per line.

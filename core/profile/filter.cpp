@@ -13,7 +13,7 @@ constexpr int kFitPoints = 6,
               kLongFitPoints = 12;            // of the line at the end of a piece: near, across a long gap
 constexpr double kSharp = 1.5, kDoubt = 0.4;  // a sharp prediction's variance; share of the limit from which
                                               // a point that needs more is doubtful
-constexpr int kWarmUp = 16;                   // points after which the tracker has forgotten where it began
+constexpr int kWarmUp = 10;                   // points after which the tracker has forgotten where it began
 constexpr int kUnchecked = 3;  // lines across which a smooth link is taken without looking from both sides
 constexpr double kLongGapSlope = 0.03;  // uncertainty of direction across longer gaps, rad
 
@@ -211,19 +211,19 @@ int verify(Workspace& w, const Model& m) {
     };
     int piece = 0;
     for (int k = -1; k < n; ++k) {
+        const int here = k >= 0 ? w.path[std::size_t(k)] : -1;
+        const int next = k + 1 < n ? w.path[std::size_t(k) + 1] : -1;
+        const int end = next >= 0 ? next : int(w.candidates.size());
+        if (here >= 0 && w.nodes[std::size_t(here)].calm && here + 1 == end) {
+            w.piece[std::size_t(here)] = piece;
+            continue;
+        }
         if (k > 0 && (w.nodes[std::size_t(w.path[std::size_t(k)])].link != Link::smooth ||
                       line_difference(w, w.path[std::size_t(k) - 1], w.path[std::size_t(k)]) > kUnchecked))
             ++piece;
-        const int here = k >= 0 ? w.path[std::size_t(k)] : -1;
-        const int next = k + 1 < n ? w.path[std::size_t(k) + 1] : -1;
         const bool next_starts = next >= 0 && w.nodes[std::size_t(next)].link == Link::start;
         if (here >= 0) {
             const Candidate& p = w.candidates[std::size_t(here)];
-            if (w.nodes[std::size_t(here)].calm &&
-                here + 1 == (next >= 0 ? next : int(w.candidates.size()))) {
-                w.piece[std::size_t(here)] = piece;
-                continue;
-            }
             const bool starts = k == 0 || w.nodes[std::size_t(here)].link == Link::start;
             const State* before = starts ? nullptr : &w.nodes[std::size_t(w.path[std::size_t(k) - 1])].state;
             const State* after = next < 0 || next_starts ? nullptr : &w.backward[std::size_t(k) + 1];
@@ -241,7 +241,6 @@ int verify(Workspace& w, const Model& m) {
         const State* after = next >= 0 ? &w.backward[std::size_t(k) + 1] : nullptr;
         if (before && before->age < kMature) before = nullptr;
         if (after && after->age < kMature) after = nullptr;
-        const int end = next >= 0 ? next : int(w.candidates.size());
         for (int c = here + 1; c < end; ++c) {
             const Candidate& p = w.candidates[std::size_t(c)];
             const int ib = p.line - (here >= 0 ? w.candidates[std::size_t(here)].line : 0);

@@ -138,8 +138,8 @@ inline bool is_calm(const Model& m, const State& s, const Deviation& d) {
 }
 
 // MAP ratio s / s_0 of (3.7) for a measured ratio rm, K = v / rho^2 and `mode` of the prediction's logarithm:
-// (rm - r) r K = ln r - mode. Near 1 the linear equation and one chord step, within 1e-3 of the maximum
-// (tests/core/profile/filter_test.cpp), else map_spacing.
+// (rm - r) r K = ln r - mode. Near 1 the linear equation and one chord step, within 2 % of the maximum (1 %
+// where that is within 10 % of 1), else map_spacing.
 inline double map_ratio(double rm, double K, double mode, const State& s, int i) {
     const double inverse = 1 / (1 + K);
     const double start = (rm * K + 1 + mode) * inverse, e = start - 1;

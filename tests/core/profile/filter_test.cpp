@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "core/profile/contour_state.h"
 #include "tests/core/profile/synthetic_candidates.h"
 #include "tests/core/profile/synthetic_profiles.h"
 
@@ -69,6 +70,66 @@ TEST(MapSpacing, KnownValueOfTheThesis) {
     EXPECT_NEAR(exact, 0.12846, 5e-6);
     EXPECT_NEAR(map_spacing(0.13, 0.146, -0.111, 0.13, 0.02), exact, 1e-7);
     EXPECT_NEAR(map_spacing_closed_form(0.13, 0.146, -0.111, 0.13, 0.02), 0.1284, 5e-5);
+}
+
+TEST(MapSpacing, TheTrackersFormIsCloseToTheMaximum) {
+    Maker random(8);
+    double worst = 0, worst_calm = 0;
+    for (int k = 0; k < 20000; ++k) {
+        contour::State s;
+        s.drift = random.uniform(-0.1, 0.1);
+        s.variance = std::pow(random.uniform(0.05, 0.3), 2);
+        const int i = random.whole(1, 3);
+        const double rm = random.uniform(-0.5, 3), rho = std::exp(random.uniform(-4, 3)), v = s.variance * i;
+        const double ratio = contour::map_ratio(rm, v / (rho * rho), s.drift * i - 1.5 * v, s, i);
+        const double exact = map_spacing(rm, 1, s.drift, std::sqrt(s.variance), rho, i);
+        const double error = std::abs(ratio / exact - 1);
+        worst = std::max(worst, error);
+        if (std::abs(exact - 1) < 0.1) worst_calm = std::max(worst_calm, error);
+    }
+    EXPECT_LT(worst, 0.02);
+    EXPECT_LT(worst_calm, 0.01);
+}
+
+// Held factors change nothing that matters: the same contour followed with and without them.
+TEST(Filter, HeldFactorsFollowAsTheFullUpdateDoes) {
+    for (const double noise : {0.005, 0.02, 0.05}) {
+        Maker random(9);
+        const double step = 0.1, radius = 30;
+        contour::Scale scale;
+        scale.sx = scale.sz = noise, scale.spacing = step;
+        const contour::Model m(scale, {});
+        contour::State full = contour::first_point(m, 0, 0), fast = full;
+        contour::Held held;
+        int followed = 0;
+        double d2 = 0, off2 = 0, spacing = 0, truth2 = 0;
+        const int n = 2000;
+        for (int k = 1; k <= n; ++k) {
+            const double angle = k * step / radius;
+            const double tx = radius * std::sin(angle), tz = radius * (1 - std::cos(angle));
+            const double x = tx + noise * random.normal(), z = tz + noise * random.normal();
+            if (k < 3) {
+                contour::accept_any_direction(m, full, x, z, 1);
+                fast = full;
+                continue;
+            }
+            contour::accept(m, full, contour::deviation(m, full, x, z, 1), 1);
+            if (contour::follow(m, held, fast, x, z, contour::kCalm * m.outlier_cost, d2)) {
+                ++followed;
+            } else {
+                const auto d = contour::deviation(m, fast, x, z, 1);
+                contour::accept(m, fast, d, 1);
+                contour::hold(m, fast, d, held);
+            }
+            off2 += (std::pow(fast.x - full.x, 2) + std::pow(fast.z - full.z, 2)) / n;
+            truth2 += (std::pow(full.x - tx, 2) + std::pow(full.z - tz, 2)) / n;
+            spacing += (fast.spacing() / full.spacing() - 1) / n;
+        }
+        EXPECT_GT(followed, n / 2) << noise;
+        EXPECT_LT(std::sqrt(off2), 0.15 * noise) << noise;
+        EXPECT_LT(std::sqrt(off2), 0.25 * std::sqrt(truth2)) << "beside the error both have";
+        EXPECT_LT(std::abs(spacing), 0.03) << noise;
+    }
 }
 
 TEST(MapSpacing, IsTheMaximumOverTheWholeRange) {

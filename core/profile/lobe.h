@@ -17,6 +17,8 @@ inline constexpr double kBroad = 10;        // px; what is narrower is no square
 inline constexpr int kFootPixels = 8;       // background level on each side
 inline constexpr double kValleySigmas = 5;  // a valley of light beside a peak is deeper than that
 inline constexpr int kFitRounds = 3;
+inline constexpr double kHotPixelWidth = 1.1;  // px; a single bright pixel has 1.0, the sharpest optics 1.2
+inline constexpr double kSharpness = 0.3;  // (width at 1/2 - width at 3/4)/width at 1/2; 0.356 of a Gaussian
 inline constexpr double kMeanDifference = 1.128;  // of two Gaussian samples, in standard deviations
 
 // One image line. Grey values at stride `step`.

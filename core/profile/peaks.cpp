@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/profile/lobe.h"
+#include "core/profile/lobe_group.h"
 #include "core/profile/peaks_detail.h"
 #include "core/profile/stripe_scan.h"
 
@@ -14,8 +15,6 @@ namespace {
 constexpr double kPixelSigmas = 4.0;    // candidate pixel
 constexpr double kPeakSigmas = 7.0;     // sum over the width of a peak, in its own standard deviations
 constexpr double kFrameShare = 0.001;   // of the strength that stripes have in the frame
-constexpr double kHotPixelWidth = 1.1;  // px; a single bright pixel has 1.0, the sharpest optics 1.2
-constexpr double kSharpness = 0.3;      // (width at 1/2 - width at 3/4)/width at 1/2; 0.356 of a Gaussian
 
 // Keeps the K strongest peaks of each line in order.
 class Keeper {
@@ -62,6 +61,9 @@ struct Extraction {
     const ThresholdRule& rule;
     const StripeScan& scan;
     Keeper keeper;
+    Kernel kernel;
+    LobeGroup group;
+    Run members[kGroupLanes];  // of the group
 
     Line<Pixel> line(int number) const {
         const auto row = static_cast<std::ptrdiff_t>(image.row_bytes);
@@ -79,26 +81,29 @@ struct Extraction {
         return false;
     }
 
+    struct Interval {
+        int begin, end;
+    };
+
     void run(const Run& run) {
-        const Line<Pixel> whole_line = line(run.line);
-        if (run.end - run.begin <= 2 && on_a_flank(whole_line, run)) return;
-        const LineWindow<Pixel> pixels(whole_line, run);
+        const LineWindow<Pixel> pixels(line(run.line), run);
+        const Interval whole{run.begin, run.end};
+        pieces(pixels, run.line, &whole, 1);
+    }
+
+    // The lobes of these pieces of a run, the strongest of each first.
+    void pieces(const LineWindow<Pixel>& pixels, int line_number, const Interval* given, int count) {
         const LobeFinder<LineWindow<Pixel>> finder(pixels, options, image.full_scale());
-        struct Interval {
-            int begin, end;
-        };
         Interval open[16];
         int n = 0;
-        open[n++] = {run.begin, run.end};
+        for (; n < count; ++n) open[n] = given[n];
         while (n > 0) {
             const Interval part = open[--n];
-            const int middle = (part.begin + part.end - 1) / 2;
-            const int tile = options.scan == ScanLines::columns ? scan.tile_of(run.line, middle)
-                                                                : scan.tile_of(middle, run.line);
+            const int tile = tile_of(line_number, part);
             Lobe lobe;
             const bool whole = finder.stretch(part.begin, part.end, scan.background[tile], lobe);
             const Lobe seen = lobe;
-            if (whole) keep(finder, run.line, scan.noise[tile], lobe);
+            if (whole) keep(finder, line_number, scan.noise[tile], lobe);
             // What lies on either side of it in the run may hold lesser peaks.
             const int left_end = std::min(seen.left - 1, part.end),
                       right_begin = std::max(seen.right + 2, part.begin);
@@ -109,9 +114,101 @@ struct Extraction {
         }
     }
 
+    int tile_of(int line_number, const Interval& part) const {
+        const int middle = (part.begin + part.end - 1) / 2;
+        return options.scan == ScanLines::columns ? scan.tile_of(line_number, middle)
+                                                  : scan.tile_of(middle, line_number);
+    }
+
+    // Runs of one batch: short ones inside the image eight at a time, the others one by one.
+    void batch(const std::vector<Run>& runs) {
+        const int size = options.scan == ScanLines::columns ? image.height : image.width;
+        int n = 0;
+        for (const Run& run : runs) {
+            const int length = run.end - run.begin;
+            if (length <= 2 && on_a_flank(line(run.line), run)) continue;
+            if (kernel == Kernel::careful || length > kGroupRun || run.begin < kGroupMargin ||
+                run.end + kGroupMargin > size) {
+                this->run(run);
+                continue;
+            }
+            members[n++] = run;
+            if (n == kGroupLanes) {
+                measure_members(n);
+                n = 0;
+            }
+        }
+        if (n > 0) measure_members(n);
+    }
+
+    void measure_members(int count) {
+        int longest = 0;
+        for (int k = 0; k < count; ++k) longest = std::max(longest, members[k].end - members[k].begin);
+        group.rows = longest + 2 * kGroupMargin;
+        for (int k = 0; k < kGroupLanes; ++k) {
+            const Run& run = members[k < count ? k : 0];  // lanes to spare repeat the first
+            const int tile = tile_of(run.line, {run.begin, run.end});
+            group.length[k] = run.end - run.begin;
+            group.background[k] = scan.background[tile];
+            group.noise[k] = scan.noise[tile];
+            group.least_height[k] = static_cast<float>(least_height(scan.noise[tile]));
+            const Line<Pixel> pixels = line(run.line);
+            const int first = run.begin - kGroupMargin, last = std::min(group.rows, pixels.size - first);
+            const std::byte* from = pixels.first + first * pixels.step;
+            for (int r = 0; r < last; ++r, from += pixels.step)
+                group.pixels[r][k] = *reinterpret_cast<const Pixel*>(from);
+            for (int r = last; r < group.rows; ++r) group.pixels[r][k] = 0;
+        }
+        measure_group(group, kernel);
+        for (int k = 0; k < count; ++k) {
+            const Run& run = members[k];
+            const std::int32_t outcome = group.outcome[k];
+            if (outcome & kCareful) {
+                this->run(run);
+                continue;
+            }
+            if (outcome & kPeak) keep_member(k);
+            if (outcome & (kLeftMore | kRightMore)) {
+                const int first = run.begin - kGroupMargin;
+                Interval rest[2];
+                int n = 0;
+                if (outcome & kLeftMore) rest[n++] = {run.begin, first + group.left[k] - 1};
+                if (outcome & kRightMore) rest[n++] = {first + group.right[k] + 2, run.end};
+                pieces(LineWindow<Pixel>(line(run.line), run), run.line, rest, n);
+            }
+        }
+    }
+
+    void keep_member(int k) {
+        const Run& run = members[k];
+        const int first = run.begin - kGroupMargin;
+        double position = first + static_cast<double>(group.position[k]);
+        if (options.method != PeakMethod::centre_of_gravity) {
+            Lobe lobe;
+            lobe.top = static_cast<int>(group.top[k]);
+            lobe.top_first = first + group.top_first[k];
+            lobe.top_last = first + group.top_last[k];
+            lobe.left = first + group.half_from[k];
+            lobe.right = first + group.half_to[k];
+            lobe.base = group.base[k];
+            lobe.slope = group.slope[k];
+            lobe.half_left = first + static_cast<double>(group.half_left[k]);
+            lobe.half_right = first + static_cast<double>(group.half_right[k]);
+            lobe.width = lobe.half_right - lobe.half_left;
+            lobe.middle = 0.5 * (lobe.half_left + lobe.half_right);
+            const LineWindow<Pixel> pixels(line(run.line), run);
+            const LobeFinder<LineWindow<Pixel>> finder(pixels, options, image.full_scale());
+            position = options.method == PeakMethod::gaussian ? finder.gaussian(lobe) : finder.steger(lobe);
+        }
+        keeper.add(run.line, group.strength[k], static_cast<float>(position), group.top[k],
+                   group.half_right[k] - group.half_left[k], 0);
+    }
+
+    double least_height(float noise) const { return rule.of(noise) * (options.threshold > 0 ? 1.0 : 0.75); }
+
     void keep(const LobeFinder<LineWindow<Pixel>>& finder, int line_number, float noise, Lobe& lobe) {
         finder.measure(lobe, noise);
-        if (lobe.height() < rule.of(noise) * (options.threshold > 0 ? 1.0 : 0.75)) return;
+        if (lobe.height() < least_height(noise)) return;
         if (!(lobe.width >= options.min_width_px && lobe.width <= options.max_width_px)) return;
         const double energy = finder.energy(lobe);
         const double pixels = lobe.right - lobe.left + 1;
@@ -142,12 +239,17 @@ struct Extraction {
 template <class Pixel>
 void extract(const StripeImage& image, const PeakOptions& options, const ThresholdRule& rule, Kernel kernel,
              Workspace& work, StripePeaks& peaks) {
-    Extraction<Pixel> extraction{image, options, rule, work.scan, Keeper(peaks, work.strength)};
+    Extraction<Pixel> extraction{image, options, rule, work.scan, Keeper(peaks, work.strength),
+                                 kernel, {}, {}};
+    extraction.group.least_sigmas = options.threshold > 0 ? 0.0f : static_cast<float>(kPeakSigmas);
+    extraction.group.min_width = static_cast<float>(options.min_width_px);
+    extraction.group.max_width = static_cast<float>(options.max_width_px);
+    extraction.group.full_scale = static_cast<float>(image.full_scale());
+    extraction.group.centre_of_gravity = options.method == PeakMethod::centre_of_gravity;
     scan_runs(
         image, options.scan, rule, kernel, work.scan,
         [](void* context, const std::vector<Run>& runs) {
-            auto& self = *static_cast<Extraction<Pixel>*>(context);
-            for (const Run& run : runs) self.run(run);
+            static_cast<Extraction<Pixel>*>(context)->batch(runs);
         },
         &extraction);
 }

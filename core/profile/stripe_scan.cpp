@@ -248,16 +248,8 @@ __attribute__((target("avx2"))) void add_row_avx2(const std::uint16_t* row, Tile
     }
 }
 
-bool use_avx2(Kernel kernel) {
-    static const bool available = __builtin_cpu_supports("avx2");
-    return available && kernel == Kernel::best;
-}
-
 #else
 
-bool use_avx2(Kernel) {
-    return false;
-}
 template <class Pixel>
 void add_row_avx2(const Pixel*, TileSums&) {}
 template <class Pixel>
@@ -372,6 +364,16 @@ void scan_image(const StripeImage& image, ScanLines scan, const ThresholdRule& r
 
 }  // namespace
 
+bool has_avx2(Kernel kernel) {
+#if defined(__x86_64__)
+    static const bool available = __builtin_cpu_supports("avx2");
+    return available && kernel == Kernel::best;
+#else
+    (void)kernel;
+    return false;
+#endif
+}
+
 void measure_background(const StripeImage& image, ScanLines scan, double max_width_px, Kernel kernel,
                         StripeScan& work) {
     work.tile_columns = (image.width + kTile - 1) / kTile;
@@ -383,7 +385,7 @@ void measure_background(const StripeImage& image, ScanLines scan, double max_wid
     work.open_columns.resize(static_cast<std::size_t>(work.tile_columns));
     work.begin_of.resize(static_cast<std::size_t>(work.tile_columns) * kTile);
     work.runs.reserve(kBatch);
-    const bool avx2 = use_avx2(kernel);
+    const bool avx2 = has_avx2(kernel);
     if (image.bytes_per_pixel() == 1) {
         measure_tiles<std::uint8_t>(image, avx2, work);
     } else {
@@ -403,7 +405,7 @@ void scan_runs(const StripeImage& image, ScanLines scan, const ThresholdRule& ru
                StripeScan& work, RunConsumer consume, void* context) {
     work.runs.clear();
     Collector collector{work, consume, context};
-    const bool avx2 = use_avx2(kernel);
+    const bool avx2 = has_avx2(kernel);
     if (image.bytes_per_pixel() == 1) {
         scan_image<std::uint8_t>(image, scan, rule, avx2, work, work.limit8, collector);
     } else {

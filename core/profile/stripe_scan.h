@@ -18,7 +18,11 @@
 
 namespace seamwright::detail {
 
-enum class Kernel { best, portable };
+// `careful` is the portable kernel with every lobe measured on its own (lobe.h), the reference of the others.
+enum class Kernel { best, portable, careful };
+
+// Whether `kernel` means AVX2 on this machine.
+bool has_avx2(Kernel kernel);
 
 inline constexpr int kTile = 32;  // px
 

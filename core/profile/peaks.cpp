@@ -81,6 +81,23 @@ struct Extraction {
         return false;
     }
 
+    // Whether a run of one or two pixels is too weak for a peak: its stretch at half height above the tile's
+    // background holds less than what a peak needs, with a margin for a background that is darker there.
+    // Noise alone makes hundreds of such runs in a frame.
+    bool too_weak(const Line<Pixel>& pixels, const Run& run) const {
+        if (options.threshold > 0) return false;
+        const int tile = tile_of(run.line, {run.begin, run.end});
+        const float base = scan.background[tile];
+        const float half = 0.5f * (base + static_cast<float>(std::max(pixels[run.begin], pixels[run.end - 1])));
+        int begin = run.begin, end = run.end;
+        while (begin > 0 && run.begin - begin < 4 && static_cast<float>(pixels[begin - 1]) >= half) --begin;
+        while (end < pixels.size && end - run.end < 4 && static_cast<float>(pixels[end]) >= half) ++end;
+        float energy = 0;
+        for (int i = begin; i < end; ++i) energy += static_cast<float>(pixels[i]) - base;
+        const float needed = static_cast<float>(0.75 * kPeakSigmas) * scan.noise[tile];
+        return energy < 0 || energy * energy < needed * needed * static_cast<float>(end - begin);
+    }
+
     struct Interval {
         int begin, end;
     };
@@ -126,7 +143,10 @@ struct Extraction {
         int n = 0;
         for (const Run& run : runs) {
             const int length = run.end - run.begin;
-            if (length <= 2 && on_a_flank(line(run.line), run)) continue;
+            if (length <= 2) {
+                const Line<Pixel> pixels = line(run.line);
+                if (on_a_flank(pixels, run) || too_weak(pixels, run)) continue;
+            }
             if (kernel == Kernel::careful || length > kGroupRun || run.begin < kGroupMargin ||
                 run.end + kGroupMargin > size) {
                 this->run(run);

@@ -1,7 +1,9 @@
 #include "core/profile/peaks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/profile/lobe.h"
 #include "core/profile/lobe_group.h"
@@ -165,6 +167,9 @@ struct Extraction {
         int longest = 0;
         for (int k = 0; k < count; ++k) longest = std::max(longest, members[k].end - members[k].begin);
         group.rows = longest + 2 * kGroupMargin;
+        std::array<const std::byte*, kGroupLanes> from;
+        bool inside = true;
+        const int size = line(0).size;
         for (int k = 0; k < kGroupLanes; ++k) {
             const Run& run = members[k < count ? k : 0];  // lanes to spare repeat the first
             const int tile = tile_of(run.line, {run.begin, run.end});
@@ -173,11 +178,21 @@ struct Extraction {
             group.noise[k] = scan.noise[tile];
             group.least_height[k] = static_cast<float>(least_height(scan.noise[tile]));
             const Line<Pixel> pixels = line(run.line);
-            const int first = run.begin - kGroupMargin, last = std::min(group.rows, pixels.size - first);
-            const std::byte* from = pixels.first + first * pixels.step;
-            for (int r = 0; r < last; ++r, from += pixels.step)
-                group.pixels[r][k] = *reinterpret_cast<const Pixel*>(from);
-            for (int r = last; r < group.rows; ++r) group.pixels[r][k] = 0;
+            const int first = run.begin - kGroupMargin;
+            from[k] = pixels.first + first * pixels.step;
+            inside &= first + group.rows <= size;
+        }
+        if (inside) {
+            fill_group(from, line(0).step, std::make_index_sequence<kGroupLanes>());
+        } else {
+            for (int k = 0; k < kGroupLanes; ++k) {
+                const Run& run = members[k < count ? k : 0];
+                const Line<Pixel> pixels = line(run.line);
+                for (int r = 0; r < group.rows; ++r) {
+                    const int i = run.begin - kGroupMargin + r;
+                    group.pixels[r][k] = i < size ? static_cast<std::uint16_t>(pixels[i]) : 0;
+                }
+            }
         }
         measure_group(group, kernel);
         for (int k = 0; k < count; ++k) {
@@ -197,6 +212,14 @@ struct Extraction {
                 pieces(LineWindow<Pixel>(line(run.line), run), run.line, rest, n);
             }
         }
+    }
+
+    template <std::size_t... k>
+    void fill_group(std::array<const std::byte*, kGroupLanes> from, std::ptrdiff_t step,
+                    std::index_sequence<k...>) {
+        std::ptrdiff_t at = 0;
+        for (int r = 0; r < group.rows; ++r, at += step)
+            ((group.pixels[r][k] = *reinterpret_cast<const Pixel*>(from[k] + at)), ...);
     }
 
     void keep_member(int k) {

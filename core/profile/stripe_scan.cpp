@@ -17,6 +17,7 @@ constexpr int kBatch = 1024;          // runs handed over at once: their pixels 
 constexpr int kSampledRows = 4;       // per tile
 constexpr int kDifferenceStep = 2;    // px; neighbours of demosaiced or compressed images are correlated
 constexpr double kSecondLane = 1.04;  // the second smallest of four lanes lies below their mean by that
+constexpr std::size_t kMedianTiles = 500;
 constexpr double kSqrtPi = 1.7724538509055160;
 
 template <class Pixel>
@@ -30,6 +31,7 @@ const Pixel* row_of(const StripeImage& image, int y) {
 double clamping(double mean_over_noise) {
     constexpr double at[] = {0.70, 0.80, 0.98, 1.25, 1.61, 2.04, 2.51};
     constexpr double factor[] = {2.5, 1.99, 1.40, 1.153, 1.051, 1.013, 1.0};
+    if (mean_over_noise >= at[6]) return factor[6];
     if (mean_over_noise <= at[0]) return factor[0];
     for (int i = 1; i < 7; ++i)
         if (mean_over_noise < at[i])
@@ -58,6 +60,13 @@ void add_row_portable(const Pixel* row, int count, int pairs, TileSums& sums) {
 
 // Mean absolute difference of the second smallest lane, or of the only one.
 double mean_difference(const TileSums& sums, int pairs) {
+    if (pairs == kTile) {
+        const std::uint32_t* d = sums.difference;
+        const auto [low, high] = std::minmax(d[0], d[1]);
+        const auto [other_low, other_high] = std::minmax(d[2], d[3]);
+        const std::uint32_t second_of_all = std::min({std::max(low, other_low), high, other_high});
+        return second_of_all / (kSampledRows * double(kTile / kLanes));
+    }
     double smallest = 0, second = 0;
     int n = 0;
     constexpr int kLane = kTile / kLanes;
@@ -192,15 +201,50 @@ __attribute__((target("avx2"))) inline std::uint32_t mask_avx2(const std::uint16
     return ~static_cast<std::uint32_t>(_mm256_movemask_epi8(packed));
 }
 
+// Nonzero where one of 32 pixels exceeds its limit.
+__attribute__((target("avx2"))) inline __m256i above_avx2(const std::uint8_t* row,
+                                                          const std::uint8_t* limit) {
+    return _mm256_subs_epu8(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row)),
+                            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(limit)));
+}
+
+__attribute__((target("avx2"))) inline __m256i above_avx2(const std::uint16_t* row,
+                                                          const std::uint16_t* limit) {
+    const auto* pixels = reinterpret_cast<const __m256i*>(row);
+    const auto* limits = reinterpret_cast<const __m256i*>(limit);
+    return _mm256_or_si256(
+        _mm256_subs_epu16(_mm256_loadu_si256(pixels), _mm256_loadu_si256(limits)),
+        _mm256_subs_epu16(_mm256_loadu_si256(pixels + 1), _mm256_loadu_si256(limits + 1)));
+}
+
+// Whether 128 pixels are all within their limits.
+template <class Pixel>
+__attribute__((target("avx2"))) inline bool dark_avx2(const Pixel* row, const Pixel* limit) {
+    const __m256i above =
+        _mm256_or_si256(_mm256_or_si256(above_avx2(row, limit), above_avx2(row + 32, limit + 32)),
+                        _mm256_or_si256(above_avx2(row + 64, limit + 64), above_avx2(row + 96, limit + 96)));
+    return _mm256_testz_si256(above, above);
+}
+
 template <class Pixel>
 __attribute__((target("avx2"))) void columns_row_avx2(const Pixel* row, const Pixel* limit, int blocks, int y,
                                                       Collector& collector) {
     std::uint32_t* open = collector.work.open_columns.data();
-    for (int b = 0; b < blocks; ++b) {
-        const std::uint32_t mask = mask_avx2(row + 32 * b, limit + 32 * b);
-        if (mask != open[b]) {
-            column_edges(mask ^ open[b], mask, 32 * b, y, collector);
-            open[b] = mask;
+    for (int b = 0; b < blocks;) {
+        if (b + 4 <= blocks) {
+            std::uint64_t opened[2];
+            std::memcpy(opened, open + b, sizeof opened);
+            if ((opened[0] | opened[1]) == 0 && dark_avx2(row + 32 * b, limit + 32 * b)) {
+                b += 4;
+                continue;
+            }
+        }
+        for (const int end = std::min(b + 4, blocks); b < end; ++b) {
+            const std::uint32_t mask = mask_avx2(row + 32 * b, limit + 32 * b);
+            if (mask != open[b]) {
+                column_edges(mask ^ open[b], mask, 32 * b, y, collector);
+                open[b] = mask;
+            }
         }
     }
 }
@@ -208,36 +252,52 @@ __attribute__((target("avx2"))) void columns_row_avx2(const Pixel* row, const Pi
 template <class Pixel>
 __attribute__((target("avx2"))) void rows_row_avx2(const Pixel* row, const Pixel* limit, int blocks, int y,
                                                    int& open, Collector& collector) {
-    for (int b = 0; b < blocks; ++b) {
-        const std::uint32_t mask = mask_avx2(row + 32 * b, limit + 32 * b);
-        if (mask != 0 || open >= 0) row_edges(mask, 32 * b, y, open, collector);
+    for (int b = 0; b < blocks;) {
+        if (b + 4 <= blocks && open < 0 && dark_avx2(row + 32 * b, limit + 32 * b)) {
+            b += 4;
+            continue;
+        }
+        for (const int end = std::min(b + 4, blocks); b < end; ++b) {
+            const std::uint32_t mask = mask_avx2(row + 32 * b, limit + 32 * b);
+            if (mask != 0 || open >= 0) row_edges(mask, 32 * b, y, open, collector);
+        }
     }
 }
 
-__attribute__((target("avx2"))) void add_row_avx2(const std::uint8_t* row, TileSums& sums) {
+// The sampled rows of a tile, `rows` their first pixels.
+__attribute__((target("avx2"))) void add_rows_avx2(const std::uint8_t* const* rows, TileSums& sums) {
     const __m256i zero = _mm256_setzero_si256();
-    const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row));
-    const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + kDifferenceStep));
-    const __m256i distance = _mm256_or_si256(_mm256_subs_epu8(a, b), _mm256_subs_epu8(b, a));
-    alignas(32) std::uint64_t grey[4], difference[4];
-    _mm256_store_si256(reinterpret_cast<__m256i*>(grey), _mm256_sad_epu8(a, zero));
-    _mm256_store_si256(reinterpret_cast<__m256i*>(difference), _mm256_sad_epu8(distance, zero));
+    __m256i grey = zero, difference = zero;
+    for (int k = 0; k < kSampledRows; ++k) {
+        const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(rows[k]));
+        const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(rows[k] + kDifferenceStep));
+        const __m256i distance = _mm256_or_si256(_mm256_subs_epu8(a, b), _mm256_subs_epu8(b, a));
+        grey = _mm256_add_epi64(grey, _mm256_sad_epu8(a, zero));
+        difference = _mm256_add_epi64(difference, _mm256_sad_epu8(distance, zero));
+    }
+    alignas(32) std::uint64_t g[4], d[4];
+    _mm256_store_si256(reinterpret_cast<__m256i*>(g), grey);
+    _mm256_store_si256(reinterpret_cast<__m256i*>(d), difference);
     for (int k = 0; k < kLanes; ++k) {
-        sums.grey += static_cast<std::uint32_t>(grey[k]);
-        sums.difference[k] += static_cast<std::uint32_t>(difference[k]);
+        sums.grey += static_cast<std::uint32_t>(g[k]);
+        sums.difference[k] += static_cast<std::uint32_t>(d[k]);
     }
 }
 
-__attribute__((target("avx2"))) void add_row_avx2(const std::uint16_t* row, TileSums& sums) {
+__attribute__((target("avx2"))) void add_rows_avx2(const std::uint16_t* const* rows, TileSums& sums) {
     const __m256i low = _mm256_set1_epi32(0xFFFF);
     for (int half = 0; half < 2; ++half) {
-        const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + 16 * half));
-        const __m256i b =
-            _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + 16 * half + kDifferenceStep));
-        const __m256i distance = _mm256_or_si256(_mm256_subs_epu16(a, b), _mm256_subs_epu16(b, a));
-        const __m256i grey = _mm256_add_epi32(_mm256_and_si256(a, low), _mm256_srli_epi32(a, 16));
-        const __m256i difference =
-            _mm256_add_epi32(_mm256_and_si256(distance, low), _mm256_srli_epi32(distance, 16));
+        __m256i grey = _mm256_setzero_si256(), difference = grey;
+        for (int k = 0; k < kSampledRows; ++k) {
+            const std::uint16_t* row = rows[k] + 16 * half;
+            const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row));
+            const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + kDifferenceStep));
+            const __m256i distance = _mm256_or_si256(_mm256_subs_epu16(a, b), _mm256_subs_epu16(b, a));
+            grey = _mm256_add_epi32(grey,
+                                    _mm256_add_epi32(_mm256_and_si256(a, low), _mm256_srli_epi32(a, 16)));
+            difference = _mm256_add_epi32(difference, _mm256_add_epi32(_mm256_and_si256(distance, low),
+                                                                       _mm256_srli_epi32(distance, 16)));
+        }
         alignas(32) std::uint32_t g[8], d[8];  // four of them per lane
         _mm256_store_si256(reinterpret_cast<__m256i*>(g), grey);
         _mm256_store_si256(reinterpret_cast<__m256i*>(d), difference);
@@ -251,7 +311,7 @@ __attribute__((target("avx2"))) void add_row_avx2(const std::uint16_t* row, Tile
 #else
 
 template <class Pixel>
-void add_row_avx2(const Pixel*, TileSums&) {}
+void add_rows_avx2(const Pixel* const*, TileSums&) {}
 template <class Pixel>
 void columns_row_avx2(const Pixel*, const Pixel*, int, int, Collector&) {}
 template <class Pixel>
@@ -263,17 +323,19 @@ template <class Pixel>
 void measure_tiles(const StripeImage& image, bool avx2, StripeScan& work) {
     for (int ty = 0; ty < work.tile_rows; ++ty) {
         const int y0 = ty * kTile, height = std::min(kTile, image.height - y0);
+        const Pixel* rows[kSampledRows];
+        for (int k = 0; k < kSampledRows; ++k)
+            rows[k] = row_of<Pixel>(image, y0 + height * (2 * k + 1) / (2 * kSampledRows));
         for (int tx = 0; tx < work.tile_columns; ++tx) {
             const int x0 = tx * kTile, width = std::min(kTile, image.width - x0);
             const int pairs = std::clamp(image.width - kDifferenceStep - x0, 0, width);
             TileSums sums;
-            for (int k = 0; k < kSampledRows; ++k) {
-                const Pixel* row = row_of<Pixel>(image, y0 + height * (2 * k + 1) / (2 * kSampledRows)) + x0;
-                if (avx2 && pairs == kTile) {
-                    add_row_avx2(row, sums);
-                } else {
-                    add_row_portable(row, width, pairs, sums);
-                }
+            const Pixel* at[kSampledRows];
+            for (int k = 0; k < kSampledRows; ++k) at[k] = rows[k] + x0;
+            if (avx2 && pairs == kTile) {
+                add_rows_avx2(at, sums);
+            } else {
+                for (const Pixel* row : at) add_row_portable(row, width, pairs, sums);
             }
             const int tile = ty * work.tile_columns + tx;
             work.background[tile] = static_cast<float>(sums.grey) / static_cast<float>(kSampledRows * width);
@@ -286,27 +348,67 @@ void measure_tiles(const StripeImage& image, bool avx2, StripeScan& work) {
     }
 }
 
-// Running minimum (or maximum) of 2 * reach + 1 tiles along the scan direction.
+using Four = float __attribute__((vector_size(16)));
+
+struct Smaller {
+    static Four of(Four a, Four b) { return a < b ? a : b; }
+    static float of(float a, float b) { return a < b ? a : b; }
+};
+struct Larger {
+    static Four of(Four a, Four b) { return a > b ? a : b; }
+    static float of(float a, float b) { return a > b ? a : b; }
+};
+
+// out[i] = pick of in[k][i] over all k < count, for i < size.
 template <class Pick>
-void running(const std::vector<float>& in, std::vector<float>& out, const StripeScan& work, ScanLines scan,
-             int reach, Pick pick) {
-    const int along = scan == ScanLines::columns ? work.tile_rows : work.tile_columns;
-    const int across = scan == ScanLines::columns ? work.tile_columns : work.tile_rows;
-    const int step = scan == ScanLines::columns ? work.tile_columns : 1;
-    const int line = scan == ScanLines::columns ? 1 : work.tile_columns;
-    for (int c = 0; c < across; ++c) {
-        for (int a = 0; a < along; ++a) {
-            const int first = std::max(0, a - reach), last = std::min(along - 1, a + reach);
-            float value = in[c * line + first * step];
-            for (int i = first + 1; i <= last; ++i) value = pick(value, in[c * line + i * step]);
-            out[c * line + a * step] = value;
+void pick_of(const float* const* in, int count, int size, float* out) {
+    int i = 0;
+    for (; i + 4 <= size; i += 4) {
+        Four value, next;
+        std::memcpy(&value, in[0] + i, sizeof value);
+        for (int k = 1; k < count; ++k) {
+            std::memcpy(&next, in[k] + i, sizeof next);
+            value = Pick::of(value, next);
         }
+        std::memcpy(out + i, &value, sizeof value);
+    }
+    for (; i < size; ++i) {
+        out[i] = in[0][i];
+        for (int k = 1; k < count; ++k) out[i] = Pick::of(out[i], in[k][i]);
+    }
+}
+
+// Running minimum (or maximum) of 2 * reach + 1 tiles along the scan direction, fewer at the border.
+template <class Pick>
+void running(const std::vector<float>& in, std::vector<float>& out, StripeScan& work, ScanLines scan,
+             int reach) {
+    const int columns = work.tile_columns, rows = work.tile_rows;
+    const int along = scan == ScanLines::columns ? rows : columns;
+    reach = std::min(reach, along - 1);
+    work.taps.resize(static_cast<std::size_t>(2 * reach + 1));
+    const int count = static_cast<int>(work.taps.size());
+    if (scan == ScanLines::rows) work.padded.resize(static_cast<std::size_t>(columns + 2 * reach));
+    for (int row = 0; row < rows; ++row) {
+        const float* from = in.data() + static_cast<std::ptrdiff_t>(row) * columns;
+        for (int k = 0; k < count; ++k) {
+            // The border repeats its tile, which is within reach anyway.
+            const int other = std::clamp(row + k - reach, 0, rows - 1);
+            work.taps[k] = scan == ScanLines::rows
+                               ? work.padded.data() + k
+                               : in.data() + static_cast<std::ptrdiff_t>(other) * columns;
+        }
+        if (scan == ScanLines::rows) {
+            std::fill_n(work.padded.begin(), reach, from[0]);
+            std::copy_n(from, columns, work.padded.begin() + reach);
+            std::fill_n(work.padded.begin() + reach + columns, reach, from[columns - 1]);
+        }
+        pick_of<Pick>(work.taps.data(), count, columns, out.data() + static_cast<std::ptrdiff_t>(row) * columns);
     }
 }
 
 void open_map(std::vector<float>& map, StripeScan& work, ScanLines scan, int reach) {
-    running(map, work.scratch, work, scan, reach, [](float a, float b) { return std::min(a, b); });
-    running(work.scratch, map, work, scan, reach, [](float a, float b) { return std::max(a, b); });
+    running<Smaller>(map, work.scratch, work, scan, reach);
+    running<Larger>(work.scratch, map, work, scan, reach);
 }
 
 template <class Pixel>
@@ -391,9 +493,12 @@ void measure_background(const StripeImage& image, ScanLines scan, double max_wid
     } else {
         measure_tiles<std::uint16_t>(image, avx2, work);
     }
-    work.scratch = work.noise;
-    const auto middle = work.scratch.begin() + static_cast<std::ptrdiff_t>(tiles / 2);
-    std::nth_element(work.scratch.begin(), middle, work.scratch.end());
+    // Some hundred tiles are enough for the median; the step is odd, so that it passes through all columns.
+    const std::size_t step = tiles / kMedianTiles | 1;
+    std::size_t sampled = 0;
+    for (std::size_t i = 0; i < tiles; i += step) work.scratch[sampled++] = work.noise[i];
+    const auto begin = work.scratch.begin(), middle = begin + static_cast<std::ptrdiff_t>(sampled / 2);
+    std::nth_element(begin, middle, begin + static_cast<std::ptrdiff_t>(sampled));
     work.frame_noise = *middle;
     const int reach = static_cast<int>(std::ceil(max_width_px / kTile + 1.0)) / 2 + 1;
     open_map(work.background, work, scan, reach);

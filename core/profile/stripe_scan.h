@@ -36,6 +36,8 @@ struct StripeScan {
     int tile_columns = 0, tile_rows = 0;
     std::vector<float> background, noise;  // [tile_rows * tile_columns] grey values, after the opening
     std::vector<float> scratch;            // the same size
+    std::vector<const float*> taps;        // rows of a running minimum
+    std::vector<float> padded;             // a row with its ends repeated
     float frame_noise = 0;                 // median of the tiles, grey values
     std::vector<std::uint8_t> limit8;      // the limits of one row of tiles, one per pixel column, padded
     std::vector<std::uint16_t> limit16;

@@ -31,7 +31,7 @@ inline constexpr std::int32_t kRightMore = 8;  // pixels of the run behind `righ
 // Positions are rows of the window; a lane's row 0 is the pixel kGroupMargin before its run.
 struct alignas(32) LobeGroup {
     // Asked.
-    int rows = 0;                                 // of the longest window, <= kGroupRows
+    int rows = 0;                                   // of the longest window, <= kGroupRows
     std::uint16_t pixels[kGroupRows][kGroupLanes];  // grey values; row-wise, one column a lane
     std::int32_t length[kGroupLanes];               // of the run, px
     float background[kGroupLanes], noise[kGroupLanes];

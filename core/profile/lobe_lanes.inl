@@ -1,5 +1,5 @@
-// The kernel of lobe_group.cpp, included once for every instruction set: SEAMWRIGHT_INLINE carries its target.
-// (A compiler that splits vectors before it inlines would otherwise do so for the baseline.)
+// The kernel of lobe_group.cpp, included once for every instruction set: SEAMWRIGHT_INLINE carries its
+// target. (A compiler that splits vectors before it inlines would otherwise do so for the baseline.)
 
 using Reals = float __attribute__((vector_size(32)));
 using Ints = std::int32_t __attribute__((vector_size(32)));  // also masks: 0 or -1
@@ -160,7 +160,8 @@ struct Lanes {
         const Ints valley_end = edge + Step * (out + kFootPixels / 2);
         Reals bottom = pick(edge);
         Ints valley = edge;
-        begin = Step < 0 ? highest(valley_asked ? edge : whole(0)) : lowest(valley_asked ? edge : whole(rows));
+        begin =
+            Step < 0 ? highest(valley_asked ? edge : whole(0)) : lowest(valley_asked ? edge : whole(rows));
         for (int r = begin + Step; r >= 0 && r < rows; r += Step) {
             const Ints inside = Step < 0 ? (edge > r) & (valley_end <= r) : (edge < r) & (valley_end >= r);
             const Ints deeper = inside & (grey[r] < bottom);
@@ -168,8 +169,8 @@ struct Lanes {
             valley = deeper ? whole(r) : valley;
         }
         const Ints is_valley =
-            valley_asked & (level - bottom > most(0.25f * (top - bottom),
-                                                  static_cast<float>(kValleySigmas) * noise));
+            valley_asked &
+            (level - bottom > most(0.25f * (top - bottom), static_cast<float>(kValleySigmas) * noise));
         level = is_valley ? bottom : level;
         reach = is_valley ? least(reach, magnitude(to_real(valley) - middle)) : reach;
     }
@@ -185,8 +186,7 @@ struct Lanes {
         const Reals high = least(most(low_left, low_right), top);
         careful |= active & (high - low > 0.25f * (top - low));  // a step: only what stands above both counts
         base = active ? 0.5f * (low + high) : base;
-        const Reals sloping =
-            (low_right - low_left) / to_real(right - left + 2 * out + (kFootPixels - 1));
+        const Reals sloping = (low_right - low_left) / to_real(right - left + 2 * out + (kFootPixels - 1));
         slope = active ? (reach > 1e6f ? sloping : Reals{}) : slope;
     }
 
@@ -305,7 +305,8 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
 
     // Energy between the half-height points, and how much rises and falls again between them.
     Reals energy{}, variation{};
-    const int begin = lowest(measured ? lanes.left : whole(rows)), end = highest(measured ? lanes.right : whole(-1));
+    const int begin = lowest(measured ? lanes.left : whole(rows)),
+              end = highest(measured ? lanes.right : whole(-1));
     for (int r = begin; r <= end; ++r) {
         const Ints inside = (lanes.left <= r) & (lanes.right >= r);
         const Reals value =
@@ -328,8 +329,8 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
     peak &= (lanes.width >= group.min_width) & (lanes.width <= group.max_width) & (energy > 0.0f);
     peak &= energy * energy >= least_energy * least_energy * pixels;
 
-    store(group.outcome, (lanes.careful & kCareful) | (peak & kPeak) | (rise_left & kLeftMore) |
-                             (rise_right & kRightMore));
+    store(group.outcome,
+          (lanes.careful & kCareful) | (peak & kPeak) | (rise_left & kLeftMore) | (rise_right & kRightMore));
     store(group.half_from, lanes.left);
     store(group.half_to, lanes.right);
     store(group.top_first, lanes.top_first);

@@ -14,9 +14,9 @@ namespace seamwright {
 namespace detail {
 namespace {
 
-constexpr double kPixelSigmas = 4.0;    // candidate pixel
-constexpr double kPeakSigmas = 7.0;     // sum over the width of a peak, in its own standard deviations
-constexpr double kFrameShare = 0.001;   // of the strength that stripes have in the frame
+constexpr double kPixelSigmas = 4.0;   // candidate pixel
+constexpr double kPeakSigmas = 7.0;    // sum over the width of a peak, in its own standard deviations
+constexpr double kFrameShare = 0.001;  // of the strength that stripes have in the frame
 
 // Keeps the K strongest peaks of each line in order.
 class Keeper {
@@ -90,7 +90,8 @@ struct Extraction {
         if (options.threshold > 0) return false;
         const int tile = tile_of(run.line, {run.begin, run.end});
         const float base = scan.background[tile];
-        const float half = 0.5f * (base + static_cast<float>(std::max(pixels[run.begin], pixels[run.end - 1])));
+        const float half =
+            0.5f * (base + static_cast<float>(std::max(pixels[run.begin], pixels[run.end - 1])));
         int begin = run.begin, end = run.end;
         while (begin > 0 && run.begin - begin < 4 && static_cast<float>(pixels[begin - 1]) >= half) --begin;
         while (end < pixels.size && end - run.end < 4 && static_cast<float>(pixels[end]) >= half) ++end;
@@ -282,8 +283,8 @@ struct Extraction {
 template <class Pixel>
 void extract(const StripeImage& image, const PeakOptions& options, const ThresholdRule& rule, Kernel kernel,
              Workspace& work, StripePeaks& peaks) {
-    Extraction<Pixel> extraction{image, options, rule, work.scan, Keeper(peaks, work.strength),
-                                 kernel, {}, {}};
+    Extraction<Pixel> extraction{image,  options, rule, work.scan, Keeper(peaks, work.strength),
+                                 kernel, {},      {}};
     extraction.group.least_sigmas = options.threshold > 0 ? 0.0f : static_cast<float>(kPeakSigmas);
     extraction.group.min_width = static_cast<float>(options.min_width_px);
     extraction.group.max_width = static_cast<float>(options.max_width_px);

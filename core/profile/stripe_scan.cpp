@@ -212,9 +212,8 @@ __attribute__((target("avx2"))) inline __m256i above_avx2(const std::uint16_t* r
                                                           const std::uint16_t* limit) {
     const auto* pixels = reinterpret_cast<const __m256i*>(row);
     const auto* limits = reinterpret_cast<const __m256i*>(limit);
-    return _mm256_or_si256(
-        _mm256_subs_epu16(_mm256_loadu_si256(pixels), _mm256_loadu_si256(limits)),
-        _mm256_subs_epu16(_mm256_loadu_si256(pixels + 1), _mm256_loadu_si256(limits + 1)));
+    return _mm256_or_si256(_mm256_subs_epu16(_mm256_loadu_si256(pixels), _mm256_loadu_si256(limits)),
+                           _mm256_subs_epu16(_mm256_loadu_si256(pixels + 1), _mm256_loadu_si256(limits + 1)));
 }
 
 // Whether 128 pixels are all within their limits.
@@ -293,8 +292,8 @@ __attribute__((target("avx2"))) void add_rows_avx2(const std::uint16_t* const* r
             const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row));
             const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row + kDifferenceStep));
             const __m256i distance = _mm256_or_si256(_mm256_subs_epu16(a, b), _mm256_subs_epu16(b, a));
-            grey = _mm256_add_epi32(grey,
-                                    _mm256_add_epi32(_mm256_and_si256(a, low), _mm256_srli_epi32(a, 16)));
+            grey =
+                _mm256_add_epi32(grey, _mm256_add_epi32(_mm256_and_si256(a, low), _mm256_srli_epi32(a, 16)));
             difference = _mm256_add_epi32(difference, _mm256_add_epi32(_mm256_and_si256(distance, low),
                                                                        _mm256_srli_epi32(distance, 16)));
         }
@@ -393,16 +392,16 @@ void running(const std::vector<float>& in, std::vector<float>& out, StripeScan& 
         for (int k = 0; k < count; ++k) {
             // The border repeats its tile, which is within reach anyway.
             const int other = std::clamp(row + k - reach, 0, rows - 1);
-            work.taps[k] = scan == ScanLines::rows
-                               ? work.padded.data() + k
-                               : in.data() + static_cast<std::ptrdiff_t>(other) * columns;
+            work.taps[k] = scan == ScanLines::rows ? work.padded.data() + k
+                                                   : in.data() + static_cast<std::ptrdiff_t>(other) * columns;
         }
         if (scan == ScanLines::rows) {
             std::fill_n(work.padded.begin(), reach, from[0]);
             std::copy_n(from, columns, work.padded.begin() + reach);
             std::fill_n(work.padded.begin() + reach + columns, reach, from[columns - 1]);
         }
-        pick_of<Pick>(work.taps.data(), count, columns, out.data() + static_cast<std::ptrdiff_t>(row) * columns);
+        pick_of<Pick>(work.taps.data(), count, columns,
+                      out.data() + static_cast<std::ptrdiff_t>(row) * columns);
     }
 }
 

@@ -443,6 +443,65 @@ TEST(Peaks, KernelsAgreeBitForBitAndRowsAreColumnsTransposed) {
     }
 }
 
+// What the lanes of eight measure is what the one-at-a-time measurement in double precision gives, on
+// stripes, reflections beside them, uneven light, grains, plateaus, noise alone, near the border and far from
+// it.
+TEST(Peaks, LobesMeasuredInGroupsAreThoseMeasuredOneByOne) {
+    std::mt19937 random(21);
+    int compared = 0, apart = 0;
+    for (const int depth : {8, 12}) {
+        for (const double height : {0.06, 0.3, 0.7, 1.5}) {
+            for (const double spread : {0.7, 1.5, 2.5, 3.6, 6.0}) {
+                Frame frame(300, 240, depth);
+                const double full = frame.image().full_scale();
+                render(
+                    frame, ScanLines::columns,
+                    [&](int line, double at) {
+                        const double light =
+                            0.1 + 0.05 * std::sin(0.02 * line) + (line > 200 ? 2e-4 * at : 0.0);
+                        const double step = line > 150 && line < 170 && at > 118 ? 0.1 : 0.0;
+                        return full * (light + step) +
+                               gaussian_stripe(at, 12 + 0.7 * line, spread, height * full) +
+                               gaussian_stripe(at, 120, spread, 0.4 * height * full) +
+                               gaussian_stripe(at, 120 + 0.1 * line, 1.5 * spread, 0.3 * height * full);
+                    },
+                    Noise{0.006 * full, 0}, random);
+                for (const PeakMethod method : kMethods) {
+                    for (const double threshold : {0.0, 0.03}) {
+                        PeakOptions options;
+                        options.method = method;
+                        options.threshold = threshold * full;
+                        options.per_line = 8;
+                        options.max_width_px = height > 0.5 ? 8 : 80;
+                        StripePeaks group, careful;
+                        ASSERT_TRUE(detail::find_peaks(frame.image(), options, group, detail::Kernel::best));
+                        ASSERT_TRUE(
+                            detail::find_peaks(frame.image(), options, careful, detail::Kernel::careful));
+                        for (int line = 0; line < group.lines; ++line) {
+                            ASSERT_EQ(group.count[line], careful.count[line]) << line;
+                            for (int k = 0; k < group.count[line]; ++k) {
+                                const int i = group.index(line, k);
+                                ++compared;
+                                const double moved = std::abs(group.position_px[i] - careful.position_px[i]);
+                                const double widened = std::abs(group.width_px[i] - careful.width_px[i]);
+                                EXPECT_LT(moved, 0.2) << name_of(method) << " line " << line;
+                                EXPECT_LT(widened, 0.2) << name_of(method) << " line " << line;
+                                apart += moved > 1e-3 || widened > 1e-3;
+                                EXPECT_EQ(group.intensity[i], careful.intensity[i]);
+                                EXPECT_EQ(group.flags[i], careful.flags[i]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(compared, 50000);
+    // Levels are fractions of whole grey values: a pixel may stand exactly at half height, where rounding
+    // decides.
+    EXPECT_LT(apart, compared / 1000);
+}
+
 TEST(Peaks, OddTinyBlackWhiteAndRandomImagesAreSurvived) {
     std::mt19937 random(18);
     for (const int depth : {8, 10, 16}) {

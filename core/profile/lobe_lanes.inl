@@ -268,9 +268,13 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
 
     // What lies on either side of it in the run may hold lesser peaks.
     Ints rise_left = whole(0), rise_right = whole(0);
-    for (int r = kGroupMargin; r < kGroupMargin + longest; ++r) {
-        rise_left |= (left > r) & (lanes.grey[r] > lanes.grey[r + 1]);
-        rise_right |= (right < r) & (length + kGroupMargin > r) & (lanes.grey[r] > lanes.grey[r - 1]);
+    const Ints run_end = length + kGroupMargin;
+    Reals inner = lanes.grey[kGroupMargin];
+    for (int r = kGroupMargin; r + 1 < kGroupMargin + longest; ++r) {
+        const Reals outer = lanes.grey[r + 1];
+        rise_left |= (left > r) & (inner > outer);
+        rise_right |= (right <= r) & (run_end > r + 1) & (outer > inner);
+        inner = outer;
     }
     rise_left &= left - 1 > kGroupMargin;
     rise_right &= right + 2 < length + kGroupMargin;

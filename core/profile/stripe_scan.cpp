@@ -29,8 +29,8 @@ const Pixel* row_of(const StripeImage& image, int y) {
 // function of mean/measured standard deviation of clamped Gaussian noise (computed by simulation; below 0.7
 // it cannot be told).
 double clamping(double mean_over_noise) {
-    constexpr double at[] = {0.70, 0.80, 0.98, 1.25, 1.61, 2.04, 2.51};
-    constexpr double factor[] = {2.5, 1.99, 1.40, 1.153, 1.051, 1.013, 1.0};
+    static constexpr double at[] = {0.70, 0.80, 0.98, 1.25, 1.61, 2.04, 2.51};
+    static constexpr double factor[] = {2.5, 1.99, 1.40, 1.153, 1.051, 1.013, 1.0};
     if (mean_over_noise >= at[6]) return factor[6];
     if (mean_over_noise <= at[0]) return factor[0];
     for (int i = 1; i < 7; ++i)

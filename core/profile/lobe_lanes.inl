@@ -88,8 +88,10 @@ struct Lanes {
         Ints alive = active, below = whole(0), found = from;
         high = whole(0);
         const int start = Step < 0 ? highest(active ? from : whole(0)) : lowest(active ? from : whole(rows));
+        Ints row = whole(start);
         for (int r = start + Step; r >= 0 && r < rows; r += Step) {
-            const Ints passed = Step < 0 ? from > r : from < r;
+            row += Step;
+            const Ints passed = Step < 0 ? from > row : from < row;
             const Ints asked = alive & passed;
             const Reals value = grey[r];
             const Ints under = asked & (value < level), above = asked & (value >= level);
@@ -97,11 +99,11 @@ struct Lanes {
             high |= over;
             alive &= ~((under & below) | over);
             below = under;
-            found = taken ? whole(r) : found;
+            found = taken ? row : found;
             if (Step > 0) {
                 const Ints equal = taken & (value == top);
                 tops -= equal;
-                last_top = equal ? whole(r) : last_top;
+                last_top = equal ? row : last_top;
             }
             if (!any(alive)) break;
         }
@@ -122,11 +124,11 @@ struct Lanes {
         crossing(right, 1, half, to);
         Ints first = top_first, last = top_last;
         const int begin = lowest(active ? left : whole(rows)), end = highest(active ? right : whole(0));
-        for (int r = begin; r <= end; ++r) {
-            const Ints row = whole(r);
-            const Ints inside = (row >= left) & (row <= right) & (grey[r] >= upper);
-            first = inside ? least(first, row) : first;
-            last = inside ? most(last, row) : last;
+        Ints row = whole(begin);
+        for (int r = begin; r <= end; ++r, row += 1) {
+            const Ints outside = (row < left) | (row > right) | (grey[r] < upper);
+            first = outside ? first : least(first, row);
+            last = outside ? last : most(last, row);
         }
         Reals upper_from, upper_to;
         crossing(first, -1, upper, upper_from);
@@ -147,12 +149,13 @@ struct Lanes {
         const Ints first = Step < 0 ? far : near, last = Step < 0 ? near : far;
         int begin = lowest(asked ? first : whole(rows)), end = highest(asked ? last : whole(-1));
         Reals sum{}, low = real(1e9f), high = real(-1e9f);
-        for (int r = begin; r <= end; ++r) {
-            const Ints inside = (first <= r) & (last >= r);
+        Ints row = whole(begin);
+        for (int r = begin; r <= end; ++r, row += 1) {
+            const Ints outside = (row < first) | (row > last);
             const Reals value = grey[r];
-            sum += inside ? value : Reals{};
-            low = inside ? least(low, value) : low;
-            high = inside ? most(high, value) : high;
+            sum += outside ? Reals{} : value;
+            low = outside ? low : least(low, value);
+            high = outside ? high : most(high, value);
         }
         level = (sum - low - high) / static_cast<float>(kFootPixels - 2);
         const Ints valley_asked = asked & (level - base >= least(0.1f * (top - base), 2.0f * noise));
@@ -200,20 +203,21 @@ struct Lanes {
         const Ints first = to_row(middle - radius), last = to_row(middle + radius) + 1;
         const int begin = lowest(moving ? first : whole(rows)), end = highest(moving ? last : whole(0));
         Reals above[kGroupRows];
-        for (int r = begin; r <= end; ++r) {
-            const Ints inside = (first <= r) & (last >= r);
-            const Reals value = grey[r] - (base + slope * (static_cast<float>(r) - middle));
-            above[r] = inside ? value : Reals{};
+        Ints row = whole(begin);
+        const Reals at_zero = base - slope * middle;  // of the background
+        for (int r = begin; r <= end; ++r, row += 1) {
+            const Ints outside = (row < first) | (row > last);
+            const Reals value = grey[r] - (at_zero + slope * to_real(row));
+            above[r] = outside ? Reals{} : value;
         }
         const Reals scale = 1.0f / radius;
         for (int step = 0; step < kWindowSteps; ++step) {
             Reals force{}, stiffness{};
-            // Distance from the position in units of the radius, carried from row to row in exact rows.
-            for (int r = begin; r <= end; ++r) {
-                const Reals u = (static_cast<float>(r) - position) * scale;
+            Reals at = real(static_cast<float>(begin));
+            for (int r = begin; r <= end; ++r, at += 1.0f) {
+                const Reals u = (at - position) * scale;  // in radii
                 const Reals square = u * u;
-                Reals window = 1.0f - square;
-                window = window > 0.0f ? window : Reals{};
+                const Reals window = most(1.0f - square, Reals{});
                 const Reals weighted = above[r] * window;
                 force += weighted * window * u;
                 stiffness += weighted * (1.0f - 5.0f * square);
@@ -311,13 +315,16 @@ SEAMWRIGHT_INLINE void measure_lanes(LobeGroup& group) {
     Reals energy{}, variation{};
     const int begin = lowest(measured ? lanes.left : whole(rows)),
               end = highest(measured ? lanes.right : whole(-1));
-    for (int r = begin; r <= end; ++r) {
-        const Ints inside = (lanes.left <= r) & (lanes.right >= r);
-        const Reals value =
-            lanes.grey[r] - (lanes.base + lanes.slope * (static_cast<float>(r) - lanes.middle));
-        energy += inside ? value : Reals{};
-        const Reals difference = magnitude(lanes.grey[r] - lanes.grey[r > 0 ? r - 1 : 0]);
-        variation += inside & (lanes.left < r) ? difference : Reals{};
+    Ints row = whole(begin);
+    const Reals at_zero = lanes.base - lanes.slope * lanes.middle;
+    Reals before = lanes.grey[begin > 0 && begin < rows ? begin - 1 : 0];
+    for (int r = begin; r <= end; ++r, row += 1) {
+        const Ints beyond = row > lanes.right;
+        const Reals grey = lanes.grey[r];
+        const Reals value = grey - (at_zero + lanes.slope * to_real(row));
+        energy += (row < lanes.left) | beyond ? Reals{} : value;
+        variation += (row > lanes.left) & ~beyond ? magnitude(grey - before) : Reals{};
+        before = grey;
     }
     const Reals height = lanes.top - lanes.base, pixels = to_real(lanes.right - lanes.left + 1);
     const Reals path = 2.0f * lanes.top - lanes.pick(lanes.left) - lanes.pick(lanes.right);

@@ -188,8 +188,8 @@ Expected<ReplayResult> replay(const std::filesystem::path& path, const ReplayOpt
         }
     };
     {
-        std::vector<std::jthread> threads;
         std::vector<Expected<ProjectFile>> connections;
+        std::vector<std::jthread> threads;  // joined before their connections close
         for (int i = 1; i < std::min<int>(options.jobs, static_cast<int>(runs->size())); ++i) {
             connections.push_back(ProjectFile::open(path, FileAccess::read_only));
             if (!connections.back()) return tl::unexpected(connections.back().error());

@@ -10,7 +10,7 @@
 // whole profile: an outlier costs as much as a point at the rim of the band, a sharp edge of the contour
 // costs about two outliers, a new segment more than `lookahead` of them. The cheapest explanation is found in
 // one pass (dynamic programming, linear in the number of points), and checked in a second one from the other
-// end, so that a point near an edge or a jump is judged from its own side.
+// end wherever the first was not plain, so that a point near an edge or a jump is judged from its own side.
 //
 // Noise model: independent noise of x and z per point, normal, the same over the profile; its standard
 // deviations are taken from the median of the second differences unless given. A spacing may be smaller than

@@ -84,7 +84,7 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
     // DLT of [R | t] on centred, scaled body points.
     const PointFrame f = frame_of(object);
     const double scale = 1 / f.extent.norm();
-    Eigen::Matrix<double, 12, 12> ata = Eigen::Matrix<double, 12, 12>::Zero();
+    Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(12, 12);
     for (std::size_t i = 0; i < object.size(); ++i) {
         const Eigen::Vector4d x = (scale * (object[i] - f.centre)).homogeneous();
         Eigen::Matrix<double, 2, 12> a = Eigen::Matrix<double, 2, 12>::Zero();
@@ -92,9 +92,11 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
         a.block<1, 4>(0, 8) = -image[i].x() * x.transpose();
         a.block<1, 4>(1, 4) = x.transpose();
         a.block<1, 4>(1, 8) = -image[i].y() * x.transpose();
-        ata += a.transpose() * a;
+        for (Eigen::Index k = 0; k < 2; ++k)
+            ata.selfadjointView<Eigen::Lower>().rankUpdate(a.row(k).transpose());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>> eigen(ata);
+    // Of dynamic size: unrolled for 12 x 12 it takes the compiler a minute and saves nothing here.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(ata);
     const Eigen::Matrix<double, 12, 1> p = eigen.eigenvectors().col(0);
     Eigen::Matrix<double, 3, 4> m;
     m << p.segment<4>(0).transpose(), p.segment<4>(4).transpose(), p.segment<4>(8).transpose();
@@ -286,7 +288,7 @@ std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>
                                               const std::vector<Eigen::Vector2d>& to) {
     if (from.size() < 4 || from.size() != to.size()) return std::nullopt;
     const Eigen::Matrix3d a = normaliser(from), b = normaliser(to);
-    Eigen::Matrix<double, 9, 9> ata = Eigen::Matrix<double, 9, 9>::Zero();
+    Eigen::MatrixXd ata = Eigen::MatrixXd::Zero(9, 9);
     for (std::size_t i = 0; i < from.size(); ++i) {
         const Eigen::Vector3d p = a * from[i].homogeneous(), q = b * to[i].homogeneous();
         Eigen::Matrix<double, 2, 9> row = Eigen::Matrix<double, 2, 9>::Zero();
@@ -294,9 +296,10 @@ std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>
         row.block<1, 3>(0, 6) = -q.x() * p.transpose();
         row.block<1, 3>(1, 3) = p.transpose();
         row.block<1, 3>(1, 6) = -q.y() * p.transpose();
-        ata.noalias() += row.transpose() * row;
+        for (Eigen::Index k = 0; k < 2; ++k)
+            ata.selfadjointView<Eigen::Lower>().rankUpdate(row.row(k).transpose());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(ata);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(ata);
     if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(1) > 1e-12 * eigen.eigenvalues()(8)))
         return std::nullopt;
     const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);

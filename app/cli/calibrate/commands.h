@@ -109,4 +109,14 @@ Expected<CalibrateOutcome> calibrate_laser_plane_json(const nlohmann::json& data
 Expected<CalibrateOutcome> calibrate_lens_json(const nlohmann::json& data,
                                                const std::vector<std::string>& exclude);
 
+// {"size":[w,h],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}]} ->
+// {"status","table":{"u0","v0","step_u","step_v","columns","rows","holes"},"covered_share","forward_rms_mm",
+//     "forward_max_mm","backward_rms_px","backward_max_px","unsupported_pairs","noise_px","noise_mm",
+//     "interpolation_mm","sigma":{"rms_mm","worst_mm"},"wrong_pairs":[id,..],"table_file",...}
+// The table itself goes to `table_path` (devices/exchange/lookup_table_file.h) when one is given and the
+// verdict is good or usable; "table_file" is then its path, else null.
+Expected<CalibrateOutcome> calibrate_lut_json(const nlohmann::json& data,
+                                              const std::vector<std::string>& exclude,
+                                              const std::string& table_path = {});
+
 }  // namespace seamwright

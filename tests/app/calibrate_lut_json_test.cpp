@@ -1,0 +1,102 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/cli/calibrate/commands.h"
+#include "core/profile/sensor_model.h"
+#include "devices/exchange/lookup_table_file.h"
+#include "tests/core/calibration/camera_scene.h"
+#include "tests/devices/temporary_folder.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+
+const SensorModel kSensor{test::camera_640(), make_pose(rotation_exp({1.0, 0.2, 0.15}), {10, -5, 320}), {}};
+
+json grid(int side, double noise_px) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> n(0, noise_px);
+    json data{{"size", {640, 480}}, {"pairs", json::array()}};
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+            const Eigen::Vector2d p(5 + i * 629.0 / (side - 1), 5 + j * 469.0 / (side - 1));
+            const Eigen::Vector2d xz = *kSensor.to_laser(p);
+            data["pairs"].push_back(
+                {{"pixel", {p.x() + n(random), p.y() + n(random)}}, {"laser", {xz.x(), xz.y()}}});
+        }
+    return data;
+}
+
+TEST(CalibrateLutJson, FollowsTheContractAndWritesTheTable) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "sensor.lut";
+    json data = grid(15, 0.1);
+    data["step_px"] = 16;
+    const auto outcome = calibrate_lut_json(data, {"3"}, path.string());
+    ASSERT_TRUE(outcome) << outcome.error().sentence();
+    EXPECT_EQ(outcome->exit_code, 0);
+    const json& r = outcome->result;
+    EXPECT_EQ(r["status"], "ok");
+    EXPECT_EQ(r["verdict"], "good") << r["reason"];
+    EXPECT_EQ(r["table"]["step_u"], 16);
+    EXPECT_EQ(r["table_file"], path.string());
+    EXPECT_EQ(r["per_pose"].size(), 225u);
+    EXPECT_EQ(r["per_pose"][3]["note"], "excluded");
+    EXPECT_TRUE(r["wrong_pairs"].empty());
+    EXPECT_EQ(r["covariance"].size(), r["parameters"].size());
+    EXPECT_GT(r["hold_out"]["folds"], 0);
+    const auto table = read_lookup_table(path);
+    ASSERT_TRUE(table) << table.error().sentence();
+    EXPECT_EQ(r["table"]["columns"], table->columns);
+    EXPECT_EQ(r["table"]["rows"], table->rows);
+    int holes = 0;
+    for (const double x : table->x_mm) holes += std::isnan(x);
+    EXPECT_EQ(r["table"]["holes"], holes);
+    const auto xz = table->at({320, 240});
+    ASSERT_TRUE(xz);
+    EXPECT_LT((*xz - *kSensor.to_laser({320, 240})).norm(), 0.05);
+}
+
+TEST(CalibrateLutJson, WritesNoTableThatMustNotBeUsed) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "sensor.lut";
+    json line{{"size", {640, 480}}, {"pairs", json::array()}};
+    for (int i = 0; i < 30; ++i) line["pairs"].push_back({{"pixel", {20 * i, 100}}, {"laser", {3 * i, 5}}});
+    const auto outcome = calibrate_lut_json(line, {}, path.string());
+    ASSERT_TRUE(outcome) << outcome.error().sentence();
+    EXPECT_EQ(outcome->exit_code, 1);
+    EXPECT_EQ(outcome->result["status"], "undetermined");
+    EXPECT_TRUE(outcome->result["table"].is_null());
+    EXPECT_TRUE(outcome->result["forward_rms_mm"].is_null());
+    EXPECT_TRUE(outcome->result["table_file"].is_null());
+    EXPECT_FALSE(std::filesystem::exists(path));
+    EXPECT_FALSE(calibrate_lut_json(grid(8, 0.1), {}, (folder.path() / "no" / "where.lut").string()));
+}
+
+TEST(CalibrateLutJson, RefusesBadInput) {
+    const json good = grid(8, 0.1);
+    EXPECT_TRUE(calibrate_lut_json(good, {}));
+    const auto refused = [&](const char* pointer, json value) {
+        json data = good;
+        data[json::json_pointer(pointer)] = std::move(value);
+        return !calibrate_lut_json(data, {}).has_value();
+    };
+    EXPECT_TRUE(refused("/size", json::array({640})));
+    EXPECT_TRUE(refused("/size", json::array({0, 480})));
+    EXPECT_TRUE(refused("/size", json::array({1e300, 480})));
+    EXPECT_TRUE(refused("/step_px", 0));
+    EXPECT_TRUE(refused("/step_px", "8"));
+    EXPECT_TRUE(refused("/pairs", json::array()));
+    EXPECT_TRUE(refused("/pairs", 3));
+    EXPECT_TRUE(refused("/pairs/4", 3));
+    EXPECT_TRUE(refused("/pairs/4/pixel", json::array({1, 2, 3})));
+    EXPECT_TRUE(refused("/pairs/4/pixel", nullptr));
+    EXPECT_TRUE(refused("/pairs/4/laser", json::array({"a", 2})));
+    EXPECT_TRUE(refused("/pairs/4/id", json::object()));
+    EXPECT_FALSE(calibrate_lut_json(json(3), {}));
+    EXPECT_FALSE(calibrate_lut_json(good, {"nobody"}));
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -62,9 +62,9 @@ void add_row_portable(const Pixel* row, int count, int pairs, TileSums& sums) {
 double mean_difference(const TileSums& sums, int pairs) {
     if (pairs == kTile) {
         const std::uint32_t* d = sums.difference;
-        const auto [low, high] = std::minmax(d[0], d[1]);
-        const auto [other_low, other_high] = std::minmax(d[2], d[3]);
-        const std::uint32_t second_of_all = std::min({std::max(low, other_low), high, other_high});
+        const std::uint32_t low = std::min(d[0], d[1]), high = std::max(d[0], d[1]);
+        const std::uint32_t other_low = std::min(d[2], d[3]), other_high = std::max(d[2], d[3]);
+        const std::uint32_t second_of_all = std::min(std::max(low, other_low), std::min(high, other_high));
         return second_of_all / (kSampledRows * double(kTile / kLanes));
     }
     double smallest = 0, second = 0;
@@ -502,7 +502,8 @@ void measure_background(const StripeImage& image, ScanLines scan, double max_wid
     const int reach = static_cast<int>(std::ceil(max_width_px / kTile + 1.0)) / 2 + 1;
     open_map(work.background, work, scan, reach);
     open_map(work.noise, work, scan, reach);
-    for (float& noise : work.noise) noise = std::max(noise, 0.5f * work.frame_noise);
+    const float least_noise = 0.5f * work.frame_noise;
+    for (float& noise : work.noise) noise = std::max(noise, least_noise);
 }
 
 void scan_runs(const StripeImage& image, ScanLines scan, const ThresholdRule& rule, Kernel kernel,

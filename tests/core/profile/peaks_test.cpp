@@ -468,6 +468,7 @@ TEST(Peaks, LobesMeasuredInGroupsAreThoseMeasuredOneByOne) {
                     Noise{0.006 * full, 0}, random);
                 for (const PeakMethod method : kMethods) {
                     for (const double threshold : {0.0, 0.03}) {
+                        if (method != PeakMethod::centre_of_gravity && threshold > 0) continue;
                         PeakOptions options;
                         options.method = method;
                         options.threshold = threshold * full;
@@ -496,9 +497,9 @@ TEST(Peaks, LobesMeasuredInGroupsAreThoseMeasuredOneByOne) {
             }
         }
     }
-    EXPECT_GT(compared, 50000);
-    // Levels are fractions of whole grey values: a pixel may stand exactly at half height, where rounding
-    // decides.
+    EXPECT_GT(compared, 30000);
+    // Levels are fractions of whole grey values: a pixel may stand exactly at half height, a step of the
+    // background exactly at its limit; there rounding decides.
     EXPECT_LT(apart, compared / 1000);
 }
 

@@ -120,6 +120,23 @@ const Spot* find_spot(const Project& project, const std::string& id) {
     return find_by_id(project.spots, id);
 }
 
+std::vector<SpotObservation> planned_observations(const Project& project, const Region& region) {
+    std::vector<SpotObservation> observations;
+    for (const std::string& id : region.spot_ids) {
+        const Spot* spot = find_spot(project, id);
+        if (!spot || !spot->enabled) continue;
+        const Calibration* calibration = calibration_of(project, *spot);
+        if (!calibration) continue;
+        SpotMeasurement at_reference;
+        at_reference.spot_id = id;
+        at_reference.measured_mm = spot->reference_mm;
+        at_reference.sigma_mm = spot->sigma_mm;
+        observations.push_back(observation(*spot, project.part.base_from_workobject,
+                                           calibration->flange_from_sensor, at_reference));
+    }
+    return observations;
+}
+
 const Calibration* calibration_of(const Project& project, const Spot& spot) {
     const SensorSetup* sensor = find_sensor(project, spot.sensor_id);
     return sensor && !sensor->calibration_id.empty()

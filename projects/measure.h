@@ -42,6 +42,10 @@ Eigen::Vector3d in_taught_sensor(const Eigen::Vector2d& point_mm, const Pose& fl
 SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
                             const Pose& flange_from_sensor, const SpotMeasurement& measurement);
 
+// The plan's input of a region: each of its enabled spots standing at its reference. Spots without
+// calibration are left out, as they are in a run.
+std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
+
 // The calibration in use at a spot's sensor; nullptr when there is none.
 const Calibration* calibration_of(const Project& project, const Spot& spot);
 const SensorSetup* find_sensor(const Project& project, const std::string& id);

@@ -91,7 +91,7 @@ struct Region {
     std::vector<std::string> spot_ids;
     FreeDof free = kAllFree;
     CorrectionLimits limits{25.0, 3.0};
-    double sigma_limit_mm = 0.1;  // over this the gate refuses
+    double sigma_limit_mm = 0.1;  // worst direction at any of its spots; over this the gate refuses
     double sigma_limit_deg = 0.05;
     std::string frame_name;                   // on the controller
     Pose base_from_frame = Pose::Identity();  // taught, for the undisplaced part

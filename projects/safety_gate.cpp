@@ -49,6 +49,14 @@ double worst_sigma(const Eigen::Matrix3d& covariance) {
     return std::sqrt(std::max(0.0, largest));
 }
 
+// The same of a point that the displacement carries along: d(D p) = dt - [R p]x dw.
+double sigma_at(const RegionCorrection& correction, const Eigen::Vector3d& point_workobject_mm) {
+    Eigen::Matrix<double, 3, 6> j;
+    j << Eigen::Matrix3d::Identity(),
+        -skew(correction.displacement.workobject_from_movedworkobject.linear() * point_workobject_mm);
+    return worst_sigma(j * correction.covariance * j.transpose());
+}
+
 std::string name_of(const SensorIdentity& id) {
     return fmt::format("{} {} {} {}", id.driver, id.vendor, id.model, id.serial);
 }
@@ -128,8 +136,13 @@ void judge_correction(const GateRequest& request, Reasons& reasons) {
                           "the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn,
                           region.limits.rotation_deg);
 
-    const double sigma_mm = std::max(worst_sigma(correction.covariance.topLeftCorner<3, 3>()),
-                                     correction.sigma_xyz_mm.cwiseAbs().maxCoeff());
+    // Where the path runs, not at the work object's origin, which may lie metres away and says nothing about
+    // the bead.
+    double sigma_mm = request.spots.empty() ? worst_sigma(correction.covariance.topLeftCorner<3, 3>()) : 0.0;
+    for (const GateSpot& spot : request.spots) {
+        const double at_spot = sigma_at(correction, spot.point_workobject_mm);
+        if (!(at_spot <= sigma_mm)) sigma_mm = at_spot;  // NaN stays
+    }
     const double sigma_deg =
         std::max(deg_from_rad(worst_sigma(correction.covariance.bottomRightCorner<3, 3>())),
                  correction.sigma_abc_deg.cwiseAbs().maxCoeff());
@@ -139,6 +152,10 @@ void judge_correction(const GateRequest& request, Reasons& reasons) {
     reasons.refuse_unless(sigma_deg <= region.sigma_limit_deg,
                           "sigma of {:.4f} degrees is over the region's limit of {:.4f} degrees", sigma_deg,
                           region.sigma_limit_deg);
+    reasons.refuse_unless(
+        correction.consistent,
+        "the spots contradict each other beyond their stated sigma (variance factor {:.1f})",
+        correction.variance_factor);
     // A free direction known without any error was never estimated.
     reasons.refuse_unless(sigma_mm > 0 || sigma_deg > 0, "the correction states no uncertainty");
 }

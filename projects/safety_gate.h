@@ -31,9 +31,10 @@ struct GateSpot {
     std::string id;
     bool required = true;
     bool measured = false;
-    std::string part_id;              // of the measurement
-    std::int64_t measured_at_ns = 0;  // steady clock
-    std::string calibration_id;       // empty = none
+    std::string part_id;                                            // of the measurement
+    std::int64_t measured_at_ns = 0;                                // steady clock
+    Eigen::Vector3d point_workobject_mm = Eigen::Vector3d::Zero();  // its reference: where sigma is judged
+    std::string calibration_id;                                     // empty = none
     std::string calibration_verdict;
     SensorIdentity sensor, calibrated_sensor;  // as connected; as calibrated
     RobotIdentity robot, calibrated_robot;

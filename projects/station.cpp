@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 
+#include "projects/acquire.h"
 #include "projects/measure.h"
 #include "projects/safety_gate.h"
 
@@ -16,26 +17,6 @@ std::int64_t steady_now_ns() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
                std::chrono::steady_clock::now().time_since_epoch())
         .count();
-}
-
-// The sensor is wired to the robot's trigger output and needs no call.
-bool hardware_triggered(const SensorSetup& sensor) {
-    const auto it = sensor.settings.find("hardware_trigger");
-    return it != sensor.settings.end() && it->is_boolean() && it->get<bool>();
-}
-
-MeasuringMove move_of(const Spot& spot, const Pose& flange_from_sensor) {
-    MeasuringMove move;
-    move.spot_id = spot.id;
-    move.trigger = spot.base_from_flange;
-    // Along the sensor's Y, through the trigger, with the orientation held.
-    const Eigen::Vector3d travel = (spot.base_from_flange * flange_from_sensor).linear().col(1);
-    move.entry = move.exit = move.trigger;
-    move.entry.translation() -= spot.entry_mm * travel;
-    move.exit.translation() += spot.exit_mm * travel;
-    move.speed_mm_s = spot.speed_mm_s;
-    move.stop_at_trigger = spot.stop_at_trigger;
-    return move;
 }
 
 StoredImage keep_image(const StripeImage& image) {
@@ -49,22 +30,6 @@ StoredImage keep_image(const StripeImage& image) {
     }
     return stored;
 }
-
-// Stops every started sensor, however the run ends.
-class StartedSensors {
-  public:
-    ~StartedSensors() {
-        for (ProfileSource* sensor : started_) sensor->stop();
-    }
-    Expected<void> start(ProfileSource& sensor) {
-        auto started = sensor.start();
-        if (started) started_.push_back(&sensor);
-        return started;
-    }
-
-  private:
-    std::vector<ProfileSource*> started_;
-};
 
 }  // namespace
 
@@ -122,19 +87,13 @@ struct Station::Impl {
     Expected<void> measure_spot(Job& job, const Spot& spot, const TriggerEvent& trigger) {
         const SensorSetup& setup = *find_sensor(project, spot.sensor_id);
         ProfileSource& sensor = *sensors.at(spot.sensor_id);
-        if (!hardware_triggered(setup))
-            if (auto fired = sensor.trigger(spot.id); !fired) return fired;
-        Expected<FramePtr> frame = sensor.wait_next(job.options.frame_timeout);
-        // A free-running sensor may still hold frames of before; they carry another spot's name or none at
-        // all.
-        while (frame && *frame && !(*frame)->spot_id.empty() && (*frame)->spot_id != spot.id) {
-            job.event(EventKind::device, setup.id,
-                      fmt::format("frame {} of spot {} came at spot {} and was dropped", (*frame)->sequence,
-                                  (*frame)->spot_id, spot.id));
-            frame = sensor.wait_next(job.options.frame_timeout);
-        }
+        auto frame = frame_at_trigger(
+            sensor, setup, spot.id, job.options.limits.frame_timeout, [&](const Frame& dropped) {
+                job.event(EventKind::device, setup.id,
+                          fmt::format("frame {} of spot {} came at spot {} and was dropped", dropped.sequence,
+                                      dropped.spot_id, spot.id));
+            });
         if (!frame) return tl::unexpected(frame.error());
-        if (!*frame) return device_error("the sensor gave no frame", "sensor " + setup.id);
         SpotMeasurer& measurer = job.measurers.at(spot.id);
         SpotMeasurement& result = job.measurement(spot.id);
         result = measurer.measure(**frame, trigger.base_from_flange);
@@ -157,7 +116,8 @@ struct Station::Impl {
             if (!spot.enabled || spot.robot_id != robot_id) continue;
             spots.push_back(&spot);
             const Calibration* calibration = calibration_of(project, spot);
-            moves.push_back(move_of(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
+            moves.push_back(
+                measuring_move(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
         }
         RobotLink& robot = *robots.at(robot_id);
         if (auto started = robot.start_measuring(moves); !started) return started;
@@ -165,7 +125,7 @@ struct Station::Impl {
         for (const Spot* spot : spots) open.insert(spot->id);
         while (!open.empty()) {
             if (job.options.cancel.stop_requested()) return {};
-            auto trigger = robot.wait_trigger(job.options.trigger_timeout);
+            auto trigger = robot.wait_trigger(job.options.limits.trigger_timeout);
             if (!trigger) return tl::unexpected(trigger.error());
             const auto spot = std::find_if(spots.begin(), spots.end(),
                                            [&](const Spot* s) { return s->id == trigger->spot_id; });
@@ -222,6 +182,8 @@ struct Station::Impl {
                     g.measured_at_ns = m.host_time_ns;
                 }
             if (const Calibration* calibration = calibration_of(project, *spot)) {
+                g.point_workobject_mm = project.part.base_from_workobject.inverse() * spot->base_from_flange *
+                                        calibration->flange_from_sensor * spot->reference_mm;
                 g.calibration_id = calibration->id;
                 g.calibration_verdict = calibration->verdict;
                 g.calibrated_sensor = calibration->sensor_identity;

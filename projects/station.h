@@ -11,6 +11,7 @@
 #include <string>
 
 #include "devices/registry.h"
+#include "projects/acquire.h"
 #include "projects/project_file.h"
 
 namespace seamwright {
@@ -24,8 +25,7 @@ struct RunOptions {
     std::string part_id;       // empty = "run <number>"
     bool push = false;         // false = dry run: everything but writing
     bool keep_images = false;  // raw images with the run, beside candidates and profiles
-    std::chrono::milliseconds trigger_timeout{20000};  // robot: from one spot to the next
-    std::chrono::milliseconds frame_timeout{3000};     // sensor: from trigger to frame
+    AcquireLimits limits;
     std::stop_token cancel;  // looked at between spots: a silent device holds it up for its time-out
     std::function<void(const RunProgress&)> progress;  // called on the running thread
 };

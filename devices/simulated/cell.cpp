@@ -133,7 +133,7 @@ void SimulatedCell::render(const Pose& base_from_flange, std::uint64_t frame_see
                              ? settings_.base_from_workobject * part_.workobject_from_movedworkobject
                              : settings_.base_from_target;
     }
-    BoardPattern board;
+    PlatePattern board;
     std::shared_ptr<MeshTree> tree = tree_;
     if (scene != Scene::part) {
         if (!target_ || target_scene_ != scene) {
@@ -295,12 +295,16 @@ std::uint64_t SimulatedCell::lost_exposures() const {
 
 double SimulatedCell::parameter(const std::string& name) const {
     const std::lock_guard lock(mutex_);
+    if (name == "laser") return exposure_.laser_on ? 1 : 0;
     return name == "gain_db" ? exposure_.gain_db : exposure_.exposure_us;
 }
 
 void SimulatedCell::set_parameter(const std::string& name, double value) {
     const std::lock_guard lock(mutex_);
-    (name == "gain_db" ? exposure_.gain_db : exposure_.exposure_us) = value;
+    if (name == "laser")
+        exposure_.laser_on = value != 0;
+    else
+        (name == "gain_db" ? exposure_.gain_db : exposure_.exposure_us) = value;
 }
 
 }  // namespace seamwright

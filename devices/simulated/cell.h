@@ -72,7 +72,7 @@ struct CellSettings {
     int buffers = 8;
     RobotSettings robot;
     double sphere_radius_mm = 25;
-    BoardPattern board{7, 6, 10, 0.1};
+    PlatePattern board{7, 6, 10, 0.1};
     std::string serial = "SIM-1";
 };
 CellSettings default_cell_settings();

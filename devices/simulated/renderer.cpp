@@ -440,14 +440,16 @@ void StripeRenderer::expose(const Exposure& exposure, std::span<std::byte> pixel
 
 void StripeRenderer::render(const MeshTree& part, const Pose& part_from_sensor, const Exposure& exposure,
                             std::uint64_t surface_seed, std::span<std::byte> pixels,
-                            std::vector<StripeSample>* truth, const BoardPattern& board) {
+                            std::vector<StripeSample>* truth, const PlatePattern& board) {
     assert(pixels.size() == image_bytes());
     board_ = board;
     samples_.clear();
     std::fill(rows_drawn_.begin(), rows_drawn_.end(), std::pair(optics_.height, -1));
     std::fill(electrons_.begin(), electrons_.end(), 0.0F);
-    trace(part, part_from_sensor, kBrightElectronsPerMs * exposure.exposure_us / 1000, surface_seed);
-    add_strays(exposure.seed);
+    if (exposure.laser_on) {
+        trace(part, part_from_sensor, kBrightElectronsPerMs * exposure.exposure_us / 1000, surface_seed);
+        add_strays(exposure.seed);
+    }
     draw();
     bloom_and_speckle(exposure.seed);
     if (board_.columns > 0) {

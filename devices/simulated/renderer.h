@@ -66,6 +66,7 @@ inline constexpr double kBrightElectronsPerMs =
 
 struct Exposure {
     double exposure_us = 1000, gain_db = 0;
+    bool laser_on = true;    // off: what ambient light shows, as for a plate's board
     std::uint64_t seed = 0;  // of this frame: noise, speckle, stray reflections
 };
 
@@ -81,7 +82,7 @@ struct StripeSample {
 
 // Flat board under ambient light, beside the stripe (plate scene): squares of `pitch_mm`, columns x rows
 // inner corners.
-struct BoardPattern {
+struct PlatePattern {
     int columns = 0, rows = 0;  // inner corners; 0 = none
     double pitch_mm = 10;
     double dark_albedo = 0.1;
@@ -99,7 +100,7 @@ class StripeRenderer {
     // patches) belong to the part: `surface_seed` is the part's.
     void render(const MeshTree& part, const Pose& part_from_sensor, const Exposure& exposure,
                 std::uint64_t surface_seed, std::span<std::byte> pixels,
-                std::vector<StripeSample>* truth = nullptr, const BoardPattern& board = {});
+                std::vector<StripeSample>* truth = nullptr, const PlatePattern& board = {});
 
   private:
     void trace(const MeshTree& part, const Pose& part_from_sensor, double scale, std::uint64_t surface_seed);
@@ -113,7 +114,7 @@ class StripeRenderer {
     OpticsSettings optics_;
     SurfaceSettings surface_;
     NoiseSettings noise_;
-    BoardPattern board_;
+    PlatePattern board_;
     SensorModel model_;
     Eigen::Vector3d laser_, camera_;  // in the sensor frame
     double sigma_u_, sigma_v_;        // px

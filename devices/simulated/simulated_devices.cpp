@@ -68,7 +68,7 @@ class SimulatedSensor final : public ProfileSource {
         return c;
     }
     std::vector<ParameterInfo> parameters() const override {
-        ParameterInfo exposure, gain;
+        ParameterInfo exposure, gain, laser;
         exposure.name = "exposure_us";
         exposure.unit = "us";
         exposure.minimum = 1;
@@ -82,14 +82,20 @@ class SimulatedSensor final : public ProfileSource {
         gain.default_value = cell_->settings().exposure.gain_db;
         gain.decimals = 1;
         gain.help = "Gain after exposure; 0 dB shows a full well as full scale.";
-        return {exposure, gain};
+        laser.name = "laser";
+        laser.maximum = 1;
+        laser.default_value = 1;
+        laser.decimals = 0;
+        laser.help = "Laser on or off.";
+        laser.choices = {"off", "on"};
+        return {exposure, gain, laser};
     }
     Expected<double> get(const std::string& parameter) const override {
         for (const auto& info : parameters()) {
             if (info.name == parameter) return cell_->parameter(parameter);
         }
         return usage_error("there is no parameter \"" + parameter + "\"", "simulated sensor",
-                           "known are exposure_us, gain_db");
+                           "known are exposure_us, gain_db, laser");
     }
     Expected<void> set(const std::string& parameter, double value) override {
         if (auto ok = validate({{parameter, value}}, parameters(), "simulated sensor"); !ok) return ok;

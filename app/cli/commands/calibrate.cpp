@@ -1,0 +1,195 @@
+// seamwright calibrate METHOD DATA: every calibration, from files.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "app/cli/calibrate/calibration_report.h"
+#include "app/cli/calibrate/commands.h"
+#include "app/cli/command.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "projects/project_file.h"
+#include "projects/run.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+using Exclude = std::vector<std::string>;
+
+struct Arguments {
+    std::string data, board, pattern = "chessboard", report, project, sensor;
+    double pitch_mm = 0;
+    Exclude exclude;
+};
+
+using FromJson = Expected<CalibrateOutcome> (*)(const json&, const Exclude&);
+
+struct Method {
+    const char* name;
+    const char* help;
+    FromJson from_json;  // null: images only
+    bool images;         // DATA may be a folder of images
+    const char* example;
+};
+
+const Method kMethods[] = {
+    {"lens", "Distortion from straight laser lines on a plane", calibrate_lens_json, false, "lines.json"},
+    {"camera", "Intrinsics from views of a plate", calibrate_camera_json, true,
+     "images --board 9x6 --pitch-mm 25"},
+    {"laser-plane", "Laser plane in the camera from a triangular body's apexes", calibrate_laser_plane_json,
+     false, "pairs.json"},
+    {"tcp-sphere", "Sensor on the flange from profiles of one sphere", calibrate_tcp_sphere_json, false,
+     "sphere.json --exclude P3"},
+    {"plate", "Plate in the world from two point sets", calibrate_plate_json, false, "points.json"},
+    {"static", "One-shot chain world - plate - camera - laser for several sensors", calibrate_static_json,
+     false, "chain.json"},
+    {"hand-eye", "Camera on the flange, or beside the robot", calibrate_hand_eye_json, false, "pairs.json"},
+    {"stripe-camera", "Intrinsics, laser plane and hand-eye from images of a board and the stripe", nullptr,
+     true, "images --board 7x6 --pitch-mm 10 --report report.html"},
+    {"drift", "Does a stored calibration still hold", check_drift_json, false, "measured.json"},
+};
+
+Expected<CalibrateOutcome> solve(const Method& method, const Arguments& a, json& data) {
+    if (method.images && (std::filesystem::is_directory(a.data) || !method.from_json)) {
+        if (a.board.empty() || !(a.pitch_mm > 0))
+            return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm",
+                               "calibrate " + std::string(method.name));
+        data = {{"folder", std::filesystem::absolute(a.data).string()},
+                {"board", a.board},
+                {"pitch_mm", a.pitch_mm},
+                {"pattern", a.pattern}};
+        return method.from_json ? calibrate_camera_folder(a.data, a.board, a.pitch_mm, a.pattern, a.exclude)
+                                : calibrate_stripe_camera_folder(a.data, a.board, a.pitch_mm, a.exclude);
+    }
+    auto read = read_json_file(a.data);
+    if (!read) return tl::unexpected(read.error());
+    data = std::move(*read);
+    return method.from_json(data, a.exclude);
+}
+
+// Into the project: result and raw data, so that it can be solved again, with who and when. It is not put to
+// use by that.
+Expected<std::string> store(const Arguments& a, const Method& method, const json& data, const json& result) {
+    auto file = ProjectFile::open(a.project);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    const auto sensor = std::find_if(project->sensors.begin(), project->sensors.end(),
+                                     [&](const SensorSetup& s) { return s.id == a.sensor; });
+    if (sensor == project->sensors.end())
+        return usage_error(fmt::format("the project has no sensor \"{}\"", a.sensor), "--sensor");
+    Calibration c;
+    c.id = fmt::format("{}-{}", method.name, project->calibrations.size() + 1);
+    c.method = method.name;
+    c.sensor_id = a.sensor;
+    c.sensor_identity = sensor->identity;
+    if (!project->robots.empty()) {
+        c.robot_id = project->robots.front().id;
+        c.robot_identity = project->robots.front().identity;
+    }
+    c.created_utc = utc_now();
+    c.source = std::filesystem::absolute(a.data).string();
+    c.verdict = result.value("verdict", "undetermined");
+    if (result.contains("flange_from_sensor") && result["flange_from_sensor"].is_object()) {
+        auto pose = parse_pose(result["flange_from_sensor"], "flange_from_sensor");
+        if (!pose) return tl::unexpected(pose.error());
+        c.flange_from_sensor = *pose;
+    }
+    c.raw = {{"data", data}, {"exclude", a.exclude}};
+    c.result = result;
+    project->calibrations.push_back(c);
+    if (auto saved = file->save(*project); !saved) return tl::unexpected(saved.error());
+    return c.id;
+}
+
+std::string text_of(const Method& method, const json& r) {
+    std::string text =
+        fmt::format("{}: {}. {}\n", method.name, r.value("verdict", ""), r.value("reason", ""));
+    if (!r.value("cure", "").empty()) text += "cure: " + r.value("cure", "") + "\n";
+    for (const json& p : r.value("parameters", json::array()))
+        if (p["value"].is_number())
+            text += fmt::format(
+                "  {:<12} {:>14.6g} {} {}\n", p["name"].get<std::string>(), p["value"].get<double>(),
+                p["sigma"].is_number() ? fmt::format("± {:.2g}", p["sigma"].get<double>()) : "",
+                p["unit"].get<std::string>());
+    for (const json& p : r.value("per_pose", json::array())) {
+        text += "  " + p["id"].get<std::string>();
+        for (const char* key : {"rms_mm", "deg", "rms_px"})
+            if (p[key].is_number()) text += fmt::format("  {} {:.4f}", key, p[key].get<double>());
+        if (!p.value("used", true)) text += "  left out";
+        if (!p.value("note", "").empty()) text += "  " + p.value("note", "");
+        text += "\n";
+    }
+    for (const json& n : r.value("notices", json::array())) text += "note: " + n.get<std::string>() + "\n";
+    return text;
+}
+
+Expected<Answer> calibrate(const Method& method, const Arguments& a) {
+    if (a.project.empty() != a.sensor.empty())
+        return usage_error("--store and --sensor belong together", "calibrate");
+    json data;
+    auto outcome = solve(method, a, data);
+    if (!outcome) return tl::unexpected(outcome.error());
+    Answer answer;
+    answer.json = std::move(outcome->result);
+    answer.exit_code = outcome->exit_code;
+    answer.text = text_of(method, answer.json);
+    if (!a.report.empty()) {
+        if (auto written = write_text_file(a.report, calibration_report(method.name, data, answer.json));
+            !written)
+            return tl::unexpected(written.error());
+        answer.text += "report " + a.report + "\n";
+    }
+    if (!a.project.empty()) {
+        auto id = store(a, method, data, answer.json);
+        if (!id) return tl::unexpected(id.error());
+        answer.json["stored_as"] = *id;
+        answer.text += fmt::format("stored in {} as {}\n", a.project, *id);
+    }
+    return answer;
+}
+
+}  // namespace
+
+void add_calibrate(CommandLine& line) {
+    CLI::App* group = line.group(
+        "calibrate", "Solve a calibration from data: parameters, uncertainty, residual per pose, verdict.",
+        "seamwright calibrate tcp-sphere sphere.json --json -\n"
+        "  seamwright calibrate stripe-camera images --board 7x6 --pitch-mm 10 --report report.html");
+    for (const Method& method : kMethods) {
+        auto a = std::make_shared<Arguments>();
+        CLI::App* command = line.add(*group, method.name, method.help,
+                                     fmt::format("seamwright calibrate {} {}", method.name, method.example));
+        command
+            ->add_option("data", a->data,
+                         method.images ? "Folder of images (with pose files), or JSON" : "The data (JSON)")
+            ->required()
+            ->type_name(method.images ? "DIR|DATA.json" : "DATA.json");
+        command->add_option("--exclude", a->exclude, "Leave these poses out of the solution")
+            ->delimiter(',')
+            ->type_name("ID,..");
+        command->add_option("--report", a->report, "Residuals, coverage and pose geometry as a page")
+            ->type_name("FILE.html");
+        command->add_option("--store", a->project, "Keep result and data in this project")
+            ->type_name("FILE.seam");
+        command->add_option("--sensor", a->sensor, "The project's sensor that was calibrated");
+        if (method.images) {
+            command
+                ->add_option("--board", a->board,
+                             "Inner corners (chessboard), dots (circles) or squares (charuco)")
+                ->type_name("7x6");
+            command->add_option("--pitch-mm", a->pitch_mm, "Pitch of the board");
+            if (method.from_json)
+                command->add_option("--pattern", a->pattern, "chessboard, circles or charuco")
+                    ->check(CLI::IsMember({"chessboard", "circles", "charuco"}))
+                    ->capture_default_str();
+        }
+        line.on(command, [&method, a] { return calibrate(method, *a); });
+    }
+}
+
+}  // namespace seamwright::cli

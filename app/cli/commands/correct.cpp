@@ -1,0 +1,162 @@
+// seamwright correct, seamwright plan: a region's displacement from its spots, and its prediction.
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "app/cli/command.h"
+#include "app/cli/result_json.h"
+#include "core/correction/correction.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Job {
+    std::vector<SpotObservation> spots;
+    CorrectionOptions options;
+};
+
+Expected<SpotObservation> read_spot(const json& spot, const std::string& path, bool needs_measured) {
+    if (auto known = only_fields(
+            spot, {"id", "workobject_from_sensor", "reference", "measured", "weights", "sigma_mm"}, path);
+        !known)
+        return tl::unexpected(known.error());
+    SpotObservation s;
+    auto id = json_string(spot, "id", path);
+    if (!id) return tl::unexpected(id.error());
+    s.id = *id;
+    auto pose = json_field(spot, "workobject_from_sensor", path);
+    if (!pose) return tl::unexpected(pose.error());
+    auto parsed = parse_pose(**pose, json_path(path, "workobject_from_sensor"));
+    if (!parsed) return tl::unexpected(parsed.error());
+    s.workobject_from_sensor = *parsed;
+    auto reference = json_vector3(spot, "reference", path);
+    if (!reference) return tl::unexpected(reference.error());
+    s.reference_mm = s.measured_mm = *reference;
+    if (needs_measured) {
+        auto measured = json_vector3(spot, "measured", path);
+        if (!measured) return tl::unexpected(measured.error());
+        s.measured_mm = *measured;
+    }
+    if (spot.contains("weights")) {
+        auto weights = json_vector3(spot, "weights", path);
+        if (!weights) return tl::unexpected(weights.error());
+        s.weights = *weights;
+    }
+    auto sigma = json_number_or(spot, "sigma_mm", s.sigma_mm, path);
+    if (!sigma) return tl::unexpected(sigma.error());
+    s.sigma_mm = *sigma;
+    return s;
+}
+
+Expected<FreeDof> read_free(const json& list) {
+    static const std::string letters = "xyzabc";
+    FreeDof free{};
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const std::string path = json_path("free", i);
+        if (!list[i].is_string() || list[i].get<std::string>().size() != 1 ||
+            letters.find(list[i].get<std::string>()) == std::string::npos)
+            return input_error("not a degree of freedom", path,
+                               "give some of \"x\", \"y\", \"z\", \"a\", \"b\", \"c\"");
+        const std::size_t dof = letters.find(list[i].get<std::string>());
+        if (free[dof]) return input_error("this degree of freedom is named twice", path);
+        free[dof] = true;
+    }
+    return free;
+}
+
+Expected<Job> read_job(const std::string& file, bool needs_measured) {
+    auto text = read_text_file(file);
+    if (!text) return tl::unexpected(text.error());
+    auto document = parse_json(*text, file);
+    if (!document) return tl::unexpected(document.error());
+    if (auto known = only_fields(*document, {"spots", "free", "limits"}, ""); !known)
+        return tl::unexpected(known.error());
+    auto spots = json_array(*document, "spots", "");
+    if (!spots) return tl::unexpected(spots.error());
+    Job job;
+    for (std::size_t i = 0; i < (*spots)->size(); ++i) {
+        auto spot = read_spot((**spots)[i], json_path("spots", i), needs_measured);
+        if (!spot) return tl::unexpected(spot.error());
+        job.spots.push_back(std::move(*spot));
+    }
+    if (document->contains("free") && !(*document)["free"].is_null()) {
+        auto list = json_array(*document, "free", "");
+        if (!list) return tl::unexpected(list.error());
+        auto free = read_free(**list);
+        if (!free) return tl::unexpected(free.error());
+        job.options.free = *free;
+    }
+    if (document->contains("limits") && !(*document)["limits"].is_null()) {
+        const json& limits = (*document)["limits"];
+        if (auto known = only_fields(limits, {"translation_mm", "rotation_deg"}, "limits"); !known)
+            return tl::unexpected(known.error());
+        auto translation =
+            json_number_or(limits, "translation_mm", job.options.limits.translation_mm, "limits");
+        if (!translation) return tl::unexpected(translation.error());
+        auto rotation = json_number_or(limits, "rotation_deg", job.options.limits.rotation_deg, "limits");
+        if (!rotation) return tl::unexpected(rotation.error());
+        job.options.limits = {*translation, *rotation};
+    }
+    return job;
+}
+
+Expected<Answer> correct(const std::string& file) {
+    auto job = read_job(file, true);
+    if (!job) return tl::unexpected(job.error());
+    auto result = solve_region(job->spots, job->options);
+    if (!result) return tl::unexpected(result.error());
+    Answer answer;
+    answer.json = correction_json(*result);
+    answer.text = correction_text(*result);
+    answer.exit_code = result->status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    return answer;
+}
+
+Expected<Answer> plan(const std::string& file) {
+    auto job = read_job(file, false);
+    if (!job) return tl::unexpected(job.error());
+    auto result = plan_region(job->spots, job->options);
+    if (!result) return tl::unexpected(result.error());
+    Answer answer;
+    answer.json = plan_json(*result);
+    answer.text = plan_text(*result);
+    answer.exit_code = result->status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    return answer;
+}
+
+}  // namespace
+
+void add_correct(CommandLine& line) {
+    CLI::App* command = line.add(
+        "correct",
+        "Displacement of the part from a region's measured spots.\n"
+        "The answer's \"displacement\" is D: the taught frame times D follows the part.",
+        "seamwright correct job.json --json -\n"
+        "  job.json: "
+        "{\"spots\":[{\"id\":\"S1\",\"workobject_from_sensor\":{\"xyz\":[900,0,40],\"abc\":[0,0,180]},\n"
+        "             "
+        "\"reference\":[0,0,0],\"measured\":[1.2,0,-0.4],\"weights\":[1,0,1],\"sigma_mm\":0.05}, ...],\n"
+        "             "
+        "\"free\":[\"x\",\"y\",\"z\",\"a\",\"b\",\"c\"],\"limits\":{\"translation_mm\":25,\"rotation_deg\":3}"
+        "}");
+    auto file = std::make_shared<std::string>();
+    command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");
+    line.on(command, [file] { return correct(*file); });
+}
+
+void add_plan(CommandLine& line) {
+    CLI::App* command =
+        line.add("plan", "What a region will be able to tell, from the taught poses alone.",
+                 "seamwright plan job.json      (as for `correct`, \"measured\" is not needed)");
+    auto file = std::make_shared<std::string>();
+    command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");
+    line.on(command, [file] { return plan(*file); });
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,259 @@
+// seamwright filter, feature, match, align: what can be asked of profiles in CSV files.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "app/cli/command.h"
+#include "app/cli/feature_setting.h"
+#include "app/cli/result_json.h"
+#include "core/profile/filter.h"
+#include "devices/exchange/profile_csv.h"
+
+namespace seamwright::cli {
+namespace {
+
+// A profile as it comes from a sensor is filtered first; one that carries its segments is taken at its word.
+Expected<Profile> read_filtered(const std::string& file, const FilterOptions& options) {
+    auto profile = read_profile_csv(file);
+    if (!profile) return profile;
+    if (!profile->filtered())
+        if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
+    return profile;
+}
+
+void add_filter_options(CLI::App* command, FilterOptions& o) {
+    command
+        ->add_option("--noise-mm", o.noise_mm,
+                     "Standard deviation of a point; 0 = estimated from the profile")
+        ->capture_default_str();
+    command->add_option("--band", o.band_sigmas, "Acceptance band in predicted standard deviations")
+        ->capture_default_str();
+    command->add_option("--lookahead", o.lookahead, "Longest burst of outliers, points")
+        ->capture_default_str();
+    command->add_option("--min-segment", o.min_segment_points, "Shorter pieces are outliers, points")
+        ->capture_default_str();
+}
+
+Expected<Answer> filter(const std::string& in, const std::string& out, const FilterOptions& options) {
+    auto profile = read_profile_csv(in);
+    if (!profile) return tl::unexpected(profile.error());
+    if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
+    if (auto written = write_profile_csv(out, *profile); !written) return tl::unexpected(written.error());
+    int accepted = 0, outliers = 0, missing = 0;
+    std::int32_t segments = 0;
+    for (std::size_t i = 0; i < profile->size(); ++i) {
+        if (std::isnan(profile->z_mm[i]))
+            ++missing;
+        else if (profile->segment[i] == kOutlier)
+            ++outliers;
+        else
+            ++accepted;
+        segments = std::max(segments, profile->segment[i] + 1);
+    }
+    Answer answer;
+    answer.json = {{"status", "ok"},       {"points", profile->size()}, {"accepted", accepted},
+                   {"outliers", outliers}, {"no_return", missing},      {"segments", segments}};
+    answer.text = fmt::format("{} points: {} accepted in {} segments, {} outliers, {} without return\n",
+                              profile->size(), accepted, segments, outliers, missing);
+    return answer;
+}
+
+// Every parameter of every kind is a flag of its own: window_left_mm -> --window-left-mm.
+std::string flag(const std::string& parameter) {
+    std::string name = "--" + parameter;
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+struct FeatureArguments {
+    std::string file, kind = "contour-end", template_file;
+    std::vector<double> reference;
+    std::map<std::string, std::string> values;
+    FilterOptions filter;
+};
+
+Expected<Answer> feature(const FeatureArguments& a) {
+    auto kind = find_feature_kind(a.kind);
+    if (!kind) return tl::unexpected(kind.error());
+    FeatureRecipe recipe;
+    recipe.kind = a.kind;
+    for (const auto& [name, text] : a.values) {
+        if (text.empty()) continue;
+        auto value = feature_setting(**kind, name, text);
+        if (!value) return tl::unexpected(value.error());
+        recipe.parameters[name] = *value;
+    }
+    if (a.kind == "template") {
+        if (a.template_file.empty())
+            return usage_error("the kind \"template\" needs --template T.csv", "--template");
+        auto contour = read_filtered(a.template_file, a.filter);
+        if (!contour) return tl::unexpected(contour.error());
+        recipe.template_profile = std::move(*contour);
+        if (a.reference.size() == 2) recipe.template_reference_mm = {a.reference[0], a.reference[1]};
+    } else if (!a.template_file.empty()) {
+        return usage_error("only the kind \"template\" takes a template", "--template");
+    }
+    auto finder = make_feature_finder(recipe);
+    if (!finder) return tl::unexpected(finder.error());
+    auto profile = read_filtered(a.file, a.filter);
+    if (!profile) return tl::unexpected(profile.error());
+    const Feature found = (*finder)->find(*profile);
+    Answer answer;
+    answer.json = feature_json(found);
+    answer.text = feature_text(found);
+    answer.exit_code = found.status == FeatureStatus::ok ? kExitOk : kExitVerdict;
+    return answer;
+}
+
+struct MatchArguments {
+    std::string template_file, scene_file;
+    std::vector<double> window;  // mm, mm, deg
+    std::vector<double> reference;
+    FilterOptions filter;
+};
+
+// The landmark that the window is about: the middle of the template's points unless told.
+Eigen::Vector2d middle(const Profile& profile) {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    double n = 0;
+    for (std::size_t i = 0; i < profile.size(); ++i)
+        if (profile.segment[i] != kOutlier) sum += Eigen::Vector2d(profile.x_mm[i], profile.z_mm[i]), ++n;
+    return n > 0 ? Eigen::Vector2d(sum / n) : sum;
+}
+
+Expected<Answer> match(const MatchArguments& a) {
+    auto contour = read_filtered(a.template_file, a.filter);
+    if (!contour) return tl::unexpected(contour.error());
+    auto scene = read_filtered(a.scene_file, a.filter);
+    if (!scene) return tl::unexpected(scene.error());
+    const Eigen::Vector2d reference =
+        a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(*contour);
+    auto matcher = ContourMatcher::make(*contour, reference);
+    if (!matcher) return tl::unexpected(matcher.error());
+    SearchWindow window;
+    if (!a.window.empty()) {
+        if (!(a.window[0] > 0 && a.window[1] > 0 && a.window[2] >= 0 && a.window[2] <= 180))
+            return usage_error("the window must be positive (mm, mm) and 0 to 180 degrees", "--window");
+        window.dx_mm = a.window[0];
+        window.dz_mm = a.window[1];
+        window.phi_rad = rad_from_deg(a.window[2]);
+    }
+    // Whoever gives a window in the scene's coordinates or about the landmark means the same contour.
+    window.pivot = SearchPivot::reference_or_origin;
+    const Registration found = matcher->match(*scene, window);
+    Answer answer;
+    answer.json = registration_json(found);
+    answer.text = registration_text(found);
+    answer.exit_code = found.status == RegistrationStatus::ok ? kExitOk : kExitVerdict;
+    return answer;
+}
+
+Expected<Answer> align(const std::string& file, const AlignmentOptions& options) {
+    auto pass = read_align_csv(file);
+    if (!pass) return tl::unexpected(pass.error());
+    for (TravelProfile& p : *pass)
+        if (auto done = filter_profile(p.profile, FilterOptions{}); !done)
+            return tl::unexpected(done.error());
+    auto result = check_alignment(*pass, options);
+    if (!result) return tl::unexpected(result.error());
+    Answer answer;
+    answer.json = alignment_json(*result);
+    answer.text = alignment_text(*result);
+    answer.exit_code = result->status == AlignmentStatus::frozen ? kExitOk : kExitVerdict;
+    return answer;
+}
+
+}  // namespace
+
+void add_filter(CommandLine& line) {
+    struct Arguments {
+        std::string in, out;
+        FilterOptions options;
+    };
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command =
+        line.add("filter", "Mark outliers and segments of a profile.",
+                 "seamwright filter profile.csv --out filtered.csv\n"
+                 "  adds the columns valid (1/0) and segment (0.., -1 for outliers and missing returns)");
+    command->add_option("in", a->in, "Profile: x_mm,z_mm[,intensity]")->required()->type_name("IN.csv");
+    command->add_option("--out", a->out, "Where the marked profile goes")->required()->type_name("OUT.csv");
+    add_filter_options(command, a->options);
+    line.on(command, [a] { return filter(a->in, a->out, a->options); });
+}
+
+void add_feature(CommandLine& line) {
+    auto a = std::make_shared<FeatureArguments>();
+    CLI::App* command = line.add(
+        "feature", "Find the feature of a profile: point and covariance.",
+        "seamwright feature profile.csv --kind contour-end --side right --json -\n"
+        "  seamwright feature profile.csv --kind template --template taught.csv --reference 12.5,3.0");
+    command->add_option("in", a->file, "Profile; filtered here unless it carries segments")
+        ->required()
+        ->type_name("IN.csv");
+    std::string kinds;
+    for (const FeatureKind& k : feature_kinds())
+        kinds += fmt::format("{}{}", kinds.empty() ? "" : " | ", k.name);
+    command->add_option("--kind", a->kind, kinds)->capture_default_str();
+    command->add_option("--template", a->template_file, "Kind template: the taught piece of contour")
+        ->type_name("T.csv");
+    command->add_option("--reference", a->reference, "Kind template: its reference point x,z in mm")
+        ->delimiter(',')
+        ->expected(2);
+    std::map<std::string, std::string> help;
+    for (const FeatureKind& k : feature_kinds())
+        for (const ParameterInfo& p : k.parameters) {
+            std::string& text = help[p.name];
+            if (text.empty()) text = p.help;
+            text += fmt::format(" [{}]", k.name);
+        }
+    for (const auto& [name, text] : help) command->add_option(flag(name), a->values[name], text);
+    add_filter_options(command, a->filter);
+    line.on(command, [a] { return feature(*a); });
+}
+
+void add_match(CommandLine& line) {
+    auto a = std::make_shared<MatchArguments>();
+    CLI::App* command =
+        line.add("match", "Find a taught piece of contour in a profile.",
+                 "seamwright match --template taught.csv --scene profile.csv --window 10,10,15 --json -");
+    command->add_option("--template", a->template_file, "The taught piece of contour")
+        ->required()
+        ->type_name("T.csv");
+    command->add_option("--scene", a->scene_file, "The profile to search")->required()->type_name("S.csv");
+    command
+        ->add_option("--window", a->window,
+                     "Search window dx,dz,dphi (+- mm, mm, deg) about the taught place")
+        ->delimiter(',')
+        ->expected(3);
+    command
+        ->add_option("--reference", a->reference,
+                     "Landmark x,z of the window in mm (default: the template's middle)")
+        ->delimiter(',')
+        ->expected(2);
+    add_filter_options(command, a->filter);
+    line.on(command, [a] { return match(*a); });
+}
+
+void add_align(CommandLine& line) {
+    struct Arguments {
+        std::string file;
+        AlignmentOptions options;
+    };
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = line.add("align", "Does the contour stand still while the robot passes the spot?",
+                                 "seamwright align pass.csv --jitter-mm 5 --json -\n"
+                                 "  pass.csv: travel_mm,profile_index,x_mm,z_mm");
+    command->add_option("in", a->file, "The recorded pass")->required()->type_name("SEQ.csv");
+    command->add_option("--jitter-mm", a->options.jitter_mm, "Half width of the trigger jitter")
+        ->capture_default_str();
+    command->add_option("--tolerance-mm", a->options.tolerance_mm, "Error that the jitter may cause")
+        ->capture_default_str();
+    command->add_option("--window-mm", a->options.window_mm, "Travel that is judged, +- mm")
+        ->capture_default_str();
+    line.on(command, [a] { return align(a->file, a->options); });
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,302 @@
+// seamwright new, info, check, export, import: project files.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/cli/command.h"
+#include "app/cli/feature_setting.h"
+#include "app/cli/result_json.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "projects/exchange.h"
+#include "projects/project_file.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+Expected<Answer> new_project(const std::string& path, const std::string& name) {
+    Project project;
+    project.name = name.empty() ? fs::path(path).stem().string() : name;
+    auto file = ProjectFile::create(path, project);
+    if (!file) return tl::unexpected(file.error());
+    Answer answer;
+    answer.json = {{"status", "ok"}, {"file", path}, {"name", project.name}};
+    answer.text = fmt::format("{} created\n", path);
+    return answer;
+}
+
+Expected<Answer> info(const std::string& path) {
+    auto file = ProjectFile::open(path, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    auto runs = file->runs();
+    if (!runs) return tl::unexpected(runs.error());
+    json list = json::array();
+    std::string text = fmt::format("{}: {}\n", path, project->name);
+    auto lines = [&](const char* title, const auto& items, auto describe) {
+        text += fmt::format("{} {}\n", items.size(), title);
+        for (const auto& item : items) text += "  " + describe(item) + "\n";
+    };
+    lines("sensors", project->sensors, [](const SensorSetup& s) {
+        return fmt::format("{}  {} {} {}", s.id, s.driver, s.identity.model, s.identity.serial);
+    });
+    lines("robots", project->robots, [](const RobotSetup& r) {
+        return fmt::format("{}  {} {} {}", r.id, r.driver, r.identity.model, r.identity.serial);
+    });
+    lines("calibrations", project->calibrations, [](const Calibration& c) {
+        return fmt::format("{}  {} of sensor {}, {}, {}", c.id, c.method, c.sensor_id, c.created_utc,
+                           c.verdict);
+    });
+    lines("spots", project->spots, [](const Spot& s) {
+        return fmt::format("{}  {} with sensor {}{}", s.id, s.feature.kind, s.sensor_id,
+                           s.enabled ? "" : ", switched off");
+    });
+    lines("regions", project->regions, [](const Region& r) {
+        return fmt::format("{}  {} spots, frame {}", r.id, r.spot_ids.size(), r.frame_name);
+    });
+    text += fmt::format("{} runs\n", runs->size());
+    for (const RunSummary& r : *runs) {
+        text += fmt::format("  {}  part {}  {}  {}  {}\n", r.number, r.part_id, r.started_utc,
+                            r.push ? "push" : "dry run", to_string(r.status));
+        list.push_back({{"number", r.number},
+                        {"part", r.part_id},
+                        {"started_utc", r.started_utc},
+                        {"push", r.push},
+                        {"status", to_string(r.status)},
+                        {"message", r.message},
+                        {"spots", r.spots},
+                        {"captures", r.captures}});
+    }
+    Answer answer;
+    answer.json = export_project(*project);
+    answer.json["status"] = "ok";
+    answer.json["runs"] = list;
+    answer.text = text;
+    return answer;
+}
+
+// 0 sound; 1 findings of plausibility; 3 the file itself is damaged.
+Expected<Answer> check_project(const std::string& path) {
+    auto file = ProjectFile::open(path, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    Answer answer;
+    json integrity = json::array(), plausibility = json::array();
+    for (const Error& e : file->check()) integrity.push_back(e.sentence());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    for (const Error& e : check(*project)) plausibility.push_back(e.sentence());
+    answer.exit_code = !integrity.empty() ? kExitDevice : !plausibility.empty() ? kExitVerdict : kExitOk;
+    answer.json = {{"status", answer.exit_code == kExitOk ? "ok"
+                              : integrity.empty()         ? "findings"
+                                                          : "damaged"},
+                   {"integrity", integrity},
+                   {"plausibility", plausibility}};
+    answer.text = integrity.empty() ? "integrity ok\n" : "the file is damaged\n";
+    for (const auto& s : integrity) answer.text += "  " + s.get<std::string>() + "\n";
+    answer.text += plausibility.empty() ? "plausible\n" : "findings\n";
+    for (const auto& s : plausibility) answer.text += "  " + s.get<std::string>() + "\n";
+    return answer;
+}
+
+struct ExportArguments {
+    std::string file, out, profiles, format = "csv";
+    std::int64_t run = 0;
+};
+
+Expected<Answer> export_command(const ExportArguments& a) {
+    if (a.out.empty() && a.profiles.empty())
+        return usage_error("nothing to export", "export", "give --out FILE.json, --profiles DIR, or both");
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    Answer answer;
+    answer.json = {{"status", "ok"}};
+    if (!a.out.empty()) {
+        auto document = export_file(*file);
+        if (!document) return tl::unexpected(document.error());
+        if (auto written = write_text_file(a.out, document->dump(2) + "\n"); !written)
+            return tl::unexpected(written.error());
+        answer.json["file"] = a.out;
+        answer.text += a.out + " written\n";
+    }
+    if (!a.profiles.empty()) {
+        std::int64_t run = a.run;
+        if (run == 0) {
+            auto runs = file->runs();
+            if (!runs) return tl::unexpected(runs.error());
+            if (runs->empty())
+                return input_error("the project has no run whose profiles could be exported", a.file);
+            run = runs->back().number;
+        }
+        const ProfileFormat format = a.format == "ply"   ? ProfileFormat::ply
+                                     : a.format == "pcd" ? ProfileFormat::pcd
+                                                         : ProfileFormat::csv;
+        auto written = export_profiles(*file, run, format, a.profiles);
+        if (!written) return tl::unexpected(written.error());
+        answer.json["run"] = run;
+        answer.json["profiles"] = json::array();
+        for (const fs::path& p : *written) answer.json["profiles"].push_back(p.string());
+        answer.text += fmt::format("{} profiles of run {} written to {}\n", written->size(), run, a.profiles);
+    }
+    return answer;
+}
+
+struct ImportArguments {
+    std::string file, source, reference, kind = "contour-end", flange_from_sensor, base_from_workobject;
+    std::vector<std::string> set;
+    bool rows = false, columns = false, replace = false;
+    double sigma_mm = 0.05;
+};
+
+Expected<Pose> read_pose_argument(const std::string& argument, const std::string& where) {
+    if (argument.empty()) return Pose::Identity();
+    std::string text = argument;
+    if (text.find('{') == std::string::npos) {
+        auto read = read_text_file(argument);
+        if (!read) return tl::unexpected(read.error());
+        text = *read;
+    }
+    auto document = parse_json(text, where);
+    if (!document) return tl::unexpected(document.error());
+    return parse_pose(*document, where);
+}
+
+Expected<Answer> import_command(const ImportArguments& a) {
+    Project project;
+    std::vector<std::string> notes;
+    bool in_pixels = false;
+    if (fs::is_directory(a.source)) {
+        FolderImport options;
+        options.folder = a.source;
+        if (!a.reference.empty()) options.reference_folder = a.reference;
+        options.project_name = fs::path(a.file).stem().string();
+        options.feature.kind = a.kind;
+        auto kind = find_feature_kind(a.kind);
+        if (!kind) return tl::unexpected(kind.error());
+        for (const std::string& entry : a.set) {
+            auto value = feature_setting(**kind, entry);
+            if (!value) return tl::unexpected(value.error());
+            options.feature.parameters[value->first] = value->second;
+        }
+        auto flange = read_pose_argument(a.flange_from_sensor, "--flange-from-sensor");
+        if (!flange) return tl::unexpected(flange.error());
+        options.flange_from_sensor = *flange;
+        auto base = read_pose_argument(a.base_from_workobject, "--base-from-workobject");
+        if (!base) return tl::unexpected(base.error());
+        options.base_from_workobject = *base;
+        options.sigma_mm = a.sigma_mm;
+        if (a.rows) options.peaks.scan = ScanLines::rows;
+        if (a.columns) options.peaks.scan = ScanLines::columns;
+        if (!a.flange_from_sensor.empty()) options.calibration_verdict = "usable";
+        auto imported = import_folder(options);
+        if (!imported) return tl::unexpected(imported.error());
+        project = std::move(imported->project);
+        notes = std::move(imported->notes);
+        in_pixels = imported->in_pixels;
+    } else {
+        auto text = read_text_file(a.source);
+        if (!text) return tl::unexpected(text.error());
+        auto document = parse_json(*text, a.source);
+        if (!document) return tl::unexpected(document.error());
+        auto imported = import_project(*document);
+        if (!imported) return tl::unexpected(imported.error());
+        project = std::move(*imported);
+    }
+    auto file = ProjectFile::create(a.file, project, a.replace);
+    if (!file) return tl::unexpected(file.error());
+    Answer answer;
+    answer.json = {{"status", "ok"},
+                   {"file", a.file},
+                   {"spots", project.spots.size()},
+                   {"regions", project.regions.size()},
+                   {"in_pixels", in_pixels},
+                   {"notes", notes}};
+    answer.text =
+        fmt::format("{} created: {} spots, {} regions{}\n", a.file, project.spots.size(),
+                    project.regions.size(), in_pixels ? ", measured in pixels (no calibration)" : "");
+    for (const std::string& note : notes) answer.text += "  " + note + "\n";
+    return answer;
+}
+
+}  // namespace
+
+void add_project_commands(CommandLine& line) {
+    {
+        auto path = std::make_shared<std::string>(), name = std::make_shared<std::string>();
+        CLI::App* command =
+            line.add("new", "Create an empty project.", "seamwright new door_left.seam --name \"Door left\"");
+        command->add_option("file", *path, "The project to create")->required()->type_name("FILE.seam");
+        command->add_option("--name", *name, "Its name (default: the file's)");
+        line.on(command, [path, name] { return new_project(*path, *name); });
+    }
+    {
+        auto path = std::make_shared<std::string>();
+        CLI::App* command = line.add("info", "Summarise a project.", "seamwright info door_left.seam");
+        command->add_option("file", *path, "The project")->required()->type_name("FILE.seam");
+        line.on(command, [path] { return info(*path); });
+    }
+    {
+        auto path = std::make_shared<std::string>();
+        CLI::App* command = line.add("check", "Integrity of the file and plausibility of the project.",
+                                     "seamwright check door_left.seam      (exit 1: findings, 3: damaged)");
+        command->add_option("file", *path, "The project")->required()->type_name("FILE.seam");
+        line.on(command, [path] { return check_project(*path); });
+    }
+    {
+        auto a = std::make_shared<ExportArguments>();
+        CLI::App* command =
+            line.add("export", "The project as JSON without blobs; the profiles of a run as files.",
+                     "seamwright export door_left.seam --out door_left.json\n"
+                     "  seamwright export door_left.seam --profiles profiles --format ply --run 3");
+        command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+        command->add_option("--out", a->out, "Project, runs and events as JSON")->type_name("FILE.json");
+        command->add_option("--profiles", a->profiles, "Folder for the run's profiles, one file a spot")
+            ->type_name("DIR");
+        command->add_option("--format", a->format, "csv: sensor frame; ply, pcd: points in base")
+            ->check(CLI::IsMember({"csv", "ply", "pcd"}))
+            ->capture_default_str();
+        command->add_option("--run", a->run, "Which run (default: the last)");
+        line.on(command, [a] { return export_command(*a); });
+    }
+    {
+        auto a = std::make_shared<ImportArguments>();
+        CLI::App* command = line.add(
+            "import",
+            "A project from exported JSON, or from a folder of profiles or camera images with robot poses.",
+            "seamwright import door.seam --from recorded/car7 --reference recorded/master \\\n"
+            "      --flange-from-sensor '{\"xyz\":[0,0,120],\"abc\":[0,0,0]}' --kind contour-end --set "
+            "side=right\n"
+            "  then: seamwright run door.seam");
+        command->add_option("file", a->file, "The project to create")->required()->type_name("FILE.seam");
+        command->add_option("--from", a->source, "FILE.json of `export`, or a folder")
+            ->required()
+            ->type_name("FILE.json|DIR");
+        command
+            ->add_option("--reference", a->reference,
+                         "Folder recorded on the taught part (default: --from itself)")
+            ->type_name("DIR");
+        command->add_option("--kind", a->kind, "Feature kind of every spot")->capture_default_str();
+        command->add_option("--set", a->set, "Setting of the feature, NAME=VALUE; may be repeated")
+            ->type_name("NAME=VALUE");
+        command
+            ->add_option("--flange-from-sensor", a->flange_from_sensor,
+                         "Sensor on the flange: POSE or a file holding one")
+            ->type_name("POSE");
+        command
+            ->add_option("--base-from-workobject", a->base_from_workobject, "Work object in the robot's base")
+            ->type_name("POSE");
+        command->add_option("--sigma-mm", a->sigma_mm, "Standard deviation of a measured coordinate")
+            ->capture_default_str();
+        auto* rows = command->add_flag("--rows", a->rows, "Images: one cut per row");
+        command->add_flag("--columns", a->columns, "Images: one cut per column")->excludes(rows);
+        command->add_flag("--replace", a->replace, "Replace an existing project file");
+        line.on(command, [a] { return import_command(*a); });
+    }
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,215 @@
+// seamwright run, replay, devices: the Station from the command line.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <stop_token>
+#include <thread>
+
+#include "app/cli/command.h"
+#include "app/cli/result_json.h"
+#include "app/cli/run_text.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/registry.h"
+#include "projects/replay.h"
+#include "projects/station.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+// SIGINT and SIGTERM ask the run to end; it then ends in an orderly way and is recorded as cancelled.
+std::stop_source& cancel_source() {
+    static std::stop_source source;
+    return source;
+}
+volatile std::sig_atomic_t g_signalled = 0;
+void on_signal(int) {
+    g_signalled = 1;
+}
+
+// A signal handler may not touch a stop_source; this thread watches the flag for it.
+class SignalWatch {
+  public:
+    SignalWatch() {
+        std::signal(SIGINT, on_signal);
+        std::signal(SIGTERM, on_signal);
+        thread_ = std::jthread([](std::stop_token done) {
+            while (!done.stop_requested()) {
+                if (g_signalled) cancel_source().request_stop();
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            }
+        });
+    }
+
+  private:
+    std::jthread thread_;
+};
+
+struct RunArguments {
+    std::string file, part;
+    bool push = false, dry_run = false, keep_images = false;
+};
+
+Expected<Answer> run(const RunArguments& a) {
+    auto station = Station::open(a.file);
+    if (!station) return tl::unexpected(station.error());
+    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    SignalWatch watch;
+    RunOptions options;
+    options.part_id = a.part;
+    options.push = a.push;
+    options.keep_images = a.keep_images;
+    options.cancel = cancel_source().get_token();
+    options.progress = [](const RunProgress& p) {
+        fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
+    };
+    auto record = station->run(options);
+    if (!record) return tl::unexpected(record.error());
+    Answer answer;
+    answer.json = run_json(*record);
+    answer.text = run_text(*record);
+    answer.exit_code = record->status == RunStatus::ok ? kExitOk
+                       : record->status == RunStatus::device || record->status == RunStatus::alarm
+                           ? kExitDevice
+                           : kExitVerdict;
+    return answer;
+}
+
+struct ReplayArguments {
+    std::vector<std::string> files;
+    std::int64_t run = 0;
+    int jobs = 1;
+};
+
+Expected<Answer> replay_command(const ReplayArguments& a) {
+    SignalWatch watch;
+    Answer answer;
+    answer.json = {{"status", "ok"}, {"files", json::array()}};
+    int runs = 0;
+    std::int64_t captures = 0;
+    std::size_t differences = 0;
+    for (const std::string& file : a.files) {
+        ReplayOptions options;
+        options.run = a.run;
+        options.jobs = a.jobs;
+        options.cancel = cancel_source().get_token();
+        auto result = replay(file, options);
+        if (!result) return tl::unexpected(result.error());
+        json list = json::array();
+        for (const ReplayDifference& d : result->differences) {
+            list.push_back({{"run", d.run}, {"what", d.what}, {"text", d.text}, {"size_mm", d.size_mm}});
+            answer.text += fmt::format("{} run {} {}: {}\n", file, d.run, d.what, d.text);
+        }
+        answer.json["files"].push_back({{"file", file},
+                                        {"runs", result->runs},
+                                        {"captures", result->captures},
+                                        {"cancelled", result->cancelled},
+                                        {"differences", list}});
+        runs += result->runs;
+        captures += result->captures;
+        differences += result->differences.size();
+        if (result->cancelled) answer.exit_code = kExitVerdict;
+    }
+    if (differences) answer.exit_code = kExitVerdict;
+    answer.json["status"] = differences ? "differs" : answer.exit_code ? "cancelled" : "ok";
+    answer.json["runs"] = runs;
+    answer.json["captures"] = captures;
+    answer.text +=
+        fmt::format("{} runs, {} captures computed again: {}\n", runs, captures,
+                    differences ? fmt::format("{} differences", differences) : "bit for bit as stored");
+    return answer;
+}
+
+}  // namespace
+
+void add_run(CommandLine& line) {
+    auto a = std::make_shared<RunArguments>();
+    CLI::App* command =
+        line.add("run", "Measure a part on the project's devices, correct, and push when told to.",
+                 "seamwright run door_left.seam --part CAR-0815 --push");
+    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    command->add_option("--part", a->part, "Name of the part in front of the robot");
+    auto* push =
+        command->add_flag("--push", a->push, "Write the corrected frames, if the safety gate passes them");
+    command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);
+    command->add_flag("--keep-images", a->keep_images, "Keep the raw images with the run");
+    line.on(command, [a] { return run(*a); });
+}
+
+void add_replay(CommandLine& line) {
+    auto a = std::make_shared<ReplayArguments>();
+    CLI::App* command =
+        line.add("replay", "Compute stored runs again from their raw data and compare bit for bit.",
+                 "seamwright replay door_left.seam --jobs 2");
+    command->add_option("files", a->files, "Projects")->required()->type_name("FILE.seam");
+    command->add_option("--run", a->run, "Only this run");
+    command->add_option("--jobs", a->jobs, "Threads")->check(CLI::Range(1, 256))->capture_default_str();
+    line.on(command, [a] { return replay_command(*a); });
+}
+
+void add_devices(CommandLine& line) {
+    auto file = std::make_shared<std::string>();
+    CLI::App* command =
+        line.add("devices", "The drivers there are; with a project: its devices, identities and counters.",
+                 "seamwright devices door_left.seam --json -");
+    command->add_option("file", *file, "Connect this project's devices")->type_name("FILE.seam");
+    line.on(command, [file]() -> Expected<Answer> {
+        Answer answer;
+        answer.json = {{"status", "ok"}, {"sensor_drivers", json::array()}, {"robot_drivers", json::array()}};
+        answer.text = "sensor drivers\n";
+        for (const SensorDriver& d : sensor_drivers()) {
+            answer.json["sensor_drivers"].push_back({{"name", d.name}, {"help", d.help}});
+            answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
+        }
+        answer.text += "robot drivers\n";
+        for (const RobotDriver& d : robot_drivers()) {
+            answer.json["robot_drivers"].push_back({{"name", d.name}, {"help", d.help}});
+            answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
+        }
+        if (file->empty()) return answer;
+        auto station = Station::open(*file, FileAccess::read_only);
+        if (!station) return tl::unexpected(station.error());
+        if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+        answer.json["sensors"] = json::array();
+        answer.json["robots"] = json::array();
+        for (const SensorSetup& s : station->project().sensors) {
+            ProfileSource* sensor = station->sensor(s.id);
+            const SensorIdentity id = sensor->identity();
+            const SourceCounters c = sensor->counters();
+            answer.json["sensors"].push_back({{"id", s.id},
+                                              {"driver", s.driver},
+                                              {"vendor", id.vendor},
+                                              {"model", id.model},
+                                              {"serial", id.serial},
+                                              {"completed", c.completed},
+                                              {"damaged", c.damaged},
+                                              {"underrun", c.underrun},
+                                              {"missing_packets", c.missing_packets}});
+            answer.text += fmt::format("sensor {}: {} {} {} serial {}\n", s.id, s.driver, id.vendor, id.model,
+                                       id.serial);
+        }
+        for (const RobotSetup& r : station->project().robots) {
+            RobotLink* robot = station->robot(r.id);
+            auto id = robot->identity();
+            if (!id) return tl::unexpected(id.error());
+            auto mode = robot->mode();
+            if (!mode) return tl::unexpected(mode.error());
+            answer.json["robots"].push_back({{"id", r.id},
+                                             {"driver", r.driver},
+                                             {"brand", id->brand},
+                                             {"model", id->model},
+                                             {"serial", id->serial},
+                                             {"mode", to_string(*mode)}});
+            answer.text += fmt::format("robot {}: {} {} {} serial {}, mode {}\n", r.id, r.driver, id->brand,
+                                       id->model, id->serial, to_string(*mode));
+        }
+        return answer;
+    });
+}
+
+}  // namespace seamwright::cli

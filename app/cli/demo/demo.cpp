@@ -1,0 +1,293 @@
+#include "app/cli/demo/demo.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <random>
+
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/door.h"
+#include "projects/measure.h"
+#include "projects/project_file.h"
+#include "projects/station.h"
+#include "projects/teach.h"
+
+namespace seamwright::cli {
+namespace {
+
+constexpr double kCurveTravelMm = 20;
+constexpr const char* kSensor = "A";
+constexpr const char* kRobot = "R1";
+
+std::string frame_name(const std::string& region_id) {
+    return "BASE_" + region_id;
+}
+
+// The piece of contour around the hem that is taught as template, in the sensor frame.
+Profile cut_out(const Profile& profile, double from_mm, double to_mm) {
+    Profile piece;
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        if (!(profile.x_mm[i] >= from_mm && profile.x_mm[i] <= to_mm) || profile.segment[i] == kOutlier)
+            continue;
+        piece.x_mm.push_back(profile.x_mm[i]);
+        piece.z_mm.push_back(profile.z_mm[i]);
+        if (!profile.intensity.empty()) piece.intensity.push_back(profile.intensity[i]);
+        piece.segment.push_back(profile.segment[i]);
+    }
+    return piece;
+}
+
+// A spot of the door: first the edge by its contour end, then the hem around it as template with the edge as
+// landmark, then the pass that shows whether the contour stands still and how it curves.
+Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, const DoorSpot& door,
+                               Spot& spot) {
+    spot.id = door.id;
+    spot.sensor_id = kSensor;
+    spot.robot_id = kRobot;
+    spot.base_from_flange = base_from_flange;
+    spot.entry_mm = std::min(door.entry_mm, kCurveTravelMm);
+    spot.exit_mm = std::min(door.exit_mm, kCurveTravelMm);
+    spot.sigma_mm = 0.04;
+    spot.jitter_mm = 3;
+    spot.feature.kind = "contour-end";
+    spot.feature.parameters = {{"side", 0.0}};
+    auto edge = teach_spot(station, spot, {});
+    if (!edge) return tl::unexpected(edge.error());
+    const double x = edge->spot.reference_mm.x(), z = edge->spot.reference_mm.z();
+    spot.feature.kind = "template";
+    spot.feature.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
+    spot.feature.template_profile = cut_out(edge->spot.reference_profile, x - 1, x + 40);
+    spot.feature.template_reference_mm = {x, z};
+    auto taught = teach_spot(station, spot, {});
+    if (!taught) return tl::unexpected(taught.error());
+    spot = taught->spot;
+    auto pass = record_pass(station, spot, {});
+    if (!pass) return tl::unexpected(pass.error());
+    AlignmentOptions alignment;
+    alignment.jitter_mm = spot.jitter_mm;
+    auto frozen = check_alignment(pass->profiles, alignment);
+    if (!frozen) return tl::unexpected(frozen.error());
+    auto curve = fit_contour_curve(pass->references);
+    if (!curve) return tl::unexpected(curve.error());
+    spot.curve = *curve;
+    return DemoTaughtSpot{spot.id, taught->spread_mm, *frozen};
+}
+
+// Deviation of a taught point (work object): what is left between the frame on the controller and the part's
+// true place, in the directions across the edge.
+DemoDeviation deviation(const SimulatedCell& cell, const Region& region, const Pose& pushed,
+                        const Eigen::Vector3d& point_mm, const Eigen::Vector3d& across,
+                        const Eigen::Vector3d& up) {
+    const Pose& base_from_workobject = cell.base_from_workobject();
+    const Eigen::Vector3d truth = base_from_workobject * cell.displaced(point_mm);
+    const Eigen::Vector3d taught = base_from_workobject * point_mm;
+    const Eigen::Vector3d corrected = pushed * (region.base_from_frame.inverse() * taught);
+    const Eigen::Matrix3d workobject_from_base = base_from_workobject.linear().transpose();
+    const Eigen::Vector3d before = workobject_from_base * (truth - taught);
+    const Eigen::Vector3d after = workobject_from_base * (truth - corrected);
+    DemoDeviation d;
+    d.region_id = region.id;
+    d.before_mm = {before.dot(across), before.dot(up)};
+    d.after_mm = {after.dot(across), after.dot(up)};
+    return d;
+}
+
+Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLink& robot, DemoPart& part) {
+    for (const Region& region : project.regions) {
+        auto pushed = robot.read_frame(region.frame_name);
+        if (!pushed) return tl::unexpected(pushed.error());
+        for (const DoorSpot& spot : default_door_spots()) {
+            if (door_side_of(spot.workobject_from_sensor.translation()) != region.id) continue;
+            const Eigen::Matrix3d axes = spot.workobject_from_sensor.linear();
+            part.spots.push_back(deviation(cell, region, *pushed, spot.workobject_from_sensor * spot.edge_mm,
+                                           axes.col(0), axes.col(2)));
+            part.spots.back().arc_mm = static_cast<double>(part.spots.size() - 1);
+        }
+        const std::vector<Eigen::Vector3d> path = door_bead_path(10);
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            if (door_side_of(path[i]) != region.id) continue;
+            const Eigen::Vector3d along =
+                (path[(i + 1) % path.size()] - path[(i + path.size() - 1) % path.size()]).normalized();
+            const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(along).normalized();
+            part.path.push_back(deviation(cell, region, *pushed, path[i], across, along.cross(across)));
+            part.path.back().arc_mm = 10.0 * static_cast<double>(i);
+        }
+    }
+    return {};
+}
+
+// Restores the taught frames, as the controller does between two parts.
+Expected<void> reset_frames(RobotLink& robot, const Project& project) {
+    for (const Region& region : project.regions)
+        if (auto written = robot.write_frame(region.frame_name, region.base_from_frame); !written)
+            return written;
+    return {};
+}
+
+PartState next_part(std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Eigen::Vector3d t, w;
+    for (int i = 0; i < 3; ++i) t[i] = 10 * unit(random);
+    for (int i = 0; i < 3; ++i) w[i] = rad_from_deg(0.6 * unit(random));
+    PartState part;
+    part.workobject_from_movedworkobject = make_pose(rotation_exp(w), t);
+    part.bend = {0.3 * unit(random), 0.2 * unit(random)};
+    return part;
+}
+
+}  // namespace
+
+std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
+                                      std::vector<DemoDeviation> DemoPart::*which) {
+    std::vector<DemoStatistic> rows;
+    std::vector<std::string> names;
+    for (const Region& r : outcome.project.regions) names.push_back(r.id);
+    names.push_back("all");
+    for (const std::string& name : names) {
+        DemoStatistic row;
+        row.region_id = name;
+        double n = 0, sum = 0, squares = 0;
+        for (const DemoPart& part : outcome.parts)
+            for (const DemoDeviation& d : part.*which) {
+                if (name != "all" && d.region_id != name) continue;
+                row.before_max_mm = std::max(row.before_max_mm, d.before_mm.norm());
+                row.after_max_mm = std::max(row.after_max_mm, d.after_mm.norm());
+                for (double v : d.after_mm) n += 1, sum += v, squares += v * v;
+            }
+        if (n > 1) {
+            row.after_mean_mm = sum / n;
+            row.after_three_sigma_mm = 3 * std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1)));
+        }
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Expected<DemoOutcome> run_demo(const DemoOptions& options,
+                               const std::function<void(const std::string&)>& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    std::error_code failed;
+    std::filesystem::create_directories(options.folder, failed);
+    if (failed) return file_error("the folder cannot be made: " + failed.message(), options.folder.string());
+
+    DemoOutcome outcome;
+    outcome.project_file = options.folder / "demo.seam";
+    outcome.report_file = options.folder / "report.html";
+    // A board that stays in the field of view when the sensor tilts over it.
+    nlohmann::json settings = {{"seed", options.seed},
+                               {"board", {{"columns", 7}, {"rows", 6}, {"pitch_mm", 7}}}};
+    for (const DoorRegion& region :
+         default_door_regions())  // the frames that the application program runs in
+        settings["robot"]["frames"][frame_name(region.id)] =
+            pose_json(default_cell_settings().base_from_workobject);
+    DeviceSession session;
+    auto cell = shared_cell(settings, session);
+    if (!cell) return tl::unexpected(cell.error());
+    SimulatedCell& world = **cell;
+
+    progress("calibrating the sensor on plate and sphere");
+    Project& project = outcome.project;
+    project.name = "Demo: door left";
+    project.part = {"door left", "procedural door", {}, world.base_from_workobject()};
+    SensorSetup sensor_setup;
+    sensor_setup.id = kSensor;
+    sensor_setup.driver = "simulated";
+    sensor_setup.settings = settings;
+    RobotSetup robot_setup;
+    robot_setup.id = kRobot;
+    robot_setup.driver = "simulated";
+    robot_setup.settings = settings;
+    robot_setup.required_mode = RobotMode::automatic;
+    {
+        auto sensor = make_simulated_sensor(*cell);
+        auto robot = make_simulated_robot(*cell);
+        sensor_setup.identity = sensor->identity();
+        auto identity = robot->identity();
+        if (!identity) return tl::unexpected(identity.error());
+        robot_setup.identity = *identity;
+        auto calibrated = calibrate_demo_sensor(world, *sensor, *robot);
+        if (!calibrated) return tl::unexpected(calibrated.error());
+        outcome.calibration = std::move(*calibrated);
+    }
+    Calibration& calibration = outcome.calibration.calibration;
+    calibration.id = "cal-1";
+    calibration.sensor_id = kSensor;
+    calibration.robot_id = kRobot;
+    calibration.sensor_identity = sensor_setup.identity;
+    calibration.robot_identity = robot_setup.identity;
+    calibration.created_utc = utc_now();
+    sensor_setup.calibration_id = calibration.id;
+    project.sensors = {sensor_setup};
+    project.robots = {robot_setup};
+    project.calibrations = {calibration};
+
+    auto file = ProjectFile::create(outcome.project_file, project, true);
+    if (!file) return tl::unexpected(file.error());
+    Station station(std::move(*file), project);
+    const auto connect = [&] {
+        std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
+        std::map<std::string, std::unique_ptr<RobotLink>> robots;
+        sensors[kSensor] = make_simulated_sensor(*cell);
+        robots[kRobot] = make_simulated_robot(*cell);
+        station.connect(std::move(sensors), std::move(robots));
+    };
+    world.set_scene(Scene::part);
+    connect();
+
+    for (const DoorSpot& door : default_door_spots()) {
+        progress("teaching spot " + door.id);
+        Spot spot;
+        auto taught = teach(station, world.flange_for(door.workobject_from_sensor), door, spot);
+        if (!taught) return tl::unexpected(taught.error());
+        outcome.taught.push_back(std::move(*taught));
+        project.spots.push_back(std::move(spot));
+    }
+    for (const DoorRegion& door : default_door_regions()) {
+        Region region;
+        region.id = door.id;
+        region.spot_ids = door.spot_ids;
+        region.frame_name = frame_name(door.id);
+        region.base_from_frame = project.part.base_from_workobject;
+        project.regions.push_back(region);
+    }
+    if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
+    for (const Region& region : project.regions) {
+        auto plan = plan_region(planned_observations(project, region), {});
+        if (!plan) return tl::unexpected(plan.error());
+        outcome.plans.push_back(std::move(*plan));
+    }
+
+    RobotLink& robot = *station.robot(kRobot);
+    if (auto reset = reset_frames(robot, project); !reset) return tl::unexpected(reset.error());
+    for (int i = 0; i < 3; ++i) {
+        progress(fmt::format("zero shift, run {} of 3", i + 1));
+        RunOptions run;
+        run.part_id = fmt::format("master {}", i + 1);
+        auto record = station.run(run);
+        if (!record) return tl::unexpected(record.error());
+        record->captures.clear();
+        outcome.zero_shift.push_back(std::move(*record));
+    }
+    std::mt19937_64 random(options.seed);
+    for (int i = 0; i < options.parts; ++i) {
+        progress(fmt::format("part {} of {}: displaced, measured, corrected, pushed", i + 1, options.parts));
+        DemoPart part;
+        part.truth = next_part(random);
+        world.set_part(part.truth);
+        if (auto reset = reset_frames(robot, project); !reset) return tl::unexpected(reset.error());
+        RunOptions run;
+        run.part_id = fmt::format("CAR-{:04}", i + 1);
+        run.push = true;
+        auto record = station.run(run);
+        if (!record) return tl::unexpected(record.error());
+        record->captures.clear();
+        part.run = std::move(*record);
+        if (auto judged = judge(world, project, robot, part); !judged) return tl::unexpected(judged.error());
+        outcome.parts.push_back(std::move(part));
+    }
+    outcome.cell = world.describe();
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return outcome;
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,20 @@
+#include "app/cli/command.h"
+
+int main(int argc, char** argv) {
+    using namespace seamwright::cli;
+    CommandLine line;
+    add_demo(line);
+    add_project_commands(line);
+    add_run(line);
+    add_replay(line);
+    add_correct(line);
+    add_plan(line);
+    add_filter(line);
+    add_feature(line);
+    add_match(line);
+    add_extract(line);
+    add_align(line);
+    add_calibrate(line);
+    add_devices(line);
+    return line.run(argc, argv);
+}

@@ -1,0 +1,176 @@
+#include "app/cli/result_json.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/geometry/notation.h"
+#include "devices/exchange/pose_json.h"
+
+namespace seamwright::cli {
+
+using nlohmann::json;
+
+json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v) {
+    json list = json::array();
+    for (double x : v) list.push_back(x);
+    return list;
+}
+
+json matrix_json(const Eigen::Ref<const Eigen::MatrixXd>& m) {
+    json rows = json::array();
+    for (Eigen::Index r = 0; r < m.rows(); ++r) rows.push_back(vector_json(m.row(r).transpose()));
+    return rows;
+}
+
+std::string pose_text(const Pose& pose) {
+    const KukaAbc abc = kuka_from_rotation(pose.linear());
+    const Eigen::Vector3d t = pose.translation();
+    return fmt::format("X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg (KUKA A B C)",
+                       t.x(), t.y(), t.z(), abc.a_deg, abc.b_deg, abc.c_deg);
+}
+
+json correction_json(const RegionCorrection& c) {
+    json spots = json::array();
+    for (const SpotResidual& s : c.spots)
+        spots.push_back({{"id", s.id}, {"residual_mm", vector_json(s.residual_mm)}, {"used", s.used}});
+    return {{"status", to_string(c.status)},
+            {"displacement", pose_json(c.displacement.workobject_from_movedworkobject)},
+            {"sigma", {{"xyz_mm", vector_json(c.sigma_xyz_mm)}, {"abc_deg", vector_json(c.sigma_abc_deg)}}},
+            {"covariance", matrix_json(c.covariance)},
+            {"rms_mm", c.rms_mm},
+            {"redundancy", c.redundancy},
+            {"iterations", c.iterations},
+            {"spots", spots},
+            {"unobservable", c.unobservable},
+            {"message", c.message}};
+}
+
+namespace {
+std::string sigma_text(const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
+    return fmt::format("sigma  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n", xyz.x(),
+                       xyz.y(), xyz.z(), abc.x(), abc.y(), abc.z());
+}
+}  // namespace
+
+std::string correction_text(const RegionCorrection& c) {
+    std::string text = fmt::format("{}{}{}\n", to_string(c.status), c.message.empty() ? "" : ": ", c.message);
+    for (const std::string& direction : c.unobservable) text += "unobservable: " + direction + "\n";
+    if (c.status == CorrectionStatus::under_determined) return text;
+    text += "D      " + pose_text(c.displacement.workobject_from_movedworkobject) + "\n";
+    text += sigma_text(c.sigma_xyz_mm, c.sigma_abc_deg);
+    text += fmt::format("rms {:.4f} mm, redundancy {}\n", c.rms_mm, c.redundancy);
+    for (const SpotResidual& s : c.spots)
+        text += fmt::format("  {:<12} residual {:8.4f} {:8.4f} {:8.4f} mm{}\n", s.id, s.residual_mm.x(),
+                            s.residual_mm.y(), s.residual_mm.z(),
+                            s.used ? "" : "   left out: it contradicts the others");
+    return text;
+}
+
+json plan_json(const RegionPlan& p) {
+    return {{"status", to_string(p.status)},
+            {"sigma", {{"xyz_mm", vector_json(p.sigma_xyz_mm)}, {"abc_deg", vector_json(p.sigma_abc_deg)}}},
+            {"covariance", matrix_json(p.covariance)},
+            {"weakest", p.weakest},
+            {"weakest_direction", vector_json(p.weakest_direction)},
+            {"unobservable", p.unobservable},
+            {"redundancy", p.redundancy},
+            {"uncontrolled", p.uncontrolled},
+            {"advice", p.advice}};
+}
+
+std::string plan_text(const RegionPlan& p) {
+    std::string text = fmt::format("{}\n", to_string(p.status));
+    if (p.status == CorrectionStatus::ok) text += sigma_text(p.sigma_xyz_mm, p.sigma_abc_deg);
+    text += fmt::format("weakest: {}\nredundancy: {}\n", p.weakest, p.redundancy);
+    for (const std::string& direction : p.unobservable) text += "unobservable: " + direction + "\n";
+    if (!p.uncontrolled.empty())
+        text += fmt::format("a single wrong measure could not be found at: {}\n",
+                            fmt::join(p.uncontrolled, ", "));
+    if (!p.advice.empty()) text += "advice: " + p.advice + "\n";
+    return text;
+}
+
+json feature_json(const Feature& f) {
+    json j = {{"status", to_string(f.status)},
+              {"point", vector_json(f.point_mm)},
+              {"covariance", matrix_json(f.covariance_mm2)},
+              {"rms_mm", f.rms_mm},
+              {"points_used", f.points_used},
+              {"message", f.message}};
+    if (f.phi_rad) j["phi_deg"] = deg_from_rad(*f.phi_rad);
+    return j;
+}
+
+std::string feature_text(const Feature& f) {
+    if (f.status != FeatureStatus::ok) return fmt::format("{}: {}\n", to_string(f.status), f.message);
+    std::string text =
+        fmt::format("ok   x {:.4f} ± {:.4f}   z {:.4f} ± {:.4f} mm   rms {:.4f} mm, {} points\n",
+                    f.point_mm.x(), std::sqrt(f.covariance_mm2(0, 0)), f.point_mm.y(),
+                    std::sqrt(f.covariance_mm2(1, 1)), f.rms_mm, f.points_used);
+    if (f.phi_rad)
+        text += fmt::format("     phi {:.4f} deg (from +x towards +z)\n", deg_from_rad(*f.phi_rad));
+    return text;
+}
+
+json registration_json(const Registration& r) {
+    // Degrees at the edge: covariance and sigma of (x, z, phi_deg).
+    const Eigen::Vector3d scale(1, 1, deg_from_rad(1));
+    const Eigen::Matrix3d covariance = scale.asDiagonal() * r.covariance * scale.asDiagonal();
+    return {{"status", to_string(r.status)},
+            {"pose",
+             {{"x", r.scene_from_template.dx_mm},
+              {"z", r.scene_from_template.dz_mm},
+              {"phi_deg", deg_from_rad(r.scene_from_template.phi_rad)}}},
+            {"rms_mm", r.rms_mm},
+            {"inliers", r.inlier_share},
+            {"iterations", r.iterations},
+            {"sigma",
+             {{"x_mm", std::sqrt(covariance(0, 0))},
+              {"z_mm", std::sqrt(covariance(1, 1))},
+              {"phi_deg", std::sqrt(covariance(2, 2))}}},
+            {"covariance", matrix_json(covariance)}};
+}
+
+std::string registration_text(const Registration& r) {
+    const PlanarMotion& m = r.scene_from_template;
+    return fmt::format(
+        "{}   x {:.4f} mm  z {:.4f} mm  phi {:.4f} deg (template to scene, from +x towards +z)\n"
+        "rms {:.4f} mm, inliers {:.1f} %\n",
+        to_string(r.status), m.dx_mm, m.dz_mm, deg_from_rad(m.phi_rad), r.rms_mm, 100 * r.inlier_share);
+}
+
+json alignment_json(const AlignmentResult& a) {
+    json offsets = json::array();
+    for (const TravelOffset& o : a.offsets)
+        offsets.push_back({{"travel_mm", o.travel_mm},
+                           {"dx_mm", o.dx_mm},
+                           {"dz_mm", o.dz_mm},
+                           {"dphi_deg", o.dphi_deg},
+                           {"rms_mm", o.rms_mm},
+                           {"ok", o.ok}});
+    return {{"status", to_string(a.status)},
+            {"yaw_deg", a.yaw_deg},
+            {"pitch_deg", a.pitch_deg},
+            {"roll_deg", a.roll_deg},
+            {"sigma_yaw_deg", a.sigma_yaw_deg},
+            {"sigma_pitch_deg", a.sigma_pitch_deg},
+            {"radius_mm", a.radius_mm},  // null: straight within the noise
+            {"dx_mm_per_mm", a.dx_mm_per_mm},
+            {"dz_mm_per_mm", a.dz_mm_per_mm},
+            {"expected_error_mm", a.expected_error_mm},
+            {"shape_change_mm", a.shape_change_mm},
+            {"cure", a.cure},
+            {"offsets", offsets}};
+}
+
+std::string alignment_text(const AlignmentResult& a) {
+    std::string radius = std::isfinite(a.radius_mm) ? fmt::format("{:.0f} mm", a.radius_mm) : "straight";
+    return fmt::format(
+        "{}   yaw {:+.3f} ± {:.3f} deg   pitch {:+.3f} ± {:.3f} deg   roll {:+.3f} deg   radius {}\n"
+        "expected error from jitter {:.4f} mm, shape change {:.4f} mm\n{}{}",
+        to_string(a.status), a.yaw_deg, a.sigma_yaw_deg, a.pitch_deg, a.sigma_pitch_deg, a.roll_deg, radius,
+        a.expected_error_mm, a.shape_change_mm,
+        a.cure.empty() ? "" : "to cure: ", a.cure.empty() ? "" : a.cure + "\n");
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,31 @@
+#pragma once
+// Results of core as JSON (the contract's fields) and as text for people. Millimetre and degree.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/alignment/alignment.h"
+#include "core/correction/correction.h"
+#include "core/features/feature.h"
+#include "core/features/registration.h"
+
+namespace seamwright::cli {
+
+nlohmann::json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v);
+nlohmann::json matrix_json(const Eigen::Ref<const Eigen::MatrixXd>& m);  // rows
+
+// "X 1234.56 Y ... mm  A ... B ... C ... deg (KUKA A B C)"
+std::string pose_text(const Pose& pose);
+
+nlohmann::json correction_json(const RegionCorrection& correction);
+std::string correction_text(const RegionCorrection& correction);
+nlohmann::json plan_json(const RegionPlan& plan);
+std::string plan_text(const RegionPlan& plan);
+nlohmann::json feature_json(const Feature& feature);
+std::string feature_text(const Feature& feature);
+nlohmann::json registration_json(const Registration& registration);
+std::string registration_text(const Registration& registration);
+nlohmann::json alignment_json(const AlignmentResult& alignment);
+std::string alignment_text(const AlignmentResult& alignment);
+
+}  // namespace seamwright::cli

@@ -1,0 +1,136 @@
+#include "projects/teach.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "projects/acquire.h"
+#include "projects/measure.h"
+
+namespace seamwright {
+namespace {
+
+// What a trigger of the session brought.
+using Visit =
+    std::function<void(std::size_t move, const SpotMeasurer& measurer, const SpotMeasurement& measurement)>;
+
+// Runs `moves` (all of one spot) and measures at each trigger.
+Expected<void> measure_moves(Station& station, const Spot& spot, const std::vector<MeasuringMove>& moves,
+                             const std::stop_token& cancel,
+                             const std::function<void(const RunProgress&)>& progress, const Visit& visit) {
+    ProfileSource* sensor = station.sensor(spot.sensor_id);
+    RobotLink* robot = station.robot(spot.robot_id);
+    if (!sensor || !robot)
+        return usage_error("its sensor or robot is not connected", "spot " + spot.id, "connect first");
+    Project project = station.project();
+    auto known = std::find_if(project.spots.begin(), project.spots.end(),
+                              [&](const Spot& s) { return s.id == spot.id; });
+    if (known == project.spots.end())
+        project.spots.push_back(spot);
+    else
+        *known = spot;
+    auto measurer = SpotMeasurer::make(project, spot.id);
+    if (!measurer) return tl::unexpected(measurer.error());
+
+    const SensorSetup& setup = *find_sensor(project, spot.sensor_id);
+    StartedSensors started;
+    if (auto on = started.start(*sensor); !on) return on;
+    if (auto begun = robot->start_measuring(moves); !begun) return begun;
+    const AcquireLimits limits;
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        if (cancel.stop_requested()) return device_error("cancelled", "spot " + spot.id);
+        auto trigger = robot->wait_trigger(limits.trigger_timeout);
+        if (!trigger) return tl::unexpected(trigger.error());
+        auto frame = frame_at_trigger(*sensor, setup, spot.id, limits.frame_timeout, nullptr);
+        if (!frame) return tl::unexpected(frame.error());
+        visit(i, *measurer, measurer->measure(**frame, trigger->base_from_flange));
+        if (progress)
+            progress({static_cast<int>(i) + 1, static_cast<int>(moves.size()),
+                      fmt::format("{}: {} of {}", spot.id, i + 1, moves.size())});
+    }
+    return {};
+}
+
+Pose flange_from_sensor(const Station& station, const Spot& spot) {
+    const Calibration* calibration = calibration_of(station.project(), spot);
+    return calibration ? calibration->flange_from_sensor : Pose::Identity();
+}
+
+}  // namespace
+
+Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options) {
+    if (options.repeats < 1 || options.repeats > 1000)
+        return usage_error(fmt::format("{} repeats", options.repeats), "spot " + draft.id, "give 1 to 1000");
+    MeasuringMove move = measuring_move(draft, flange_from_sensor(station, draft));
+    move.stop_at_trigger = true;  // the reference is where the sensor stands, without trigger jitter
+    TaughtSpot taught;
+    taught.spot = draft;
+    auto measured = measure_moves(
+        station, draft, std::vector<MeasuringMove>(static_cast<std::size_t>(options.repeats), move),
+        options.cancel, options.progress,
+        [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+            taught.measurements.push_back(m);
+            if (m.status == SpotStatus::measured && taught.spot.reference_profile.size() == 0)
+                taught.spot.reference_profile = measurer.profile();
+        });
+    if (!measured) return tl::unexpected(measured.error());
+
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
+    int found = 0;
+    std::string reason;
+    for (const SpotMeasurement& m : taught.measurements) {
+        if (m.status != SpotStatus::measured) {
+            reason = m.message;
+            continue;
+        }
+        ++found;
+        sum += m.feature.point_mm;
+    }
+    if (2 * found < options.repeats)
+        return input_error(fmt::format("the feature was found in {} of {} measurements ({})", found,
+                                       options.repeats, reason),
+                           "spot " + draft.id, "choose another feature or move the sensor");
+    const Eigen::Vector2d mean = sum / found;
+    for (const SpotMeasurement& m : taught.measurements)
+        if (m.status == SpotStatus::measured) squares += (m.feature.point_mm - mean).cwiseAbs2();
+    if (found > 1) taught.spread_mm = (squares / (found - 1)).cwiseSqrt();
+    taught.spot.reference_mm = {mean.x(), 0.0, mean.y()};
+    return taught;
+}
+
+Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options) {
+    if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
+        return usage_error(fmt::format("a step of {} mm", options.step_mm), "spot " + spot.id,
+                           "give 0.05 mm or more");
+    const MeasuringMove through = measuring_move(spot, flange_from_sensor(station, spot));
+    const Eigen::Vector3d before = through.entry.translation() - through.trigger.translation();
+    const Eigen::Vector3d after = through.exit.translation() - through.trigger.translation();
+    std::vector<MeasuringMove> moves;
+    std::vector<double> travel;
+    const int back = static_cast<int>(std::floor(spot.entry_mm / options.step_mm + 1e-9));
+    const int ahead = static_cast<int>(std::floor(spot.exit_mm / options.step_mm + 1e-9));
+    for (int k = -back; k <= ahead; ++k) {
+        const double y = k * options.step_mm;
+        MeasuringMove move = through;
+        move.stop_at_trigger = true;
+        move.trigger.translation() += y < 0   ? Eigen::Vector3d(before * (-y / spot.entry_mm))
+                                      : y > 0 ? Eigen::Vector3d(after * (y / spot.exit_mm))
+                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
+        move.entry = move.exit = move.trigger;
+        moves.push_back(move);
+        travel.push_back(y);
+    }
+    RecordedPass pass;
+    auto measured = measure_moves(
+        station, spot, moves, options.cancel, options.progress,
+        [&](std::size_t i, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+            if (measurer.profile().size() > 0) pass.profiles.push_back({travel[i], measurer.profile()});
+            if (m.status == SpotStatus::measured)
+                pass.references.push_back({travel[i], m.feature.point_mm.x(), m.feature.point_mm.y()});
+        });
+    if (!measured) return tl::unexpected(measured.error());
+    return pass;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,47 @@
+#pragma once
+// Teaching on the part as it stands: the reference of a spot, and the pass entry -> exit that shows whether
+// the contour stands still. The robot makes the same moves as in a run; nothing is written to it.
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "core/alignment/alignment.h"
+#include "projects/run.h"
+#include "projects/station.h"
+
+namespace seamwright {
+
+struct TeachOptions {
+    int repeats = 5;  // measurements of the reference, 1 to 1000
+    std::stop_token cancel;
+    std::function<void(const RunProgress&)> progress;
+};
+
+// `spot` comes back with reference_mm (mean of the measurements, y = 0) and reference_profile (the first
+// one's).
+struct TaughtSpot {
+    Spot spot;
+    std::vector<SpotMeasurement> measurements;
+    Eigen::Vector2d spread_mm = Eigen::Vector2d::Zero();  // standard deviation of x and z; 0 for a single one
+};
+
+// Measures `draft` (its recipe, sensor and pose) `repeats` times. Error: not connected, a device, cancelled,
+// or the feature was found in fewer than half of the measurements; the sentence carries the last reason.
+Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options);
+
+struct PassOptions {
+    double step_mm = 2.0;  // travel between two profiles; the ends are the spot's entry and exit
+    std::stop_token cancel;
+    std::function<void(const RunProgress&)> progress;
+};
+
+struct RecordedPass {
+    std::vector<TravelProfile> profiles;  // filtered, in the sensor frame of their own pose, travel ascending
+    std::vector<TravelPoint> references;  // where the spot's feature was found
+};
+
+// The robot stops at every step, so that travel is exact; the run itself triggers in motion.
+Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options);
+
+}  // namespace seamwright

@@ -1,0 +1,274 @@
+// The command line as others script against it: names, fields, exit codes, one sentence on stderr.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/geometry/pose.h"
+#include "tests/app/run_program.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Cli : public testing::Test {
+  protected:
+    std::filesystem::path folder = test_folder("cli");
+    ~Cli() override { std::filesystem::remove_all(folder); }
+
+    std::string write(const std::string& name, const std::string& text) {
+        std::ofstream(folder / name, std::ios::binary) << text;
+        return (folder / name).string();
+    }
+    ProgramResult run(const std::vector<std::string>& arguments) { return run_program(arguments, folder); }
+    // Runs with --json - and parses the answer; the exit code is checked.
+    json answer(std::vector<std::string> arguments, int exit_code) {
+        arguments.insert(arguments.end(), {"--json", "-"});
+        const ProgramResult r = run(arguments);
+        EXPECT_EQ(r.exit_code, exit_code) << r.err;
+        return json::parse(r.out, nullptr, false);
+    }
+    // Bad input: exit 2, exactly one line on stderr, nothing on stdout.
+    void expect_refused(const std::vector<std::string>& arguments, const std::string& sentence_part,
+                        int exit_code = 2) {
+        const ProgramResult r = run(arguments);
+        EXPECT_EQ(r.exit_code, exit_code) << r.err;
+        EXPECT_THAT(r.err, HasSubstr(sentence_part));
+        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+        EXPECT_EQ(r.out, "");
+    }
+};
+
+// A door of n spots around an ellipse, displaced by D: the edge runs along each sensor's Y, the cut is where
+// the displaced straight edge meets the sensor's plane. Built from the definition of the measurement, not
+// from the solver's residual.
+json door_job(int n, const Pose& d, bool parallel = false) {
+    json spots = json::array();
+    for (int i = 0; i < n; ++i) {
+        const double a = 2 * kPi * i / n;
+        const Eigen::Vector3d origin(500 * std::cos(a), 350 * std::sin(a), 20.0 * (i % 3));
+        Eigen::Vector3d y =
+            parallel ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-std::sin(a), std::cos(a), 0.1 * (i % 2));
+        y.normalize();
+        const Eigen::Vector3d x = y.cross(Eigen::Vector3d(0.1 * (i % 4), 0, 1).normalized()).normalized();
+        Eigen::Matrix3d rotation;
+        rotation << x, y, x.cross(y);
+        const Pose w = make_pose(rotation, origin);
+        const Eigen::Vector3d r(3.0 - i, 0, 2.0 + 0.5 * i);
+        const Pose moved = w.inverse() * d * w;
+        Eigen::Vector3d m = moved * r;
+        const Eigen::Vector3d direction = moved.linear().col(1);
+        m -= direction * (m.y() / direction.y());
+        json matrix = json::array();
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column) matrix.push_back(w.matrix()(row, column));
+        spots.push_back({{"id", "S" + std::to_string(i + 1)},
+                         {"workobject_from_sensor", {{"matrix", matrix}}},
+                         {"reference", {r.x(), r.y(), r.z()}},
+                         {"measured", {m.x(), m.y(), m.z()}},
+                         {"weights", {1, 0, 1}},
+                         {"sigma_mm", 0.05}});
+    }
+    return {{"spots", spots}};
+}
+
+Pose displacement() {
+    return make_pose(rotation_exp({0.01, -0.008, 0.012}), {6, -4, 3});
+}
+
+TEST_F(Cli, CorrectAnswersDWithTheContractsFields) {
+    const json a = answer({"correct", write("job.json", door_job(8, displacement()).dump())}, 0);
+    EXPECT_EQ(a["status"], "ok");
+    const auto m = a["displacement"]["matrix"].get<std::vector<double>>();
+    ASSERT_EQ(m.size(), 16u);
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            EXPECT_NEAR(m[static_cast<std::size_t>(4 * row + column)], displacement().matrix()(row, column),
+                        1e-6);
+    EXPECT_EQ(a["displacement"]["xyz"].size(), 3u);
+    EXPECT_EQ(a["displacement"]["abc"].size(), 3u);
+    EXPECT_EQ(a["covariance"].size(), 6u);
+    EXPECT_NEAR(a["sigma"]["xyz_mm"][0].get<double>(), std::sqrt(a["covariance"][0][0].get<double>()), 1e-9);
+    EXPECT_EQ(a["sigma"]["abc_deg"].size(), 3u);
+    EXPECT_LT(a["rms_mm"].get<double>(), 1e-6);
+    ASSERT_EQ(a["spots"].size(), 8u);
+    EXPECT_EQ(a["spots"][0]["id"], "S1");
+    EXPECT_EQ(a["spots"][0]["residual_mm"].size(), 3u);
+    EXPECT_EQ(a["spots"][0]["used"], true);
+    EXPECT_TRUE(a["unobservable"].empty());
+}
+
+TEST_F(Cli, CorrectRefusesParallelEdgesAndNamesTheDirection) {
+    const json a = answer({"correct", write("job.json", door_job(3, displacement(), true).dump())}, 1);
+    EXPECT_EQ(a["status"], "under_determined");
+    EXPECT_THAT(a["unobservable"].dump(), HasSubstr("translation along Y"));
+}
+
+TEST_F(Cli, CorrectNamesTheWrongSpotAmongEight) {
+    json job = door_job(8, displacement());
+    job["spots"][4]["measured"][0] = job["spots"][4]["measured"][0].get<double>() + 3;
+    const json a = answer({"correct", write("job.json", job.dump())}, 0);
+    EXPECT_EQ(a["status"], "ok");
+    for (const json& spot : a["spots"]) EXPECT_EQ(spot["used"].get<bool>(), spot["id"] != "S5") << spot;
+    EXPECT_NEAR(a["displacement"]["xyz"][0].get<double>(), 6, 1e-6);
+}
+
+TEST_F(Cli, CorrectOverItsLimitsIsNotOk) {
+    json job = door_job(8, displacement());
+    job["limits"] = {{"translation_mm", 5}, {"rotation_deg", 3}};
+    EXPECT_EQ(answer({"correct", write("job.json", job.dump())}, 1)["status"], "over_limit");
+}
+
+TEST_F(Cli, EveryPoseFormMeansTheSame) {
+    const json with_matrix = answer({"correct", write("job.json", door_job(6, displacement()).dump())}, 0);
+    json job = door_job(6, displacement());
+    for (json& spot : job["spots"]) {
+        const auto m = spot["workobject_from_sensor"]["matrix"].get<std::vector<double>>();
+        Eigen::Matrix3d r;
+        r << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+        const Eigen::Quaterniond q(r);
+        const Eigen::Vector3d w = rotation_log(r);
+        if (spot["id"] == "S1")
+            spot["workobject_from_sensor"] = {{"xyz", {m[3], m[7], m[11]}},
+                                              {"quat_wxyz", {q.w(), q.x(), q.y(), q.z()}}};
+        else
+            spot["workobject_from_sensor"] = {{"xyz", {m[3], m[7], m[11]}},
+                                              {"rotvec_rad", {w.x(), w.y(), w.z()}}};
+    }
+    const json other = answer({"correct", write("other.json", job.dump())}, 0);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(with_matrix["displacement"]["xyz"][i].get<double>(),
+                    other["displacement"]["xyz"][i].get<double>(), 1e-7);
+}
+
+TEST_F(Cli, HostileJobsAreRefusedInOneSentence) {
+    const json good = door_job(5, displacement());
+    expect_refused({"correct", write("a.json", "")}, "JSON");
+    expect_refused({"correct", write("a.json", "{\"spots\": [")}, "JSON");
+    expect_refused({"correct", write("a.json", "[]")}, "object");
+    expect_refused({"correct", write("a.json", "{\"spots\": []}")}, "spot");
+    expect_refused({"correct", (folder / "missing.json").string()}, "missing.json", 3);
+    const auto changed = [&](auto change) {
+        json job = good;
+        change(job["spots"][3]);
+        return write("a.json", job.dump());
+    };
+    expect_refused({"correct", changed([](json& s) { s.erase("measured"); })}, "spots[3].measured");
+    expect_refused({"correct", changed([](json& s) { s["id"] = "S1"; })}, "S1");
+    expect_refused({"correct", changed([](json& s) { s["sigma_mm"] = 0; })}, "sigma");
+    expect_refused({"correct", changed([](json& s) { s["sigma_mm"] = "0.05"; })}, "spots[3].sigma_mm");
+    expect_refused({"correct", changed([](json& s) { s["measured"] = {1, 2}; })}, "spots[3].measured");
+    expect_refused({"correct", changed([](json& s) { s["measured"][1] = nullptr; })}, "spots[3].measured");
+    expect_refused({"correct", changed([](json& s) { s["weight"] = {1, 0, 1}; })}, "weight");
+    expect_refused({"correct", changed([](json& s) { s["workobject_from_sensor"]["matrix"][0] = 3.0; })},
+                   "orthonormal");
+    expect_refused({"correct", changed([](json& s) { s["workobject_from_sensor"]["matrix"].erase(0); })},
+                   "16");
+    expect_refused({"correct", changed([](json& s) {
+                        s["workobject_from_sensor"] = {{"xyz", {1, 2, 3}}, {"quat_wxyz", {2, 0, 0, 0}}};
+                    })},
+                   "quaternion");
+    json job = good;
+    job["free"] = {"x", "q"};
+    expect_refused({"correct", write("a.json", job.dump())}, "free[1]");
+}
+
+TEST_F(Cli, UsageErrorsEndWithTwo) {
+    EXPECT_EQ(run({}).exit_code, 2);
+    EXPECT_EQ(run({"no-such-command"}).exit_code, 2);
+    EXPECT_EQ(run({"correct"}).exit_code, 2);
+    EXPECT_EQ(run({"feature", write("p.csv", "x_mm,z_mm\n0,0\n"), "--kind", "no-such-kind"}).exit_code, 2);
+    EXPECT_EQ(run({"--help"}).exit_code, 0);
+    EXPECT_EQ(run({"--version"}).exit_code, 0);
+}
+
+TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
+    for (const char* command :
+         {"demo", "new", "info", "check", "run", "replay", "export", "import", "correct", "plan", "filter",
+          "feature", "match", "extract", "align", "calibrate", "devices"}) {
+        const ProgramResult r = run({command, "--help"});
+        EXPECT_EQ(r.exit_code, 0) << command;
+        EXPECT_THAT(r.out, HasSubstr("Example:")) << command;
+        EXPECT_THAT(r.out, HasSubstr("--json")) << command;
+    }
+}
+
+TEST_F(Cli, PlanPredictsWhatCorrectStates) {
+    const json job = door_job(7, displacement());
+    const json plan = answer({"plan", write("job.json", job.dump())}, 0);
+    const json corrected = answer({"correct", write("job.json", job.dump())}, 0);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(plan["sigma"]["xyz_mm"][i].get<double>(), corrected["sigma"]["xyz_mm"][i].get<double>(),
+                    0.05 * corrected["sigma"]["xyz_mm"][i].get<double>());
+    EXPECT_TRUE(plan.contains("weakest"));
+    EXPECT_TRUE(plan.contains("advice"));
+}
+
+std::string step_profile() {
+    std::string csv = "x_mm,z_mm\n";
+    for (int i = 0; i < 300; ++i) {
+        const double x = 0.1 * i;
+        csv += std::to_string(x) + "," +
+               (i == 150 ? ""
+                         : std::to_string(i == 80  ? 9.0
+                                          : x < 20 ? 1.0
+                                                   : -2.0)) +
+               "\n";
+    }
+    return csv;
+}
+
+TEST_F(Cli, FilterMarksEveryPointAndLosesNone) {
+    const std::string out = (folder / "out.csv").string();
+    const json a = answer({"filter", write("in.csv", step_profile()), "--out", out}, 0);
+    EXPECT_EQ(a["points"], 300);
+    EXPECT_EQ(a["outliers"], 1);
+    EXPECT_EQ(a["no_return"], 1);
+    EXPECT_EQ(a["segments"], 2);
+    const std::string text = slurp(out);
+    EXPECT_THAT(text, HasSubstr("valid"));
+    EXPECT_THAT(text, HasSubstr("segment"));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 301);
+}
+
+TEST_F(Cli, FeatureFindsTheContourEndOnEitherSide) {
+    const std::string in = write("in.csv", step_profile());
+    const json left = answer({"feature", in, "--kind", "contour-end", "--side", "left"}, 0);
+    const json right = answer({"feature", in, "--kind", "contour-end", "--side", "right"}, 0);
+    EXPECT_EQ(left["status"], "ok");
+    EXPECT_NEAR(left["point"][0].get<double>(), 0.0, 0.1);
+    EXPECT_NEAR(right["point"][0].get<double>(), 29.9, 0.1);
+    EXPECT_EQ(left["covariance"].size(), 2u);
+    expect_refused({"feature", in, "--kind", "contour-end", "--side", "upwards"}, "left");
+}
+
+TEST_F(Cli, HostileProfilesAreRefused) {
+    const std::string out = (folder / "out.csv").string();
+    expect_refused({"filter", write("a.csv", ""), "--out", out}, "a.csv");
+    expect_refused({"filter", write("a.csv", "a,b\n1,2\n"), "--out", out}, "x_mm");
+    expect_refused({"filter", write("a.csv", "x_mm,z_mm\n1,2\n3;4\n"), "--out", out}, "3");
+    expect_refused({"filter", write("a.csv", "x_mm,z_mm\n1,2\nfoo,4\n"), "--out", out}, "foo");
+    EXPECT_FALSE(std::filesystem::exists(out)) << "nothing may be half-written";
+}
+
+TEST_F(Cli, ProjectFilesAreMadeToldAndChecked) {
+    const std::string file = (folder / "door.seam").string();
+    EXPECT_EQ(run({"new", file, "--name", "Door"}).exit_code, 0);
+    expect_refused({"new", file}, "door.seam", run({"new", file}).exit_code);
+    EXPECT_EQ(answer({"info", file}, 0)["name"], "Door");
+    EXPECT_EQ(run({"info", write("text.seam", "no project")}).exit_code, 3);
+    EXPECT_EQ(run({"info", (folder / "missing.seam").string()}).exit_code, 3);
+    EXPECT_EQ(run({"check", write("empty.seam", "")}).exit_code, 3);
+    const std::string exported = (folder / "door.json").string(), again = (folder / "again.seam").string();
+    EXPECT_EQ(run({"export", file, "--out", exported}).exit_code, 0);
+    EXPECT_EQ(run({"import", again, "--from", exported}).exit_code, 0);
+    EXPECT_EQ(answer({"info", again}, 0)["name"], "Door");
+}
+
+}  // namespace
+}  // namespace seamwright

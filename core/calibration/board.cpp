@@ -125,7 +125,28 @@ double smallest_spacing(const Corners& corners, int columns, int rows) {
     return least;
 }
 
-// A lattice that a camera can have made: its homography explains every corner to a fraction of the spacing.
+// Whether the lattice bends as a wide lens bends it: all cells of one orientation, and along every line the
+// spacing changes by less than 40 % from one corner to the next.
+bool regular(const Corners& corners, int columns, int rows) {
+    const auto at = [&](int c, int r) { return corners[static_cast<std::size_t>(r * columns + c)]; };
+    const auto even = [](const cv::Point2f& a, const cv::Point2f& b, const cv::Point2f& c) {
+        return cv::norm(a - 2 * b + c) < 0.2 * cv::norm(c - a);
+    };
+    int left = 0, cells = 0;
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) {
+            if (c > 0 && c + 1 < columns && !even(at(c - 1, r), at(c, r), at(c + 1, r))) return false;
+            if (r > 0 && r + 1 < rows && !even(at(c, r - 1), at(c, r), at(c, r + 1))) return false;
+            if (c + 1 == columns || r + 1 == rows) continue;
+            const cv::Point2f x = at(c + 1, r) - at(c, r), y = at(c, r + 1) - at(c, r);
+            left += x.x * y.y - x.y * y.x > 0;
+            ++cells;
+        }
+    return left == 0 || left == cells;
+}
+
+// A lattice that a camera can have made: its homography explains every corner to a fraction of the spacing,
+// or to less than the spacing where the lattice is regular (strong distortion).
 bool plausible(const Corners& corners, int columns, int rows, const cv::Size& size) {
     std::vector<Eigen::Vector2d> grid, image;
     for (int r = 0; r < rows; ++r)
@@ -146,7 +167,7 @@ bool plausible(const Corners& corners, int columns, int rows, const cv::Size& si
         const Eigen::Vector3d q = *h * grid[i].homogeneous();
         worst = std::max(worst, (q.hnormalized() - image[i]).norm());
     }
-    return worst < 0.3 * spacing;
+    return worst < 0.3 * spacing || (worst < spacing && regular(corners, columns, rows));
 }
 
 std::optional<Corners> classic(const cv::Mat& image, const cv::Size& pattern, int flags) {
@@ -231,6 +252,21 @@ int canonical_order(const cv::Mat& image, Corners& corners, int columns, int row
     return columns == rows && columns % 2 == 1 ? 4 : 2;
 }
 
+// Whether a large image may show a board that the cheap attempts missed: black and white squares of similar
+// size at half or quarter size, as taken, evened or with its local contrast raised. Small images are always
+// worth it.
+bool worth_the_effort(const cv::Mat& grey, const cv::Mat& even, const cv::Size& pattern) {
+    if (even.total() <= 640 * 512) return true;
+    cv::Mat local, small;
+    cv::createCLAHE(4.0, {8, 8})->apply(even, local);
+    for (const cv::Mat& image : {grey, even, local})
+        for (const double scale : {0.5, 0.25}) {
+            cv::resize(image, small, {}, scale, scale, cv::INTER_AREA);
+            if (cv::checkChessboard(small, pattern)) return true;
+        }
+    return false;
+}
+
 std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& spec) {
     const cv::Size pattern(spec.columns, spec.rows);
     const cv::Mat stripe = detail::stripe_mask(grey);
@@ -249,22 +285,27 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
         int flags;
     };
     constexpr int kClassic = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
-    // Cheap ones first; a half-size image hides texture and noise from the quad finder.
+    // Cheap ones first; a half-size image hides texture and noise from the quad finder. Without the fast
+    // check the quad finder takes seconds on a large noisy image, so that it runs on the half-size one first.
     static constexpr Attempt attempts[] = {
-        {"quads, as taken", true, 1.0, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
         {"quads, half size", false, 0.5, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
+        {"quads, as taken", true, 1.0, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
         {"quads", false, 1.0, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
         {"sectors, half size", false, 0.5, 1.0, false, true, cv::CALIB_CB_NORMALIZE_IMAGE},
+        {"quads, quarter size", false, 0.25, 1.0, false, false, kClassic},
         {"sectors", false, 1.0, 0.7, false, true, cv::CALIB_CB_NORMALIZE_IMAGE},
-        {"quads, as taken, thorough", true, 1.0, 1.0, false, false, kClassic},
         {"sectors, as taken", true, 1.0, 1.0, false, true, cv::CALIB_CB_NORMALIZE_IMAGE},
+        {"quads, as taken, half size", true, 0.5, 1.0, false, false, kClassic},
         {"quads, local contrast", false, 0.5, 0.7, true, false, kClassic},
+        {"quads, as taken, thorough", true, 1.0, 1.0, false, false, kClassic},
         {"sectors, local contrast", false, 1.0, 1.0, true, true,
          cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE},
-        {"quads, quarter size", false, 0.25, 1.0, false, false, kClassic},
         {"quads, filtered", false, 1.0, 0.5, true, false, kClassic | cv::CALIB_CB_FILTER_QUADS},
     };
-    for (const auto& a : attempts) {
+    constexpr std::size_t kFirstThorough = 7;  // from here on an attempt may take seconds
+    for (std::size_t n = 0; n < std::size(attempts); ++n) {
+        const Attempt& a = attempts[n];
+        if (n == kFirstThorough && !worth_the_effort(grey, even, pattern)) break;
         if (a.scale < 1 && std::min(grey.cols, grey.rows) * a.scale < 200) continue;
         cv::Mat image = a.plain ? grey : a.gamma == 1.0 ? even : detail::stretched(clean, wide, a.gamma);
         if (a.equalise) {

@@ -52,6 +52,12 @@ Expected<void> measure_moves(Station& station, const Spot& spot, const std::vect
     return {};
 }
 
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 Pose flange_from_sensor(const Station& station, const Spot& spot) {
     const Calibration* calibration = calibration_of(station.project(), spot);
     return calibration ? calibration->flange_from_sensor : Pose::Identity();
@@ -66,36 +72,60 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
     move.stop_at_trigger = true;  // the reference is where the sensor stands, without trigger jitter
     TaughtSpot taught;
     taught.spot = draft;
-    auto measured = measure_moves(
-        station, draft, std::vector<MeasuringMove>(static_cast<std::size_t>(options.repeats), move),
-        options.cancel, options.progress,
-        [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
-            taught.measurements.push_back(m);
-            if (m.status == SpotStatus::measured && taught.spot.reference_profile.size() == 0)
-                taught.spot.reference_profile = measurer.profile();
-        });
+    std::vector<Profile> profiles;
+    auto measured = measure_moves(station, draft,
+                                  std::vector<MeasuringMove>(static_cast<std::size_t>(options.repeats), move),
+                                  options.cancel, options.progress,
+                                  [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+                                      taught.measurements.push_back(m);
+                                      profiles.push_back(measurer.profile());
+                                  });
     if (!measured) return tl::unexpected(measured.error());
 
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
-    int found = 0;
+    std::vector<std::size_t> found;
     std::string reason;
-    for (const SpotMeasurement& m : taught.measurements) {
-        if (m.status != SpotStatus::measured) {
-            reason = m.message;
-            continue;
-        }
-        ++found;
-        sum += m.feature.point_mm;
+    for (std::size_t i = 0; i < taught.measurements.size(); ++i) {
+        if (taught.measurements[i].status == SpotStatus::measured)
+            found.push_back(i);
+        else
+            reason = taught.measurements[i].message;
     }
-    if (2 * found < options.repeats)
-        return input_error(fmt::format("the feature was found in {} of {} measurements ({})", found,
+    if (2 * found.size() < taught.measurements.size())
+        return input_error(fmt::format("the feature was found in {} of {} measurements ({})", found.size(),
                                        options.repeats, reason),
                            "spot " + draft.id, "choose another feature or move the sensor");
-    const Eigen::Vector2d mean = sum / found;
-    for (const SpotMeasurement& m : taught.measurements)
-        if (m.status == SpotStatus::measured) squares += (m.feature.point_mm - mean).cwiseAbs2();
-    if (found > 1) taught.spread_mm = (squares / (found - 1)).cwiseSqrt();
+
+    // A reflection that took the feature once must not pull the reference: what lies far from the median is
+    // left out.
+    const auto point = [&](std::size_t i) -> const Eigen::Vector2d& {
+        return taught.measurements[i].feature.point_mm;
+    };
+    Eigen::Vector2d middle, limit;
+    for (int axis = 0; axis < 2; ++axis) {
+        std::vector<double> values;
+        for (std::size_t i : found) values.push_back(point(i)[axis]);
+        middle[axis] = median(values);
+        for (double& v : values) v = std::abs(v - middle[axis]);
+        limit[axis] = std::max(5 * 1.4826 * median(values), 3 * draft.sigma_mm);
+    }
+    std::vector<std::size_t> kept;
+    for (std::size_t i : found)
+        if (((point(i) - middle).cwiseAbs().array() <= limit.array()).all()) kept.push_back(i);
+    taught.left_out = static_cast<int>(taught.measurements.size() - kept.size());
+    if (2 * kept.size() < taught.measurements.size())
+        return input_error(fmt::format("only {} of {} measurements agree", kept.size(), options.repeats),
+                           "spot " + draft.id,
+                           "choose another feature, shield reflections or move the sensor");
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
+    for (std::size_t i : kept) sum += point(i);
+    const Eigen::Vector2d mean = sum / static_cast<double>(kept.size());
+    for (std::size_t i : kept) squares += (point(i) - mean).cwiseAbs2();
+    if (kept.size() > 1) taught.spread_mm = (squares / static_cast<double>(kept.size() - 1)).cwiseSqrt();
     taught.spot.reference_mm = {mean.x(), 0.0, mean.y()};
+    const auto typical = std::min_element(kept.begin(), kept.end(), [&](std::size_t i, std::size_t k) {
+        return (point(i) - mean).squaredNorm() < (point(k) - mean).squaredNorm();
+    });
+    taught.spot.reference_profile = profiles[*typical];
     return taught;
 }
 

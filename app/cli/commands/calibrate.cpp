@@ -21,7 +21,7 @@ using nlohmann::json;
 using Exclude = std::vector<std::string>;
 
 struct Arguments {
-    std::string data, board, pattern = "chessboard", report, project, sensor;
+    std::string data, board, pattern = "chessboard", report, project, sensor, table;
     double pitch_mm = 0;
     Exclude exclude;
 };
@@ -42,6 +42,9 @@ const Method kMethods[] = {
      "images --board 9x6 --pitch-mm 25"},
     {"laser-plane", "Laser plane in the camera from a triangular body's apexes", calibrate_laser_plane_json,
      false, "pairs.json"},
+    {"lut", "Look-up table pixel to millimetre from known target positions",
+     [](const json& data, const Exclude& exclude) { return calibrate_lut_json(data, exclude); }, false,
+     "pairs.json --table table.lut"},
     {"tcp-sphere", "Sensor on the flange from profiles of one sphere", calibrate_tcp_sphere_json, false,
      "sphere.json --exclude P3"},
     {"plate", "Plate in the world from two point sets", calibrate_plate_json, false, "points.json"},
@@ -68,6 +71,7 @@ Expected<CalibrateOutcome> solve(const Method& method, const Arguments& a, json&
     auto read = read_json_file(a.data);
     if (!read) return tl::unexpected(read.error());
     data = std::move(*read);
+    if (!a.table.empty()) return calibrate_lut_json(data, a.exclude, a.table);
     return method.from_json(data, a.exclude);
 }
 
@@ -177,6 +181,8 @@ void add_calibrate(CommandLine& line) {
         command->add_option("--store", a->project, "Keep result and data in this project")
             ->type_name("FILE.seam");
         command->add_option("--sensor", a->sensor, "The project's sensor that was calibrated");
+        if (method.name == std::string("lut"))
+            command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
         if (method.images) {
             command
                 ->add_option("--board", a->board,

@@ -84,12 +84,12 @@ Pose displacement() {
 TEST_F(Cli, CorrectAnswersDWithTheContractsFields) {
     const json a = answer({"correct", write("job.json", door_job(8, displacement()).dump())}, 0);
     EXPECT_EQ(a["status"], "ok");
-    const auto m = a["displacement"]["matrix"].get<std::vector<double>>();
-    ASSERT_EQ(m.size(), 16u);
+    const auto m = a["displacement"]["matrix"].get<std::vector<std::vector<double>>>();
+    ASSERT_EQ(m.size(), 4u);
     for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column)
-            EXPECT_NEAR(m[static_cast<std::size_t>(4 * row + column)], displacement().matrix()(row, column),
-                        1e-6);
+            EXPECT_NEAR(m[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)],
+                        displacement().matrix()(row, column), 1e-6);
     EXPECT_EQ(a["displacement"]["xyz"].size(), 3u);
     EXPECT_EQ(a["displacement"]["abc"].size(), 3u);
     EXPECT_EQ(a["covariance"].size(), 6u);

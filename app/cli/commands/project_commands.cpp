@@ -74,9 +74,15 @@ Expected<Answer> info(const std::string& path) {
                         {"captures", r.captures}});
     }
     Answer answer;
-    answer.json = export_project(*project);
-    answer.json["status"] = "ok";
-    answer.json["runs"] = list;
+    answer.json = {{"status", "ok"},
+                   {"name", project->name},
+                   {"sensors", project->sensors.size()},
+                   {"robots", project->robots.size()},
+                   {"calibrations", project->calibrations.size()},
+                   {"spots", project->spots.size()},
+                   {"regions", project->regions.size()},
+                   {"runs", list},
+                   {"project", export_project(*project)}};
     answer.text = text;
     return answer;
 }

@@ -252,11 +252,13 @@ int canonical_order(const cv::Mat& image, Corners& corners, int columns, int row
     return columns == rows && columns % 2 == 1 ? 4 : 2;
 }
 
+constexpr std::size_t kSmallImage = 640 * 512;  // px; there every attempt takes well below a second
+
 // Whether a large image may show a board that the cheap attempts missed: black and white squares of similar
 // size at half or quarter size, as taken, evened or with its local contrast raised. Small images are always
 // worth it.
 bool worth_the_effort(const cv::Mat& grey, const cv::Mat& even, const cv::Size& pattern) {
-    if (even.total() <= 640 * 512) return true;
+    if (even.total() <= kSmallImage) return true;
     cv::Mat local, small;
     cv::createCLAHE(4.0, {8, 8})->apply(even, local);
     for (const cv::Mat& image : {grey, even, local})
@@ -291,6 +293,7 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
         {"quads, half size", false, 0.5, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
         {"quads, as taken", true, 1.0, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
         {"quads", false, 1.0, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
+        {"quads, half size", false, 0.5, 1.0, false, false, kClassic | cv::CALIB_CB_FAST_CHECK},
         {"sectors, half size", false, 0.5, 1.0, false, true, cv::CALIB_CB_NORMALIZE_IMAGE},
         {"quads, quarter size", false, 0.25, 1.0, false, false, kClassic},
         {"sectors", false, 1.0, 0.7, false, true, cv::CALIB_CB_NORMALIZE_IMAGE},
@@ -302,11 +305,14 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
          cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE},
         {"quads, filtered", false, 1.0, 0.5, true, false, kClassic | cv::CALIB_CB_FILTER_QUADS},
     };
-    constexpr std::size_t kFirstThorough = 7;  // from here on an attempt may take seconds
+    constexpr double kLeastSpacingFromHalf = 20;  // px
+    const bool small_image = grey.total() <= kSmallImage;
+    constexpr std::size_t kFirstThorough = 8;  // from here on an attempt may take seconds
     for (std::size_t n = 0; n < std::size(attempts); ++n) {
         const Attempt& a = attempts[n];
         if (n == kFirstThorough && !worth_the_effort(grey, even, pattern)) break;
         if (a.scale < 1 && std::min(grey.cols, grey.rows) * a.scale < 200) continue;
+        if (n == 0 && small_image) continue;
         cv::Mat image = a.plain ? grey : a.gamma == 1.0 ? even : detail::stretched(clean, wide, a.gamma);
         if (a.equalise) {
             cv::Mat local;
@@ -325,6 +331,9 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
             p.y = static_cast<float>((p.y + 0.5) / a.scale - 0.5);
         }
         if (!plausible(*corners, spec.columns, spec.rows, grey.size())) continue;
+        // Found at half size, corners of small squares start too far off for the sub-pixel search: the full
+        // size has its chance first.
+        if (n == 0 && smallest_spacing(*corners, spec.columns, spec.rows) < kLeastSpacingFromHalf) continue;
         cv::Mat soft;
         cv::GaussianBlur(a.plain ? grey : clean, soft, {}, 0.8);
         const Corners rough = *corners;

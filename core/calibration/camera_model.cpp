@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/calibration/camera.h"
+#include "core/calibration/least_direction.h"
 
 namespace seamwright {
 namespace {
@@ -95,9 +96,8 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
         for (Eigen::Index k = 0; k < 2; ++k)
             ata.selfadjointView<Eigen::Lower>().rankUpdate(a.row(k).transpose());
     }
-    // Of dynamic size: unrolled for 12 x 12 it takes the compiler a minute and saves nothing here.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(ata);
-    const Eigen::Matrix<double, 12, 1> p = eigen.eigenvectors().col(0);
+    const Eigen::VectorXd p = least_direction(ata).vector;
+    if (p.size() == 0) return std::nullopt;
     Eigen::Matrix<double, 3, 4> m;
     m << p.segment<4>(0).transpose(), p.segment<4>(4).transpose(), p.segment<4>(8).transpose();
     if (m(2, 3) < 0) m = -m;
@@ -299,10 +299,9 @@ std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>
         for (Eigen::Index k = 0; k < 2; ++k)
             ata.selfadjointView<Eigen::Lower>().rankUpdate(row.row(k).transpose());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(ata);
-    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(1) > 1e-12 * eigen.eigenvalues()(8)))
-        return std::nullopt;
-    const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);
+    const LeastDirection least = least_direction(ata);
+    if (least.vector.size() == 0 || !(least.second_share > 1e-12)) return std::nullopt;
+    const Eigen::VectorXd& v = least.vector;
     Eigen::Matrix3d h;
     h << v.segment<3>(0).transpose(), v.segment<3>(3).transpose(), v.segment<3>(6).transpose();
     h = b.inverse() * h * a;

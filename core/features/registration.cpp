@@ -19,7 +19,7 @@ constexpr double kUndetermined_mm = 1e3;
 // The template counts as found when at least this share of its length has a partner...
 constexpr double kSmallestShare = 0.5;
 // ... and at least this share of what fixes its least determined direction.
-constexpr double kSmallestInformationShare = 0.12;
+constexpr double kSmallestInformationShare = 0.04;
 // Slopes below this (rms, radian) say nothing about where along the contour we are.
 constexpr double kStraight_rad = 2e-3;
 // Poses whose ratings differ by less fit about equally well.

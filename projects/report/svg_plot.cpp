@@ -25,13 +25,15 @@ struct Range {
 };
 
 // Where the drawing area lies inside the picture.
-constexpr double kLeft = 64, kRight = 14, kTop = 30, kBottom = 44;
+constexpr double kLeft = 64, kRight = 14, kTop = 42, kBottom = 44;
 
 struct Frame {
     Range x, y;
     double width, height;
     double px(double v) const { return kLeft + (v - x.from) / x.span() * (width - kLeft - kRight); }
-    double py(double v) const { return height - kBottom - (v - y.from) / y.span() * (height - kTop - kBottom); }
+    double py(double v) const {
+        return height - kBottom - (v - y.from) / y.span() * (height - kTop - kBottom);
+    }
 };
 
 std::string number(double v) {
@@ -44,20 +46,24 @@ void draw_axes(std::string& out, const Plot& plot, const Frame& f) {
     const double bottom = f.height - kBottom, right = f.width - kRight;
     if (plot.categories.empty()) {
         for (double t : axis_ticks(f.x.from, f.x.to, 8)) {
-            fmt::format_to(it, "<line class='grid' x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}'/>", f.px(t), kTop, bottom);
-            fmt::format_to(it, "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>", f.px(t), bottom + 15, number(t));
+            fmt::format_to(it, "<line class='grid' x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}'/>", f.px(t),
+                           kTop, bottom);
+            fmt::format_to(it, "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>", f.px(t), bottom + 15,
+                           number(t));
         }
     } else {
         for (std::size_t i = 0; i < plot.categories.size(); ++i)
-            fmt::format_to(it, "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>", f.px(static_cast<double>(i)),
-                           bottom + 15, escape(plot.categories[i]));
+            fmt::format_to(it, "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>",
+                           f.px(static_cast<double>(i)), bottom + 15, escape(plot.categories[i]));
     }
     for (double t : axis_ticks(f.y.from, f.y.to, 6)) {
-        fmt::format_to(it, "<line class='grid' x1='{1}' x2='{2}' y1='{0:.1f}' y2='{0:.1f}'/>", f.py(t), kLeft, right);
-        fmt::format_to(it, "<text x='{}' y='{:.1f}' text-anchor='end'>{}</text>", kLeft - 6, f.py(t) + 4, number(t));
+        fmt::format_to(it, "<line class='grid' x1='{1}' x2='{2}' y1='{0:.1f}' y2='{0:.1f}'/>", f.py(t), kLeft,
+                       right);
+        fmt::format_to(it, "<text x='{}' y='{:.1f}' text-anchor='end'>{}</text>", kLeft - 6, f.py(t) + 4,
+                       number(t));
     }
-    fmt::format_to(it, "<rect class='axes' x='{}' y='{}' width='{}' height='{}'/>", kLeft, kTop, right - kLeft,
-                   bottom - kTop);
+    fmt::format_to(it, "<rect class='axes' x='{}' y='{}' width='{}' height='{}'/>", kLeft, kTop,
+                   right - kLeft, bottom - kTop);
     fmt::format_to(it, "<text class='title' x='{}' y='16'>{}</text>", kLeft, escape(plot.title));
     fmt::format_to(it, "<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", (kLeft + right) / 2,
                    f.height - 10, escape(plot.x_label));
@@ -89,8 +95,8 @@ void draw_series(std::string& out, const Series& s, const Frame& f, double bar_o
         if (s.mark == Mark::dots)
             fmt::format_to(it, "<circle cx='{:.1f}' cy='{:.1f}' r='2.4' fill='{}'/>", px, py, s.colour);
         else if (s.mark == Mark::crosses)
-            fmt::format_to(it, "<path d='M{0:.1f} {1:.1f}l6 6m0 -6l-6 6' stroke='{2}' stroke-width='1.6'/>", px - 3, py - 3,
-                           s.colour);
+            fmt::format_to(it, "<path d='M{0:.1f} {1:.1f}l6 6m0 -6l-6 6' stroke='{2}' stroke-width='1.6'/>",
+                           px - 3, py - 3, s.colour);
         else {
             const double zero = f.py(std::clamp(0.0, f.y.from, f.y.to));
             fmt::format_to(it, "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='{}'/>",
@@ -111,7 +117,8 @@ std::vector<double> axis_ticks(double from, double to, int count) {
             break;
         }
     std::vector<double> ticks;
-    for (double k = std::ceil(from / step); k * step <= to * (1 + 1e-12) + 1e-300; ++k) ticks.push_back(k * step);
+    for (double k = std::ceil(from / step); k * step <= to * (1 + 1e-12) + 1e-300; ++k)
+        ticks.push_back(k * step);
     return ticks;
 }
 
@@ -130,8 +137,8 @@ std::string svg(const Plot& plot) {
         "aria-label='{2}'>",
         plot.width_px, plot.height_px, escape(plot.title));
     if (!f.x.valid() || !f.y.valid()) {
-        out += fmt::format("<text x='{}' y='{}' text-anchor='middle'>{}: no data</text></svg>", plot.width_px / 2,
-                           plot.height_px / 2, escape(plot.title));
+        out += fmt::format("<text x='{}' y='{}' text-anchor='middle'>{}: no data</text></svg>",
+                           plot.width_px / 2, plot.height_px / 2, escape(plot.title));
         return out;
     }
     for (const Band& b : plot.bands) f.y.include(b.from), f.y.include(b.to);
@@ -153,8 +160,9 @@ std::string svg(const Plot& plot) {
     }
     for (const Band& b : plot.bands) {
         const double top = f.py(std::min(b.to, f.y.to)), bottom = f.py(std::max(b.from, f.y.from));
-        out += fmt::format("<rect class='band' x='{}' y='{:.1f}' width='{}' height='{:.1f}'><title>{}</title></rect>",
-                           kLeft, top, f.width - kLeft - kRight, std::max(0.0, bottom - top), escape(b.name));
+        out += fmt::format(
+            "<rect class='band' x='{}' y='{:.1f}' width='{}' height='{:.1f}'><title>{}</title></rect>", kLeft,
+            top, f.width - kLeft - kRight, std::max(0.0, bottom - top), escape(b.name));
     }
     draw_axes(out, plot, f);
     const double slot = (f.px(1) - f.px(0)) * 0.8, bar = bar_series ? slot / bar_series : 0;
@@ -164,12 +172,14 @@ std::string svg(const Plot& plot) {
         if (s.mark == Mark::bars) ++bar_index;
         draw_series(out, s, f, offset, bar);
     }
-    double legend_x = f.width - kRight;
-    for (auto s = plot.series.rbegin(); s != plot.series.rend(); ++s) {
-        if (s->name.empty()) continue;
-        legend_x -= 7.0 * static_cast<double>(s->name.size()) + 24;
-        out += fmt::format("<rect x='{:.1f}' y='8' width='12' height='{}' fill='{}'/><text x='{:.1f}' y='16'>{}</text>",
-                           legend_x, s->mark == Mark::bars ? 9 : 4, s->colour, legend_x + 16, escape(s->name));
+    double legend_x = kLeft;  // a line of its own under the title
+    for (const Series& s : plot.series) {
+        if (s.name.empty()) continue;
+        out += fmt::format(
+            "<rect x='{:.1f}' y='{}' width='12' height='{}' fill='{}'/><text x='{:.1f}' y='34'>{}</text>",
+            legend_x, s.mark == Mark::bars ? 26 : 29, s.mark == Mark::bars ? 9 : 4, s.colour, legend_x + 16,
+            escape(s.name));
+        legend_x += 6.2 * static_cast<double>(s.name.size()) + 30;
     }
     return out + "</svg>";
 }

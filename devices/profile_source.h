@@ -21,18 +21,18 @@ struct SourceCounters {
     std::uint64_t completed = 0, damaged = 0, underrun = 0, missing_packets = 0;
 };
 
-// One thread owns the control calls; wait_next() and latest() may be called from another. After start() frames arrive
-// until stop(); in triggered mode only after trigger() or a hardware trigger.
+// One thread owns the control calls; wait_next() and latest() may be called from another. After start()
+// frames arrive until stop(); in triggered mode only after trigger() or a hardware trigger.
 class ProfileSource {
-public:
+  public:
     virtual ~ProfileSource() = default;
     virtual SensorIdentity identity() const = 0;
     virtual Expected<void> start() = 0;
     virtual void stop() = 0;
     // Software trigger: one frame follows. `spot_id` is carried through to Frame::spot_id.
     virtual Expected<void> trigger(const std::string& spot_id) = 0;
-    // "All": the next frame in order, for runs and recorders. Silence is an Error (kind device) after `timeout`;
-    // the end of a recording is an Error whose `what` is kEndOfRecording.
+    // "All": the next frame in order, for runs and recorders. Silence is an Error (kind device) after
+    // `timeout`; the end of a recording is an Error whose `what` is kEndOfRecording.
     virtual Expected<FramePtr> wait_next(std::chrono::milliseconds timeout) = 0;
     // "Newest": for screens; nullptr before the first frame. Never blocks.
     virtual FramePtr latest() const = 0;

@@ -1,5 +1,8 @@
 #include "devices/registry.h"
 
+#include <type_traits>
+#include <utility>
+
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
 
@@ -21,14 +24,24 @@ const std::vector<RobotDriver>& robot_drivers() {
     return drivers;
 }
 
+const std::vector<ControllerDriver>& controller_drivers() {
+    static const std::vector<ControllerDriver> drivers = {};
+    return drivers;
+}
+
+const std::vector<ProgramWriter>& program_writers() {
+    static const std::vector<ProgramWriter> writers = {};
+    return writers;
+}
+
 namespace {
-template <class Driver>
-auto open(const std::vector<Driver>& drivers, const char* what, const std::string& name,
-          const nlohmann::json& settings, DeviceSession& session)
-    -> decltype(drivers.front().open(settings, session)) {
+// Calls `open` of the driver of that name.
+template <class Driver, class Open, class... Arguments>
+auto call(const std::vector<Driver>& drivers, const char* what, const std::string& name, Open Driver::*open,
+          Arguments&&... arguments) -> std::invoke_result_t<Open, Arguments...> {
     std::string known;
     for (const Driver& driver : drivers) {
-        if (driver.name == name) return driver.open(settings, session);
+        if (driver.name == name) return (driver.*open)(std::forward<Arguments>(arguments)...);
         known += (known.empty() ? "" : ", ") + std::string(driver.name);
     }
     return input_error("there is no " + std::string(what) + " driver \"" + name + "\"", {},
@@ -38,12 +51,19 @@ auto open(const std::vector<Driver>& drivers, const char* what, const std::strin
 
 Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
                                                      const nlohmann::json& settings, DeviceSession& session) {
-    return open(sensor_drivers(), "sensor", driver, settings, session);
+    return call(sensor_drivers(), "sensor", driver, &SensorDriver::open, settings, session);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_robot(const std::string& driver, const nlohmann::json& settings,
                                                 DeviceSession& session) {
-    return open(robot_drivers(), "robot", driver, settings, session);
+    return call(robot_drivers(), "robot", driver, &RobotDriver::open, settings, session);
+}
+
+Expected<std::unique_ptr<SimulatedController>> start_controller(const std::string& driver,
+                                                                std::shared_ptr<SimulatedCell> cell,
+                                                                const nlohmann::json& settings) {
+    return call(controller_drivers(), "controller", driver, &ControllerDriver::start, std::move(cell),
+                settings);
 }
 
 }  // namespace seamwright

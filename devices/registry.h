@@ -1,37 +1,19 @@
 #pragma once
 // Drivers by name. Adding a sensor or a robot is one folder and one line in registry.cpp.
 
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "devices/device_session.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
+#include "devices/robot_program.h"
+#include "devices/simulated/controller.h"
 
 namespace seamwright {
-
-// Opens the devices of one cell. Sensors and robot of a driver that simulates or replays share one world, so a cell is
-// opened as a whole: `session` carries what they share and is created empty by the caller.
-class DeviceSession {
-public:
-    // The object stored under `key`, made by `make` at the first call. Drivers of one world agree on the key.
-    template <class T, class Make>
-    Expected<std::shared_ptr<T>> shared(const std::string& key, Make make) {
-        auto it = objects_.find(key);
-        if (it == objects_.end()) {
-            Expected<std::shared_ptr<T>> made = make();
-            if (!made) return made;
-            it = objects_.emplace(key, *made).first;
-        }
-        return std::static_pointer_cast<T>(it->second);
-    }
-
-private:
-    std::map<std::string, std::shared_ptr<void>> objects_;
-};
 
 struct SensorDriver {
     std::string_view name, help;
@@ -42,13 +24,33 @@ struct RobotDriver {
     std::string_view name, help;
     Expected<std::unique_ptr<RobotLink>> (*open)(const nlohmann::json& settings, DeviceSession& session);
 };
+// A controller that speaks a robot driver's protocol from the other side, before a simulated cell. Same name
+// as the driver. `settings`: {"address": "127.0.0.1", "port": 0 (of the driver's server, where the robot is
+// the client; else where to listen, 0 = any free one)} and what the driver's folder documents.
+struct ControllerDriver {
+    std::string_view name, help;
+    Expected<std::unique_ptr<SimulatedController>> (*start)(std::shared_ptr<SimulatedCell> cell,
+                                                            const nlohmann::json& settings);
+};
+// Writes the controller's side: the fixed module of resources/robot/<brand> and what follows from the
+// project. Refuses names and poses that the controller cannot hold.
+struct ProgramWriter {
+    std::string_view brand, help;  // "kuka", "abb", "ur"
+    Expected<std::vector<ProgramFile>> (*write)(const ProgramRequest& request);
+};
 const std::vector<SensorDriver>& sensor_drivers();
 const std::vector<RobotDriver>& robot_drivers();
+const std::vector<ControllerDriver>& controller_drivers();
+const std::vector<ProgramWriter>& program_writers();
 
 // Opens by driver name; an unknown name is an Error that lists the known ones.
-Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver, const nlohmann::json& settings,
-                                                     DeviceSession& session);
+Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
+                                                     const nlohmann::json& settings, DeviceSession& session);
 Expected<std::unique_ptr<RobotLink>> open_robot(const std::string& driver, const nlohmann::json& settings,
                                                 DeviceSession& session);
+
+Expected<std::unique_ptr<SimulatedController>> start_controller(const std::string& driver,
+                                                                std::shared_ptr<SimulatedCell> cell,
+                                                                const nlohmann::json& settings);
 
 }  // namespace seamwright

@@ -36,6 +36,26 @@ std::optional<RobotMode> robot_mode_from_string(std::string_view name) {
     return std::nullopt;
 }
 
+std::string_view to_string(PartVerdict verdict) {
+    switch (verdict) {
+        case PartVerdict::corrected:
+            return "corrected";
+        case PartVerdict::refused:
+            return "refused";
+        case PartVerdict::failed:
+            return "failed";
+    }
+    return "failed";
+}
+
+Expected<StartSignal> RobotLink::wait_start(std::chrono::milliseconds) {
+    return device_error("this robot has no start signal", {}, "start each run by command");
+}
+
+Expected<void> RobotLink::confirm(PartVerdict, const std::string&) {
+    return {};
+}
+
 Expected<void> RobotLink::move_to(const Pose&) {
     return device_error("this robot cannot be moved from the program", {},
                         "move it by hand and read its position");

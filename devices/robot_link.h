@@ -18,11 +18,20 @@ struct RobotIdentity {
     bool operator==(const RobotIdentity&) const = default;
 };
 
-enum class RobotMode { unknown, manual_reduced /* T1 */, manual_full /* T2 */, automatic, external, stopped, fault };
+enum class RobotMode {
+    unknown,
+    manual_reduced /* T1 */,
+    manual_full /* T2 */,
+    automatic,
+    external,
+    stopped,
+    fault
+};
 std::string_view to_string(RobotMode mode);
 std::optional<RobotMode> robot_mode_from_string(std::string_view name);
 
-// One linear pass over a spot: entry -> trigger -> exit, sensor's Y along the travel. Poses are base_from_flange.
+// One linear pass over a spot: entry -> trigger -> exit, sensor's Y along the travel. Poses are
+// base_from_flange.
 struct MeasuringMove {
     std::string spot_id;
     Pose entry = Pose::Identity(), trigger = Pose::Identity(), exit = Pose::Identity();
@@ -30,29 +39,56 @@ struct MeasuringMove {
     bool stop_at_trigger = false;  // measure standing still
 };
 
-// The robot fired the trigger for a spot. `base_from_flange` is what the controller reports, not necessarily where the
-// flange was when the sensor exposed (trigger jitter).
+// The robot fired the trigger for a spot. `base_from_flange` is what the controller reports, not necessarily
+// where the flange was when the sensor exposed (trigger jitter).
 struct TriggerEvent {
     std::string spot_id;
     std::int64_t host_time_ns = 0;
     std::optional<Pose> base_from_flange;
 };
 
-// One thread at a time. No call blocks longer than the driver's time-out; a silent controller is an Error.
+// The line calls for a part to be measured. `part_id` is empty where the controller does not know it.
+struct StartSignal {
+    std::string part_id;
+    std::int64_t host_time_ns = 0;
+};
+
+// How a part ended, as the controller is told. Only `corrected` lets the application run with the frames
+// written.
+enum class PartVerdict { corrected, refused, failed };
+std::string_view to_string(PartVerdict verdict);
+
+// One thread at a time. No call blocks longer than its own or the driver's time-out. Errors are of kind
+// device: a silent controller is one that is_silence() knows. After a lost connection the call that met it
+// fails, and later calls connect anew (backing off between attempts), so a link recovers when its controller
+// does; who answers then is asked by identity(), which is never remembered across connections.
+//
+// A frame that was written counts for the application only after confirm(corrected); a start of measuring, a
+// lost connection and any other verdict take the permission back. So whatever breaks between writing and
+// reading back, no unverified frame is used.
 class RobotLink {
-public:
+  public:
     virtual ~RobotLink() = default;
     virtual Expected<RobotIdentity> identity() = 0;
     virtual Expected<RobotMode> mode() = 0;
+    // The newest pose that the controller told; fresh within the driver's time-out.
     virtual Expected<Pose> base_from_flange() = 0;
-    // Starts the measuring program. Controllers that hold their own program compare the spots' names with it.
+    // The controller's call for the next part. Silence after `timeout`. An Error unless the driver has such a
+    // signal.
+    virtual Expected<StartSignal> wait_start(std::chrono::milliseconds timeout);
+    // Starts the measuring program, or lets one go on that waits after its start signal. Controllers that
+    // hold their own program compare the spots' names with it.
     virtual Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) = 0;
-    // Next trigger in order. Error (device) after `timeout`.
+    // Next trigger in order. Silence after `timeout`.
     virtual Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) = 0;
-    // The frame (base) that a region's path runs in, by its name on the controller: base_from_frame.
+    // The frame (base, work object) that a region's path runs in, by its name on the controller:
+    // base_from_frame.
     virtual Expected<Pose> read_frame(const std::string& name) = 0;
     virtual Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) = 0;
-    // Teaching: goes to `base_from_flange` and stands still there. An Error (device) unless the driver can move.
+    // Tells the controller how the part ended and waits for its acknowledgement. `text` is for its screen.
+    // Nothing happens with a driver that has no such handshake.
+    virtual Expected<void> confirm(PartVerdict verdict, const std::string& text);
+    // Teaching: goes to `base_from_flange` and stands still there. An Error unless the driver can move.
     virtual Expected<void> move_to(const Pose& base_from_flange);
 };
 

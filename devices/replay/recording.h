@@ -24,7 +24,9 @@
 #include <string>
 #include <vector>
 
-#include "devices/registry.h"
+#include "devices/device_session.h"
+#include "devices/profile_source.h"
+#include "devices/robot_link.h"
 
 namespace seamwright {
 

@@ -199,6 +199,27 @@ void SimulatedCell::start_moves(std::vector<MeasuringMove> moves) {
     moves_.assign(std::make_move_iterator(moves.begin()), std::make_move_iterator(moves.end()));
 }
 
+void SimulatedCell::store_program(std::vector<MeasuringMove> moves) {
+    const std::lock_guard lock(mutex_);
+    program_ = std::move(moves);
+}
+
+std::vector<MeasuringMove> SimulatedCell::program() const {
+    const std::lock_guard lock(mutex_);
+    return program_;
+}
+
+Expected<void> SimulatedCell::start_program() {
+    const std::lock_guard lock(mutex_);
+    if (mode_ == RobotMode::stopped || mode_ == RobotMode::fault)
+        return device_error("the robot is stopped", "simulated robot", "start it on its controller");
+    if (program_.empty())
+        return device_error("the controller holds no measuring program", "simulated robot",
+                            "load the program that was generated from the project");
+    moves_.assign(program_.begin(), program_.end());
+    return {};
+}
+
 std::optional<TriggerEvent> SimulatedCell::next_trigger() {
     const std::lock_guard lock(mutex_);
     if (moves_.empty()) return std::nullopt;

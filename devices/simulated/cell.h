@@ -36,7 +36,9 @@
 #include <string>
 #include <vector>
 
-#include "devices/registry.h"
+#include "devices/device_session.h"
+#include "devices/profile_source.h"
+#include "devices/robot_link.h"
 #include "devices/simulated/door.h"
 #include "devices/simulated/random.h"
 #include "devices/simulated/renderer.h"
@@ -111,6 +113,11 @@ class SimulatedCell {
     std::optional<Pose> reported_flange() const;
     std::optional<Pose> true_flange() const;
     void start_moves(std::vector<MeasuringMove> moves);
+    // The measuring program as stored on a controller, and its start. Error (device) when the robot is
+    // stopped or holds no program.
+    void store_program(std::vector<MeasuringMove> moves);
+    std::vector<MeasuringMove> program() const;
+    Expected<void> start_program();
     // Passes the next spot and fires the sensor there; nullopt when the program has ended.
     std::optional<TriggerEvent> next_trigger();
     RobotMode mode() const;
@@ -151,6 +158,7 @@ class SimulatedCell {
     Scene scene_;
     Exposure exposure_;
     std::optional<Pose> commanded_, true_;
+    std::vector<MeasuringMove> program_;
     std::deque<MeasuringMove> moves_;
     std::deque<Waiting> waiting_;
     bool armed_ = false;

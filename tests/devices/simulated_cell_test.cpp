@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "devices/exchange/pose_json.h"
+#include "devices/registry.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {

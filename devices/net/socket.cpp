@@ -1,0 +1,283 @@
+#include "devices/net/socket.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <boost/asio.hpp>
+
+namespace seamwright {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using asio::ip::udp;
+using boost::system::error_code;
+using Clock = std::chrono::steady_clock;
+
+constexpr Timeout kSlice{50};  // how long close() from another thread may take to be seen
+
+template <class Endpoint_>
+std::string text(const Endpoint_& endpoint) {
+    return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
+}
+
+bool ended_by_peer(const error_code& e) {
+    return e == asio::error::eof || e == asio::error::connection_reset || e == asio::error::broken_pipe ||
+           e == asio::error::connection_aborted;
+}
+
+// Runs the one pending operation until it is done, the deadline passes or the object is closed. Returns false
+// on the deadline, after the operation was cancelled and its handler ran.
+template <class Cancel>
+bool run_until_done(asio::io_context& io, const bool& done, Timeout timeout, const std::atomic<bool>& closed,
+                    Cancel cancel) {
+    const auto deadline = Clock::now() + timeout;
+    io.restart();
+    while (!done) {
+        const auto now = Clock::now();
+        if (now >= deadline || closed) break;
+        io.run_one_until(std::min(deadline, now + kSlice));
+        if (io.stopped() && !done) io.restart();
+    }
+    if (done) return true;
+    cancel();
+    io.restart();
+    io.run();
+    return false;
+}
+
+tl::unexpected<Error> failure(const error_code& e, const std::string& where) {
+    if (ended_by_peer(e)) return device_error(kDisconnected, where, "check the cable and the controller");
+    return device_error(e.message(), where);
+}
+
+tl::unexpected<Error> closed_here(const std::string& where) {
+    return device_error("the connection is closed", where);
+}
+
+}  // namespace
+
+struct TcpConnection::Impl {
+    asio::io_context io;
+    tcp::socket socket{io};
+    std::string peer;
+    std::atomic<bool> closed{false};
+
+    // `outcome` of an operation that has been waited for: Error, or the bytes moved.
+    Expected<std::size_t> finish(bool in_time, const error_code& e, std::size_t moved) const {
+        if (closed) return closed_here(peer);
+        if (!in_time)
+            return device_error(kNoAnswer, peer, "check that the controller runs and its program is started");
+        if (e) return failure(e, peer);
+        return moved;
+    }
+
+    template <class Start>
+    Expected<std::size_t> wait(Timeout timeout, Start start) {
+        if (closed) return closed_here(peer);
+        bool done = false;
+        error_code result;
+        std::size_t moved = 0;
+        start([&](const error_code& e, std::size_t n) {
+            done = true;
+            result = e;
+            moved = n;
+        });
+        const bool in_time = run_until_done(io, done, timeout, closed, [&] {
+            error_code ignored;
+            socket.cancel(ignored);
+        });
+        // An operation that completed while it was being cancelled still counts.
+        return finish(in_time || (done && !result), result, moved);
+    }
+};
+
+TcpConnection::TcpConnection(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TcpConnection::TcpConnection(TcpConnection&&) noexcept = default;
+TcpConnection& TcpConnection::operator=(TcpConnection&&) noexcept = default;
+TcpConnection::~TcpConnection() = default;
+
+Expected<TcpConnection> TcpConnection::connect(const std::string& host, std::uint16_t port, Timeout timeout) {
+    auto impl = std::make_unique<Impl>();
+    impl->peer = fmt::format("{}:{}", host, port);
+    error_code e;
+    const asio::ip::address address = asio::ip::make_address(host, e);
+    if (e)
+        return input_error(fmt::format("\"{}\" is not an IP address", host), "",
+                           "give it as four numbers, 192.168.1.10");
+    auto connected = impl->wait(timeout, [&](auto done) {
+        impl->socket.async_connect({address, port},
+                                   [done](const error_code& error) mutable { done(error, 0); });
+    });
+    if (!connected) return tl::unexpected(connected.error());
+    impl->socket.set_option(tcp::no_delay(true), e);
+    return TcpConnection(std::move(impl));
+}
+
+Expected<void> TcpConnection::send(std::span<const std::byte> data, Timeout timeout) {
+    auto sent = impl_->wait(timeout, [&](auto done) {
+        asio::async_write(impl_->socket, asio::buffer(data.data(), data.size()), done);
+    });
+    if (!sent) return tl::unexpected(sent.error());
+    return {};
+}
+
+Expected<std::size_t> TcpConnection::receive_some(std::span<std::byte> buffer, Timeout timeout) {
+    return impl_->wait(timeout, [&](auto done) {
+        impl_->socket.async_read_some(asio::buffer(buffer.data(), buffer.size()), done);
+    });
+}
+
+Expected<void> TcpConnection::receive_exactly(std::span<std::byte> buffer, Timeout timeout) {
+    auto got = impl_->wait(timeout, [&](auto done) {
+        asio::async_read(impl_->socket, asio::buffer(buffer.data(), buffer.size()), done);
+    });
+    if (!got) return tl::unexpected(got.error());
+    return {};
+}
+
+void TcpConnection::close() {
+    impl_->closed = true;
+}
+bool TcpConnection::is_open() const {
+    return impl_ && !impl_->closed && impl_->socket.is_open();
+}
+std::string TcpConnection::peer() const {
+    return impl_->peer;
+}
+
+struct TcpListener::Impl {
+    asio::io_context io;
+    tcp::acceptor acceptor{io};
+    std::string where;
+    std::atomic<bool> closed{false};
+};
+
+TcpListener::TcpListener(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TcpListener::TcpListener(TcpListener&&) noexcept = default;
+TcpListener& TcpListener::operator=(TcpListener&&) noexcept = default;
+TcpListener::~TcpListener() = default;
+
+Expected<TcpListener> TcpListener::listen(const std::string& address, std::uint16_t port) {
+    auto impl = std::make_unique<Impl>();
+    impl->where = fmt::format("{}:{}", address, port);
+    error_code e;
+    const tcp::endpoint endpoint(asio::ip::make_address(address, e), port);
+    if (e) return input_error(fmt::format("\"{}\" is not an IP address", address), "listen");
+    impl->acceptor.open(endpoint.protocol(), e);
+    if (!e) impl->acceptor.set_option(tcp::acceptor::reuse_address(true), e);
+    if (!e) impl->acceptor.bind(endpoint, e);
+    if (!e) impl->acceptor.listen(4, e);
+    if (e)
+        return device_error("cannot listen: " + e.message(), impl->where,
+                            "another program may use this port");
+    impl->where = text(impl->acceptor.local_endpoint());
+    return TcpListener(std::move(impl));
+}
+
+std::uint16_t TcpListener::port() const {
+    return impl_->acceptor.local_endpoint().port();
+}
+
+Expected<TcpConnection> TcpListener::accept(Timeout timeout) {
+    auto connection = std::make_unique<TcpConnection::Impl>();
+    bool done = false;
+    error_code result;
+    tcp::socket socket(impl_->io);
+    impl_->acceptor.async_accept(socket, [&](const error_code& e) {
+        done = true;
+        result = e;
+    });
+    const bool in_time = run_until_done(impl_->io, done, timeout, impl_->closed, [&] {
+        error_code ignored;
+        impl_->acceptor.cancel(ignored);
+    });
+    if (impl_->closed) return closed_here(impl_->where);
+    if (!in_time && (!done || result)) return device_error(kNoAnswer, impl_->where, "nobody connected");
+    if (result) return failure(result, impl_->where);
+    // The connection gets an io_context of its own, so that it may live in another thread than the listener.
+    error_code e;
+    const tcp::endpoint peer = socket.remote_endpoint(e);
+    if (e) return failure(e, impl_->where);
+    connection->peer = text(peer);
+    connection->socket.assign(peer.protocol(), socket.release(), e);
+    if (e) return failure(e, impl_->where);
+    connection->socket.set_option(tcp::no_delay(true), e);
+    return TcpConnection(std::move(connection));
+}
+
+void TcpListener::close() {
+    impl_->closed = true;
+}
+
+struct UdpSocket::Impl {
+    asio::io_context io;
+    udp::socket socket{io};
+    std::string where;
+    std::atomic<bool> closed{false};
+};
+
+UdpSocket::UdpSocket(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+UdpSocket::UdpSocket(UdpSocket&&) noexcept = default;
+UdpSocket& UdpSocket::operator=(UdpSocket&&) noexcept = default;
+UdpSocket::~UdpSocket() = default;
+
+Expected<UdpSocket> UdpSocket::bind(const std::string& address, std::uint16_t port) {
+    auto impl = std::make_unique<Impl>();
+    impl->where = fmt::format("{}:{}", address, port);
+    error_code e;
+    const udp::endpoint endpoint(asio::ip::make_address(address, e), port);
+    if (e) return input_error(fmt::format("\"{}\" is not an IP address", address), "bind");
+    impl->socket.open(endpoint.protocol(), e);
+    if (!e) impl->socket.bind(endpoint, e);
+    if (e)
+        return device_error("cannot bind: " + e.message(), impl->where, "another program may use this port");
+    impl->where = text(impl->socket.local_endpoint());
+    return UdpSocket(std::move(impl));
+}
+
+std::uint16_t UdpSocket::port() const {
+    return impl_->socket.local_endpoint().port();
+}
+
+Expected<void> UdpSocket::send_to(std::span<const std::byte> datagram, const Endpoint& to) {
+    error_code e;
+    const auto address = asio::ip::make_address(to.address, e);
+    if (e) return input_error(fmt::format("\"{}\" is not an IP address", to.address), impl_->where);
+    impl_->socket.send_to(asio::buffer(datagram.data(), datagram.size()), {address, to.port}, 0, e);
+    if (e) return failure(e, impl_->where);
+    return {};
+}
+
+Expected<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Endpoint& from, Timeout timeout) {
+    if (impl_->closed) return closed_here(impl_->where);
+    bool done = false;
+    error_code result;
+    std::size_t size = 0;
+    udp::endpoint sender;
+    // MSG_TRUNC makes the system report the datagram's true length even when the buffer is shorter.
+    impl_->socket.async_receive_from(asio::buffer(buffer.data(), buffer.size()), sender, MSG_TRUNC,
+                                     [&](const error_code& e, std::size_t n) {
+                                         done = true;
+                                         result = e;
+                                         size = n;
+                                     });
+    const bool in_time = run_until_done(impl_->io, done, timeout, impl_->closed, [&] {
+        error_code ignored;
+        impl_->socket.cancel(ignored);
+    });
+    if (impl_->closed) return closed_here(impl_->where);
+    if (!in_time && (!done || result)) return device_error(kNoAnswer, impl_->where);
+    if (result) return failure(result, impl_->where);
+    if (size > buffer.size())
+        return device_error(fmt::format("a datagram of {} bytes is longer than {}", size, buffer.size()),
+                            text(sender));
+    from = {sender.address().to_string(), sender.port()};
+    return size;
+}
+
+void UdpSocket::close() {
+    impl_->closed = true;
+}
+
+}  // namespace seamwright

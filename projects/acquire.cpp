@@ -1,5 +1,12 @@
 #include "projects/acquire.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "devices/silence.h"
+
 namespace seamwright {
 namespace {
 
@@ -23,18 +30,96 @@ MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
     return move;
 }
 
-Expected<FramePtr> frame_at_trigger(ProfileSource& sensor, const SensorSetup& setup,
-                                    const std::string& spot_id, std::chrono::milliseconds timeout,
-                                    const std::function<void(const Frame& dropped)>& dropped) {
-    if (!hardware_triggered(setup))
-        if (auto fired = sensor.trigger(spot_id); !fired) return tl::unexpected(fired.error());
-    Expected<FramePtr> frame = sensor.wait_next(timeout);
-    while (frame && *frame && !(*frame)->spot_id.empty() && (*frame)->spot_id != spot_id) {
-        if (dropped) dropped(**frame);
-        frame = sensor.wait_next(timeout);
+namespace {
+
+// One wait of `timeout` in slices.
+template <class Wait>
+auto wait_in_slices(std::chrono::milliseconds timeout, const std::stop_token& cancel, const Wait& wait)
+    -> decltype(wait(timeout)) {
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    for (;;) {
+        if (cancel.stop_requested()) return device_error(kCancelled);
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+        const auto slice = std::clamp(left, std::chrono::milliseconds(0), kCancelSlice);
+        auto got = wait(slice);
+        if (got || !is_silence(got.error()) || left <= kCancelSlice) return got;
     }
-    if (frame && !*frame) return device_error("the sensor gave no frame", "sensor " + setup.id);
+}
+
+}  // namespace
+
+Expected<FramePtr> next_frame(ProfileSource& sensor, std::chrono::milliseconds timeout,
+                              const std::stop_token& cancel) {
+    auto frame = wait_in_slices(timeout, cancel,
+                                [&](std::chrono::milliseconds slice) { return sensor.wait_next(slice); });
+    if (frame && !*frame) return device_error("the sensor gave no frame");
     return frame;
+}
+
+Expected<TriggerEvent> next_trigger(RobotLink& robot, std::chrono::milliseconds timeout,
+                                    const std::stop_token& cancel) {
+    return wait_in_slices(timeout, cancel,
+                          [&](std::chrono::milliseconds slice) { return robot.wait_trigger(slice); });
+}
+
+Expected<FramePtr> TriggeredFrames::at(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                                       const std::stop_token& cancel,
+                                       const std::function<void(const Frame& dropped)>& dropped) {
+    if (hardware_triggered(setup_)) {
+        auto frame = in_order(trigger, timeout, cancel);
+        if (!frame) return frame;
+        const Frame& f = **frame;
+        if (f.spot_id.empty() || f.spot_id == trigger.spot_id) return frame;
+        return device_error(fmt::format("the frame is of spot {}", f.spot_id), "sensor " + setup_.id);
+    }
+    if (auto fired = sensor_.trigger(trigger.spot_id); !fired) return tl::unexpected(fired.error());
+    auto frame = next_frame(sensor_, timeout, cancel);
+    while (frame && !(*frame)->spot_id.empty() && (*frame)->spot_id != trigger.spot_id) {
+        if (dropped) dropped(**frame);
+        frame = next_frame(sensor_, timeout, cancel);
+    }
+    return frame;
+}
+
+Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                                             const std::stop_token& cancel) {
+    FramePtr frame = std::exchange(early_, nullptr);
+    if (!frame) {
+        auto next = next_frame(sensor_, timeout, cancel);
+        if (!next) return next;
+        frame = std::move(*next);
+    }
+    if (!expected_) expected_ = frame->sequence;
+    const std::uint64_t expected = (*expected_)++;
+    if (frame->sequence < expected)
+        return device_error(fmt::format("frame {} came where frame {} was due", frame->sequence, expected),
+                            "sensor " + setup_.id,
+                            "the sensor restarted in the middle of the run; measure again");
+    if (frame->sequence > expected) {  // the one that is due was lost
+        early_ = std::move(frame);
+        auto lost = std::make_shared<Frame>();
+        lost->status = FrameStatus::incomplete;
+        lost->sequence = expected;
+        lost->host_time_ns = trigger.host_time_ns;
+        lost->spot_id = trigger.spot_id;
+        return lost;
+    }
+    const auto apart = std::chrono::nanoseconds(frame->host_time_ns - trigger.host_time_ns);
+    if (std::chrono::abs(apart) > kPairingWindow)
+        return device_error(fmt::format("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
+                                        std::abs(std::chrono::duration<double>(apart).count()),
+                                        apart.count() < 0 ? "before" : "after", trigger.spot_id),
+                            "sensor " + setup_.id, "check the trigger line between robot and sensor");
+    return frame;
+}
+
+Expected<void> TriggeredFrames::finish() {
+    if (!hardware_triggered(setup_)) return {};
+    if (early_ || sensor_.wait_next(std::chrono::milliseconds(0)))
+        return device_error("the sensor exposed more often than the robot fired", "sensor " + setup_.id,
+                            "check the trigger line between robot and sensor");
+    return {};
 }
 
 StartedSensors::~StartedSensors() {

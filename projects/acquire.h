@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "devices/profile_source.h"
@@ -19,12 +21,44 @@ struct AcquireLimits {
 // entry -> trigger -> exit along the sensor's Y with the orientation held.
 MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor);
 
-// The frame that belongs to the trigger of `spot_id`. A sensor that is not wired to the robot (setting
-// "hardware_trigger") is triggered here. A free-running sensor may still hold frames of before; those of
-// other spots are dropped and told.
-Expected<FramePtr> frame_at_trigger(ProfileSource& sensor, const SensorSetup& setup,
-                                    const std::string& spot_id, std::chrono::milliseconds timeout,
-                                    const std::function<void(const Frame& dropped)>& dropped);
+// Waiting in slices, so that `cancel` is heard within kCancelSlice whatever the time-out. Cancelled = Error
+// whose `what` is kCancelled.
+inline constexpr std::chrono::milliseconds kCancelSlice{200};
+inline constexpr const char* kCancelled = "cancelled";
+Expected<FramePtr> next_frame(ProfileSource& sensor, std::chrono::milliseconds timeout,
+                              const std::stop_token& cancel);
+Expected<TriggerEvent> next_trigger(RobotLink& robot, std::chrono::milliseconds timeout,
+                                    const std::stop_token& cancel);
+
+// Which frame belongs to which trigger, for one sensor during one run.
+//
+// A sensor that knows the spot says so in its frame; frames of other spots (a free-running sensor may still
+// hold some of before) are dropped and told. A sensor wired to the robot (setting "hardware_trigger") knows
+// only the order: the k-th trigger has the k-th frame, by the sequence number, so that a frame lost on the
+// way leaves its own spot without measurement and not all the later ones with the wrong one. What the numbers
+// cannot tell (the camera missed a trigger, or exposed without one) the times and the count do: a frame that
+// came kPairingWindow before or after its trigger, or frames left over at the end, make the run fail.
+inline constexpr std::chrono::milliseconds kPairingWindow{1000};
+class TriggeredFrames {
+  public:
+    // `sensor` and `setup` must outlive it.
+    TriggeredFrames(ProfileSource& sensor, const SensorSetup& setup) : sensor_(sensor), setup_(setup) {}
+    // The frame of this trigger; one with status `incomplete` when it was lost. A sensor that is not wired to
+    // the robot is triggered here.
+    Expected<FramePtr> at(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                          const std::stop_token& cancel,
+                          const std::function<void(const Frame& dropped)>& dropped);
+    // After the last trigger: Error when the sensor has exposed more often than the robot fired.
+    Expected<void> finish();
+
+  private:
+    Expected<FramePtr> in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                                const std::stop_token& cancel);
+    ProfileSource& sensor_;
+    const SensorSetup& setup_;
+    FramePtr early_;  // came already, belongs to a later trigger
+    std::optional<std::uint64_t> expected_;
+};
 
 // Stops every started sensor, however the work ends.
 class StartedSensors {

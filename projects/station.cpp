@@ -46,8 +46,10 @@ struct Station::Impl {
     // One run in the making.
     struct Job {
         const RunOptions& options;
-        RunRecord run;
-        std::map<std::string, SpotMeasurer> measurers;
+        RunRecord run{};
+        std::map<std::string, SpotMeasurer> measurers{};
+        std::map<std::string, TriggeredFrames> frames{};  // by sensor
+        std::vector<std::string> started_robots{};        // wait for the verdict
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
 
@@ -85,14 +87,13 @@ struct Station::Impl {
     }
 
     Expected<void> measure_spot(Job& job, const Spot& spot, const TriggerEvent& trigger) {
-        const SensorSetup& setup = *find_sensor(project, spot.sensor_id);
-        ProfileSource& sensor = *sensors.at(spot.sensor_id);
-        auto frame = frame_at_trigger(
-            sensor, setup, spot.id, job.options.limits.frame_timeout, [&](const Frame& dropped) {
-                job.event(EventKind::device, setup.id,
-                          fmt::format("frame {} of spot {} came at spot {} and was dropped", dropped.sequence,
-                                      dropped.spot_id, spot.id));
-            });
+        auto frame =
+            job.frames.at(spot.sensor_id)
+                .at(trigger, job.options.limits.frame_timeout, job.options.cancel, [&](const Frame& dropped) {
+                    job.event(EventKind::device, spot.sensor_id,
+                              fmt::format("frame {} of spot {} came at spot {} and was dropped",
+                                          dropped.sequence, dropped.spot_id, spot.id));
+                });
         if (!frame) return tl::unexpected(frame.error());
         SpotMeasurer& measurer = job.measurers.at(spot.id);
         SpotMeasurement& result = job.measurement(spot.id);
@@ -121,11 +122,12 @@ struct Station::Impl {
         }
         RobotLink& robot = *robots.at(robot_id);
         if (auto started = robot.start_measuring(moves); !started) return started;
+        job.started_robots.push_back(robot_id);
         std::set<std::string> open;
         for (const Spot* spot : spots) open.insert(spot->id);
         while (!open.empty()) {
             if (job.options.cancel.stop_requested()) return {};
-            auto trigger = robot.wait_trigger(job.options.limits.trigger_timeout);
+            auto trigger = next_trigger(robot, job.options.limits.trigger_timeout, job.options.cancel);
             if (!trigger) return tl::unexpected(trigger.error());
             const auto spot = std::find_if(spots.begin(), spots.end(),
                                            [&](const Spot* s) { return s->id == trigger->spot_id; });
@@ -152,12 +154,17 @@ struct Station::Impl {
                 sensor_ids.push_back(spot.sensor_id);
         }
         StartedSensors started;
-        for (const std::string& id : sensor_ids)
+        for (const std::string& id : sensor_ids) {
             if (auto on = started.start(*sensors.at(id)); !on) return on;
+            job.frames.try_emplace(id, *sensors.at(id), *find_sensor(project, id));
+        }
         for (const std::string& id : robot_ids) {
             if (job.options.cancel.stop_requested()) return {};
             if (auto measured = measure_robot(job, id); !measured) return measured;
         }
+        if (job.options.cancel.stop_requested()) return {};
+        for (auto& [id, frames] : job.frames)
+            if (auto complete = frames.finish(); !complete) return complete;
         return {};
     }
 
@@ -233,15 +240,36 @@ struct Station::Impl {
         return *robots.at(find_spot(project, region.spot_ids.front())->robot_id);
     }
 
+    // An event of a run that is in the file already.
+    Expected<void> record_event(Job& job, EventKind kind, const std::string& subject,
+                                const std::string& text) {
+        EventRecord event{0, utc_now(), job.run.number, kind, subject, text};
+        auto id = file.append_event(event);
+        if (!id) return tl::unexpected(id.error());
+        event.id = *id;
+        job.run.events.push_back(std::move(event));
+        return {};
+    }
+
+    // Tells every robot that measured how the part ended. True when all have acknowledged.
+    bool confirm_all(Job& job, PartVerdict verdict) {
+        bool all = true;
+        for (const std::string& id : job.started_robots) {
+            auto told = robots.at(id)->confirm(verdict, job.run.message);
+            if (told) continue;
+            all = false;
+            // The run's record stands either way; a file that takes no event has its own Error at the next
+            // save.
+            (void)record_event(
+                job, EventKind::alarm, id,
+                fmt::format("did not acknowledge \"{}\": {}", to_string(verdict), told.error().sentence()));
+        }
+        return all;
+    }
+
     void push_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
-        const EventSink record = [&](EventKind kind, const std::string& subject,
-                                     const std::string& text) -> Expected<void> {
-            EventRecord event{0, utc_now(), job.run.number, kind, subject, text};
-            auto id = file.append_event(event);
-            if (!id) return tl::unexpected(id.error());
-            event.id = *id;
-            job.run.events.push_back(std::move(event));
-            return {};
+        const EventSink record = [&](EventKind kind, const std::string& subject, const std::string& text) {
+            return record_event(job, kind, subject, text);
         };
         // From the first write to the last nothing is cancelled: a part is corrected as a whole or not at
         // all.
@@ -256,12 +284,21 @@ struct Station::Impl {
             alarm = region.push.status != PushStatus::written;
             job.progress(fmt::format("region {}: {}", region.region_id, to_string(region.push.status)));
         }
-        for (std::size_t i = passes.size(); alarm && i-- > 0;) {
+        // Written and read back everywhere: the application may run. A robot that does not take that is an
+        // alarm too.
+        if (!alarm) {
+            job.run.message = verdict(job.run);
+            alarm = !confirm_all(job, PartVerdict::corrected);
+            if (alarm) job.run.message = "alarm: a robot did not acknowledge the corrected frames";
+        }
+        if (!alarm) return;
+        job.run.status = RunStatus::alarm;
+        for (std::size_t i = passes.size(); i-- > 0;) {
             RegionRecord& region = job.run.regions[i];
             if (region.push.status == PushStatus::written)
                 withdraw_push(region.push, robot_of(project.regions[i]), record);
         }
-        if (alarm) job.run.status = RunStatus::alarm;
+        confirm_all(job, PartVerdict::failed);
     }
 
     static std::string verdict(const RunRecord& run) {
@@ -284,7 +321,7 @@ struct Station::Impl {
                         region.push.status != PushStatus::not_pushed &&
                         !region.push.message.starts_with("withdrawn"))
                         return fmt::format("alarm: region {}: {}", region.region_id, region.push.message);
-                return "alarm";
+                return run.message.starts_with("alarm") ? run.message : "alarm";
             case RunStatus::cancelled:
                 return "cancelled";
             case RunStatus::interrupted:
@@ -380,7 +417,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (!i.connected)
         return usage_error("the station is not connected to its devices", i.file.path().string(),
                            "connect first");
-    Impl::Job job{options, {}, {}, 0, 0, 0};
+    Impl::Job job{.options = options};
     RunRecord& run = job.run;
     for (const Spot& spot : i.project.spots) {
         if (!spot.enabled) continue;
@@ -409,15 +446,16 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     job.total = static_cast<int>(run.spots.size());
 
     auto measured = i.measure_all(job);
+    const bool cancelled = options.cancel.stop_requested();
     run.regions = correct_regions(i.project, run.spots);
     std::vector<std::optional<GatePass>> passes;
-    if (!measured) {
+    if (!measured && !cancelled) {
         run.status = RunStatus::device;
         run.message = measured.error().sentence();
         job.event(EventKind::device, "run", run.message);
         for (RegionRecord& region : run.regions)
             region.refusals.push_back("the measuring was not finished: " + run.message);
-    } else if (options.cancel.stop_requested()) {
+    } else if (cancelled) {
         run.status = RunStatus::cancelled;
         job.event(EventKind::note, "run", "cancelled");
         for (RegionRecord& region : run.regions) region.refusals.push_back("the run was cancelled");
@@ -450,6 +488,10 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
         run.message = Impl::verdict(run);
         run.finished_utc = utc_now();
         if (auto updated = i.file.update_run(run); !updated) return tl::unexpected(updated.error());
+    } else {
+        i.confirm_all(job, run.status == RunStatus::device || run.status == RunStatus::cancelled
+                               ? PartVerdict::failed
+                               : PartVerdict::refused);
     }
     return run;
 }

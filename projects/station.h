@@ -26,7 +26,7 @@ struct RunOptions {
     bool push = false;         // false = dry run: everything but writing
     bool keep_images = false;  // raw images with the run, beside candidates and profiles
     AcquireLimits limits;
-    std::stop_token cancel;  // looked at between spots: a silent device holds it up for its time-out
+    std::stop_token cancel;  // heard within kCancelSlice until the first frame is written, then no more
     std::function<void(const RunProgress&)> progress;  // called on the running thread
 };
 
@@ -56,10 +56,11 @@ class Station {
     ProfileSource* sensor(const std::string& id);  // nullptr when not connected
     RobotLink* robot(const std::string& id);
 
-    // One part; robots measure one after the other. Device failures and cancelling end in the record's status
-    // (with what was measured until then), never with anything half-written; nothing is pushed before all
-    // regions are judged. The record is in the file when this returns. Error: not connected, no enabled spot,
-    // a recipe that cannot be prepared, the file.
+    // One part; robots measure one after the other, and each is told the verdict at the end
+    // (RobotLink::confirm). Device failures and cancelling end in the record's status (with what was measured
+    // until then), never with anything half-written; nothing is pushed before all regions are judged. The
+    // record is in the file when this returns. Error: not connected, no enabled spot, a recipe that cannot be
+    // prepared, the file.
     Expected<RunRecord> run(const RunOptions& options);
 
   private:

@@ -15,10 +15,26 @@ namespace {
 using Visit =
     std::function<void(std::size_t move, const SpotMeasurer& measurer, const SpotMeasurement& measurement)>;
 
-// Runs `moves` (all of one spot) and measures at each trigger.
-Expected<void> measure_moves(Station& station, const Spot& spot, const std::vector<MeasuringMove>& moves,
-                             const std::stop_token& cancel,
-                             const std::function<void(const RunProgress&)>& progress, const Visit& visit) {
+// Goes to `base_from_flange`. A robot that the program cannot move is jogged there by hand, and must stand
+// there.
+constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
+Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange) {
+    const auto moved = robot.move_to(base_from_flange);
+    auto at = robot.base_from_flange();
+    if (moved && at) return at;
+    if (!at) return moved ? at : tl::unexpected(moved.error());
+    const double off_mm = distance_mm(*at, base_from_flange);
+    const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
+    if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
+    return device_error(fmt::format("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
+                                    off_mm, off_deg, moved.error().what),
+                        "spot " + spot_id, "jog it there");
+}
+
+// Measures standing still at each of `poses` (base_from_flange).
+Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<Pose>& poses,
+                          const std::stop_token& cancel,
+                          const std::function<void(const RunProgress&)>& progress, const Visit& visit) {
     ProfileSource* sensor = station.sensor(spot.sensor_id);
     RobotLink* robot = station.robot(spot.robot_id);
     if (!sensor || !robot)
@@ -33,21 +49,20 @@ Expected<void> measure_moves(Station& station, const Spot& spot, const std::vect
     auto measurer = SpotMeasurer::make(project, spot.id);
     if (!measurer) return tl::unexpected(measurer.error());
 
-    const SensorSetup& setup = *find_sensor(project, spot.sensor_id);
     StartedSensors started;
     if (auto on = started.start(*sensor); !on) return on;
-    if (auto begun = robot->start_measuring(moves); !begun) return begun;
     const AcquireLimits limits;
-    for (std::size_t i = 0; i < moves.size(); ++i) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
         if (cancel.stop_requested()) return device_error("cancelled", "spot " + spot.id);
-        auto trigger = robot->wait_trigger(limits.trigger_timeout);
-        if (!trigger) return tl::unexpected(trigger.error());
-        auto frame = frame_at_trigger(*sensor, setup, spot.id, limits.frame_timeout, nullptr);
+        auto at = stand_at(*robot, spot.id, poses[i]);
+        if (!at) return tl::unexpected(at.error());
+        if (auto fired = sensor->trigger(spot.id); !fired) return fired;
+        auto frame = next_frame(*sensor, limits.frame_timeout, cancel);
         if (!frame) return tl::unexpected(frame.error());
-        visit(i, *measurer, measurer->measure(**frame, trigger->base_from_flange));
+        visit(i, *measurer, measurer->measure(**frame, *at));
         if (progress)
-            progress({static_cast<int>(i) + 1, static_cast<int>(moves.size()),
-                      fmt::format("{}: {} of {}", spot.id, i + 1, moves.size())});
+            progress({static_cast<int>(i) + 1, static_cast<int>(poses.size()),
+                      fmt::format("{}: {} of {}", spot.id, i + 1, poses.size())});
     }
     return {};
 }
@@ -68,18 +83,17 @@ Pose flange_from_sensor(const Station& station, const Spot& spot) {
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options) {
     if (options.repeats < 1 || options.repeats > 1000)
         return usage_error(fmt::format("{} repeats", options.repeats), "spot " + draft.id, "give 1 to 1000");
-    MeasuringMove move = measuring_move(draft, flange_from_sensor(station, draft));
-    move.stop_at_trigger = true;  // the reference is where the sensor stands, without trigger jitter
     TaughtSpot taught;
     taught.spot = draft;
     std::vector<Profile> profiles;
-    auto measured = measure_moves(station, draft,
-                                  std::vector<MeasuringMove>(static_cast<std::size_t>(options.repeats), move),
-                                  options.cancel, options.progress,
-                                  [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
-                                      taught.measurements.push_back(m);
-                                      profiles.push_back(measurer.profile());
-                                  });
+    // Standing still: the reference is free of trigger jitter.
+    auto measured = measure_at(
+        station, draft, std::vector<Pose>(static_cast<std::size_t>(options.repeats), draft.base_from_flange),
+        options.cancel, options.progress,
+        [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+            taught.measurements.push_back(m);
+            profiles.push_back(measurer.profile());
+        });
     if (!measured) return tl::unexpected(measured.error());
 
     std::vector<std::size_t> found;
@@ -136,24 +150,22 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
     const MeasuringMove through = measuring_move(spot, flange_from_sensor(station, spot));
     const Eigen::Vector3d before = through.entry.translation() - through.trigger.translation();
     const Eigen::Vector3d after = through.exit.translation() - through.trigger.translation();
-    std::vector<MeasuringMove> moves;
+    std::vector<Pose> poses;
     std::vector<double> travel;
     const int back = static_cast<int>(std::floor(spot.entry_mm / options.step_mm + 1e-9));
     const int ahead = static_cast<int>(std::floor(spot.exit_mm / options.step_mm + 1e-9));
     for (int k = -back; k <= ahead; ++k) {
         const double y = k * options.step_mm;
-        MeasuringMove move = through;
-        move.stop_at_trigger = true;
-        move.trigger.translation() += y < 0   ? Eigen::Vector3d(before * (-y / spot.entry_mm))
-                                      : y > 0 ? Eigen::Vector3d(after * (y / spot.exit_mm))
-                                              : Eigen::Vector3d(Eigen::Vector3d::Zero());
-        move.entry = move.exit = move.trigger;
-        moves.push_back(move);
+        Pose at = through.trigger;
+        at.translation() += y < 0   ? Eigen::Vector3d(before * (-y / spot.entry_mm))
+                            : y > 0 ? Eigen::Vector3d(after * (y / spot.exit_mm))
+                                    : Eigen::Vector3d(Eigen::Vector3d::Zero());
+        poses.push_back(at);
         travel.push_back(y);
     }
     RecordedPass pass;
-    auto measured = measure_moves(
-        station, spot, moves, options.cancel, options.progress,
+    auto measured = measure_at(
+        station, spot, poses, options.cancel, options.progress,
         [&](std::size_t i, const SpotMeasurer& measurer, const SpotMeasurement& m) {
             if (measurer.profile().size() > 0) pass.profiles.push_back({travel[i], measurer.profile()});
             if (m.status == SpotStatus::measured)

@@ -22,13 +22,14 @@ struct TeachOptions {
 // one's).
 struct TaughtSpot {
     Spot spot;
-    std::vector<SpotMeasurement> measurements;  // all, in order
-    int left_out = 0;                           // not found, or far from the others
+    std::vector<SpotMeasurement> measurements;            // all, in order
+    int left_out = 0;                                     // not found, or far from the others
     Eigen::Vector2d spread_mm = Eigen::Vector2d::Zero();  // standard deviation of x and z; 0 for a single one
 };
 
 // Measures `draft` (its recipe, sensor and pose) `repeats` times. Error: not connected, a device, cancelled,
-// or the feature was found, or agreed, in fewer than half of the measurements; the sentence carries the last reason.
+// or the feature was found, or agreed, in fewer than half of the measurements; the sentence carries the last
+// reason.
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options);
 
 struct PassOptions {

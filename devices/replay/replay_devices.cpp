@@ -11,6 +11,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/profile_csv.h"
 #include "devices/replay/recording.h"
+#include "devices/silence.h"
 
 namespace seamwright {
 namespace {
@@ -104,7 +105,7 @@ class ReplaySensor final : public ProfileSource {
                 return device_error(kEndOfRecording, recording_->folder().string());
             if (next == Recording::Next::frame) break;
             if (Clock::now() >= until) {
-                return device_error(fmt::format("no frame within {} ms", timeout.count()),
+                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     recording_->folder().string(),
                                     "let the robot measure or trigger the sensor");
             }
@@ -113,7 +114,7 @@ class ReplaySensor final : public ProfileSource {
         }
         if (!pace(until)) {
             recording_->put_back(recorded);
-            return device_error(fmt::format("no frame within {} ms", timeout.count()),
+            return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                 recording_->folder().string());
         }
         FramePtr frame = pool_.acquire();

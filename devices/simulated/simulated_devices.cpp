@@ -5,6 +5,7 @@
 #include <atomic>
 #include <thread>
 
+#include "devices/silence.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {
@@ -50,8 +51,8 @@ class SimulatedSensor final : public ProfileSource {
                 }
             }
             if (Clock::now() >= until) {
-                return device_error(fmt::format("no frame within {} ms", timeout.count()), "simulated sensor",
-                                    "let the robot measure or trigger the sensor");
+                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                    "simulated sensor", "let the robot measure or trigger the sensor");
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }

@@ -3,15 +3,20 @@
 // sensor's Y and ends at the reference point. The displaced half plane is cut with the laser plane of where
 // the sensor really stands.
 
+#include <algorithm>
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "devices/registry.h"
+#include "devices/silence.h"
 #include "projects/project.h"
 
 namespace seamwright {
@@ -33,6 +38,9 @@ struct FakeCell {
     std::string write_spoils, write_fails;  // frame names
     std::map<std::string, Pose> frames;
     int writes = 0;
+    std::vector<PartVerdict> verdicts;         // as confirmed
+    std::optional<PartVerdict> deaf_to;        // does not acknowledge this one
+    std::deque<Expected<StartSignal>> starts;  // what wait_start() answers in turn; then silence
     std::function<void(const std::string& spot)> on_trigger;
 
     Profile cut(const Spot& spot) {
@@ -137,6 +145,21 @@ class FakeRobot : public RobotLink {
         if (name == cell_.write_fails && first) return device_error("the controller refuses");
         cell_.frames[name] = pose;
         if (name == cell_.write_spoils && first) cell_.frames[name].translation().z() += 0.5;
+        return {};
+    }
+
+    Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
+        if (cell_.starts.empty()) {
+            std::this_thread::sleep_for(std::min(timeout, std::chrono::milliseconds(2)));
+            return device_error(kNoAnswer, "robot R1");
+        }
+        Expected<StartSignal> start = std::move(cell_.starts.front());
+        cell_.starts.pop_front();
+        return start;
+    }
+    Expected<void> confirm(PartVerdict verdict, const std::string&) override {
+        cell_.verdicts.push_back(verdict);
+        if (cell_.deaf_to == verdict) return device_error(kNoAnswer, "robot R1");
         return {};
     }
 

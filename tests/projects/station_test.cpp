@@ -163,8 +163,34 @@ TEST_F(StationRun, CancelledInTheMiddle) {
     };
     const RunRecord record = run();
     EXPECT_EQ(record.status, RunStatus::cancelled);
-    EXPECT_EQ(record.captures.size(), 3u);
+    EXPECT_EQ(record.captures.size(), 2u);  // the third spot's frame is not waited for
+    EXPECT_THAT(cell->verdicts, testing::ElementsAre(PartVerdict::failed));
     expect_nothing_written();
+}
+
+TEST_F(StationRun, TheRobotIsToldHowThePartEnded) {
+    run(true);
+    EXPECT_THAT(cell->verdicts, testing::ElementsAre(PartVerdict::corrected));
+    run(false);
+    EXPECT_EQ(cell->verdicts.back(), PartVerdict::refused) << "a dry run releases nothing";
+    cell->silent_sensor_at = "S2";
+    run(true);
+    EXPECT_EQ(cell->verdicts.back(), PartVerdict::failed);
+    cell->silent_sensor_at.clear();
+    cell->empty_at = "S1";
+    run(true);
+    EXPECT_EQ(cell->verdicts.back(), PartVerdict::refused);
+}
+
+TEST_F(StationRun, RobotThatDoesNotAcknowledgeHasItsFramesRestored) {
+    cell->deaf_to = PartVerdict::corrected;
+    const RunRecord record = run();
+    EXPECT_EQ(record.status, RunStatus::alarm);
+    EXPECT_THAT(record.message, HasSubstr("acknowledge"));
+    EXPECT_THAT(cell->verdicts, testing::ElementsAre(PartVerdict::corrected, PartVerdict::failed));
+    for (const Region& region : cell->project.regions)
+        EXPECT_TRUE(cell->frames[region.frame_name].isApprox(region.base_from_frame, 1e-15));
+    for (const RegionRecord& region : record.regions) EXPECT_EQ(region.push.status, PushStatus::restored);
 }
 
 TEST_F(StationRun, FrameOfAnotherSpotIsDropped) {

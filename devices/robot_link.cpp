@@ -49,7 +49,7 @@ std::string_view to_string(PartVerdict verdict) {
 }
 
 Expected<StartSignal> RobotLink::wait_start(std::chrono::milliseconds) {
-    return device_error("this robot has no start signal", {}, "start each run by command");
+    return usage_error("this robot has no start signal", {}, "start each run by command");
 }
 
 Expected<void> RobotLink::confirm(PartVerdict, const std::string&) {

@@ -479,7 +479,10 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     run.message = Impl::verdict(run);
     run.finished_utc = utc_now();
     auto number = i.file.append_run(run, i.project);
-    if (!number) return tl::unexpected(number.error());
+    if (!number) {
+        i.confirm_all(job, PartVerdict::failed);
+        return tl::unexpected(number.error());
+    }
     run.number = *number;
     for (EventRecord& event : run.events) event.run = run.number;
     if (pushing) {

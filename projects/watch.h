@@ -1,0 +1,54 @@
+#pragma once
+// Car after car without a screen: wait for the robot's start signal, measure, correct, push, tell the robot,
+// wait for the next part. Lost devices are alarms, not the end: nothing is pushed while one is missing, and
+// work goes on when it is back.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stop_token>
+#include <string>
+
+#include "projects/station.h"
+
+namespace seamwright {
+
+struct WatchCounts {
+    std::int64_t parts = 0;  // started
+    std::int64_t corrected = 0,
+                 refused = 0;  // pushed and acknowledged (or, in a dry run, judged ok); refused
+    std::int64_t failed = 0, alarms = 0, lost = 0;  // runs with a device failure; pushes gone wrong; outages
+};
+
+enum class WatchState { connecting, waiting, measuring, lost, stopped };
+std::string_view to_string(WatchState state);
+
+// One thing that happened, for a log that machines read.
+struct WatchEvent {
+    std::string utc;    // ISO 8601
+    std::string level;  // info | warning | alarm
+    std::string event;  // connected | lost | back | start | spot | run | stopped
+    std::string text;   // one sentence
+    nlohmann::json data = nlohmann::json::object();
+    WatchState state = WatchState::connecting;
+    WatchCounts counts;
+};
+
+struct WatchOptions {
+    bool push = false;
+    bool keep_images = false;
+    std::int64_t parts = 0;      // end after so many; 0 = never
+    std::int64_t keep_runs = 0;  // older runs are deleted from the file; 0 = keep all
+    AcquireLimits limits;
+    std::chrono::milliseconds retry_first{500}, retry_longest{10000};  // doubles between attempts
+    std::stop_token
+        cancel;  // heard within kCancelSlice; a part in the middle ends as cancelled, the robot is told
+    std::function<void(const WatchEvent&)> tell;  // on the watching thread
+};
+
+// Connects the station where it is not. Ends by `cancel` or after `parts`. Error: the file cannot be written,
+// or no robot of the project has a start signal; device failures are told and survived.
+Expected<WatchCounts> watch(Station& station, const WatchOptions& options);
+
+}  // namespace seamwright

@@ -44,26 +44,30 @@ auto call(const std::vector<Driver>& drivers, const char* what, const std::strin
         if (driver.name == name) return (driver.*open)(std::forward<Arguments>(arguments)...);
         known += (known.empty() ? "" : ", ") + std::string(driver.name);
     }
-    return input_error("there is no " + std::string(what) + " driver \"" + name + "\"", {},
-                       "known are " + known);
+    return input_error("there is no " + std::string(what) + " \"" + name + "\"", {}, "known are " + known);
 }
 }  // namespace
 
 Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
                                                      const nlohmann::json& settings, DeviceSession& session) {
-    return call(sensor_drivers(), "sensor", driver, &SensorDriver::open, settings, session);
+    return call(sensor_drivers(), "sensor driver", driver, &SensorDriver::open, settings, session);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_robot(const std::string& driver, const nlohmann::json& settings,
                                                 DeviceSession& session) {
-    return call(robot_drivers(), "robot", driver, &RobotDriver::open, settings, session);
+    return call(robot_drivers(), "robot driver", driver, &RobotDriver::open, settings, session);
 }
 
 Expected<std::unique_ptr<SimulatedController>> start_controller(const std::string& driver,
                                                                 std::shared_ptr<SimulatedCell> cell,
                                                                 const nlohmann::json& settings) {
-    return call(controller_drivers(), "controller", driver, &ControllerDriver::start, std::move(cell),
-                settings);
+    return call(controller_drivers(), "simulated controller", driver, &ControllerDriver::start,
+                std::move(cell), settings);
+}
+
+Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
+                                                       const ProgramRequest& request) {
+    return call(program_writers(), "robot brand", brand, &ProgramWriter::write, request);
 }
 
 }  // namespace seamwright

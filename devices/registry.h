@@ -35,7 +35,7 @@ struct ControllerDriver {
 // Writes the controller's side: the fixed module of resources/robot/<brand> and what follows from the
 // project. Refuses names and poses that the controller cannot hold.
 struct ProgramWriter {
-    std::string_view brand, help;  // "kuka", "abb", "ur"
+    std::string_view name, help;  // "kuka", "abb", "ur"
     Expected<std::vector<ProgramFile>> (*write)(const ProgramRequest& request);
 };
 const std::vector<SensorDriver>& sensor_drivers();
@@ -52,5 +52,7 @@ Expected<std::unique_ptr<RobotLink>> open_robot(const std::string& driver, const
 Expected<std::unique_ptr<SimulatedController>> start_controller(const std::string& driver,
                                                                 std::shared_ptr<SimulatedCell> cell,
                                                                 const nlohmann::json& settings);
+Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
+                                                       const ProgramRequest& request);
 
 }  // namespace seamwright

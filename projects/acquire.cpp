@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "devices/silence.h"
+#include "projects/measure.h"
 
 namespace seamwright {
 namespace {
@@ -28,6 +29,17 @@ MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
     move.speed_mm_s = spot.speed_mm_s;
     move.stop_at_trigger = spot.stop_at_trigger;
     return move;
+}
+
+std::vector<MeasuringMove> measuring_program(const Project& project, const std::string& robot_id) {
+    std::vector<MeasuringMove> moves;
+    for (const Spot& spot : project.spots) {
+        if (!spot.enabled || spot.robot_id != robot_id) continue;
+        const Calibration* calibration = calibration_of(project, spot);
+        moves.push_back(
+            measuring_move(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
+    }
+    return moves;
 }
 
 namespace {

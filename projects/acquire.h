@@ -21,6 +21,10 @@ struct AcquireLimits {
 // entry -> trigger -> exit along the sensor's Y with the orientation held.
 MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor);
 
+// The measuring program of a robot: its enabled spots in the project's order. A spot without calibration is
+// passed with the flange's Y as its sensor's.
+std::vector<MeasuringMove> measuring_program(const Project& project, const std::string& robot_id);
+
 // Waiting in slices, so that `cancel` is heard within kCancelSlice whatever the time-out. Cancelled = Error
 // whose `what` is kCancelled.
 inline constexpr std::chrono::milliseconds kCancelSlice{200};

@@ -112,16 +112,11 @@ struct Station::Impl {
     // All spots of one robot, in the project's order.
     Expected<void> measure_robot(Job& job, const std::string& robot_id) {
         std::vector<const Spot*> spots;
-        std::vector<MeasuringMove> moves;
-        for (const Spot& spot : project.spots) {
-            if (!spot.enabled || spot.robot_id != robot_id) continue;
-            spots.push_back(&spot);
-            const Calibration* calibration = calibration_of(project, spot);
-            moves.push_back(
-                measuring_move(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
-        }
+        for (const Spot& spot : project.spots)
+            if (spot.enabled && spot.robot_id == robot_id) spots.push_back(&spot);
         RobotLink& robot = *robots.at(robot_id);
-        if (auto started = robot.start_measuring(moves); !started) return started;
+        if (auto started = robot.start_measuring(measuring_program(project, robot_id)); !started)
+            return started;
         job.started_robots.push_back(robot_id);
         std::set<std::string> open;
         for (const Spot* spot : spots) open.insert(spot->id);

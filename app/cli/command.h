@@ -55,5 +55,7 @@ void add_project_commands(CommandLine& line);  // new, info, check, export, impo
 void add_run(CommandLine& line);
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);
+void add_sim_cell(CommandLine& line);
+void add_robot_program(CommandLine& line);
 
 }  // namespace seamwright::cli

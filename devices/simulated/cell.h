@@ -81,6 +81,9 @@ CellSettings default_cell_settings();
 // Refuses unknown fields, wrong types and values out of range, with the field's path.
 Expected<CellSettings> parse_cell_settings(const nlohmann::json& settings);
 
+// The settings' "part" alone: {"displacement": POSE, "bend_mm", "twist_mm"}.
+Expected<PartState> parse_part_state(const nlohmann::json& part);
+
 // Thread-safe. Poses are base_from_flange unless named otherwise.
 class SimulatedCell {
   public:

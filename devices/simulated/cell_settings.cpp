@@ -92,6 +92,23 @@ std::string_view to_string(Scene scene) {
     return "part";
 }
 
+namespace {
+void read_part(Fields& p, PartState& part) {
+    p.only({"displacement", "bend_mm", "twist_mm"});
+    p.pose("displacement", part.workobject_from_movedworkobject);
+    p.number("bend_mm", part.bend.bend_mm, -50, 50);
+    p.number("twist_mm", part.bend.twist_mm, -50, 50);
+}
+}  // namespace
+
+Expected<PartState> parse_part_state(const nlohmann::json& json) {
+    PartState part;
+    Fields f(json, "part");
+    read_part(f, part);
+    if (f.failed()) return tl::unexpected(f.error());
+    return part;
+}
+
 CellSettings default_cell_settings() {
     CellSettings s;
     s.base_from_workobject = make_pose(rotation_from_kuka({12, -4, 3}), {900, -450, 500});
@@ -123,12 +140,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     f.pose("base_from_workobject", s.base_from_workobject);
     f.pose("base_from_target", s.base_from_target);
     f.pose("flange_from_sensor", s.flange_from_sensor);
-    f.object("part", [&](Fields& p) {
-        p.only({"displacement", "bend_mm", "twist_mm"});
-        p.pose("displacement", s.part.workobject_from_movedworkobject);
-        p.number("bend_mm", s.part.bend.bend_mm, -50, 50);
-        p.number("twist_mm", s.part.bend.twist_mm, -50, 50);
-    });
+    f.object("part", [&](Fields& p) { read_part(p, s.part); });
     f.object("optics", [&](Fields& o) {
         o.only({"width", "height", "bit_depth", "stand_off_mm", "triangulation_deg", "field_mm", "k1", "k2",
                 "p1", "p2", "k3", "laser_width_mm", "fan_deg", "blur_px", "blooming"});

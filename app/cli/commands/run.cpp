@@ -2,69 +2,113 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/logger.h>
+#include <spdlog/sinks/rotating_file_sink.h>
+#include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <stop_token>
-#include <thread>
 
 #include "app/cli/command.h"
 #include "app/cli/result_json.h"
 #include "app/cli/run_text.h"
+#include "app/cli/signal_watch.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "projects/replay.h"
 #include "projects/station.h"
+#include "projects/watch.h"
 
 namespace seamwright::cli {
 namespace {
 
 using nlohmann::json;
 
-// SIGINT and SIGTERM ask the run to end; it then ends in an orderly way and is recorded as cancelled.
-std::stop_source& cancel_source() {
-    static std::stop_source source;
-    return source;
-}
-volatile std::sig_atomic_t g_signalled = 0;
-void on_signal(int) {
-    g_signalled = 1;
-}
-
-// A signal handler may not touch a stop_source; this thread watches the flag for it.
-class SignalWatch {
-  public:
-    SignalWatch() {
-        std::signal(SIGINT, on_signal);
-        std::signal(SIGTERM, on_signal);
-        thread_ = std::jthread([](std::stop_token done) {
-            while (!done.stop_requested()) {
-                if (g_signalled) cancel_source().request_stop();
-                std::this_thread::sleep_for(std::chrono::milliseconds(20));
-            }
-        });
-    }
-
-  private:
-    std::jthread thread_;
-};
-
 struct RunArguments {
     std::string file, part;
-    bool push = false, dry_run = false, keep_images = false;
+    bool push = false, dry_run = false, keep_images = false, watch = false;
+    std::string log;
+    std::int64_t parts = 0, keep_runs = 0;
 };
+
+// One line on the screen: rewritten in place at a terminal, one a change elsewhere.
+void print_status(const WatchEvent& e) {
+    const WatchCounts& c = e.counts;
+    const std::string line =
+        fmt::format("{} | parts {} corrected {} refused {} failed {} alarms {} outages {} | {}",
+                    to_string(e.state), c.parts, c.corrected, c.refused, c.failed, c.alarms, c.lost, e.text);
+    if (isatty(fileno(stderr)))
+        fmt::print(stderr, "\r\x1b[K{}", line);
+    else if (e.event != "spot")
+        fmt::print(stderr, "{} {}\n", e.utc, line);
+    std::fflush(stderr);
+}
+
+json counts_json(const WatchCounts& c) {
+    return {{"parts", c.parts},   {"corrected", c.corrected}, {"refused", c.refused},
+            {"failed", c.failed}, {"alarms", c.alarms},       {"outages", c.lost}};
+}
+
+json event_json(const WatchEvent& e) {
+    json line = {{"utc", e.utc},
+                 {"level", e.level},
+                 {"event", e.event},
+                 {"text", e.text},
+                 {"state", to_string(e.state)},
+                 {"counts", counts_json(e.counts)}};
+    line.update(e.data);
+    return line;
+}
+
+// One JSON object a line, 10 MiB a file, five files kept.
+Expected<std::shared_ptr<spdlog::logger>> open_log(const std::string& file) {
+    if (file.empty()) return std::shared_ptr<spdlog::logger>();
+    try {
+        auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_st>(file, 10u << 20, 5);
+        sink->set_pattern("%v");
+        auto logger = std::make_shared<spdlog::logger>("watch", std::move(sink));
+        logger->flush_on(spdlog::level::info);
+        return logger;
+    } catch (const spdlog::spdlog_ex& e) {
+        return file_error(std::string("the log cannot be written: ") + e.what(), file);
+    }
+}
+
+Expected<Answer> watch_project(const RunArguments& a) {
+    auto log = open_log(a.log);
+    if (!log) return tl::unexpected(log.error());
+    auto station = Station::open(a.file);
+    if (!station) return tl::unexpected(station.error());
+    WatchOptions options;
+    options.push = a.push;
+    options.keep_images = a.keep_images;
+    options.parts = a.parts;
+    options.keep_runs = a.keep_runs;
+    options.cancel = stop_on_signal();
+    options.tell = [&](const WatchEvent& e) {
+        print_status(e);
+        if (*log) (*log)->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
+    };
+    auto counts = watch(*station, options);
+    if (isatty(fileno(stderr))) fmt::print(stderr, "\n");
+    if (!counts) return tl::unexpected(counts.error());
+    Answer answer;
+    answer.json = counts_json(*counts);
+    answer.json["status"] = "stopped";
+    answer.text =
+        fmt::format("{} parts: {} corrected, {} refused, {} failed, {} alarms, {} outages\n", counts->parts,
+                    counts->corrected, counts->refused, counts->failed, counts->alarms, counts->lost);
+    return answer;
+}
 
 Expected<Answer> run(const RunArguments& a) {
     auto station = Station::open(a.file);
     if (!station) return tl::unexpected(station.error());
     if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
-    SignalWatch watch;
     RunOptions options;
     options.part_id = a.part;
     options.push = a.push;
     options.keep_images = a.keep_images;
-    options.cancel = cancel_source().get_token();
+    options.cancel = stop_on_signal();
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
     };
@@ -87,7 +131,6 @@ struct ReplayArguments {
 };
 
 Expected<Answer> replay_command(const ReplayArguments& a) {
-    SignalWatch watch;
     Answer answer;
     answer.json = {{"status", "ok"}, {"files", json::array()}};
     int runs = 0;
@@ -97,7 +140,7 @@ Expected<Answer> replay_command(const ReplayArguments& a) {
         ReplayOptions options;
         options.run = a.run;
         options.jobs = a.jobs;
-        options.cancel = cancel_source().get_token();
+        options.cancel = stop_on_signal();
         auto result = replay(file, options);
         if (!result) return tl::unexpected(result.error());
         json list = json::array();
@@ -133,12 +176,26 @@ void add_run(CommandLine& line) {
         line.add("run", "Measure a part on the project's devices, correct, and push when told to.",
                  "seamwright run door_left.seam --part CAR-0815 --push");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
-    command->add_option("--part", a->part, "Name of the part in front of the robot");
+    auto* part = command->add_option("--part", a->part, "Name of the part in front of the robot");
     auto* push =
         command->add_flag("--push", a->push, "Write the corrected frames, if the safety gate passes them");
     command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);
     command->add_flag("--keep-images", a->keep_images, "Keep the raw images with the run");
-    line.on(command, [a] { return run(*a); });
+    auto* watching =
+        command->add_flag("--watch", a->watch,
+                          "Car after car: wait for the robot's start signal, measure, tell the robot, "
+                          "wait again; ends at SIGINT or SIGTERM");
+    command->add_option("--parts", a->parts, "With --watch: end after so many parts")
+        ->needs(watching)
+        ->check(CLI::PositiveNumber);
+    command->add_option("--keep", a->keep_runs, "With --watch: keep only so many runs in the project")
+        ->needs(watching)
+        ->check(CLI::PositiveNumber);
+    command->add_option("--log", a->log, "With --watch: one JSON object an event, rotated at 10 MiB")
+        ->needs(watching)
+        ->type_name("FILE");
+    part->excludes(watching);
+    line.on(command, [a] { return a->watch ? watch_project(*a) : run(*a); });
 }
 
 void add_replay(CommandLine& line) {

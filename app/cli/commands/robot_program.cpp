@@ -1,0 +1,68 @@
+// seamwright robot-program: the controller's side of a project.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "app/cli/command.h"
+#include "devices/exchange/files.h"
+#include "devices/registry.h"
+#include "projects/measure.h"
+#include "projects/program.h"
+#include "projects/project_file.h"
+
+namespace seamwright::cli {
+namespace {
+
+struct Arguments {
+    std::string file, brand, robot;
+    std::filesystem::path folder;
+};
+
+Expected<Answer> write_program(const Arguments& a) {
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    auto request = program_request(*project, a.robot);
+    if (!request) return tl::unexpected(request.error());
+    auto files = write_robot_program(a.brand, *request);
+    if (!files) return tl::unexpected(files.error());
+    std::error_code failed;
+    std::filesystem::create_directories(a.folder, failed);
+    if (failed) return file_error("the folder cannot be made: " + failed.message(), a.folder.string());
+    Answer answer;
+    answer.json = {{"status", "ok"}, {"brand", a.brand}, {"files", nlohmann::json::array()}};
+    for (const ProgramFile& f : *files) {
+        const auto path = a.folder / f.name;
+        if (auto written = write_text_file(path, f.text); !written) return tl::unexpected(written.error());
+        answer.json["files"].push_back(path.string());
+        answer.text += path.string() + "\n";
+    }
+    answer.json["spots"] = request->moves.size();
+    answer.json["frames"] = request->frames.size();
+    answer.text += fmt::format("{} spots, {} frames\n", request->moves.size(), request->frames.size());
+    return answer;
+}
+
+}  // namespace
+
+void add_robot_program(CommandLine& line) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = line.add(
+        "robot-program",
+        "The controller's side of a project: the module that talks to Seamwright, the measuring program "
+        "(entry, trigger and exit of every spot) and the application frames.",
+        "seamwright robot-program door_left.seam --brand kuka --out krc");
+    std::vector<std::string> brands;
+    for (const ProgramWriter& w : program_writers()) brands.emplace_back(w.name);
+    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    command->add_option("--brand", a->brand, fmt::format("{}", fmt::join(brands, " | ")))->required();
+    command->add_option("--out", a->folder, "Folder to write into")->required()->type_name("DIR");
+    command->add_option("--robot", a->robot, "Which robot of the project, when it has several")
+        ->type_name("ID");
+    line.on(command, [a] { return write_program(*a); });
+}
+
+}  // namespace seamwright::cli

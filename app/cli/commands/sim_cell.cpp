@@ -1,0 +1,192 @@
+// seamwright sim-cell: the simulated cell as a process of its own, behind real protocols.
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <sstream>
+
+#include "app/cli/command.h"
+#include "app/cli/signal_watch.h"
+#include "devices/cell_server.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "projects/acquire.h"
+#include "projects/project_file.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Arguments {
+    std::string settings, project, camera, fault;
+    std::vector<std::string> controllers;
+};
+
+constexpr const char* kWords =
+    "start [PART] | part {JSON: displacement, bend_mm, twist_mm} | mode MODE | fault FAULT | state | stop";
+
+// "kuka-eki" or "kuka-eki:54600"
+Expected<ServedController> controller_from(const std::string& text) {
+    const auto colon = text.rfind(':');
+    ServedController c{text.substr(0, colon), json::object()};
+    if (colon == std::string::npos) return c;
+    int port = -1;
+    const auto digits = text.substr(colon + 1);
+    if (!digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos)
+        port = std::stoi(digits);
+    if (port < 0 || port > 65535)
+        return usage_error("\"" + digits + "\" is no port", "--controller " + text, "give NAME or NAME:PORT");
+    c.settings["port"] = port;
+    return c;
+}
+
+Expected<CellServer> serve(const Arguments& a, const json& cell_settings) {
+    CellServerOptions options;
+    options.cell = cell_settings;
+    options.camera_address = a.camera;
+    for (const std::string& text : a.controllers) {
+        auto controller = controller_from(text);
+        if (!controller) return tl::unexpected(controller.error());
+        options.controllers.push_back(std::move(*controller));
+    }
+    if (!a.project.empty()) {
+        auto file = ProjectFile::open(a.project, FileAccess::read_only);
+        if (!file) return tl::unexpected(file.error());
+        auto project = file->load();
+        if (!project) return tl::unexpected(project.error());
+        for (const RobotSetup& robot : project->robots) {
+            auto program = measuring_program(*project, robot.id);
+            options.program.insert(options.program.end(), program.begin(), program.end());
+        }
+    }
+    return CellServer::start(options);
+}
+
+json state_json(CellServer& server) {
+    json state = {{"mode", to_string(server.cell().mode())},
+                  {"part", server.cell().describe()},
+                  {"controllers", json::array()}};
+    for (const auto& [name, controller] : server.controllers()) {
+        json c = {{"name", name},
+                  {"port", controller->port()},
+                  {"fault", to_string(controller->fault())},
+                  {"released", controller->released()},
+                  {"verdict", nullptr}};
+        if (const auto verdict = controller->verdict()) c["verdict"] = to_string(*verdict);
+        state["controllers"].push_back(std::move(c));
+    }
+    if (server.camera_address().empty())
+        state["camera"] = nullptr;
+    else
+        state["camera"] = {{"address", server.camera_address()}, {"serial", server.cell().settings().serial}};
+    return state;
+}
+
+// One line of standard input. The answer is one line of JSON.
+json obey(CellServer& server, const std::string& line, bool& stop) {
+    std::istringstream words(line);
+    std::string word, rest;
+    words >> word;
+    std::getline(words >> std::ws, rest);
+    const auto refuse = [&](const std::string& why) { return json{{"ok", false}, {"error", why}}; };
+    if (word == "start") {
+        for (const auto& [name, controller] : server.controllers()) controller->press_start(rest);
+    } else if (word == "part") {
+        auto part = parse_part_state(json::parse(rest, nullptr, false));
+        if (!part) return refuse(part.error().sentence());
+        server.cell().set_part(*part);
+    } else if (word == "mode") {
+        const auto mode = robot_mode_from_string(rest);
+        if (!mode) return refuse("there is no mode \"" + rest + "\"");
+        server.cell().set_mode(*mode);
+    } else if (word == "fault") {
+        const auto fault = controller_fault_from(rest);
+        if (!fault) return refuse("there is no fault \"" + rest + "\"");
+        for (const auto& [name, controller] : server.controllers()) controller->set_fault(*fault);
+    } else if (word == "stop") {
+        stop = true;
+    } else if (word != "state") {
+        return refuse("\"" + word + "\" is none of: " + kWords);
+    }
+    json answer = state_json(server);
+    answer["ok"] = true;
+    return answer;
+}
+
+Expected<Answer> sim_cell(const Arguments& a) {
+    json settings = json::object();
+    if (!a.settings.empty()) {
+        auto text = read_text_file(a.settings);
+        if (!text) return tl::unexpected(text.error());
+        settings = json::parse(*text, nullptr, false);
+        if (settings.is_discarded()) return input_error("this is no JSON", a.settings);
+    }
+    const auto stop = stop_on_signal();
+    auto server = serve(a, settings);
+    if (!server) return tl::unexpected(server.error());
+    if (!a.fault.empty()) {
+        const auto fault = controller_fault_from(a.fault);
+        if (!fault) return usage_error("there is no fault \"" + a.fault + "\"", "--fault");
+        for (const auto& [name, controller] : server->controllers()) controller->set_fault(*fault);
+    }
+    std::cout << state_json(*server).dump() << std::endl;
+    bool done = false, input = true;
+    std::string pending;
+    while (!done && !stop.stop_requested()) {
+        pollfd in{input ? STDIN_FILENO : -1, POLLIN, 0};
+        if (poll(&in, 1, 100) <= 0) continue;
+        char buffer[4096];
+        const auto got = read(STDIN_FILENO, buffer, sizeof buffer);
+        if (got <= 0) {
+            input = false;  // started in the background: runs until a signal
+            continue;
+        }
+        pending.append(buffer, static_cast<std::size_t>(got));
+        for (std::size_t end; !done && (end = pending.find('\n')) != std::string::npos;) {
+            const std::string line = pending.substr(0, end);
+            pending.erase(0, end + 1);
+            if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+            std::cout << obey(*server, line, done).dump(-1, ' ', false, json::error_handler_t::replace)
+                      << std::endl;
+        }
+        if (pending.size() > 65536) return input_error("a line of over 65536 bytes", "standard input");
+    }
+    Answer answer;
+    answer.json = state_json(*server);
+    answer.json["status"] = "stopped";
+    answer.text = "stopped\n";
+    return answer;
+}
+
+}  // namespace
+
+void add_sim_cell(CommandLine& line) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = line.add(
+        "sim-cell",
+        std::string(
+            "The simulated cell behind real protocols until stopped: a GigE Vision camera and robot "
+            "controllers "
+            "on the loopback address. Writes its state as one line of JSON, then obeys lines on standard "
+            "input: ") +
+            kWords,
+        "seamwright sim-cell --camera 127.0.0.1 --controller kuka-eki:54600 --project door_left.seam");
+    std::string known, faults = "none";
+    for (const ControllerDriver& d : controller_drivers())
+        known += (known.empty() ? "" : " | ") + std::string(d.name);
+    for (const ControllerFault f : controller_faults()) faults += " | " + std::string(to_string(f));
+    command->add_option("settings", a->settings, "The cell's settings")->type_name("CELL.json");
+    command->add_option("--project", a->project, "Its spots are the measuring program on the controllers")
+        ->type_name("FILE.seam");
+    command->add_option("--camera", a->camera, "Serve the sensor as a GigE Vision camera on this address")
+        ->type_name("ADDRESS");
+    command->add_option("--controller", a->controllers, "Repeatable: " + known)->type_name("NAME[:PORT]");
+    command->add_option("--fault", a->fault, "What the controllers do wrong: " + faults);
+    line.on(command, [a] { return sim_cell(*a); });
+}
+
+}  // namespace seamwright::cli

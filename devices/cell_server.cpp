@@ -1,0 +1,30 @@
+#include "devices/cell_server.h"
+
+namespace seamwright {
+
+class ServedCamera {};
+
+CellServer::CellServer(CellServer&&) noexcept = default;
+CellServer& CellServer::operator=(CellServer&&) noexcept = default;
+CellServer::~CellServer() = default;
+
+Expected<CellServer> CellServer::start(const CellServerOptions& options) {
+    auto cell = SimulatedCell::open(options.cell);
+    if (!cell) return tl::unexpected(cell.error());
+    return start(options, *cell);
+}
+
+Expected<CellServer> CellServer::start(const CellServerOptions& options,
+                                       std::shared_ptr<SimulatedCell> cell) {
+    CellServer server;
+    server.cell_ = cell;
+    if (!options.program.empty()) cell->store_program(options.program);
+    for (const ServedController& c : options.controllers) {
+        auto controller = start_controller(c.name, cell, c.settings);
+        if (!controller) return tl::unexpected(controller.error());
+        server.controllers_.emplace_back(c.name, std::move(*controller));
+    }
+    return server;
+}
+
+}  // namespace seamwright

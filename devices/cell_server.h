@@ -1,0 +1,54 @@
+#pragma once
+// The simulated cell behind real protocols: its sensor as a GigE Vision camera, its robot behind the
+// controllers of controller_drivers(), each on the loopback address. The demo, the tests and `seamwright
+// sim-cell` measure over it as over a plant's cables.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "devices/registry.h"
+#include "devices/simulated/cell.h"
+
+namespace seamwright {
+
+class ServedCamera;
+
+struct ServedController {
+    std::string name;  // of controller_drivers()
+    nlohmann::json settings = nlohmann::json::object();
+};
+
+struct CellServerOptions {
+    nlohmann::json cell = nlohmann::json::object();  // as documented in cell.h
+    std::string camera_address;                      // empty = no camera
+    std::vector<ServedController> controllers;
+    std::vector<MeasuringMove> program;  // the measuring program that the controllers hold
+};
+
+// Serves from start() to its destruction.
+class CellServer {
+  public:
+    static Expected<CellServer> start(const CellServerOptions& options);
+    // The same on a cell that is there already; options.cell is not looked at.
+    static Expected<CellServer> start(const CellServerOptions& options, std::shared_ptr<SimulatedCell> cell);
+    CellServer(CellServer&&) noexcept;
+    CellServer& operator=(CellServer&&) noexcept;
+    ~CellServer();
+
+    SimulatedCell& cell() { return *cell_; }
+    const std::string& camera_address() const { return camera_address_; }
+    using NamedController = std::pair<std::string, std::unique_ptr<SimulatedController>>;
+    const std::vector<NamedController>& controllers() const { return controllers_; }
+
+  private:
+    CellServer() = default;
+    std::shared_ptr<SimulatedCell> cell_;
+    std::string camera_address_;
+    std::unique_ptr<ServedCamera> camera_;
+    std::vector<NamedController> controllers_;
+};
+
+}  // namespace seamwright

@@ -25,22 +25,6 @@ void sync_folder(const fs::path& file) {
     }
 }
 
-// SQLite pads a last page that is cut; the header says how long the file must be. Call after the first read,
-// which rolls a killed writer's journal back.
-Expected<void> check_size(Database& db, const fs::path& path) {
-    auto pages = db.integer("PRAGMA page_count");
-    if (!pages) return tl::unexpected(pages.error());
-    auto page_bytes = db.integer("PRAGMA page_size");
-    if (!page_bytes) return tl::unexpected(page_bytes.error());
-    std::error_code code;
-    const auto bytes = fs::file_size(path, code);
-    if (code || bytes % static_cast<std::uintmax_t>(*page_bytes) != 0 ||
-        bytes / static_cast<std::uintmax_t>(*page_bytes) < static_cast<std::uintmax_t>(*pages))
-        return file_error("the project file is cut short", path.string(),
-                          "take the last good copy from the backup");
-    return {};
-}
-
 // Replaces `path` by the finished `made`. Without `replace` an existing file wins.
 Expected<void> put_in_place(const fs::path& made, const fs::path& path, bool replace) {
     const unsigned flags = replace ? 0 : RENAME_NOREPLACE;
@@ -74,7 +58,7 @@ void remove_with_journal(const fs::path& path) {
 Expected<void> prepare_replacing(const fs::path& path) {
     std::error_code code;
     if (fs::is_regular_file(path, code) && fs::file_size(path, code) == 0) return {};
-    auto old = Database::open(path.string(), SQLITE_OPEN_READWRITE);
+    auto old = Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile);
     if (!old) return tl::unexpected(old.error());
     auto id = old->integer("PRAGMA application_id");
     if (!id) return tl::unexpected(id.error());
@@ -90,9 +74,9 @@ Expected<void> migrate_file(Database& original, const fs::path& path) {
     // Holds off other writers; the copy is read through a second connection, which this lock lets pass.
     if (auto locked = original.execute("BEGIN IMMEDIATE"); !locked) return locked;
     const auto work = [&]() -> Expected<void> {
-        auto source = Database::open(path.string(), SQLITE_OPEN_READONLY);
+        auto source = Database::open(path.string(), SQLITE_OPEN_READONLY, kProjectFile);
         if (!source) return tl::unexpected(source.error());
-        auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+        auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
         if (!copy) return tl::unexpected(copy.error());
         if (auto done = source->copy_to(*copy); !done) return done;
         if (auto done = migrate(*copy); !done) return done;
@@ -127,7 +111,7 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& path, const Project& p
     const fs::path made = beside(path, "new");
     remove_with_journal(made);
     const auto work = [&]() -> Expected<void> {
-        auto db = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+        auto db = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
         if (!db) return tl::unexpected(db.error());
         if (auto done = migrate(*db); !done) return done;
         auto transaction = Transaction::begin(*db);
@@ -156,19 +140,21 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
     const bool writing = access == FileAccess::read_write;
     if (!writing && fs::exists(path.string() + "-journal", code)) {
         // A killed writer left its journal; a read-only connection may not roll it back.
-        if (auto healing = Database::open(path.string(), SQLITE_OPEN_READWRITE))
+        if (auto healing = Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile))
             (void)healing->integer("PRAGMA user_version");
     }
     for (int round = 0;; ++round) {
-        auto db = Database::open(path.string(), writing ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY);
+        auto db = Database::open(path.string(), writing ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY,
+                                 kProjectFile);
         if (!db) return tl::unexpected(db.error());
         auto version = check_identity(*db);
         if (!version) return tl::unexpected(version.error());
-        if (auto whole = check_size(*db, path); !whole) return tl::unexpected(whole.error());
+        if (auto whole = db->check_length(); !whole) return tl::unexpected(whole.error());
         if (auto sound = check_structure(*db, *version); !sound) return tl::unexpected(sound.error());
         if (*version < current_version()) {
             if (!writing) {
-                auto memory = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+                auto memory =
+                    Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
                 if (!memory) return tl::unexpected(memory.error());
                 if (auto done = db->copy_to(*memory); !done) return tl::unexpected(done.error());
                 if (auto done = migrate(*memory); !done) return tl::unexpected(done.error());

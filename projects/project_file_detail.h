@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
+#include "devices/capture/sqlite.h"
 #include "projects/project_file.h"
 #include "projects/project_json.h"
-#include "projects/sqlite.h"
 
 namespace seamwright {
 

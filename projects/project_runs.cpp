@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "projects/profile_blob.h"
+#include "devices/capture/profile_blob.h"
 #include "projects/project_file_detail.h"
 #include "projects/schema.h"
 

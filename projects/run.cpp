@@ -1,10 +1,6 @@
 #include "projects/run.h"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <array>
-#include <chrono>
 
 namespace seamwright {
 namespace {
@@ -51,24 +47,6 @@ std::optional<EventKind> event_kind_from(std::string_view name) {
 }
 std::optional<RunStatus> run_status_from(std::string_view name) {
     return find_word<RunStatus>(kRunStatus, name);
-}
-
-StripeImage StoredImage::view() const {
-    StripeImage image;
-    image.pixels = pixels.data();
-    image.width = width;
-    image.height = height;
-    image.bit_depth = bit_depth;
-    image.row_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(image.bytes_per_pixel());
-    return image;
-}
-
-std::string utc_now() {
-    const auto now = std::chrono::system_clock::now();
-    const auto ms =
-        std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
-    return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
-                       ms);
 }
 
 }  // namespace seamwright

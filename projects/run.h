@@ -12,30 +12,9 @@
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
 #include "core/profile/profile.h"
-#include "devices/frame.h"
+#include "devices/capture/capture.h"
 
 namespace seamwright {
-
-// A raw camera image with its own pixels, rows packed without gaps; depths as in StripeImage.
-struct StoredImage {
-    int width = 0, height = 0, bit_depth = 8;
-    std::vector<std::byte> pixels;  // [height * width * bytes per pixel]
-    StripeImage view() const;
-};
-
-// One frame as kept with a run. Raw: what the sensor gave, before tracking and filtering. A profile sensor
-// leaves `profile` (no segments); a camera leaves `candidates` (peaks in millimetres) and, where asked, the
-// image. A damaged frame leaves only its status.
-struct Capture {
-    std::string spot_id, sensor_id;
-    FrameStatus status = FrameStatus::ok;
-    std::uint64_t sequence = 0;
-    std::int64_t device_time_ns = 0, host_time_ns = 0;
-    std::optional<Pose> base_from_flange;  // as reported for this trigger; absent = the taught pose is taken
-    Profile profile;
-    ProfileCandidates candidates;
-    std::optional<StoredImage> image;
-};
 
 enum class SpotStatus {
     measured,        // the feature was found; only this one enters a correction
@@ -125,8 +104,5 @@ struct RunRecord {
     std::vector<Capture> captures;
     std::vector<EventRecord> events;
 };
-
-// The wall clock for records.
-std::string utc_now();
 
 }  // namespace seamwright

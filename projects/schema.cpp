@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <set>
-#include <utility>
 
 namespace seamwright {
 namespace {
@@ -124,21 +122,6 @@ CREATE INDEX events_by_run ON events (run);
 
 constexpr std::array<Migration, 2> kMigrations{{{1, kVersion1}, {2, kVersion2}}};
 
-using SchemaEntries = std::set<std::pair<std::string, std::string>>;  // name, SQL
-
-Expected<SchemaEntries> schema_entries(Database& db) {
-    auto s = db.prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
-    if (!s) return tl::unexpected(s.error());
-    SchemaEntries entries;
-    for (;;) {
-        auto row = s->step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) return entries;
-        entries.emplace(s->text(0), s->text(1));
-        if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
-    }
-}
-
 }  // namespace
 
 std::span<const Migration> migrations() {
@@ -165,6 +148,9 @@ Expected<void> migrate(Database& db, std::int32_t until) {
 Expected<std::int32_t> check_identity(Database& db) {
     auto id = db.integer("PRAGMA application_id");
     if (!id) return tl::unexpected(id.error());
+    if (*id == kCaptureApplicationId)
+        return file_error("this is a recorded capture, no project", db.path(),
+                          "name it in the settings of a sensor of driver \"replay\": {\"file\": ...}");
     if (*id != kApplicationId)
         return file_error("this is another program's database, no project file", db.path(),
                           "choose a .seam file");
@@ -183,14 +169,12 @@ Expected<void> check_structure(Database& db, std::int32_t version) {
         return file_error(fmt::format("the project file is damaged ({})", finding), db.path(),
                           "take the last good copy from the backup");
     };
-    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
     if (!fresh) return tl::unexpected(fresh.error());
     if (auto made = migrate(*fresh, version); !made) return made;
-    const auto expected = schema_entries(*fresh);
-    if (!expected) return tl::unexpected(expected.error());
-    const auto found = schema_entries(db);
-    if (!found) return tl::unexpected(found.error());
-    if (*expected != *found) return damaged("its tables are not those of a project");
+    const auto same = db.same_tables(*fresh);
+    if (!same) return tl::unexpected(same.error());
+    if (!*same) return damaged("its tables are not those of a project");
 
     auto check = db.prepare("PRAGMA quick_check(1)");
     if (!check) return tl::unexpected(check.error());

@@ -7,11 +7,12 @@
 #include <cstdint>
 #include <span>
 
-#include "projects/sqlite.h"
+#include "devices/capture/sqlite.h"
 
 namespace seamwright {
 
-inline constexpr std::int32_t kApplicationId = 0x5365616D;  // "Seam"
+inline constexpr std::int32_t kApplicationId = kProjectApplicationId;
+inline constexpr const char* kProjectFile = "project file";  // what Errors call it
 
 struct Migration {
     std::int32_t version;  // of the file afterwards

@@ -19,18 +19,6 @@ std::int64_t steady_now_ns() {
         .count();
 }
 
-StoredImage keep_image(const StripeImage& image) {
-    StoredImage stored{image.width, image.height, image.bit_depth, {}};
-    const std::size_t row =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.bytes_per_pixel());
-    stored.pixels.reserve(row * static_cast<std::size_t>(image.height));
-    for (int y = 0; y < image.height; ++y) {
-        const std::byte* from = image.pixels + static_cast<std::size_t>(y) * image.row_bytes;
-        stored.pixels.insert(stored.pixels.end(), from, from + row);
-    }
-    return stored;
-}
-
 }  // namespace
 
 struct Station::Impl {

@@ -5,9 +5,9 @@
 #include <signal.h>
 #include <sys/wait.h>
 
-#include "projects/profile_blob.h"
+#include "devices/capture/profile_blob.h"
+#include "devices/capture/sqlite.h"
 #include "projects/schema.h"
-#include "projects/sqlite.h"
 #include "tests/projects/kill_test.h"
 #include "tests/projects/sample_project.h"
 

@@ -1,19 +1,25 @@
 #pragma once
-// SQLite behind RAII and tl::expected. Only what the project file needs. Not thread-safe: one connection, one
-// thread.
+// SQLite behind RAII and tl::expected. Only what our files need (a project, a capture). Not thread-safe: one
+// connection, one thread.
 
 #include <sqlite3.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 
 namespace seamwright {
+
+// application_id of our files.
+inline constexpr std::int32_t kProjectApplicationId = 0x5365616D;  // "Seam"
+inline constexpr std::int32_t kCaptureApplicationId = 0x53656143;  // "SeaC"
 
 class Database;
 
@@ -46,21 +52,26 @@ class Statement {
     };
     bool is(int column, int type);
     std::unique_ptr<sqlite3_stmt, Finalize> stmt_;
-    std::string where_;
+    std::string where_, kind_;
     bool type_error_ = false;
 };
 
 class Database {
   public:
     // `flags` as of sqlite3_open_v2. Hardened: defensive, untrusted schema, no double-quoted strings, cell
-    // checks.
-    static Expected<Database> open(const std::string& path, int flags);
+    // checks. `kind` is what the sentences of its Errors call the file.
+    static Expected<Database> open(const std::string& path, int flags, std::string_view kind = "file");
 
     Expected<void> execute(const std::string& sql);  // one or more statements without bindings
     Expected<Statement> prepare(std::string_view sql);
     Expected<std::int64_t> integer(const std::string& sql);  // one row, one column
     std::int64_t last_rowid() const { return sqlite3_last_insert_rowid(db_.get()); }
     Expected<void> copy_to(Database& target);
+    // Error when the file is shorter than its header says: SQLite itself pads a last page that is cut. Call
+    // after the first read, which rolls a killed writer's journal back.
+    Expected<void> check_length();
+    // Whether both hold exactly the same tables, indices, triggers and views.
+    Expected<bool> same_tables(Database& other);
     const std::string& path() const { return path_; }
     sqlite3* handle() const { return db_.get(); }
 
@@ -69,7 +80,7 @@ class Database {
         void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
     };
     std::unique_ptr<sqlite3, Close> db_;
-    std::string path_;
+    std::string path_, kind_;
 };
 
 // BEGIN IMMEDIATE; rolled back unless committed.

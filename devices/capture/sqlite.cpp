@@ -1,8 +1,10 @@
-#include "projects/sqlite.h"
+#include "devices/capture/sqlite.h"
 
 #include <fmt/format.h>
 
 #include <cassert>
+#include <filesystem>
+#include <set>
 #include <utility>
 
 namespace seamwright {
@@ -12,30 +14,32 @@ constexpr int kBusyMs = 5000;
 constexpr int kMaxValueBytes =
     512 << 20;  // a mesh or an image is smaller; a forged length is refused before memory is taken
 
-tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& path) {
+tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& path, std::string_view kind) {
     switch (code & 0xff) {
         case SQLITE_NOTADB:
-            return file_error("this is no project file", path, "choose a .seam file");
+            return file_error(fmt::format("this is no {}", kind), path, "choose a .seam file");
         case SQLITE_CORRUPT:
-            return file_error("the project file is damaged", path, "take the last good copy from the backup");
+            return file_error(fmt::format("the {} is damaged", kind), path,
+                              "take the last good copy from the backup");
         case SQLITE_BUSY:
         case SQLITE_LOCKED:
-            return file_error("another program is writing to the project file", path,
+            return file_error(fmt::format("another program is writing to the {}", kind), path,
                               "close it there and try again");
         case SQLITE_READONLY:
         case SQLITE_PERM:
-            return file_error("the project file cannot be written", path, "check its permissions");
+            return file_error(fmt::format("the {} cannot be written", kind), path, "check its permissions");
         case SQLITE_CANTOPEN:
-            return file_error("the project file cannot be opened", path, "check name and permissions");
+            return file_error(fmt::format("the {} cannot be opened", kind), path,
+                              "check name and permissions");
         case SQLITE_FULL:
             return file_error("the disk is full", path, "make room and try again");
         case SQLITE_NOMEM:
-            return file_error("the project file needs more memory than there is", path);
+            return file_error(fmt::format("the {} needs more memory than there is", kind), path);
         case SQLITE_TOOBIG:
-            return file_error("a value is larger than a project file holds (512 MiB)", path);
+            return file_error(fmt::format("a value is larger than a {} holds (512 MiB)", kind), path);
         default:
             return file_error(
-                fmt::format("the project file failed ({})", db ? sqlite3_errmsg(db) : sqlite3_errstr(code)),
+                fmt::format("the {} failed ({})", kind, db ? sqlite3_errmsg(db) : sqlite3_errstr(code)),
                 path);
     }
 }
@@ -68,7 +72,7 @@ Expected<bool> Statement::step() {
         return false;
     }
     auto error = sqlite_error(sqlite3_db_handle(stmt_.get()),
-                              sqlite3_extended_errcode(sqlite3_db_handle(stmt_.get())), where_);
+                              sqlite3_extended_errcode(sqlite3_db_handle(stmt_.get())), where_, kind_);
     sqlite3_reset(stmt_.get());
     return error;
 }
@@ -115,18 +119,19 @@ bool Statement::is_null(int column) const {
 
 Expected<void> Statement::row_ok() const {
     if (type_error_)
-        return file_error("a column of the project file holds a value of the wrong type", where_);
+        return file_error(fmt::format("a column of the {} holds a value of the wrong type", kind_), where_);
     return {};
 }
 
-Expected<Database> Database::open(const std::string& path, int flags) {
+Expected<Database> Database::open(const std::string& path, int flags, std::string_view kind) {
     Database db;
     db.path_ = path;
+    db.kind_ = kind;
     sqlite3* raw = nullptr;
     const int code =
         sqlite3_open_v2(path.c_str(), &raw, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
     db.db_.reset(raw);
-    if (code != SQLITE_OK) return sqlite_error(raw, code, path);
+    if (code != SQLITE_OK) return sqlite_error(raw, code, path, kind);
     sqlite3_busy_timeout(raw, kBusyMs);
     sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, kMaxValueBytes);
     sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
@@ -144,7 +149,7 @@ Expected<Database> Database::open(const std::string& path, int flags) {
 
 Expected<void> Database::execute(const std::string& sql) {
     const int code = sqlite3_exec(db_.get(), sql.c_str(), nullptr, nullptr, nullptr);
-    if (code != SQLITE_OK) return sqlite_error(db_.get(), code, path_);
+    if (code != SQLITE_OK) return sqlite_error(db_.get(), code, path_, kind_);
     return {};
 }
 
@@ -154,7 +159,8 @@ Expected<Statement> Database::prepare(std::string_view sql) {
     const int code = sqlite3_prepare_v2(db_.get(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
     s.stmt_.reset(raw);
     s.where_ = path_;
-    if (code != SQLITE_OK) return sqlite_error(db_.get(), code, path_);
+    s.kind_ = kind_;
+    if (code != SQLITE_OK) return sqlite_error(db_.get(), code, path_, kind_);
     return s;
 }
 
@@ -163,7 +169,7 @@ Expected<std::int64_t> Database::integer(const std::string& sql) {
     if (!s) return tl::unexpected(s.error());
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return file_error("a value is missing in the project file", path_);
+    if (!*row) return file_error(fmt::format("a value is missing in the {}", kind_), path_);
     const std::int64_t value = s->integer(0);
     if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
     return value;
@@ -172,11 +178,50 @@ Expected<std::int64_t> Database::integer(const std::string& sql) {
 Expected<void> Database::copy_to(Database& target) {
     sqlite3_backup* backup = sqlite3_backup_init(target.handle(), "main", handle(), "main");
     if (!backup)
-        return sqlite_error(target.handle(), sqlite3_extended_errcode(target.handle()), target.path_);
+        return sqlite_error(target.handle(), sqlite3_extended_errcode(target.handle()), target.path_, kind_);
     const int step = sqlite3_backup_step(backup, -1);
     sqlite3_backup_finish(backup);
-    if (step != SQLITE_DONE) return sqlite_error(handle(), step, path_);
+    if (step != SQLITE_DONE) return sqlite_error(handle(), step, path_, kind_);
     return {};
+}
+
+Expected<void> Database::check_length() {
+    auto pages = integer("PRAGMA page_count");
+    if (!pages) return tl::unexpected(pages.error());
+    auto page_bytes = integer("PRAGMA page_size");
+    if (!page_bytes) return tl::unexpected(page_bytes.error());
+    std::error_code code;
+    const auto bytes = std::filesystem::file_size(path_, code);
+    if (code || bytes % static_cast<std::uintmax_t>(*page_bytes) != 0 ||
+        bytes / static_cast<std::uintmax_t>(*page_bytes) < static_cast<std::uintmax_t>(*pages))
+        return file_error(fmt::format("the {} is cut short", kind_), path_,
+                          "take the last good copy from the backup");
+    return {};
+}
+
+namespace {
+using SchemaEntries = std::set<std::pair<std::string, std::string>>;  // name, SQL
+
+Expected<SchemaEntries> schema_entries(Database& db) {
+    auto s = db.prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
+    if (!s) return tl::unexpected(s.error());
+    SchemaEntries entries;
+    for (;;) {
+        auto row = s->step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return entries;
+        entries.emplace(s->text(0), s->text(1));
+        if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
+    }
+}
+}  // namespace
+
+Expected<bool> Database::same_tables(Database& other) {
+    const auto mine = schema_entries(*this);
+    if (!mine) return tl::unexpected(mine.error());
+    const auto others = schema_entries(other);
+    if (!others) return tl::unexpected(others.error());
+    return *mine == *others;
 }
 
 Expected<Transaction> Transaction::begin(Database& db) {

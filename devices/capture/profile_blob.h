@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "projects/run.h"
+#include "devices/capture/capture.h"
 
 namespace seamwright {
 

@@ -1,4 +1,4 @@
-#include "projects/profile_blob.h"
+#include "devices/capture/profile_blob.h"
 
 #include <fmt/format.h>
 #include <zlib.h>

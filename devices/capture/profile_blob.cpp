@@ -15,11 +15,12 @@ static_assert(std::endian::native == std::endian::little, "blobs are written as 
 
 constexpr std::array<char, 4> kMagic{'S', 'W', 'P', 'B'};
 constexpr std::uint16_t kVersion = 1;
-constexpr std::uint16_t kProfileRecords = 1, kCaptureRecords = 2;
+constexpr std::uint16_t kProfileRecords = 1, kCaptureRecords = 2, kFrameRecords = 3;
 constexpr std::size_t kHeaderBytes = 16;
 constexpr std::uint32_t kMaxLines = 65536;
 constexpr std::uint8_t kMaxPerLine = 64;
-constexpr std::uint8_t kHasIntensity = 1, kHasSegment = 2;
+constexpr std::uint8_t kHasIntensity = 1, kHasSegment = 2, kSameX = 4;
+constexpr std::size_t kMaxImageSide = 65536;
 
 class Writer {
   public:
@@ -107,40 +108,60 @@ bool whole(const ProfileCandidates& k) {
                        [&](int count) { return count <= k.per_line; });
 }
 
-void write_profile(Writer& w, const Profile& p) {
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return !a.empty() && a.size() == b.size() &&
+           std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+// `last_x_mm`: x of the profile before, where a repeated one may be left out.
+void write_profile(Writer& w, const Profile& p, std::vector<double>* last_x_mm = nullptr) {
     const std::size_t n = p.x_mm.size();
     const bool intensity = n && p.intensity.size() == n, segment = n && p.segment.size() == n;
+    const bool same = last_x_mm && same_bits(p.x_mm, *last_x_mm);
     w.value(static_cast<std::uint32_t>(n));
-    w.value(static_cast<std::uint8_t>((intensity ? kHasIntensity : 0) | (segment ? kHasSegment : 0)));
-    w.values(p.x_mm);
+    w.value(static_cast<std::uint8_t>((intensity ? kHasIntensity : 0) | (segment ? kHasSegment : 0) |
+                                      (same ? kSameX : 0)));
+    if (!same) w.values(p.x_mm);
     w.values(p.z_mm);
     if (intensity) w.values(p.intensity);
     if (segment) w.values(p.segment);
+    if (last_x_mm && !same) *last_x_mm = p.x_mm;
 }
 
-void read_profile(Reader& r, Profile& p) {
+void read_profile(Reader& r, Profile& p, std::vector<double>* last_x_mm = nullptr) {
     const auto n = r.value<std::uint32_t>();
     const auto columns = r.value<std::uint8_t>();
-    if (columns & ~(kHasIntensity | kHasSegment)) r.fail();
-    r.values(p.x_mm, n);
-    r.values(p.z_mm, n);
+    if (columns & ~(kHasIntensity | kHasSegment | (last_x_mm ? kSameX : 0))) r.fail();
+    if (columns & kSameX) {
+        if (!last_x_mm || last_x_mm->size() != n) r.fail();
+        if (!r.ok()) return;
+        r.values(p.z_mm, n);
+        if (r.ok()) p.x_mm = *last_x_mm;
+    } else {
+        r.values(p.x_mm, n);
+        r.values(p.z_mm, n);
+        if (last_x_mm && r.ok()) *last_x_mm = p.x_mm;
+    }
     if (columns & kHasIntensity) r.values(p.intensity, n);
     if (columns & kHasSegment) r.values(p.segment, n);
 }
 
-void write_capture(Writer& w, const Capture& c) {
-    w.text(c.spot_id);
-    w.text(c.sensor_id);
-    w.value(static_cast<std::uint8_t>(c.status));
-    w.value(c.sequence);
-    w.value(c.device_time_ns);
-    w.value(c.host_time_ns);
-    w.value(static_cast<std::uint8_t>(c.base_from_flange ? 1 : 0));
-    if (c.base_from_flange)
+void write_head(Writer& w, const std::string& spot_id, const std::string& sensor_id, FrameStatus status,
+                std::uint64_t sequence, std::int64_t device_time_ns, std::int64_t host_time_ns,
+                const std::optional<Pose>& base_from_flange) {
+    w.text(spot_id);
+    w.text(sensor_id);
+    w.value(static_cast<std::uint8_t>(status));
+    w.value(sequence);
+    w.value(device_time_ns);
+    w.value(host_time_ns);
+    w.value(static_cast<std::uint8_t>(base_from_flange ? 1 : 0));
+    if (base_from_flange)
         for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column) w.value(c.base_from_flange->matrix()(row, column));
-    write_profile(w, c.profile);
-    const ProfileCandidates& k = c.candidates;
+            for (int column = 0; column < 4; ++column) w.value(base_from_flange->matrix()(row, column));
+}
+
+void write_candidates(Writer& w, const ProfileCandidates& k) {
     w.value(static_cast<std::uint32_t>(k.lines));
     w.value(static_cast<std::uint8_t>(k.per_line));
     for (int line = 0; line < k.lines; ++line) {
@@ -155,7 +176,14 @@ void write_capture(Writer& w, const Capture& c) {
     }
 }
 
-void read_capture(Reader& r, Capture& c) {
+void write_capture(Writer& w, const Capture& c) {
+    write_head(w, c.spot_id, c.sensor_id, c.status, c.sequence, c.device_time_ns, c.host_time_ns,
+               c.base_from_flange);
+    write_profile(w, c.profile);
+    write_candidates(w, c.candidates);
+}
+
+void read_capture(Reader& r, Capture& c, std::vector<double>* last_x_mm = nullptr) {
     c.spot_id = r.text();
     c.sensor_id = r.text();
     const auto status = r.value<std::uint8_t>();
@@ -172,7 +200,7 @@ void read_capture(Reader& r, Capture& c) {
             for (int column = 0; column < 4; ++column) pose.matrix()(row, column) = r.value<double>();
         c.base_from_flange = pose;
     }
-    read_profile(r, c.profile);
+    read_profile(r, c.profile, last_x_mm);
     ProfileCandidates& k = c.candidates;
     const auto lines = r.value<std::uint32_t>();
     const auto per_line = r.value<std::uint8_t>();
@@ -200,15 +228,33 @@ void read_capture(Reader& r, Capture& c) {
     }
 }
 
-std::vector<std::byte> open_blob(std::uint16_t kind) {
-    std::vector<std::byte> out;
+bool known_depth(int depth) {
+    return depth == 8 || depth == 10 || depth == 12 || depth == 16;
+}
+
+void read_image(Reader& r, Capture& c) {
+    const auto present = r.value<std::uint8_t>();
+    if (present > 1) r.fail();
+    if (!r.ok() || !present) return;
+    StoredImage image;
+    const auto width = r.value<std::uint32_t>(), height = r.value<std::uint32_t>();
+    const auto depth = r.value<std::uint8_t>();
+    if (width > kMaxImageSide || height > kMaxImageSide || !known_depth(depth)) r.fail();
+    if (!r.ok()) return;
+    image.width = static_cast<int>(width);
+    image.height = static_cast<int>(height);
+    image.bit_depth = depth;
+    r.values(image.pixels, std::size_t{width} * height * (depth > 8 ? 2 : 1));
+    if (r.ok()) c.image = std::move(image);
+}
+
+void open_blob(std::vector<std::byte>& out, std::uint16_t kind) {
     Writer w(out);
     w.raw(kMagic.data(), kMagic.size());
     w.value(kVersion);
     w.value(kind);
     w.value(std::uint32_t{0});
     w.value(std::uint32_t{0});
-    return out;
 }
 
 std::uint32_t checksum(std::span<const std::byte> payload) {
@@ -248,7 +294,8 @@ Expected<std::pair<std::span<const std::byte>, std::uint32_t>> checked(std::span
 
 Expected<std::vector<std::byte>> pack_profile(const Profile& profile) {
     if (!whole(profile)) return input_error("the columns of the profile differ in length");
-    std::vector<std::byte> blob = open_blob(kProfileRecords);
+    std::vector<std::byte> blob;
+    open_blob(blob, kProfileRecords);
     Writer w(blob);
     write_profile(w, profile);
     close_blob(blob, 1);
@@ -277,7 +324,8 @@ Expected<std::vector<CaptureBlob>> pack_captures(std::span<const Capture> captur
         if (blobs.empty() || blobs.back().bytes.size() >= target_bytes) {
             if (!blobs.empty())
                 close_blob(blobs.back().bytes, static_cast<std::uint32_t>(blobs.back().captures));
-            blobs.push_back({0, open_blob(kCaptureRecords)});
+            blobs.emplace_back();
+            open_blob(blobs.back().bytes, kCaptureRecords);
             blobs.back().bytes.reserve(target_bytes + target_bytes / 8);
         }
         Writer w(blobs.back().bytes);
@@ -299,6 +347,79 @@ Expected<void> unpack_captures(std::span<const std::byte> blob, const std::strin
         if (!r.ok()) captures.pop_back();
     }
     if (!r.ok() || r.left()) return file_error("the block of profiles is not whole", where);
+    return {};
+}
+
+void FrameBlock::clear() {
+    blob_.clear();
+    frames_ = 0;
+    last_x_mm_.clear();
+    open_blob(blob_, kFrameRecords);
+}
+
+Expected<void> FrameBlock::append(const Frame& frame, const ProfileCandidates* candidates, bool with_image) {
+    const StripeImage& image = frame.image;
+    const std::size_t row_bytes = static_cast<std::size_t>(std::max(image.width, 0)) *
+                                  static_cast<std::size_t>(image.bytes_per_pixel());
+    const bool keep = with_image && !image.empty();
+    if (!whole(frame.profile) || (candidates && !whole(*candidates)) || frame.spot_id.size() > 0xffff ||
+        (keep && (image.row_bytes < row_bytes || !known_depth(image.bit_depth) ||
+                  static_cast<std::size_t>(image.width) > kMaxImageSide ||
+                  static_cast<std::size_t>(image.height) > kMaxImageSide)))
+        return input_error(
+            "the frame does not fit the file's format (columns of different length, or too long)",
+            fmt::format("frame {}", frame.sequence));
+    Writer w(blob_);
+    write_head(w, frame.spot_id, {}, frame.status, frame.sequence, frame.device_time_ns, frame.host_time_ns,
+               frame.base_from_flange);
+    write_profile(w, frame.profile, &last_x_mm_);
+    static const ProfileCandidates kNone;
+    write_candidates(w, candidates ? *candidates : kNone);
+    w.value(static_cast<std::uint8_t>(keep ? 1 : 0));
+    if (keep) {
+        w.value(static_cast<std::uint32_t>(image.width));
+        w.value(static_cast<std::uint32_t>(image.height));
+        w.value(static_cast<std::uint8_t>(image.bit_depth));
+        if (image.row_bytes == row_bytes) {
+            w.raw(image.pixels, row_bytes * static_cast<std::size_t>(image.height));
+        } else {
+            for (int y = 0; y < image.height; ++y)
+                w.raw(image.pixels + static_cast<std::size_t>(y) * image.row_bytes, row_bytes);
+        }
+    }
+    ++frames_;
+    return {};
+}
+
+std::span<const std::byte> FrameBlock::finish() {
+    close_blob(blob_, static_cast<std::uint32_t>(frames_));
+    return blob_;
+}
+
+std::size_t frame_record_bytes(const Frame& frame, const ProfileCandidates* candidates, bool with_image) {
+    const Profile& p = frame.profile;
+    std::size_t bytes = 256 + frame.spot_id.size() + 8 * (p.x_mm.size() + p.z_mm.size()) +
+                        4 * (p.intensity.size() + p.segment.size());
+    if (candidates) bytes += candidates->count.size() + 20 * candidates->x_mm.size();
+    if (with_image && !frame.image.empty())
+        bytes += static_cast<std::size_t>(frame.image.width) * static_cast<std::size_t>(frame.image.height) *
+                 static_cast<std::size_t>(frame.image.bytes_per_pixel());
+    return bytes;
+}
+
+Expected<void> unpack_frames(std::span<const std::byte> blob, const std::string& where,
+                             std::vector<Capture>& captures) {
+    auto payload = checked(blob, kFrameRecords, where);
+    if (!payload) return tl::unexpected(payload.error());
+    Reader r(payload->first);
+    std::vector<double> last_x_mm;
+    for (std::uint32_t i = 0; i < payload->second && r.ok(); ++i) {
+        Capture& c = captures.emplace_back();
+        read_capture(r, c, &last_x_mm);
+        if (r.ok()) read_image(r, c);
+        if (!r.ok()) captures.pop_back();
+    }
+    if (!r.ok() || r.left()) return file_error("the block of frames is not whole", where);
     return {};
 }
 

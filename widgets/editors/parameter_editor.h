@@ -1,0 +1,45 @@
+#pragma once
+// One described setting (core/parameter.h) as a line to edit: value, unit, range.
+//
+// A number is typed with point or comma whatever the system's language; it is committed on Enter, on leaving
+// the field, and by Up/Down (one unit of the last shown decimal's tenfold). What is refused stays in the
+// field, marked by the word "refused" and the reason; Escape brings the last good value back. A choice is a
+// list of its names.
+
+#include <QWidget>
+#include <memory>
+#include <optional>
+
+#include "core/parameter.h"
+
+namespace seamwright {
+
+// Reads a number as people type it: blanks around, point or comma as decimal sign, exponent allowed, grouping
+// not. Absent for anything else, also for "nan" and "inf".
+std::optional<double> number_from_text(const QString& text);
+// With `decimals` places, a point, and no negative zero.
+QString text_from_number(double value, int decimals);
+
+class ParameterEditor : public QWidget {
+    Q_OBJECT
+  public:
+    explicit ParameterEditor(const ParameterInfo& info, QWidget* parent = nullptr);
+    ~ParameterEditor() override;
+    const ParameterInfo& info() const;
+    double value() const;
+    void set_value(double value);  // no signal; clamped into the range (NaN: the default)
+    bool refused() const;
+    QString reason() const;  // why; empty when accepted
+
+  signals:
+    void committed(double value);  // accepted and different from before
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seamwright

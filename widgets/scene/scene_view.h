@@ -1,0 +1,113 @@
+#pragma once
+// The part in 3D (VTK inside Qt): mesh, spots with laser plane and sensor, regions, corrections, path, robot.
+//
+// Frame: work object, millimetres. All poses are workobject_from_... Managers (scene_managers.h) alone touch
+// actors; the view hands them values. Render requests are coalesced: at most 60 pictures a second, none when
+// nothing changed. Mouse: left drag turns, middle or Shift+left moves, wheel zooms, a click picks. Keys: 1
+// front, 2 top, 3 iso, F fit, Escape selects nothing. Without OpenGL 3.2 (remote desktop, broken driver) a
+// sentence takes the picture's place and everything else works.
+
+#include <Eigen/Core>
+#include <QImage>
+#include <QWidget>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/geometry/pose.h"
+
+namespace seamwright {
+
+struct SceneSpot {
+    std::string id;
+    Pose workobject_from_sensor = Pose::Identity();
+    Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // sensor frame
+    bool enabled = true;
+    double field_mm = 100;      // width of the laser line at the reference
+    double stand_off_mm = 300;  // laser to reference along the sensor's +Z
+    // How far the contour was found from its reference; drawn times the correction scale. Work object frame.
+    std::optional<Eigen::Vector3d> shift_mm;
+};
+
+struct SceneRegion {
+    std::string id;
+    std::vector<std::string> spot_ids;
+    // Translation (work object, unit length) that the region sees worst; zero = none drawn.
+    Eigen::Vector3d weak_direction = Eigen::Vector3d::Zero();
+    std::string weak_text;  // "weakest: along X, 0.4 mm"
+};
+
+struct ScenePath {
+    std::vector<Eigen::Vector3d> before_mm, after_mm;  // as taught; as corrected
+    bool closed = false;
+};
+
+struct SceneRobot {
+    Pose workobject_from_flange = Pose::Identity(), workobject_from_sensor = Pose::Identity();
+};
+
+// Vertices in mm, 3 indices a triangle.
+struct SceneMesh {
+    std::vector<std::array<float, 3>> points;
+    std::vector<std::array<int, 3>> triangles;
+};
+
+class SceneView : public QWidget {
+    Q_OBJECT
+  public:
+    enum class Layer { part, spots, sensors, regions, corrections, path, robot, labels };
+    enum class View { front, back, top, iso, fit };
+
+    explicit SceneView(QWidget* parent = nullptr);
+    ~SceneView() override;
+
+    // Binary or ASCII PLY, millimetres, as in PartSetup::mesh_ply; empty bytes remove the part. Error: not a
+    // PLY.
+    Expected<void> set_part_ply(const std::vector<std::byte>& ply);
+    // STL, PLY or OBJ; `unit` "mm", "m" or "" (refused when metres are suspected), see mesh_file.h.
+    Expected<void> set_part_file(const std::filesystem::path& file, const std::string& unit);
+    void set_part(const SceneMesh& mesh);
+    void set_part_shift(const Pose& workobject_from_part);  // displaced part; identity at teaching
+    void set_spots(const std::vector<SceneSpot>& spots);
+    void set_regions(const std::vector<SceneRegion>& regions);
+    void set_path(const ScenePath& path);
+    void set_robot(const std::optional<SceneRobot>& robot);
+    void set_correction_scale(double factor);  // drawn length / true length, 1..1000; default 20
+
+    // From outside; "" selects nothing. No signal is sent for it.
+    void select_spot(const std::string& id);
+    void select_region(const std::string& id);
+    std::string selected_spot() const;
+
+    void show_view(View view);
+    void set_layer(Layer layer, bool shown);
+    bool layer(Layer layer) const;
+    void set_toolbar_shown(bool shown);
+    bool has_opengl() const;  // known after the first show
+    QImage picture();         // what the view shows; null without OpenGL
+    Expected<void> save_picture(const std::filesystem::path& png);
+    QPointF to_screen(const Eigen::Vector3d& point_workobject_mm) const;  // in this widget
+    int pictures_rendered() const;  // for measuring how well requests are coalesced
+
+    QSize sizeHint() const override { return {820, 420}; }
+    QSize minimumSizeHint() const override { return {280, 220}; }
+
+  signals:
+    void spot_picked(QString id);                    // "" = nothing there
+    void part_picked(double x, double y, double z);  // work object, mm
+
+  protected:
+    void changeEvent(QEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seamwright

@@ -50,7 +50,7 @@ class CameraView : public QWidget {
 
   signals:
     void region_dragged(QRect region_px);
-    void pixel_picked(QPoint pixel, int grey_value);
+    void pixel_picked(QPoint pixel, int grey_8bit);  // as shown, 0..255; 255 = saturated
 
   protected:
     void changeEvent(QEvent* event) override;

@@ -1,0 +1,152 @@
+#include "widgets/plot_canvas.h"
+
+#include <QPaintEvent>
+#include <algorithm>
+
+#include "widgets/style.h"
+
+namespace seamwright {
+
+namespace {
+constexpr int kFrame_ms = 16;
+}
+
+PlotCanvas::PlotCanvas(QWidget* parent) : QCustomPlot(parent) {
+    setFocusPolicy(Qt::StrongFocus);
+    setAttribute(Qt::WA_OpaquePaintEvent);
+    setNoAntialiasingOnDrag(true);
+    setPlottingHint(QCP::phFastPolylines, true);
+    setOpenGl(false);
+    timer_.setSingleShot(true);
+    timer_.setTimerType(Qt::PreciseTimer);
+    connect(&timer_, &QTimer::timeout, this, [this] { due(); });
+    connect(this, &QCustomPlot::afterReplot, this, [this] { keep_picture(); });
+    since_.start();
+}
+
+void PlotCanvas::style_axis(QCPAxis* axis, const QWidget& owner) {
+    const QPalette& palette = owner.palette();
+    const QPen line(style::axis(palette), 1);
+    axis->setBasePen(line);
+    axis->setTickPen(line);
+    axis->setSubTickPen(line);
+    axis->setTickLength(0, 4);
+    axis->setSubTickLength(0, 2);
+    axis->setSubTicks(false);
+    axis->setTickLabelColor(style::quiet_text(palette));
+    axis->setLabelColor(style::quiet_text(palette));
+    axis->setTickLabelFont(owner.font());
+    axis->setLabelFont(owner.font());
+    axis->setNumberFormat("f");
+    axis->setLabelPadding(2);
+    axis->setTickLabelPadding(3);
+    axis->grid()->setPen(QPen(style::grid(palette), 1));
+    axis->grid()->setZeroLinePen(QPen(style::axis(palette), 1, Qt::DotLine));
+    axis->grid()->setSubGridVisible(false);
+    axis->grid()->setAntialiased(false);
+}
+
+void PlotCanvas::apply_style() {
+    setBackground(QBrush(style::plot_ground(palette())));
+    for (int i = 0; i < axisRectCount(); ++i)
+        for (QCPAxis* axis : axisRect(i)->axes()) style_axis(axis, *this);
+    request_replot();
+}
+
+void PlotCanvas::request_live(const QRegion& region) {
+    wanted_ += region;
+    if (timer_.isActive()) return;
+    timer_.start(std::max(0, kFrame_ms - static_cast<int>(since_.elapsed())));
+}
+
+void PlotCanvas::request_replot() {
+    replot_wanted_ = true;
+    request_live(QRegion());
+}
+
+void PlotCanvas::due() {
+    since_.restart();
+    if (replot_wanted_) {
+        replot_wanted_ = false;
+        wanted_ = QRegion();
+        view_changed();
+        replot(QCustomPlot::rpRefreshHint);  // ends in keep_picture(), which updates all
+        return;
+    }
+    const QRegion region = wanted_;
+    wanted_ = QRegion();
+    if (!region.isEmpty()) update(region);
+}
+
+void PlotCanvas::flush() {
+    timer_.stop();
+    due();
+}
+
+void PlotCanvas::keep_picture() {
+    const qreal ratio = devicePixelRatioF();
+    const QSize size = (QSizeF(this->size()) * ratio).toSize();
+    if (picture_.size() != size) picture_ = QPixmap(size);
+    picture_.setDevicePixelRatio(ratio);
+    if (!picture_.isNull()) {
+        picture_.fill(style::plot_ground(palette()));
+        QCPPainter painter(&picture_);
+        for (const auto& buffer : std::as_const(mPaintBuffers)) buffer->draw(&painter);
+    }
+    update();
+}
+
+void PlotCanvas::paint_live(QPainter&, const QRect&) {}
+
+void PlotCanvas::paintEvent(QPaintEvent* event) {
+    QPainter painter(this);
+    const QRect area = event->rect();
+    const qreal ratio = devicePixelRatioF();
+    if (picture_.isNull()) {
+        painter.fillRect(area, style::plot_ground(palette()));
+    } else {
+        painter.setCompositionMode(QPainter::CompositionMode_Source);
+        for (const QRect& part : event->region())
+            painter.drawPixmap(part.topLeft(), picture_,
+                               QRectF(QPointF(part.topLeft()) * ratio, QSizeF(part.size()) * ratio).toRect());
+        painter.setCompositionMode(QPainter::CompositionMode_SourceOver);
+    }
+    paint_live(painter, area);
+}
+
+void PlotCanvas::set_equal_view(const QRectF& view) {
+    const QRect area = axisRect()->rect();
+    const double width_px = std::max(20, area.width()), height_px = std::max(20, area.height());
+    const double mm_per_px = std::max({view.width() / width_px, view.height() / height_px, 1e-6});
+    const QPointF middle = view.center();
+    xAxis->setRange(middle.x() - mm_per_px * width_px / 2, middle.x() + mm_per_px * width_px / 2);
+    yAxis->setRange(middle.y() - mm_per_px * height_px / 2, middle.y() + mm_per_px * height_px / 2);
+    request_replot();
+}
+
+void PlotCanvas::resizeEvent(QResizeEvent* event) {
+    const double mm_per_px = xAxis->range().size() / std::max(1, axisRect()->rect().width());
+    const QPointF middle(xAxis->range().center(), yAxis->range().center());
+    QCustomPlot::resizeEvent(event);
+    if (equal_axes) {
+        plotLayout()->update(QCPLayoutElement::upMargins);
+        plotLayout()->update(QCPLayoutElement::upLayout);
+        const QSizeF size = QSizeF(axisRect()->rect().size()) * mm_per_px;
+        set_equal_view(QRectF(middle.x() - size.width() / 2, middle.y() - size.height() / 2, size.width(),
+                              size.height()));
+    }
+    flush();
+}
+
+void PlotCanvas::changeEvent(QEvent* event) {
+    QCustomPlot::changeEvent(event);
+    if (styling_) return;
+    if (event->type() == QEvent::PaletteChange || event->type() == QEvent::FontChange ||
+        event->type() == QEvent::StyleChange) {
+        styling_ = true;
+        apply_style();
+        styling_ = false;
+    }
+}
+
+}  // namespace seamwright

@@ -19,6 +19,10 @@ struct SensorIdentity {
 
 struct SourceCounters {
     std::uint64_t completed = 0, damaged = 0, underrun = 0, missing_packets = 0;
+    std::uint64_t late = 0;            // came when their turn was over; delivered, never measured
+    std::uint64_t lost = 0;            // numbers missing in the sequence: no packet of them came
+    std::uint64_t resent_packets = 0;  // asked for again, and came
+    std::uint64_t reconnects = 0;
 };
 
 // One thread owns the control calls; wait_next() and latest() may be called from another. After start()

@@ -3,6 +3,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "devices/genicam/genicam.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
 
@@ -12,6 +13,8 @@ const std::vector<SensorDriver>& sensor_drivers() {
     static const std::vector<SensorDriver> drivers = {
         {"simulated", "A car door before a stripe camera, rendered", &open_simulated_sensor},
         {"replay", "Recorded profiles (CSV) or images of a folder, with poses", &open_replay_sensor},
+        {"genicam", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)",
+         &open_genicam_sensor},
     };
     return drivers;
 }

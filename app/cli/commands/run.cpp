@@ -246,7 +246,11 @@ void add_devices(CommandLine& line) {
                                               {"completed", c.completed},
                                               {"damaged", c.damaged},
                                               {"underrun", c.underrun},
-                                              {"missing_packets", c.missing_packets}});
+                                              {"missing_packets", c.missing_packets},
+                                              {"late", c.late},
+                                              {"lost", c.lost},
+                                              {"resent_packets", c.resent_packets},
+                                              {"reconnects", c.reconnects}});
             answer.text += fmt::format("sensor {}: {} {} {} serial {}\n", s.id, s.driver, id.vendor, id.model,
                                        id.serial);
         }

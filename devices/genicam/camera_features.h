@@ -1,0 +1,33 @@
+#pragma once
+// Opening an Aravis camera and its features by our names. For the .cpp files of this folder only.
+
+#include <vector>
+
+#include "core/parameter.h"
+#include "devices/genicam/aravis_private.h"
+#include "devices/genicam/genicam_settings.h"
+#include "devices/profile_source.h"
+
+namespace seamwright {
+
+// The camera under our control. Error (device): nobody answers, another serial number, another program in
+// control, a pixel format that cannot be read.
+Expected<GPtr<ArvCamera>> open_camera(const GenicamSettings& settings);
+SensorIdentity identity_of(ArvCamera* camera);
+// IPv4 address; empty for other than GigE Vision.
+std::string address_of(ArvCamera* camera);
+
+// All but the trigger, in the order of genicam.h; then the trigger.
+Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& settings);
+
+// exposure_us, gain_db, frame_rate_hz, region_x, region_y, region_width, region_height, pixel_format (those
+// that can be read), trigger: as far as the camera has them. default_value is the present value.
+std::vector<ParameterInfo> read_parameters(ArvCamera* camera);
+Expected<double> get_parameter(ArvCamera* camera, const std::string& name);
+Expected<void> set_parameter(ArvCamera* camera, const std::string& name, double value);
+bool changes_stream(const std::string& parameter);  // needs the acquisition stopped
+
+// From the Scan3d features; defaults where there are none. Error: a distance unit that is no length.
+Expected<RangeMapping> range_mapping(ArvCamera* camera);
+
+}  // namespace seamwright

@@ -1,0 +1,35 @@
+#pragma once
+// Settings of the driver "genicam", as genicam.h lists them.
+
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "devices/genicam/range_image.h"
+
+namespace seamwright {
+
+struct GenicamSettings {
+    std::string serial, address, id;
+    std::vector<std::string> search;
+    std::optional<double> exposure_us, gain_db, frame_rate_hz;
+    std::optional<int> x, y, width, height;
+    std::string pixel_format;
+    std::string trigger = "software";
+    nlohmann::json features = nlohmann::json::object();
+    std::vector<std::string> chunks;
+    std::optional<RangeMapping> range;
+    int packet_size = 0, buffers = 8;
+    bool packet_socket = false, packet_resend = true;
+    std::size_t socket_buffer = 0;
+    std::chrono::milliseconds packet_timeout{20}, frame_retention{100}, timeout{1000}, reconnect{100},
+        reconnect_most{5000}, heartbeat{500};
+    std::string camera_name() const;  // "camera 192.168.1.20", for sentences
+};
+Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& settings);
+
+}  // namespace seamwright

@@ -1,0 +1,99 @@
+#include "devices/genicam/pixel_format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace seamwright {
+
+const std::vector<PixelFormat>& pixel_formats() {
+    using enum Packing;
+    static const std::vector<PixelFormat> formats = {
+        {"Mono8", 0x01080001, bytes, 8, "", false},
+        {"Mono10", 0x01100003, words, 10, "", false},
+        {"Mono10Packed", 0x010C0004, gige, 10, "", false},
+        {"Mono10p", 0x010A0046, lsb, 10, "", false},
+        {"Mono12", 0x01100005, words, 12, "", false},
+        {"Mono12Packed", 0x010C0006, gige, 12, "", false},
+        {"Mono12p", 0x010C0047, lsb, 12, "", false},
+        {"Mono14", 0x01100025, words, 14, "", false},
+        {"Mono16", 0x01100007, words, 16, "", false},
+        {"Coord3D_A8", 0x010800AF, bytes, 8, "A", false},
+        {"Coord3D_A16", 0x011000B6, words, 16, "A", false},
+        {"Coord3D_A32f", 0x012000BD, floats, 32, "A", false},
+        {"Coord3D_C8", 0x010800B1, bytes, 8, "C", false},
+        {"Coord3D_C16", 0x011000B8, words, 16, "C", false},
+        {"Coord3D_C32f", 0x012000BF, floats, 32, "C", false},
+        {"Coord3D_AC8", 0x021000B4, bytes, 8, "AC", false},
+        {"Coord3D_AC8_Planar", 0x021000B5, bytes, 8, "AC", true},
+        {"Coord3D_AC16", 0x022000BB, words, 16, "AC", false},
+        {"Coord3D_AC16_Planar", 0x022000BC, words, 16, "AC", true},
+        {"Coord3D_AC32f", 0x024000C2, floats, 32, "AC", false},
+        {"Coord3D_AC32f_Planar", 0x024000C3, floats, 32, "AC", true},
+        {"Coord3D_ABC8", 0x021800B2, bytes, 8, "ABC", false},
+        {"Coord3D_ABC8_Planar", 0x021800B3, bytes, 8, "ABC", true},
+        {"Coord3D_ABC16", 0x023000B9, words, 16, "ABC", false},
+        {"Coord3D_ABC16_Planar", 0x023000BA, words, 16, "ABC", true},
+        {"Coord3D_ABC32f", 0x026000C0, floats, 32, "ABC", false},
+        {"Coord3D_ABC32f_Planar", 0x026000C1, floats, 32, "ABC", true},
+    };
+    return formats;
+}
+
+const PixelFormat* pixel_format_by_code(std::uint32_t code) {
+    const auto& all = pixel_formats();
+    const auto it =
+        std::find_if(all.begin(), all.end(), [code](const PixelFormat& f) { return f.code == code; });
+    return it == all.end() ? nullptr : &*it;
+}
+
+const PixelFormat* pixel_format_by_name(std::string_view name) {
+    const auto& all = pixel_formats();
+    const auto it =
+        std::find_if(all.begin(), all.end(), [name](const PixelFormat& f) { return f.name == name; });
+    return it == all.end() ? nullptr : &*it;
+}
+
+std::size_t image_bytes(const PixelFormat& format, int width, int height, std::size_t row_padding) {
+    if (width <= 0 || height <= 0) return 0;
+    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+    const auto bits = static_cast<std::size_t>(format.bits_per_pixel());
+    if (row_padding == 0) return (w * h * bits + 7) / 8;
+    return ((w * bits + 7) / 8 + row_padding) * h;
+}
+
+Expected<StripeImage> unpack_image(const PixelFormat& format, std::span<const std::byte> payload, int width,
+                                   int height, std::size_t row_padding, std::vector<std::byte>& pixels) {
+    const std::string where(format.name);
+    if (format.is_range()) return device_error("holds coordinates, no grey values", where);
+    if (width <= 0 || height <= 0 || width > 65536 || height > 65536) {
+        return device_error(fmt::format("an image of {} x {} pixels cannot be", width, height), where);
+    }
+    const std::size_t need = image_bytes(format, width, height, row_padding);
+    // The last row may come without its padding.
+    if (payload.size() + row_padding < need) {
+        return device_error(
+            fmt::format("{} x {} pixels need {} bytes, only {} came", width, height, need, payload.size()),
+            where);
+    }
+    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+    const std::size_t row_out = w * (format.bit_depth > 8 ? 2 : 1);
+    if (pixels.size() < row_out * h) pixels.resize(row_out * h);
+    if (row_padding == 0) {
+        unpack_pixels(format, payload, w * h, pixels.data());
+    } else {
+        const std::size_t row = (w * static_cast<std::size_t>(format.bits_per_pixel()) + 7) / 8;
+        for (std::size_t y = 0; y < h; ++y)
+            unpack_pixels(format, payload.subspan(y * (row + row_padding), row), w,
+                          pixels.data() + y * row_out);
+    }
+    return StripeImage{pixels.data(), width, height, row_out, format.bit_depth};
+}
+
+std::string join_names(std::span<const std::string> names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+}  // namespace seamwright

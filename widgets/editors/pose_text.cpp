@@ -1,0 +1,132 @@
+#include <QCoreApplication>
+#include <QRegularExpression>
+
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/pose_editor.h"
+
+namespace seamwright {
+
+namespace {
+
+// Decimal commas only where nothing else separates: "1,5; 2,5". Otherwise a comma separates.
+std::vector<double> numbers_of(QString text) {
+    text.replace(QChar(0x2212), '-');
+    static const QRegularExpression names(R"((?<![0-9.eE])[A-Za-z_]+[0-9]*\s*[:=]?)");
+    text.replace(names, " ");
+    static const QRegularExpression brackets(R"([\[\](){}|:=°])");
+    text.replace(brackets, " ");
+    if (text.contains(';') ||
+        (!text.contains('.') && text.contains(QRegularExpression(R"(\d,\d+\s+[+-]?\d)"))))
+        text.replace(',', '.');
+    std::vector<double> numbers;
+    static const QRegularExpression between(R"([\s,;]+)");
+    for (const QString& word : text.split(between, Qt::SkipEmptyParts)) {
+        const auto number = number_from_text(word);
+        if (!number) return {};
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+}  // namespace
+
+QString notation_name(PoseNotation notation) {
+    const auto tr = [](const char* text) {
+        return QCoreApplication::translate("seamwright::PoseEditor", text);
+    };
+    switch (notation) {
+        case PoseNotation::kuka_abc:
+            return tr("KUKA A B C (Z-Y'-X'')");
+        case PoseNotation::fanuc_wpr:
+            return tr("FANUC W P R");
+        case PoseNotation::abb_quaternion:
+            return tr("ABB quaternion (w first)");
+        case PoseNotation::ur_rotvec:
+            return tr("UR rotation vector");
+        case PoseNotation::matrix:
+            return tr("Matrix 4 x 4");
+    }
+    return {};
+}
+
+PoseNotation notation_of_brand(const std::string& brand) {
+    const QString name = QString::fromStdString(brand).toLower();
+    if (name.contains("abb")) return PoseNotation::abb_quaternion;
+    if (name.contains("fanuc")) return PoseNotation::fanuc_wpr;
+    if (name.contains("universal") || name == "ur" || name.startsWith("ur-") || name.startsWith("ur "))
+        return PoseNotation::ur_rotvec;
+    return PoseNotation::kuka_abc;
+}
+
+Expected<Pose> pose_from_text(const QString& text, PoseNotation notation) {
+    const std::vector<double> n = numbers_of(text);
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    const std::string where = "pose";
+    if (n.size() == 16 || n.size() == 12) {
+        for (std::size_t i = 0; i < n.size(); ++i)
+            matrix(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
+        return pose_from_matrix(matrix, where);
+    }
+    if (n.size() != 6 && n.size() != 7)
+        return input_error(
+            QCoreApplication::translate("seamwright::PoseEditor", "a pose of %1 numbers")
+                .arg(n.size())
+                .toStdString(),
+            where,
+            QCoreApplication::translate("seamwright::PoseEditor",
+                                        "give 6 numbers, 7 with a quaternion, 12 or 16 as a matrix")
+                .toStdString());
+    const Eigen::Vector3d xyz(n[0], n[1], n[2]);
+    Eigen::Matrix3d rotation;
+    if (n.size() == 7) {
+        const auto turned = rotation_from_abb({n[3], n[4], n[5], n[6]}, where);
+        if (!turned) return tl::unexpected(turned.error());
+        rotation = *turned;
+    } else if (notation == PoseNotation::ur_rotvec) {
+        rotation = rotation_from_ur({n[3], n[4], n[5]});
+    } else if (notation == PoseNotation::fanuc_wpr) {
+        rotation = rotation_from_fanuc({n[3], n[4], n[5]});
+    } else {
+        rotation = rotation_from_kuka({n[3], n[4], n[5]});
+    }
+    matrix.topLeftCorner<3, 3>() = rotation;
+    matrix.topRightCorner<3, 1>() = xyz;
+    return pose_from_matrix(matrix, where);
+}
+
+QString text_from_pose(const Pose& pose, PoseNotation notation) {
+    QStringList words;
+    const auto add = [&words](double value, int decimals) { words << text_from_number(value, decimals); };
+    if (notation == PoseNotation::matrix) {
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+                add(pose.matrix()(row, column), column == 3 && row < 3 ? 4 : 8);
+        return words.join(' ');
+    }
+    for (int i = 0; i < 3; ++i) add(pose.translation()[i], 4);
+    const Eigen::Matrix3d rotation = pose.linear();
+    switch (notation) {
+        case PoseNotation::fanuc_wpr: {
+            const FanucWpr wpr = fanuc_from_rotation(rotation);
+            for (const double v : {wpr.w_deg, wpr.p_deg, wpr.r_deg}) add(v, 5);
+            break;
+        }
+        case PoseNotation::abb_quaternion: {
+            const AbbQuaternion q = abb_from_rotation(rotation);
+            for (const double v : {q.w, q.x, q.y, q.z}) add(v, 8);
+            break;
+        }
+        case PoseNotation::ur_rotvec: {
+            const Eigen::Vector3d v = ur_from_rotation(rotation);
+            for (int i = 0; i < 3; ++i) add(v[i], 7);
+            break;
+        }
+        default: {
+            const KukaAbc abc = kuka_from_rotation(rotation);
+            for (const double v : {abc.a_deg, abc.b_deg, abc.c_deg}) add(v, 5);
+        }
+    }
+    return words.join(' ');
+}
+
+}  // namespace seamwright

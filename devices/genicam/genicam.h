@@ -31,7 +31,9 @@
 // format is wrong) without image or profile, and counted as damaged. Range cameras: each row is a frame of
 // its own, in order, sequence = image * rows + row; a damaged image is one damaged frame. sequence follows
 // FrameCounter of frame_order.h and counts on over stops and reconnections; frames missing in it are counted
-// as lost. device_time_ns is the camera's time stamp, host_time_ns the arrival of the last packet.
+// as lost; a damaged frame whose number got
+// lost too carries that of the frame before it. device_time_ns is the camera's time stamp, host_time_ns the
+// arrival of the last packet.
 //
 // Software triggers carry their spot to their frame as TriggerPairing of frame_order.h says; a frame whose
 // trigger cannot be told is delivered `late`. After lost track the next trigger() begins the acquisition anew

@@ -28,6 +28,8 @@ std::int64_t now_ns() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
 }
 
+// Aravis learns a frame's number from its first packet; without that the buffer keeps this one.
+constexpr std::uint64_t kNoNumber = ~std::uint64_t{0};
 constexpr int kMisses = 3;                   // unanswered heartbeats that make a camera gone
 constexpr milliseconds kHeartbeatWait{300};  // for one of them
 
@@ -65,6 +67,7 @@ class GenicamSource final : public ProfileSource {
     };
     struct Arrival {
         ArvBuffer* buffer = nullptr;
+        bool numbered = false;
         std::uint64_t sequence = 0;
         std::int64_t host_ns = 0;
         TriggerPairing::Answer answer;
@@ -81,8 +84,13 @@ class GenicamSource final : public ProfileSource {
     Expected<void> start_stream();                // control_ held
     void stop_stream();                           // control_ held
     void take_statistics();                       // control_ held
+    void count_gap(const Arrival& arrival);
     FramePtr convert(ArvBuffer* buffer, const Arrival& arrival);
     FramePtr next_row();
+    void give_back(ArvBuffer* buffer) {
+        arv_buffer_set_frame_id(buffer, kNoNumber);
+        arv_stream_push_buffer(stream_.get(), buffer);
+    }
     void fill_payload(ArvBuffer* buffer, Frame& frame);
     Error gone() const {
         return {ErrorKind::device, std::string(kDisconnected) + ": the camera is gone",
@@ -114,6 +122,7 @@ class GenicamSource final : public ProfileSource {
     Arrival rows_arrival_;
     int next_row_ = 0;
     std::optional<std::uint64_t> last_sequence_;
+    std::uint64_t unnumbered_ = 0;  // frames without a number since the last gap
     SourceCounters counters_;
     std::uint64_t before_underrun_ = 0, before_missing_ = 0, before_resent_ = 0;  // of streams that are over
     Clock::time_point next_attempt_;
@@ -150,7 +159,8 @@ void GenicamSource::arrived(ArvBuffer* buffer) {
         Arrival a;
         a.buffer = buffer;
         a.host_ns = now_ns();
-        if (status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED) {
+        a.numbered = arv_buffer_get_frame_id(buffer) != kNoNumber;
+        if (a.numbered && status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED) {
             a.sequence = counter_.sequence(arv_buffer_get_frame_id(buffer));
             // Of a damaged frame the packet with the time may be the one that got lost.
             const bool whole = status == ARV_BUFFER_STATUS_SUCCESS;
@@ -357,8 +367,7 @@ Expected<void> GenicamSource::start_stream() {
             static_cast<guint>(settings_.frame_retention.count() * 1000), "socket-buffer",
             ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", bytes, nullptr);
     }
-    for (int i = 0; i < settings_.buffers; ++i)
-        arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
+    for (int i = 0; i < settings_.buffers; ++i) give_back(arv_buffer_new_allocate(payload));
     arv_camera_start_acquisition(camera, g.out());
     if (g) {
         const std::string why = g.text();
@@ -561,18 +570,30 @@ void GenicamSource::fill_payload(ArvBuffer* buffer, Frame& frame) {
         frame.status = FrameStatus::corrupt;
 }
 
+// A frame without its number is one of those that the next number shows to be missing.
+void GenicamSource::count_gap(const Arrival& arrival) {
+    if (!arrival.numbered) {
+        ++unnumbered_;
+        return;
+    }
+    if (last_sequence_ && arrival.sequence > *last_sequence_ + 1) {
+        const std::uint64_t gap = arrival.sequence - *last_sequence_ - 1, known = std::min(gap, unnumbered_);
+        counters_.lost += gap - known;
+        unnumbered_ -= known;
+    } else if (last_sequence_ && arrival.sequence < *last_sequence_ && counters_.lost > 0) {
+        --counters_.lost;  // it comes after all
+    }
+    if (!last_sequence_ || arrival.sequence > *last_sequence_) last_sequence_ = arrival.sequence;
+}
+
 // Takes the buffer. nullptr: nothing to deliver, or its rows follow.
 FramePtr GenicamSource::convert(ArvBuffer* buffer, const Arrival& arrival) {
     const ArvBufferStatus status = arv_buffer_get_status(buffer);
     if (status == ARV_BUFFER_STATUS_ABORTED || status == ARV_BUFFER_STATUS_CLEARED) {
-        arv_stream_push_buffer(stream_.get(), buffer);
+        give_back(buffer);
         return nullptr;
     }
-    if (last_sequence_ && arrival.sequence > *last_sequence_ + 1)
-        counters_.lost += arrival.sequence - *last_sequence_ - 1;
-    if (last_sequence_ && arrival.sequence < *last_sequence_ && counters_.lost > 0)
-        --counters_.lost;  // it comes after all
-    if (!last_sequence_ || arrival.sequence > *last_sequence_) last_sequence_ = arrival.sequence;
+    count_gap(arrival);
     const bool whole = status == ARV_BUFFER_STATUS_SUCCESS && arrival.buffer == buffer;
     if (range_ && whole && arrival.answer.verdict != TriggerPairing::Verdict::late) {
         rows_ = buffer;
@@ -583,10 +604,10 @@ FramePtr GenicamSource::convert(ArvBuffer* buffer, const Arrival& arrival) {
     FramePtr frame = pool_->acquire();
     if (!frame) {
         ++counters_.underrun;
-        arv_stream_push_buffer(stream_.get(), buffer);
+        give_back(buffer);
         return nullptr;
     }
-    frame->sequence = arrival.sequence;
+    frame->sequence = arrival.numbered ? arrival.sequence : last_sequence_.value_or(0);
     frame->host_time_ns = arrival.host_ns;
     if (arrival.answer.verdict == TriggerPairing::Verdict::late) {
         frame->status = FrameStatus::late;
@@ -609,7 +630,7 @@ FramePtr GenicamSource::convert(ArvBuffer* buffer, const Arrival& arrival) {
         }
         ++(frame->status == FrameStatus::ok ? counters_.completed : counters_.damaged);
     }
-    arv_stream_push_buffer(stream_.get(), buffer);
+    give_back(buffer);
     publish(frame);
     return frame;
 }
@@ -644,7 +665,7 @@ FramePtr GenicamSource::next_row() {
         ++counters_.underrun;
     }
     if (row + 1 >= height) {
-        arv_stream_push_buffer(stream_.get(), rows_);
+        give_back(rows_);
         rows_ = nullptr;
     }
     return frame;

@@ -1,8 +1,8 @@
 #include "devices/cell_server.h"
 
-namespace seamwright {
+#include "devices/genicam/served_camera.h"
 
-class ServedCamera {};
+namespace seamwright {
 
 CellServer::CellServer(CellServer&&) noexcept = default;
 CellServer& CellServer::operator=(CellServer&&) noexcept = default;
@@ -19,6 +19,12 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
     CellServer server;
     server.cell_ = cell;
     if (!options.program.empty()) cell->store_program(options.program);
+    if (!options.camera_address.empty()) {
+        auto camera = ServedCamera::open(cell, {{"address", options.camera_address}});
+        if (!camera) return tl::unexpected(camera.error());
+        server.camera_ = std::move(*camera);
+        server.camera_address_ = options.camera_address;
+    }
     for (const ServedController& c : options.controllers) {
         auto controller = start_controller(c.name, cell, c.settings);
         if (!controller) return tl::unexpected(controller.error());

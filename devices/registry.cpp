@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "devices/genicam/genicam.h"
+#include "devices/kuka/eki.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
 
@@ -22,13 +23,16 @@ const std::vector<SensorDriver>& sensor_drivers() {
 const std::vector<RobotDriver>& robot_drivers() {
     static const std::vector<RobotDriver> drivers = {
         {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
+        {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki},
         {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
     };
     return drivers;
 }
 
 const std::vector<ControllerDriver>& controller_drivers() {
-    static const std::vector<ControllerDriver> drivers = {};
+    static const std::vector<ControllerDriver> drivers = {
+        {"kuka-eki", "A KUKA controller that connects by EthernetKRL", &start_kuka_eki_controller},
+    };
     return drivers;
 }
 

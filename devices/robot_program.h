@@ -28,4 +28,9 @@ struct ProgramFile {
     std::string text;
 };
 
+// Tells one measuring program from another: names, order and poses (to 0.001 mm and 0.0001 degree) of its
+// spots, as "SW-" and 16 hexadecimal digits. The controller holds the one of its program and compares it at
+// the start of measuring.
+std::string program_signature(const std::vector<MeasuringMove>& moves);
+
 }  // namespace seamwright

@@ -3,78 +3,13 @@
 #include <array>
 
 #include "core/geometry/notation.h"
-#include "devices/exchange/json_fields.h"
-#include "devices/exchange/pose_json.h"
+#include "devices/exchange/settings.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {
 namespace {
 
 constexpr std::array kScenes = {Scene::part, Scene::sphere, Scene::plate, Scene::triangle};
-
-// Reads fields one after another and keeps the first Error.
-class Fields {
-  public:
-    Fields(const nlohmann::json& json, std::string where) : json_(json), where_(std::move(where)) {}
-    void only(std::initializer_list<std::string_view> known) { keep(only_fields(json_, known, where_)); }
-    void number(const char* key, double& value, double low, double high) {
-        if (failed()) return;
-        const auto read = json_number_or(json_, key, value, where_);
-        if (!read) return keep(tl::make_unexpected(read.error()));
-        if (!(*read >= low && *read <= high)) {
-            return keep(input_error(fmt::format("{} is out of range {} to {}", *read, low, high),
-                                    json_path(where_, key)));
-        }
-        value = *read;
-    }
-    template <class Integer>
-    void whole(const char* key, Integer& value, double low, double high) {
-        auto number_value = static_cast<double>(value);
-        number(key, number_value, low, high);
-        if (!failed() && number_value != std::floor(number_value)) {
-            keep(input_error("must be a whole number", json_path(where_, key)));
-        }
-        if (!failed()) value = static_cast<Integer>(number_value);
-    }
-    void truth(const char* key, bool& value) {
-        if (failed()) return;
-        const auto read = json_bool_or(json_, key, value, where_);
-        if (!read) return keep(tl::make_unexpected(read.error()));
-        value = *read;
-    }
-    void text(const char* key, std::string& value) {
-        if (failed()) return;
-        const auto read = json_string_or(json_, key, value, where_);
-        if (!read) return keep(tl::make_unexpected(read.error()));
-        value = *read;
-    }
-    void pose(const char* key, Pose& value) {
-        if (failed() || !json_.contains(key)) return;
-        const auto read = parse_pose(json_.at(key), json_path(where_, key));
-        if (!read) return keep(tl::make_unexpected(read.error()));
-        value = *read;
-    }
-    template <class Read>
-    void object(const char* key, Read read) {
-        if (failed() || !json_.contains(key)) return;
-        Fields inner(json_.at(key), json_path(where_, key));
-        inner.keep(only_fields(json_.at(key), {}, json_path(where_, key)));
-        if (!inner.failed()) read(inner);
-        if (inner.failed()) error_ = inner.error_;
-    }
-    const nlohmann::json& json() const { return json_; }
-    std::string path(const std::string& key) const { return json_path(where_, key); }
-    void keep(const Expected<void>& result) {
-        if (!result && !error_) error_ = result.error();
-    }
-    bool failed() const { return error_.has_value(); }
-    const Error& error() const { return *error_; }
-
-  private:
-    const nlohmann::json& json_;
-    std::string where_;
-    std::optional<Error> error_;
-};
 
 }  // namespace
 
@@ -93,7 +28,7 @@ std::string_view to_string(Scene scene) {
 }
 
 namespace {
-void read_part(Fields& p, PartState& part) {
+void read_part(SettingsReader& p, PartState& part) {
     p.only({"displacement", "bend_mm", "twist_mm"});
     p.pose("displacement", part.workobject_from_movedworkobject);
     p.number("bend_mm", part.bend.bend_mm, -50, 50);
@@ -103,7 +38,7 @@ void read_part(Fields& p, PartState& part) {
 
 Expected<PartState> parse_part_state(const nlohmann::json& json) {
     PartState part;
-    Fields f(json, "part");
+    SettingsReader f(json, "part");
     read_part(f, part);
     if (f.failed()) return tl::unexpected(f.error());
     return part;
@@ -119,7 +54,7 @@ CellSettings default_cell_settings() {
 
 Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     CellSettings s = default_cell_settings();
-    Fields f(json, "settings");
+    SettingsReader f(json, "settings");
     f.only({"seed", "scene", "mesh", "mesh_unit", "base_from_workobject", "base_from_target",
             "flange_from_sensor", "part", "optics", "surface", "noise", "exposure_us", "gain_db",
             "damaged_probability", "buffers", "robot", "sphere_radius_mm", "board", "serial"});
@@ -140,8 +75,8 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     f.pose("base_from_workobject", s.base_from_workobject);
     f.pose("base_from_target", s.base_from_target);
     f.pose("flange_from_sensor", s.flange_from_sensor);
-    f.object("part", [&](Fields& p) { read_part(p, s.part); });
-    f.object("optics", [&](Fields& o) {
+    f.object("part", [&](SettingsReader& p) { read_part(p, s.part); });
+    f.object("optics", [&](SettingsReader& o) {
         o.only({"width", "height", "bit_depth", "stand_off_mm", "triangulation_deg", "field_mm", "k1", "k2",
                 "p1", "p2", "k3", "laser_width_mm", "fan_deg", "blur_px", "blooming"});
         o.whole("width", s.optics.width, 64, 8192);
@@ -164,7 +99,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
             o.keep(input_error("must be 8, 10, 12 or 16", o.path("bit_depth")));
         }
     });
-    f.object("surface", [&](Fields& o) {
+    f.object("surface", [&](SettingsReader& o) {
         o.only({"albedo", "gloss", "shininess", "dark_share", "dark_albedo", "dark_size_mm", "mirror"});
         o.number("albedo", s.surface.albedo, 0, 1);
         o.number("gloss", s.surface.gloss, 0, 10);
@@ -174,7 +109,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         o.number("dark_size_mm", s.surface.dark_size_mm, 0.1, 1000);
         o.number("mirror", s.surface.mirror, 0, 5);
     });
-    f.object("noise", [&](Fields& o) {
+    f.object("noise", [&](SettingsReader& o) {
         o.only({"shot", "read_electrons", "speckle", "ambient_electrons_per_ms", "stray_probability"});
         o.truth("shot", s.noise.shot);
         o.number("read_electrons", s.noise.read_electrons, 0, 5000);
@@ -188,13 +123,13 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     f.whole("buffers", s.buffers, 2, 1024);
     f.number("sphere_radius_mm", s.sphere_radius_mm, 1, 500);
     f.text("serial", s.serial);
-    f.object("board", [&](Fields& o) {
+    f.object("board", [&](SettingsReader& o) {
         o.only({"columns", "rows", "pitch_mm"});
         o.whole("columns", s.board.columns, 2, 50);
         o.whole("rows", s.board.rows, 2, 50);
         o.number("pitch_mm", s.board.pitch_mm, 0.5, 200);
     });
-    f.object("robot", [&](Fields& o) {
+    f.object("robot", [&](SettingsReader& o) {
         o.only({"repeatability_mm", "repeatability_deg", "trigger_jitter_mm", "mode", "frames"});
         o.number("repeatability_mm", s.robot.repeatability_mm, 0, 10);
         o.number("repeatability_deg", s.robot.repeatability_deg, 0, 5);
@@ -206,7 +141,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         } else {
             o.keep(input_error("\"" + mode + "\" is no mode", o.path("mode"), "give e.g. \"automatic\""));
         }
-        o.object("frames", [&](Fields& frames) {
+        o.object("frames", [&](SettingsReader& frames) {
             for (const auto& [name, value] : frames.json().items())
                 frames.pose(name.c_str(), s.robot.frames[name]);
         });

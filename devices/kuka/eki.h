@@ -1,0 +1,31 @@
+#pragma once
+// KUKA over EthernetKRL: the controller runs the KRL module seamwright.src (`seamwright robot-program --brand
+// kuka`) and connects to Seamwright, which listens. Telegrams: eki_telegram.h.
+//
+// Settings, defaults: {"listen": "127.0.0.1" (this computer's address in the robot's network), "port": 54600,
+// "timeout_ms": 1000 (connection, and every answer)}.
+//
+// A new connection replaces the one before (a controller that was switched off leaves a dead one behind); who
+// it is says its hello. Commands are numbered and answers carry the number, so a late answer is dropped. The
+// triggers of a program are numbered too; one that is missing makes wait_trigger fail.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "devices/device_session.h"
+#include "devices/robot_link.h"
+#include "devices/robot_program.h"
+#include "devices/simulated/cell.h"
+#include "devices/simulated/controller.h"
+
+namespace seamwright {
+
+Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& settings, DeviceSession& session);
+
+// The robot's side, before a simulated cell. Settings: {"address": "127.0.0.1", "port": 54600 (where
+// Seamwright listens), "slow_ms": 300, "trigger_interval_ms": 20}. Connects again when the connection is
+// lost.
+Expected<std::unique_ptr<SimulatedController>> start_kuka_eki_controller(std::shared_ptr<SimulatedCell> cell,
+                                                                         const nlohmann::json& settings);
+
+}  // namespace seamwright

@@ -125,16 +125,19 @@ void PlotCanvas::set_equal_view(const QRectF& view) {
 }
 
 void PlotCanvas::resizeEvent(QResizeEvent* event) {
+    if (!equal_axes) {
+        QCustomPlot::resizeEvent(event);
+        flush();
+        return;
+    }
     const double mm_per_px = xAxis->range().size() / std::max(1, axisRect()->rect().width());
     const QPointF middle(xAxis->range().center(), yAxis->range().center());
     QCustomPlot::resizeEvent(event);
-    if (equal_axes) {
-        plotLayout()->update(QCPLayoutElement::upMargins);
-        plotLayout()->update(QCPLayoutElement::upLayout);
-        const QSizeF size = QSizeF(axisRect()->rect().size()) * mm_per_px;
-        set_equal_view(QRectF(middle.x() - size.width() / 2, middle.y() - size.height() / 2, size.width(),
-                              size.height()));
-    }
+    plotLayout()->update(QCPLayoutElement::upMargins);
+    plotLayout()->update(QCPLayoutElement::upLayout);
+    const QSizeF size = QSizeF(axisRect()->rect().size()) * mm_per_px;
+    set_equal_view(
+        QRectF(middle.x() - size.width() / 2, middle.y() - size.height() / 2, size.width(), size.height()));
     flush();
 }
 

@@ -30,8 +30,8 @@ constexpr std::uint32_t kTriggerMode = 0x400, kTriggerSource = 0x404, kTriggerSo
                         kScanType = 0x4a0, kTemperature = 0x4a8, kStatusSelector = 0x4b0,
                         kExposureMode = 0x4b8, kOutputMode = 0x4c8;
 // Bootstrap registers of GigE Vision.
-constexpr std::uint32_t kVendorName = 0x48, kModelName = 0x68, kVersion = 0x88, kInfo = 0xa8, kSerial = 0xd8,
-                        kPacketSize = 0xd04;
+constexpr std::uint32_t kGevVersion = 0x0, kDeviceMode = 0x4, kVendorName = 0x48, kModelName = 0x68,
+                        kVersion = 0x88, kInfo = 0xa8, kSerial = 0xd8, kPacketSize = 0xd04;
 
 constexpr auto kWait = std::chrono::milliseconds(1);  // of the wire thread for a frame
 
@@ -131,6 +131,8 @@ struct WireCamera::Impl {
 
 void WireCamera::Impl::wake_up() {
     const auto& s = settings;
+    write(kGevVersion, 0x00010002);  // 1.2: 16-bit frame numbers, 32-bit packet headers
+    write(kDeviceMode, 0x80000001);  // big-endian registers, texts in UTF-8
     write_text(kVendorName, 32, "Seamwright");
     write_text(kModelName, 32, s.model);
     write_text(kVersion, 32, "1");

@@ -134,6 +134,30 @@ Expected<void> TriggeredFrames::finish() {
     return {};
 }
 
+Expected<SoftwareTriggered> SoftwareTriggered::begin(ProfileSource& sensor) {
+    SoftwareTriggered triggered;
+    for (const ParameterInfo& info : sensor.parameters()) {
+        const auto software = std::find(info.choices.begin(), info.choices.end(), "software");
+        if (info.name != "trigger" || software == info.choices.end()) continue;
+        const auto wanted = static_cast<double>(software - info.choices.begin());
+        auto now = sensor.get(info.name);
+        if (!now) return tl::unexpected(now.error());
+        if (*now == wanted) break;
+        if (auto set = sensor.set(info.name, wanted); !set) return tl::unexpected(set.error());
+        triggered.sensor_ = &sensor;
+        triggered.before_ = *now;
+    }
+    return triggered;
+}
+
+SoftwareTriggered::SoftwareTriggered(SoftwareTriggered&& other) noexcept
+    : sensor_(std::exchange(other.sensor_, nullptr)), before_(other.before_) {}
+
+SoftwareTriggered::~SoftwareTriggered() {
+    // A sensor that is gone comes back with its own settings.
+    if (sensor_) (void)sensor_->set("trigger", before_);
+}
+
 StartedSensors::~StartedSensors() {
     for (ProfileSource* sensor : started_) sensor->stop();
 }

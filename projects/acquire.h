@@ -64,6 +64,22 @@ class TriggeredFrames {
     std::optional<std::uint64_t> expected_;
 };
 
+// For teaching and calibrating: a sensor that is wired to the robot (parameter "trigger") listens to software
+// triggers while this lives, then to its own source again. Does nothing with other sensors. Error: the sensor
+// does not take it.
+class SoftwareTriggered {
+  public:
+    static Expected<SoftwareTriggered> begin(ProfileSource& sensor);
+    SoftwareTriggered(SoftwareTriggered&& other) noexcept;
+    SoftwareTriggered& operator=(SoftwareTriggered&&) = delete;
+    ~SoftwareTriggered();
+
+  private:
+    SoftwareTriggered() = default;
+    ProfileSource* sensor_ = nullptr;  // to be set back
+    double before_ = 0;
+};
+
 // Stops every started sensor, however the work ends.
 class StartedSensors {
   public:

@@ -49,6 +49,8 @@ Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<
     auto measurer = SpotMeasurer::make(project, spot.id);
     if (!measurer) return tl::unexpected(measurer.error());
 
+    auto by_software = SoftwareTriggered::begin(*sensor);
+    if (!by_software) return tl::unexpected(by_software.error());
     StartedSensors started;
     if (auto on = started.start(*sensor); !on) return on;
     const AcquireLimits limits;

@@ -21,12 +21,13 @@ constexpr Timeout kTick{5};
 class EkiController final : public SimulatedController {
   public:
     EkiController(std::shared_ptr<SimulatedCell> cell, std::string address, std::uint16_t port, Timeout slow,
-                  Timeout trigger_interval)
+                  Timeout trigger_interval, Timeout approach)
         : cell_(std::move(cell)),
           address_(std::move(address)),
           port_(port),
           slow_(slow),
           trigger_interval_(trigger_interval),
+          approach_(approach),
           thread_([this](const std::stop_token& stop) { serve(stop); }) {}
     std::uint16_t port() const override { return port_; }
 
@@ -110,7 +111,7 @@ class EkiController final : public SimulatedController {
             if (auto started = cell_->start_program(); !started) return refuse(started.error().what);
             triggers_ = 0;
             running_ = true;
-            next_trigger_ = Clock::now() + trigger_interval_;
+            next_trigger_ = Clock::now() + approach_;
         } else if (c.kind == "confirm") {
             static const std::map<std::string_view, PartVerdict> kVerdicts = {
                 {"corrected", PartVerdict::corrected},
@@ -154,7 +155,7 @@ class EkiController final : public SimulatedController {
     std::shared_ptr<SimulatedCell> cell_;
     const std::string address_;
     const std::uint16_t port_;
-    const Timeout slow_, trigger_interval_;
+    const Timeout slow_, trigger_interval_, approach_;
     std::optional<TcpConnection> connection_;
     bool running_ = false;
     Clock::time_point next_trigger_{};
@@ -167,16 +168,18 @@ class EkiController final : public SimulatedController {
 Expected<std::unique_ptr<SimulatedController>> start_kuka_eki_controller(std::shared_ptr<SimulatedCell> cell,
                                                                          const nlohmann::json& settings) {
     std::string address = "127.0.0.1";
-    int port = 54600, slow_ms = 300, trigger_interval_ms = 20;
+    int port = 54600, slow_ms = 300, trigger_interval_ms = 20, approach_ms = 20;
     SettingsReader f(settings, "settings");
-    f.only({"address", "port", "slow_ms", "trigger_interval_ms"});
+    f.only({"address", "port", "slow_ms", "trigger_interval_ms", "approach_ms"});
     f.text("address", address);
     f.whole("port", port, 1, 65535);
     f.whole("slow_ms", slow_ms, 0, 60000);
     f.whole("trigger_interval_ms", trigger_interval_ms, 0, 60000);
+    f.whole("approach_ms", approach_ms, 0, 60000);
     if (f.failed()) return tl::unexpected(f.error());
     return std::make_unique<EkiController>(std::move(cell), address, static_cast<std::uint16_t>(port),
-                                           Timeout(slow_ms), Timeout(trigger_interval_ms));
+                                           Timeout(slow_ms), Timeout(trigger_interval_ms),
+                                           Timeout(approach_ms));
 }
 
 }  // namespace seamwright

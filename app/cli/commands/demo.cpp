@@ -86,6 +86,14 @@ void add_demo(CommandLine& line) {
     command->add_option("--parts", options->parts, "Displaced parts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    command->add_flag("!--in-process", options->loopback,
+                      "Without the GigE Vision camera and the KUKA controller on the loopback address");
+    command->add_option("--camera", options->camera_address, "Loopback address of the served camera")
+        ->capture_default_str();
+    command
+        ->add_option("--robot-port", options->robot_port, "Where the simulated KUKA controller connects to")
+        ->check(CLI::Range(1, 65535))
+        ->capture_default_str();
     line.on(command, [options] { return demo(*options); });
 }
 

@@ -5,8 +5,10 @@
 #include <chrono>
 #include <random>
 
+#include "devices/cell_server.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/door.h"
+#include "projects/acquire.h"
 #include "projects/measure.h"
 #include "projects/project_file.h"
 #include "projects/station.h"
@@ -16,8 +18,16 @@ namespace seamwright::cli {
 namespace {
 
 constexpr double kCurveTravelMm = 20;
+// Faster than a robot, slow enough for what a network buffer of the kernel's usual 4 MiB holds while the
+// served camera wakes up.
+constexpr int kApproachMs = 150, kBetweenSpotsMs = 50;
 constexpr const char* kSensor = "A";
 constexpr const char* kRobot = "R1";
+
+struct Devices {
+    std::unique_ptr<ProfileSource> sensor;
+    std::unique_ptr<RobotLink> robot;
+};
 
 std::string frame_name(const std::string& region_id) {
     return "BASE_" + region_id;
@@ -180,10 +190,32 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
          default_door_regions())  // the frames that the application program runs in
         settings["robot"]["frames"][frame_name(region.id)] =
             pose_json(default_cell_settings().base_from_workobject);
-    DeviceSession session;
-    auto cell = shared_cell(settings, session);
-    if (!cell) return tl::unexpected(cell.error());
-    SimulatedCell& world = **cell;
+    auto opened = SimulatedCell::open(settings);
+    if (!opened) return tl::unexpected(opened.error());
+    const std::shared_ptr<SimulatedCell> cell = *opened;
+    SimulatedCell& world = *cell;
+    CellServerOptions serve;
+    nlohmann::json sensor_settings = settings, robot_settings = settings;
+    if (options.loopback) {
+        serve.camera_address = options.camera_address;
+        serve.controllers = {{"kuka-eki",
+                              {{"port", options.robot_port},
+                               {"approach_ms", kApproachMs},
+                               {"trigger_interval_ms", kBetweenSpotsMs}}}};
+        sensor_settings = {{"address", options.camera_address}, {"hardware_trigger", true}};
+        robot_settings = {{"port", options.robot_port}};
+    }
+    auto server = CellServer::start(serve, cell);
+    if (!server) return tl::unexpected(server.error());
+    const auto open_devices = [&]() -> Expected<Devices> {
+        if (!options.loopback) return Devices{make_simulated_sensor(cell), make_simulated_robot(cell)};
+        DeviceSession session;
+        auto sensor = open_sensor("genicam", sensor_settings, session);
+        if (!sensor) return tl::unexpected(sensor.error());
+        auto robot = open_robot("kuka-eki", robot_settings, session);
+        if (!robot) return tl::unexpected(robot.error());
+        return Devices{std::move(*sensor), std::move(*robot)};
+    };
 
     progress("calibrating the sensor on plate and sphere");
     Project& project = outcome.project;
@@ -191,21 +223,21 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     project.part = {"door left", "procedural door", {}, world.base_from_workobject()};
     SensorSetup sensor_setup;
     sensor_setup.id = kSensor;
-    sensor_setup.driver = "simulated";
-    sensor_setup.settings = settings;
+    sensor_setup.driver = options.loopback ? "genicam" : "simulated";
+    sensor_setup.settings = sensor_settings;
     RobotSetup robot_setup;
     robot_setup.id = kRobot;
-    robot_setup.driver = "simulated";
-    robot_setup.settings = settings;
+    robot_setup.driver = options.loopback ? "kuka-eki" : "simulated";
+    robot_setup.settings = robot_settings;
     robot_setup.required_mode = RobotMode::automatic;
     {
-        auto sensor = make_simulated_sensor(*cell);
-        auto robot = make_simulated_robot(*cell);
-        sensor_setup.identity = sensor->identity();
-        auto identity = robot->identity();
+        auto devices = open_devices();
+        if (!devices) return tl::unexpected(devices.error());
+        sensor_setup.identity = devices->sensor->identity();
+        auto identity = devices->robot->identity();
         if (!identity) return tl::unexpected(identity.error());
         robot_setup.identity = *identity;
-        auto calibrated = calibrate_demo_sensor(world, *sensor, *robot);
+        auto calibrated = calibrate_demo_sensor(world, *devices->sensor, *devices->robot);
         if (!calibrated) return tl::unexpected(calibrated.error());
         outcome.calibration = std::move(*calibrated);
     }
@@ -224,15 +256,16 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     auto file = ProjectFile::create(outcome.project_file, project, true);
     if (!file) return tl::unexpected(file.error());
     Station station(std::move(*file), project);
-    const auto connect = [&] {
+    world.set_scene(Scene::part);
+    {
+        auto devices = open_devices();
+        if (!devices) return tl::unexpected(devices.error());
         std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
         std::map<std::string, std::unique_ptr<RobotLink>> robots;
-        sensors[kSensor] = make_simulated_sensor(*cell);
-        robots[kRobot] = make_simulated_robot(*cell);
+        sensors[kSensor] = std::move(devices->sensor);
+        robots[kRobot] = std::move(devices->robot);
         station.connect(std::move(sensors), std::move(robots));
-    };
-    world.set_scene(Scene::part);
-    connect();
+    }
 
     for (const DoorSpot& door : default_door_spots()) {
         progress("teaching spot " + door.id);
@@ -251,6 +284,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         project.regions.push_back(region);
     }
     if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
+    world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     for (const Region& region : project.regions) {
         auto plan = plan_region(planned_observations(project, region), {});
         if (!plan) return tl::unexpected(plan.error());

@@ -21,6 +21,11 @@ struct DemoOptions {
     std::filesystem::path folder = "demo";
     std::uint64_t seed = 1;
     int parts = 10;
+    // Over loopback: the sensor as a GigE Vision camera at this address, the robot as a KUKA controller that
+    // connects by EthernetKRL. In-process otherwise: the same cell without cables between.
+    bool loopback = true;
+    std::string camera_address = "127.0.0.1";
+    int robot_port = 54600;
 };
 
 // One calibration step as the report shows it.

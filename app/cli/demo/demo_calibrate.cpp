@@ -10,6 +10,7 @@
 #include "core/profile/filter.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/acquire.h"
 
 namespace seamwright::cli {
 namespace {
@@ -53,11 +54,16 @@ Expected<FramePtr> snap(ProfileSource& sensor) {
     return sensor.wait_next(std::chrono::milliseconds(5000));
 }
 
-Expected<FramePtr> look(SimulatedCell& cell, ProfileSource& sensor, const TargetView& view,
-                        Pose& base_from_flange) {
+Expected<FramePtr> look(const SimulatedCell& cell, ProfileSource& sensor, RobotLink& robot,
+                        const TargetView& view, Pose& base_from_flange) {
     const Pose target_from_sensor = make_pose(rotation_exp(view.turn_deg * (kPi / 180)), view.offset_mm);
-    cell.move_to(cell.settings().base_from_target * target_from_sensor * cell.flange_from_sensor().inverse());
-    base_from_flange = *cell.reported_flange();
+    if (auto there = robot.move_to(cell.settings().base_from_target * target_from_sensor *
+                                   cell.flange_from_sensor().inverse());
+        !there)
+        return tl::unexpected(there.error());
+    auto at = robot.base_from_flange();
+    if (!at) return tl::unexpected(at.error());
+    base_from_flange = *at;
     return snap(sensor);
 }
 
@@ -108,8 +114,8 @@ std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points) {
     return points;
 }
 
-Expected<void> expose(ProfileSource& sensor, double laser, double exposure_us) {
-    if (auto set = sensor.set("laser", laser); !set) return set;
+Expected<void> expose(SimulatedCell& cell, ProfileSource& sensor, double laser, double exposure_us) {
+    cell.set_parameter("laser", laser);  // the switch on the sensor's housing
     return sensor.set("exposure_us", exposure_us);
 }
 
@@ -144,9 +150,12 @@ double chain_error_mm(const SimulatedCell& cell, const Calibration& c) {
 
 }  // namespace
 
-Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSource& sensor, RobotLink&) {
+Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSource& sensor,
+                                                RobotLink& robot) {
     DemoCalibration demo;
     StripePeaks peaks;
+    auto by_software = SoftwareTriggered::begin(sensor);
+    if (!by_software) return tl::unexpected(by_software.error());
     if (auto started = sensor.start(); !started) return tl::unexpected(started.error());
 
     // Plate: each view twice, the board under ambient light with the laser off, then the stripe on it.
@@ -164,12 +173,12 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
         observation.height = cell.settings().optics.height;
         observation.scan = ScanLines::columns;
         Pose base_from_flange;
-        if (auto set = expose(sensor, 0, kPlateExposureUs); !set) return tl::unexpected(set.error());
-        auto image = look(cell, sensor, kPlateViews[i], base_from_flange);
+        if (auto set = expose(cell, sensor, 0, kPlateExposureUs); !set) return tl::unexpected(set.error());
+        auto image = look(cell, sensor, robot, kPlateViews[i], base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.board = find_board((*image)->image, board);
         observation.base_from_flange = base_from_flange;
-        if (auto set = expose(sensor, 1, exposure_us); !set) return tl::unexpected(set.error());
+        if (auto set = expose(cell, sensor, 1, exposure_us); !set) return tl::unexpected(set.error());
         image = snap(sensor);  // the robot stands still between the two
         if (!image) return tl::unexpected(image.error());
         auto stripe = stripe_points((*image)->image, peaks);
@@ -198,7 +207,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     lens.height = cell.settings().optics.height;
     for (const TargetView& view : kLineViews) {
         Pose base_from_flange;
-        auto image = look(cell, sensor, view, base_from_flange);
+        auto image = look(cell, sensor, robot, view, base_from_flange);
         if (!image) return tl::unexpected(image.error());
         auto line = stripe_points((*image)->image, peaks);
         if (!line) return tl::unexpected(line.error());
@@ -217,7 +226,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     ProfileCandidates candidates;
     for (std::size_t i = 0; i < kSphereViews.size(); ++i) {
         SphereObservation observation;
-        auto image = look(cell, sensor, kSphereViews[i], observation.base_from_flange);
+        auto image = look(cell, sensor, robot, kSphereViews[i], observation.base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.id = fmt::format("sphere{:02}", i + 1);
         if (auto found = find_peaks((*image)->image, {}, peaks); !found) return tl::unexpected(found.error());

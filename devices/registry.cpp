@@ -3,6 +3,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "devices/abb/rapid.h"
 #include "devices/genicam/genicam.h"
 #include "devices/kuka/eki.h"
 #include "devices/replay/recording.h"
@@ -25,6 +26,7 @@ const std::vector<RobotDriver>& robot_drivers() {
         {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
         {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki},
         {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
+        {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
     };
     return drivers;
 }

@@ -1,0 +1,381 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <thread>
+
+#include "devices/abb/rapid.h"
+#include "devices/abb/rapid_message.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/net/socket.h"
+
+namespace seamwright {
+namespace {
+
+using abb::Message;
+using Clock = std::chrono::steady_clock;
+using Milliseconds = std::chrono::milliseconds;
+
+constexpr std::size_t kEventLimit = 10000;  // events waiting: a controller that floods is refused
+
+struct Settings {
+    std::string address = "127.0.0.1";
+    std::uint16_t port = 1025;
+    Milliseconds timeout{1000}, move_timeout{60000}, backoff{100}, backoff_max{5000};
+};
+
+Expected<Settings> parse_settings(const nlohmann::json& json) {
+    const std::string where = "settings of abb-rapid";
+    if (auto ok = only_fields(
+            json, {"address", "port", "timeout_ms", "move_timeout_ms", "backoff_ms", "backoff_max_ms"},
+            where);
+        !ok)
+        return tl::unexpected(ok.error());
+    Settings s;
+    auto address = json_string_or(json, "address", s.address, where);
+    if (!address) return tl::unexpected(address.error());
+    s.address = *address;
+    std::optional<Error> error;
+    const auto number = [&](const char* key, double otherwise, double low, double high) {
+        auto value = json_number_or(json, key, otherwise, where);
+        if (value && *value >= low && *value <= high) return *value;
+        if (!error)
+            error = value ? Error{ErrorKind::input, fmt::format("{} is not in {} to {}", *value, low, high),
+                                  json_path(where, key), ""}
+                          : value.error();
+        return otherwise;
+    };
+    const auto time = [&](const char* key, Milliseconds otherwise, double low, double high) {
+        return Milliseconds(
+            static_cast<long>(number(key, static_cast<double>(otherwise.count()), low, high)));
+    };
+    s.port = static_cast<std::uint16_t>(number("port", s.port, 1, 65535));
+    s.timeout = time("timeout_ms", s.timeout, 1, 600000);
+    s.move_timeout = time("move_timeout_ms", s.move_timeout, 1, 3600000);
+    s.backoff = time("backoff_ms", s.backoff, 0, 600000);
+    s.backoff_max = time("backoff_max_ms", std::max(s.backoff_max, s.backoff), 0, 600000);
+    if (error) return tl::unexpected(*error);
+    return s;
+}
+
+std::int64_t now_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+}
+
+class AbbRapidLink final : public RobotLink {
+  public:
+    explicit AbbRapidLink(Settings settings)
+        : settings_(std::move(settings)),
+          where_(fmt::format("abb-rapid {}:{}", settings_.address, settings_.port)) {}
+
+    Expected<RobotIdentity> identity() override {
+        auto answer = ask({0, "HELLO", {"1"}, {}, {}}, settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        if (answer->fields != std::vector<std::string>{"1"})
+            return broken("the controller's module speaks another version of the protocol than 1");
+        return RobotIdentity{"abb-rapid", "ABB", answer->line3, answer->line2};
+    }
+
+    Expected<RobotMode> mode() override {
+        auto answer = ask({0, "MODE", {}, {}, {}}, settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        const auto& f = answer->fields;
+        const auto one_of = [&](std::size_t i, std::initializer_list<std::string_view> known) {
+            return i < f.size() && std::find(known.begin(), known.end(), f[i]) != known.end();
+        };
+        if (f.size() != 3 || !one_of(0, {"AUTO", "MANR", "MANF", "UNDEF"}) ||
+            !one_of(1, {"ON", "OFF", "STOP", "ESTOP"}) || !one_of(2, {"RUN", "HALT"}))
+            return broken(
+                fmt::format("the controller tells a mode that does not exist: \"{}\"", fmt::join(f, " ")));
+        if (f[1] == "ESTOP") return RobotMode::fault;
+        if (f[1] != "ON" || f[2] != "RUN") return RobotMode::stopped;
+        if (f[0] == "AUTO") return RobotMode::automatic;
+        if (f[0] == "MANR") return RobotMode::manual_reduced;
+        if (f[0] == "MANF") return RobotMode::manual_full;
+        return RobotMode::unknown;
+    }
+
+    Expected<Pose> base_from_flange() override {
+        return pose_of(ask({0, "POSE", {}, {}, {}}, settings_.timeout));
+    }
+
+    Expected<StartSignal> wait_start(Milliseconds timeout) override {
+        const auto until = Clock::now() + timeout;
+        for (;;) {
+            if (!starts_.empty()) {
+                StartSignal start = std::move(starts_.front());
+                starts_.pop_front();
+                return start;
+            }
+            if (auto got = next_event(until); !got) return tl::unexpected(got.error());
+        }
+    }
+
+    Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
+        std::vector<std::string> names;
+        for (const MeasuringMove& move : moves) {
+            if (!abb::is_spot_name(move.spot_id))
+                return input_error(
+                    fmt::format("\"{}\" is no name for a spot on an ABB controller", move.spot_id), where_,
+                    "use at most 32 characters without blanks, quotes and backslashes");
+            names.push_back(move.spot_id);
+        }
+        if (auto open = connected(); !open) return open;
+        triggers_.clear();
+        ended_ = false;
+        next_trigger_ = 1;
+        auto answer = ask({0,
+                           "MEASURE",
+                           {std::to_string(names.size()), std::to_string(abb::spots_checksum(names))},
+                           {},
+                           {}},
+                          settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        return {};
+    }
+
+    Expected<TriggerEvent> wait_trigger(Milliseconds timeout) override {
+        const auto until = Clock::now() + timeout;
+        for (;;) {
+            if (!triggers_.empty()) {
+                TriggerEvent trigger = std::move(triggers_.front());
+                triggers_.pop_front();
+                return trigger;
+            }
+            if (ended_) return device_error("the measuring program has ended", where_);
+            if (auto got = next_event(until); !got) return tl::unexpected(got.error());
+        }
+    }
+
+    Expected<Pose> read_frame(const std::string& name) override {
+        if (auto ok = check_frame_name(name); !ok) return tl::unexpected(ok.error());
+        return pose_of(ask({0, "READ", {name}, {}, {}}, settings_.timeout));
+    }
+
+    Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
+        if (auto ok = check_frame_name(name); !ok) return ok;
+        Message request{0, "WRITE", {name}, {}, {}};
+        if (auto ok = put_pose(request, base_from_frame); !ok) return ok;
+        auto answer = ask(std::move(request), settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        return {};
+    }
+
+    Expected<void> confirm(PartVerdict verdict, const std::string& text) override {
+        const char* word = verdict == PartVerdict::corrected ? "CORRECTED"
+                           : verdict == PartVerdict::refused ? "REFUSED"
+                                                             : "FAILED";
+        auto answer = ask({0, "VERDICT", {word}, text, {}}, settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        return {};
+    }
+
+    Expected<void> move_to(const Pose& base_from_flange) override {
+        Message request{0, "MOVE", {}, {}, {}};
+        if (auto ok = put_pose(request, base_from_flange); !ok) return ok;
+        auto answer = ask(std::move(request), settings_.move_timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        return {};
+    }
+
+  private:
+    Expected<void> check_frame_name(const std::string& name) const {
+        if (abb::is_rapid_identifier(name)) return {};
+        return input_error(fmt::format("\"{}\" is no name of a work object", name), where_,
+                           "use a letter, then letters, digits and _, at most 32 characters");
+    }
+    Expected<void> put_pose(Message& request, const Pose& pose) const {
+        if (!pose.matrix().allFinite() || pose.translation().cwiseAbs().maxCoeff() > 1e5)
+            return input_error("the pose is not finite or beyond 1e5 mm", where_);
+        abb::set_pose_lines(request, pose);
+        return {};
+    }
+    Expected<Pose> pose_of(Expected<Message> answer) {
+        if (!answer) return tl::unexpected(answer.error());
+        auto pose = abb::parse_pose_lines(*answer, where_);
+        if (!pose) drop();
+        return pose;
+    }
+
+    void drop() {
+        connection_.reset();
+        received_.clear();
+        starts_.clear();
+        triggers_.clear();
+        if (wait_.count() == 0) wait_ = settings_.backoff;
+        not_before_ = Clock::now() + wait_;
+    }
+    tl::unexpected<Error> broken(std::string what) {
+        drop();
+        return device_error(std::move(what), where_,
+                            "load the Seamwright.mod of this version on the controller");
+    }
+    tl::unexpected<Error> lost(Error error) {
+        drop();
+        error.where = where_;
+        return tl::unexpected(std::move(error));
+    }
+
+    // The first call after a loss waits for its turn at most as long as an answer may take.
+    Expected<void> connected() {
+        if (connection_) return {};
+        const auto turn = not_before_ - Clock::now();
+        if (turn > settings_.timeout)
+            return device_error(fmt::format("{}: the next attempt to connect is in {} ms", kNoAnswer,
+                                            std::chrono::duration_cast<Milliseconds>(turn).count()),
+                                where_);
+        if (turn.count() > 0) std::this_thread::sleep_for(turn);
+        auto connection = TcpConnection::connect(settings_.address, settings_.port, settings_.timeout);
+        if (!connection) {
+            wait_ = std::min(std::max(wait_ * 2, settings_.backoff), settings_.backoff_max);
+            not_before_ = Clock::now() + wait_;
+            Error error = connection.error();
+            error.where = where_;
+            return tl::unexpected(error);
+        }
+        connection_.emplace(std::move(*connection));
+        received_.clear();
+        triggers_.clear();
+        starts_.clear();
+        next_trigger_ = 0;
+        start_count_.reset();
+        return {};
+    }
+
+    // The next whole message until `until`.
+    Expected<Message> receive(Clock::time_point until) {
+        char buffer[4 * abb::kMessageBytes];
+        for (;;) {
+            if (received_.size() >= abb::kMessageBytes) {
+                auto message =
+                    abb::parse_message(std::string_view(received_).substr(0, abb::kMessageBytes), where_);
+                received_.erase(0, abb::kMessageBytes);
+                return message;
+            }
+            const auto left =
+                std::chrono::duration_cast<Milliseconds>(until - Clock::now()) + Milliseconds(1);
+            auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)),
+                                                 std::max(left, Milliseconds(1)));
+            if (!got) return tl::unexpected(got.error());
+            received_.append(buffer, *got);
+            if (received_.size() >= abb::kMessageBytes) continue;
+            if (Clock::now() >= until)
+                return device_error(fmt::format("{}: half a message came", kNoAnswer), where_);
+        }
+    }
+
+    Expected<void> take_event(const Message& event) {
+        if (triggers_.size() + starts_.size() >= kEventLimit)
+            return device_error("the controller floods with events", where_);
+        const auto count = event.fields.empty() ? std::nullopt : abb::parse_count(event.fields.front());
+        if (!count)
+            return device_error(fmt::format("an event \"{}\" without its number came", event.word), where_);
+        if (event.word == "START") {
+            if (start_count_ && *count != *start_count_ + 1)
+                return device_error(fmt::format("start signal {} came after {}", *count, *start_count_),
+                                    where_, "a start signal was lost; the part has to be started again");
+            start_count_ = *count;
+            starts_.push_back({event.line2, now_ns()});
+            return {};
+        }
+        if (event.word == "END") {
+            if (next_trigger_ == 0) return {};
+            if (*count + 1 != next_trigger_)
+                return device_error(fmt::format("the program ended after {} triggers, of which {} came",
+                                                *count, next_trigger_ - 1),
+                                    where_, "a trigger was lost; the part has to be measured again");
+            ended_ = true;
+            return {};
+        }
+        if (event.word != "TRIGGER" || event.fields.size() != 3)
+            return device_error(fmt::format("the controller sent an unknown event \"{}\"", event.word),
+                                where_);
+        if (next_trigger_ == 0) return {};  // of a measuring that another connection started
+        if (*count != next_trigger_)
+            return device_error(fmt::format("trigger {} came instead of {}", *count, next_trigger_), where_,
+                                "a trigger was lost; the part has to be measured again");
+        auto pose = abb::parse_pose_lines(event, where_);
+        if (!pose) return tl::unexpected(pose.error());
+        ++next_trigger_;
+        triggers_.push_back({event.fields[2], now_ns(), *pose});
+        return {};
+    }
+
+    // Waits for one event. Silence leaves the connection up unless half a message came.
+    Expected<void> next_event(Clock::time_point until) {
+        if (auto open = connected(); !open) return open;
+        auto message = receive(until);
+        if (!message) {
+            if (is_silence(message.error()) && received_.empty()) {
+                Error error = message.error();
+                error.where = where_;
+                return tl::unexpected(error);
+            }
+            return lost(message.error());
+        }
+        if (message->number != 0)
+            return broken(fmt::format("answer {} came and nothing was asked", message->number));
+        if (auto taken = take_event(*message); !taken) {
+            drop();
+            return taken;
+        }
+        return {};
+    }
+
+    Expected<Message> ask(Message request, Milliseconds timeout) {
+        if (auto open = connected(); !open) return tl::unexpected(open.error());
+        number_ = number_ % abb::kHighestNumber + 1;
+        request.number = number_;
+        const auto until = Clock::now() + timeout;
+        if (auto sent = connection_->send(bytes_of(abb::message_bytes(request)), timeout); !sent)
+            return lost(sent.error());
+        for (;;) {
+            auto message = receive(until);
+            if (!message) return lost(message.error());
+            if (message->number == 0) {
+                if (auto taken = take_event(*message); !taken) {
+                    drop();
+                    return tl::unexpected(taken.error());
+                }
+                continue;
+            }
+            if (message->number != request.number)
+                return broken(fmt::format("answer {} came to request {}", message->number, request.number));
+            wait_ = Milliseconds(0);  // it answers: the next loss begins with the shortest wait
+            if (message->word == "NO")
+                return device_error(
+                    fmt::format("the controller refuses {}: {}", request.word, message->line2), where_);
+            if (message->word != request.word)
+                return broken(fmt::format("the answer to {} is one to {}", request.word, message->word));
+            if ((request.word == "READ" || request.word == "WRITE" || request.word == "VERDICT") &&
+                (message->fields.empty() || message->fields.front() != request.fields.front()))
+                return broken(fmt::format("the answer to {} {} names \"{}\"", request.word,
+                                          request.fields.front(), fmt::join(message->fields, " ")));
+            return message;
+        }
+    }
+
+    const Settings settings_;
+    const std::string where_;
+    std::optional<TcpConnection> connection_;
+    std::string received_;
+    std::deque<StartSignal> starts_;
+    std::deque<TriggerEvent> triggers_;
+    bool ended_ = false;
+    std::uint32_t number_ = 0, next_trigger_ = 0;  // 0 = no measuring of this connection
+    std::optional<std::uint32_t> start_count_;
+    Milliseconds wait_{0};
+    Clock::time_point not_before_{};
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settings, DeviceSession&) {
+    auto parsed = parse_settings(settings);
+    if (!parsed) return tl::unexpected(parsed.error());
+    return std::make_unique<AbbRapidLink>(std::move(*parsed));
+}
+
+}  // namespace seamwright

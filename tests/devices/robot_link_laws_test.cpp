@@ -1,0 +1,240 @@
+// What every robot driver owes, whatever its protocol: each is put before its simulated controller over real
+// sockets, and every fault of the controller must be told, must leave no frame released, and must be over
+// when it is over.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "devices/net/socket.h"
+#include "devices/registry.h"
+#include "devices/silence.h"
+#include "devices/simulated/cell.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+
+std::uint16_t free_port() {
+    return TcpListener::listen("127.0.0.1", 0)->port();
+}
+
+// How the two ends of a brand are opened on one port.
+struct Brand {
+    std::string name;
+    bool robot_is_client = false;
+    std::string frame;  // a name that its frames can have
+};
+void PrintTo(const Brand& brand, std::ostream* out) {
+    *out << brand.name;
+}
+const std::vector<Brand> kBrands = {{"kuka-eki", true, "BASE_left"}};
+
+std::vector<MeasuringMove> program() {
+    std::vector<MeasuringMove> moves;
+    for (int i = 1; i <= 4; ++i) {
+        MeasuringMove m;
+        m.spot_id = "S" + std::to_string(i);
+        m.trigger = make_pose(rotation_exp({0.1 * i, 0.2, -0.3}), {800.0 + 10 * i, -200, 600});
+        m.entry = m.exit = m.trigger;
+        m.entry.translation().y() -= 20;
+        m.exit.translation().y() += 20;
+        moves.push_back(m);
+    }
+    return moves;
+}
+
+// One cell for all: opening it is the slow part.
+std::shared_ptr<SimulatedCell> cell_of(const Brand& brand) {
+    nlohmann::json frame = {{"xyz", {900, -450, 500}}, {"abc", {12, -4, 3}}};
+    static std::map<std::string, std::shared_ptr<SimulatedCell>> cells;
+    auto& cell = cells[brand.frame];
+    if (!cell)
+        cell = SimulatedCell::open({{"serial", "KRC-4711"},
+                                    {"optics", {{"width", 64}, {"height", 64}}},
+                                    {"robot", {{"mode", "external"}, {"frames", {{brand.frame, frame}}}}}})
+                   .value();
+    return cell;
+}
+
+class RobotLaws : public testing::TestWithParam<Brand> {
+  protected:
+    static constexpr int kTimeoutMs = 400;
+    void SetUp() override {
+        cell->set_mode(RobotMode::external);
+        cell->store_program(program());
+        ASSERT_TRUE(cell->write_frame(GetParam().frame, taught));
+        const nlohmann::json controller_settings = {{"port", port}, {"slow_ms", kTimeoutMs * 2}};
+        const auto start = [&] {
+            auto started = start_controller(GetParam().name, cell, controller_settings);
+            ASSERT_TRUE(started) << started.error().sentence();
+            controller = std::move(*started);
+        };
+        if (!GetParam().robot_is_client) start();
+        auto opened = open_robot(GetParam().name, {{"port", port}, {"timeout_ms", kTimeoutMs}}, session);
+        ASSERT_TRUE(opened) << opened.error().sentence();
+        link = std::move(*opened);
+        if (GetParam().robot_is_client) start();
+    }
+    // Until the link answers again, as a watching runner would try.
+    bool recovers() {
+        for (const auto until = Clock::now() + std::chrono::seconds(10); Clock::now() < until;) {
+            if (link->mode() && link->read_frame(GetParam().frame)) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        return false;
+    }
+    void measure_all() {
+        auto started = link->start_measuring(program());
+        ASSERT_TRUE(started) << started.error().sentence();
+        for (const MeasuringMove& move : program()) {
+            auto trigger = link->wait_trigger(std::chrono::seconds(5));
+            ASSERT_TRUE(trigger) << trigger.error().sentence();
+            EXPECT_EQ(trigger->spot_id, move.spot_id);
+            ASSERT_TRUE(trigger->base_from_flange);
+            EXPECT_LT(distance_mm(*trigger->base_from_flange, move.trigger), 1e-3);
+            EXPECT_LT(angle_rad(*trigger->base_from_flange, move.trigger), 1e-5);
+        }
+    }
+    const Pose taught = make_pose(rotation_exp({0.3, -0.2, 0.9}), {900, -450, 500});
+    const Pose corrected = make_pose(rotation_exp({0.31, -0.19, 0.91}), {904.1234, -447.4321, 502.5});
+    const std::uint16_t port = free_port();
+    std::shared_ptr<SimulatedCell> cell = cell_of(GetParam());
+    DeviceSession session;
+    std::unique_ptr<RobotLink> link;
+    std::unique_ptr<SimulatedController> controller;
+};
+
+TEST_P(RobotLaws, TellsWhoItIsAndHowItStands) {
+    auto identity = link->identity();
+    ASSERT_TRUE(identity) << identity.error().sentence();
+    EXPECT_EQ(identity->driver, GetParam().name);
+    EXPECT_EQ(identity->serial, "KRC-4711");
+    EXPECT_FALSE(identity->brand.empty());
+    EXPECT_EQ(link->mode(), RobotMode::external);
+    cell->set_mode(RobotMode::fault);
+    EXPECT_EQ(link->mode(), RobotMode::fault);
+    cell->move_to(program()[2].trigger);
+    auto at = link->base_from_flange();
+    ASSERT_TRUE(at) << at.error().sentence();
+    EXPECT_LT(distance_mm(*at, program()[2].trigger), 1e-3);
+}
+
+TEST_P(RobotLaws, AFrameIsReadBackAsWrittenAndReleasedByTheVerdictAlone) {
+    measure_all();
+    EXPECT_FALSE(controller->released());
+    auto written = link->write_frame(GetParam().frame, corrected);
+    ASSERT_TRUE(written) << written.error().sentence();
+    auto back = link->read_frame(GetParam().frame);
+    ASSERT_TRUE(back) << back.error().sentence();
+    EXPECT_LT(distance_mm(*back, corrected), 1e-3);
+    EXPECT_LT(deg_from_rad(angle_rad(*back, corrected)), 1e-4);
+    EXPECT_FALSE(controller->released()) << "written is not confirmed";
+    ASSERT_TRUE(link->confirm(PartVerdict::corrected, "1 region corrected and pushed"));
+    EXPECT_TRUE(controller->released());
+    EXPECT_EQ(controller->verdict(), PartVerdict::corrected);
+    ASSERT_TRUE(link->confirm(PartVerdict::failed, "taken back"));
+    EXPECT_FALSE(controller->released());
+    ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+    ASSERT_TRUE(link->start_measuring(program()));
+    EXPECT_FALSE(controller->released()) << "a new part begins";
+}
+
+TEST_P(RobotLaws, UnknownFrameIsRefusedByName) {
+    for (const auto& error :
+         {link->read_frame("NO_SUCH").error(), link->write_frame("NO_SUCH", corrected).error()})
+        EXPECT_THAT(error.sentence(), HasSubstr("NO_SUCH"));
+}
+
+TEST_P(RobotLaws, TheLinesCallIsHeardOnce) {
+    auto none = link->wait_start(std::chrono::milliseconds(50));
+    ASSERT_FALSE(none);
+    EXPECT_TRUE(is_silence(none.error())) << none.error().sentence();
+    controller->press_start("CAR-0815");
+    auto start = link->wait_start(std::chrono::seconds(5));
+    ASSERT_TRUE(start) << start.error().sentence();
+    EXPECT_EQ(start->part_id, "CAR-0815");
+    none = link->wait_start(std::chrono::milliseconds(50));
+    ASSERT_FALSE(none);
+    EXPECT_TRUE(is_silence(none.error()));
+    measure_all();
+}
+
+TEST_P(RobotLaws, AnotherProgramThanTheProjectsIsRefused) {
+    auto other = program();
+    other[1].spot_id = "S9";
+    auto started = link->start_measuring(other);
+    ASSERT_FALSE(started);
+    EXPECT_EQ(started.error().kind, ErrorKind::device);
+}
+
+TEST_P(RobotLaws, AStoppedRobotDoesNotStart) {
+    cell->set_mode(RobotMode::stopped);
+    EXPECT_FALSE(link->start_measuring(program()));
+}
+
+TEST_P(RobotLaws, ALostControllerIsToldAndComesBack) {
+    ASSERT_TRUE(recovers());
+    controller.reset();
+    for (int i = 0; i < 3; ++i) {
+        const auto begun = Clock::now();
+        auto frame = link->read_frame(GetParam().frame);
+        ASSERT_FALSE(frame);
+        EXPECT_EQ(frame.error().kind, ErrorKind::device);
+        EXPECT_LT(Clock::now() - begun, std::chrono::seconds(3)) << "no call blocks longer than its time-out";
+    }
+    auto started = start_controller(GetParam().name, cell, {{"port", port}});
+    ASSERT_TRUE(started) << started.error().sentence();
+    controller = std::move(*started);
+    EXPECT_TRUE(recovers());
+    EXPECT_FALSE(controller->released());
+}
+
+TEST_P(RobotLaws, EveryFaultIsToldReleasesNothingAndPasses) {
+    const std::map<ControllerFault, std::string> words = {
+        {ControllerFault::silent, "no answer in time"},
+        {ControllerFault::slow, "no answer in time"},
+        {ControllerFault::wrong_answer, "answer"},
+        {ControllerFault::half_message, "no answer in time"},
+        {ControllerFault::disconnect, "closed by the other side"},
+        {ControllerFault::reject_write, "refuses"},
+        {ControllerFault::out_of_range, "no position of a robot"}};
+    for (const ControllerFault fault : controller_faults()) {
+        SCOPED_TRACE(std::string(to_string(fault)));
+        ASSERT_TRUE(recovers());
+        measure_all();
+        controller->set_fault(fault);
+        auto written = link->write_frame(GetParam().frame, corrected);
+        auto confirmed = link->confirm(PartVerdict::corrected, "");
+        EXPECT_FALSE(written && confirmed) << "a push of that kind must not look done";
+        const Error& error = written ? confirmed.error() : written.error();
+        EXPECT_EQ(error.kind, ErrorKind::device);
+        EXPECT_THAT(error.sentence(), HasSubstr(words.at(fault)));
+        EXPECT_THAT(error.sentence(), HasSubstr("127.0.0.1:")) << "says where";
+        controller->set_fault(ControllerFault::none);
+        ASSERT_TRUE(recovers()) << "when the fault is over";
+        ASSERT_TRUE(link->confirm(PartVerdict::failed, ""));
+        EXPECT_FALSE(controller->released());
+        ASSERT_TRUE(link->write_frame(GetParam().frame, taught));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Brands, RobotLaws, testing::ValuesIn(kBrands), [](const auto& brand) {
+    std::string name = brand.param.name;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+});
+
+TEST(RobotLawsTable, HoldsEveryControllerOfTheRegistry) {
+    for (const ControllerDriver& driver : controller_drivers())
+        EXPECT_TRUE(std::any_of(kBrands.begin(), kBrands.end(), [&](const Brand& b) {
+            return b.name == driver.name;
+        })) << driver.name;
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -34,6 +34,7 @@ const std::vector<RobotDriver>& robot_drivers() {
 const std::vector<ControllerDriver>& controller_drivers() {
     static const std::vector<ControllerDriver> drivers = {
         {"kuka-eki", "A KUKA controller that connects by EthernetKRL", &start_kuka_eki_controller},
+        {"abb-rapid", "An ABB controller with our RAPID server task", &start_abb_rapid},
     };
     return drivers;
 }

@@ -126,11 +126,7 @@ class AbbRapidLink final : public RobotLink {
         triggers_.clear();
         ended_ = false;
         next_trigger_ = 1;
-        auto answer = ask({0,
-                           "MEASURE",
-                           {std::to_string(names.size()), std::to_string(abb::spots_checksum(names))},
-                           {},
-                           {}},
+        auto answer = ask({0, "MEASURE", {std::to_string(names.size()), program_signature(moves)}, {}, {}},
                           settings_.timeout);
         if (!answer) return tl::unexpected(answer.error());
         return {};

@@ -129,16 +129,6 @@ std::optional<std::uint32_t> parse_count(std::string_view text, std::uint32_t hi
     return value;
 }
 
-std::uint32_t spots_checksum(const std::vector<std::string>& spot_ids) {
-    std::uint32_t hash = 2166136261u;
-    const auto add = [&](char c) { hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u; };
-    for (const std::string& id : spot_ids) {
-        for (const char c : id) add(c);
-        add('\n');
-    }
-    return (hash >> 16) ^ (hash & 0xffffu);
-}
-
 bool is_rapid_identifier(std::string_view name) {
     return !name.empty() && name.size() <= 32 && letter(name.front()) &&
            std::all_of(name.begin(), name.end(), [](char c) { return letter(c) || digit(c) || c == '_'; });

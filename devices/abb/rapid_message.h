@@ -16,7 +16,7 @@
 //   n POSE                            n POSE             + pose base_from_flange
 //   n READ frame                      n READ frame       + pose base_from_frame
 //   n WRITE frame                     n WRITE frame          (with a pose; answered when staged)
-//   n MEASURE count checksum          n MEASURE count    compares the spots of the program
+//   n MEASURE count signature         n MEASURE count    compares with its program (program_signature())
 //   n VERDICT CORRECTED|REFUSED|FAILED + text     n VERDICT word
 //   n MOVE                            n MOVE                 (with a pose; answered when standing there)
 //   n PING                            n PING
@@ -26,9 +26,6 @@
 //   event                             0 END count        the measuring program has ended after so many
 //   triggers
 // Here HELLO's answer has the serial number in line 2 and the type in line 3.
-//
-// The checksum is FNV-1a (32 bit) of the spots' names in order, each followed by a line feed, as 16-bit
-// halves xored (0 to 65535, exact in num).
 
 #include <array>
 #include <cstdint>
@@ -65,7 +62,6 @@ void set_pose_lines(Message& message, const Pose& pose);
 // A decimal integer without sign, at most `highest`.
 std::optional<std::uint32_t> parse_count(std::string_view text, std::uint32_t highest = kHighestNumber);
 
-std::uint32_t spots_checksum(const std::vector<std::string>& spot_ids);
 // May the controller hold this name as an identifier?
 bool is_rapid_identifier(std::string_view name);
 // As a spot is named in a message and a RAPID string.

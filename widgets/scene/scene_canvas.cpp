@@ -1,0 +1,226 @@
+#include "widgets/scene/scene_canvas.h"
+
+#include <vtkActor.h>
+#include <vtkActorCollection.h>
+#include <vtkCamera.h>
+#include <vtkCellPicker.h>
+#include <vtkMatrix4x4.h>
+#include <vtkOpenGLState.h>
+
+#include <QMouseEvent>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
+#include <QOpenGLFunctions>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+namespace seamwright {
+
+namespace {
+
+QSurfaceFormat scene_format() {
+    QSurfaceFormat format;
+    format.setRenderableType(QSurfaceFormat::OpenGL);
+    format.setVersion(3, 2);
+    format.setProfile(QSurfaceFormat::CoreProfile);
+    format.setDepthBufferSize(24);
+    format.setAlphaBufferSize(0);
+    format.setSamples(0);
+    return format;
+}
+
+}  // namespace
+
+bool opengl_available() {
+    static const bool available = [] {
+        QOpenGLContext context;
+        context.setFormat(scene_format());
+        if (!context.create()) return false;
+        QOffscreenSurface surface;
+        surface.setFormat(context.format());
+        surface.create();
+        if (!surface.isValid() || !context.makeCurrent(&surface)) return false;
+        const auto version = context.format().version();
+        context.doneCurrent();
+        return version >= std::pair<int, int>(3, 2);
+    }();
+    return available;
+}
+
+SceneCanvas::SceneCanvas(QWidget* parent) : QOpenGLWidget(parent) {
+    setFormat(scene_format());
+    setFocusPolicy(Qt::StrongFocus);
+    window_->SetOwnContext(0);
+    window_->SetFrameBlitModeToNoBlit();
+    window_->SetMultiSamples(0);
+    window_->AddRenderer(renderer_);
+    timer_.setSingleShot(true);
+    connect(&timer_, &QTimer::timeout, this, [this] {
+        since_.restart();
+        update();
+    });
+    since_.start();
+}
+
+SceneCanvas::~SceneCanvas() {
+    release();
+}
+
+// VTK's buffers go while the context that made them lives.
+void SceneCanvas::release() {
+    if (!ready_) return;
+    ready_ = false;
+    makeCurrent();
+    window_->Finalize();
+    doneCurrent();
+}
+
+void SceneCanvas::request_render() {
+    if (!timer_.isActive()) timer_.start(std::max(0, 16 - static_cast<int>(since_.elapsed())));
+}
+
+void SceneCanvas::initializeGL() {
+    window_->SetMapped(true);
+    window_->SetIsDirect(true);
+    window_->SetReadyForRendering(true);
+    window_->InitializeFromCurrentContext();
+    ready_ = true;
+    connect(
+        context(), &QOpenGLContext::aboutToBeDestroyed, this, [this] { release(); }, Qt::DirectConnection);
+}
+
+void SceneCanvas::resizeGL(int, int) {
+    const QSize size = (QSizeF(this->size()) * devicePixelRatioF()).toSize();
+    window_->SetSize(size.width(), size.height());
+}
+
+void SceneCanvas::paintGL() {
+    if (!ready_) return;
+    window_->GetState()->Reset();
+    window_->GetState()->Push();
+    window_->GetState()->vtkglDepthFunc(0x0203);  // GL_LEQUAL
+    window_->SetIsCurrent(true);
+    renderer_->ResetCameraClippingRange();
+    window_->Render();
+    window_->GetState()->Pop();
+    QOpenGLFunctions* gl = context()->functions();
+    gl->glBindFramebuffer(0x8CA9 /* GL_DRAW_FRAMEBUFFER */, defaultFramebufferObject());
+    window_->BlitDisplayFramebuffer();
+    gl->glBindFramebuffer(0x8D40 /* GL_FRAMEBUFFER */, defaultFramebufferObject());
+    // Without this the ground shines through where the picture's alpha is 0.
+    gl->glColorMask(false, false, false, true);
+    gl->glDisable(0x0C11 /* GL_SCISSOR_TEST */);
+    gl->glClearColor(0, 0, 0, 1);
+    gl->glClear(0x4000 /* GL_COLOR_BUFFER_BIT */);
+    gl->glColorMask(true, true, true, true);
+    ++rendered;
+    if (on_rendered) on_rendered();
+}
+
+void SceneCanvas::show_view(SceneView::View view) {
+    vtkCamera* camera = renderer_->GetActiveCamera();
+    Eigen::Vector3d towards(0, 0, 0), up(0, 1, 0);
+    switch (view) {
+        case SceneView::View::front:
+            towards = {0, 0, 1};
+            break;  // the side the sensors look at
+        case SceneView::View::back:
+            towards = {0, 0, -1};
+            break;
+        case SceneView::View::top:
+            towards = {0, 1, 0};
+            up = {0, 0, -1};
+            break;
+        case SceneView::View::iso:
+            towards = {0.55, 0.45, 0.8};
+            break;
+        case SceneView::View::fit:
+            break;
+    }
+    if (view != SceneView::View::fit) {
+        double focus[3];
+        camera->GetFocalPoint(focus);
+        const double distance = std::max(1.0, camera->GetDistance());
+        const Eigen::Vector3d eye =
+            Eigen::Vector3d(focus[0], focus[1], focus[2]) + distance * towards.normalized();
+        camera->SetPosition(eye.x(), eye.y(), eye.z());
+        camera->SetViewUp(up.x(), up.y(), up.z());
+    }
+    double box[6];
+    renderer_->ComputeVisiblePropBounds(box);
+    if (box[0] <= box[1]) {
+        renderer_->ResetCamera(box);
+        camera->Zoom(1.25);
+    }
+    request_render();
+}
+
+Eigen::Vector3d SceneCanvas::project(const Eigen::Vector3d& point) const {
+    auto* renderer = const_cast<vtkRenderer*>(renderer_.GetPointer());
+    const double aspect = width() / static_cast<double>(std::max(1, height()));
+    double p[4] = {point.x(), point.y(), point.z(), 1}, out[4];
+    renderer->GetActiveCamera()->GetCompositeProjectionTransformMatrix(aspect, 0, 1)->MultiplyPoint(p, out);
+    if (!(out[3] > 0)) return {-1e6, -1e6, 2};
+    return {(out[0] / out[3] + 1) / 2 * width(), (1 - out[1] / out[3]) / 2 * height(), out[2] / out[3]};
+}
+
+std::optional<Eigen::Vector3d> SceneCanvas::pick(const QPointF& at, vtkActor& actor) {
+    vtkNew<vtkCellPicker> picker;
+    picker->SetTolerance(0);
+    picker->PickFromListOn();
+    picker->AddPickList(&actor);
+    const double ratio = devicePixelRatioF();
+    if (!picker->Pick(at.x() * ratio, (height() - at.y()) * ratio, 0, renderer_)) return std::nullopt;
+    double p[3];
+    picker->GetPickPosition(p);
+    return Eigen::Vector3d(p[0], p[1], p[2]);
+}
+
+void SceneCanvas::mousePressEvent(QMouseEvent* event) {
+    press_ = last_ = event->position();
+    dragged_ = false;
+}
+
+void SceneCanvas::mouseMoveEvent(QMouseEvent* event) {
+    if (event->buttons() == Qt::NoButton) return;
+    const QPointF at = event->position(), step = at - last_;
+    dragged_ = dragged_ || (at - press_).manhattanLength() > 4;
+    if (!dragged_) return;
+    last_ = at;
+    vtkCamera* camera = renderer_->GetActiveCamera();
+    const bool move = (event->buttons() & Qt::MiddleButton) ||
+                      ((event->buttons() & Qt::LeftButton) && (event->modifiers() & Qt::ShiftModifier));
+    if (move) {
+        // The point in the middle follows the mouse.
+        const double mm_per_px = 2 * camera->GetDistance() *
+                                 std::tan(rad_from_deg(camera->GetViewAngle() / 2)) / std::max(1, height());
+        double eye[3], focus[3], up[3], look[3];
+        camera->GetPosition(eye);
+        camera->GetFocalPoint(focus);
+        camera->GetViewUp(up);
+        camera->GetDirectionOfProjection(look);
+        const Eigen::Vector3d y = Eigen::Vector3d(up[0], up[1], up[2]).normalized();
+        const Eigen::Vector3d x = Eigen::Vector3d(look[0], look[1], look[2]).cross(y);
+        const Eigen::Vector3d shift = mm_per_px * (-step.x() * x + step.y() * y);
+        camera->SetPosition(eye[0] + shift.x(), eye[1] + shift.y(), eye[2] + shift.z());
+        camera->SetFocalPoint(focus[0] + shift.x(), focus[1] + shift.y(), focus[2] + shift.z());
+    } else {
+        camera->Azimuth(-0.4 * step.x());
+        camera->Elevation(0.4 * step.y());
+        camera->OrthogonalizeViewUp();
+    }
+    request_render();
+}
+
+void SceneCanvas::mouseReleaseEvent(QMouseEvent* event) {
+    if (!dragged_ && event->button() == Qt::LeftButton && on_click) on_click(event->position());
+}
+
+void SceneCanvas::wheelEvent(QWheelEvent* event) {
+    renderer_->GetActiveCamera()->Dolly(std::pow(1.15, event->angleDelta().y() / 120.0));
+    request_render();
+    event->accept();
+}
+
+}  // namespace seamwright

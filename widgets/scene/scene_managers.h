@@ -1,0 +1,76 @@
+#pragma once
+// The only code that touches VTK's actors: one manager a layer, values in, one or two actors out.
+
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <QColor>
+#include <QPalette>
+#include <vector>
+
+#include "widgets/scene/scene_view.h"
+
+namespace seamwright {
+
+// Lines and triangles with a colour each, in one mesh for one actor.
+class ScenePainter {
+  public:
+    ScenePainter();
+    void line(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const QColor& colour);
+    void triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                  const QColor& colour);
+    // A shaft with a four-sided head, `thickness` across the shaft.
+    void arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double thickness,
+               const QColor& colour);
+    void axes(const Pose& pose, double length, double thickness);
+    void ball(const Eigen::Vector3d& centre, double radius, const QColor& colour);
+    void box(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const QColor& colour);
+    vtkSmartPointer<vtkPolyData> take();
+
+  private:
+    vtkIdType point(const Eigen::Vector3d& p);
+    void colour(std::vector<unsigned char>& colours, const QColor& colour);
+    vtkSmartPointer<vtkPolyData> data_;
+    std::vector<unsigned char> line_colours_, face_colours_;
+};
+
+class LayerManager {
+  public:
+    LayerManager(vtkRenderer& renderer, bool lit, double line_width);
+    void set(const vtkSmartPointer<vtkPolyData>& data);
+    void set_shown(bool shown);
+    bool shown() const { return shown_; }
+    vtkActor& actor() { return *actor_; }
+
+  private:
+    vtkSmartPointer<vtkActor> actor_;
+    bool shown_ = true;
+};
+
+// What a layer looks like.
+vtkSmartPointer<vtkPolyData> draw_spots(const std::vector<SceneSpot>& spots, const std::string& selected,
+                                        const QPalette& palette);
+vtkSmartPointer<vtkPolyData> draw_sensors(const std::vector<SceneSpot>& spots, const std::string& selected,
+                                          const QPalette& palette);
+vtkSmartPointer<vtkPolyData> draw_regions(const std::vector<SceneRegion>& regions,
+                                          const std::vector<SceneSpot>& spots, const std::string& selected,
+                                          const QPalette& palette);
+vtkSmartPointer<vtkPolyData> draw_corrections(const std::vector<SceneSpot>& spots, double scale,
+                                              const QPalette& palette);
+vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, const QPalette& palette);
+vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot, const QPalette& palette);
+// Where a region's weak direction arrow stands: centroid of its spots' references, and half the arrow's
+// length.
+struct WeakArrow {
+    Eigen::Vector3d centre, tip;
+};
+std::optional<WeakArrow> weak_arrow(const SceneRegion& region, const std::vector<SceneSpot>& spots);
+
+// Lit mesh with smooth normals across edges below 30 degrees.
+vtkSmartPointer<vtkPolyData> part_surface(const SceneMesh& mesh);
+Expected<SceneMesh> mesh_from_ply(const std::vector<std::byte>& ply);
+Expected<SceneMesh> mesh_from_file(const std::filesystem::path& file, const std::string& unit);
+
+}  // namespace seamwright

@@ -1,0 +1,476 @@
+#include "widgets/scene/scene_view.h"
+
+#include <vtkCamera.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+
+#include <QHBoxLayout>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QMenu>
+#include <QPainter>
+#include <QStackedLayout>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <map>
+
+#include "widgets/scene/scene_canvas.h"
+#include "widgets/scene/scene_managers.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+
+namespace {
+
+// Words over the picture in the window's own font; lets the mouse through.
+class SceneLabels : public QWidget {
+  public:
+    explicit SceneLabels(QWidget* parent) : QWidget(parent) {
+        setAttribute(Qt::WA_TransparentForMouseEvents);
+        setAttribute(Qt::WA_NoSystemBackground);
+    }
+    struct Label {
+        QPointF at;
+        QString text;
+        QColor colour;
+        bool strong;
+    };
+    std::vector<Label> labels;
+    QString foot;
+
+    void paint(QPainter& painter) const {
+        QColor ground = palette().color(QPalette::Base);
+        ground.setAlpha(205);
+        const QFontMetrics metrics(font());
+        std::vector<QRectF> taken;
+        for (const Label& label : labels) {
+            QRectF box(label.at + QPointF(11, -metrics.height() - 3),
+                       QSizeF(metrics.horizontalAdvance(label.text) + 10, metrics.height() + 2));
+            // Labels that would cover another one move down.
+            for (int tries = 0; tries < 6; ++tries) {
+                const bool covered = std::any_of(taken.begin(), taken.end(),
+                                                 [&](const QRectF& t) { return t.intersects(box); });
+                if (!covered) break;
+                box.translate(0, metrics.height() + 3);
+            }
+            taken.push_back(box);
+            painter.fillRect(box, ground);
+            if (label.strong) {
+                painter.setPen(QPen(label.colour, 2));
+                painter.drawRect(box);
+            }
+            painter.setPen(label.colour);
+            painter.drawText(box, Qt::AlignCenter, label.text);
+        }
+        if (!foot.isEmpty()) {
+            painter.setPen(style::quiet_text(palette()));
+            painter.drawText(rect().adjusted(8, 4, -8, -6), Qt::AlignBottom | Qt::AlignLeft, foot);
+        }
+    }
+
+  protected:
+    void paintEvent(QPaintEvent*) override {
+        QPainter painter(this);
+        paint(painter);
+    }
+};
+
+}  // namespace
+
+struct SceneView::Impl {
+    SceneView& view;
+    SceneCanvas* canvas = nullptr;
+    SceneLabels* words = nullptr;
+    QWidget* toolbar = nullptr;
+    QLabel* sentence = nullptr;
+    std::map<Layer, std::unique_ptr<LayerManager>> layers;
+    std::map<Layer, QAction*> actions;
+    std::map<Layer, bool> shown;
+    SceneMesh mesh;
+    std::vector<SceneSpot> spots;
+    std::vector<SceneRegion> regions;
+    ScenePath path;
+    std::optional<SceneRobot> robot;
+    Pose part_shift = Pose::Identity();
+    std::string spot, region;
+    double scale = 20;
+    bool first_fit = true;
+
+    explicit Impl(SceneView& owner) : view(owner) {}
+    LayerManager* manager(Layer layer) {
+        const auto found = layers.find(layer);
+        return found == layers.end() ? nullptr : found->second.get();
+    }
+    void make_layers();
+    void restyle();
+    void redraw(Layer layer);
+    void redraw_all();
+    void place_words();
+    void changed() {
+        if (canvas) canvas->request_render();
+    }
+};
+
+void SceneView::Impl::make_layers() {
+    vtkRenderer& renderer = canvas->renderer();
+    const auto add = [&](Layer layer, bool lit, double width) {
+        layers[layer] = std::make_unique<LayerManager>(renderer, lit, width);
+    };
+    add(Layer::part, true, 1);
+    add(Layer::spots, true, 2);
+    add(Layer::sensors, false, 2);
+    add(Layer::regions, false, 2);
+    add(Layer::corrections, true, 2);
+    add(Layer::path, false, 3);
+    add(Layer::robot, true, 2);
+    renderer.SetUseDepthPeeling(false);
+    restyle();
+}
+
+void SceneView::Impl::restyle() {
+    if (!canvas) return;
+    const QColor ground = view.palette().color(QPalette::Base);
+    canvas->renderer().SetBackground(ground.redF(), ground.greenF(), ground.blueF());
+    canvas->renderer().SetBackgroundAlpha(1);
+    vtkActor& part = manager(Layer::part)->actor();
+    part.GetMapper()->ScalarVisibilityOff();
+    const QColor metal = style::is_dark(view.palette()) ? QColor(0x8d98a3) : QColor(0xb4bcc4);
+    part.GetProperty()->SetColor(metal.redF(), metal.greenF(), metal.blueF());
+    part.GetProperty()->SetAmbient(0.25);
+    part.GetProperty()->SetDiffuse(0.75);
+    part.GetProperty()->SetSpecular(0.12);
+    redraw_all();
+}
+
+void SceneView::Impl::redraw(Layer layer) {
+    LayerManager* one = manager(layer);
+    if (!one) return;
+    const QPalette palette = view.palette();
+    switch (layer) {
+        case Layer::part:
+            one->set(part_surface(mesh));
+            break;
+        case Layer::spots:
+            one->set(draw_spots(spots, spot, palette));
+            break;
+        case Layer::sensors:
+            one->set(draw_sensors(spots, spot, palette));
+            break;
+        case Layer::regions:
+            one->set(draw_regions(regions, spots, region, palette));
+            break;
+        case Layer::corrections:
+            one->set(draw_corrections(spots, scale, palette));
+            break;
+        case Layer::path:
+            one->set(draw_path(path, scale, palette));
+            break;
+        case Layer::robot:
+            one->set(draw_robot(robot, palette));
+            break;
+        case Layer::labels:
+            break;
+    }
+    changed();
+}
+
+void SceneView::Impl::redraw_all() {
+    for (const Layer layer :
+         {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections, Layer::path, Layer::robot})
+        redraw(layer);
+}
+
+void SceneView::Impl::place_words() {
+    words->labels.clear();
+    words->foot.clear();
+    const QPalette palette = view.palette();
+    if (shown[Layer::labels]) {
+        for (const SceneSpot& one : spots) {
+            const Eigen::Vector3d at = canvas->project(one.workobject_from_sensor * one.reference_mm);
+            if (at.z() > 1) continue;
+            QString text = QString::fromStdString(one.id);
+            if (!one.enabled) text = SceneView::tr("%1 (off)").arg(text);
+            if (one.shift_mm && shown[Layer::corrections])
+                text += SceneView::tr("  %1 mm").arg(one.shift_mm->norm(), 0, 'f', 2);
+            const bool chosen = one.id == spot;
+            words->labels.push_back(
+                {{at.x(), at.y()}, text, chosen ? style::selection(palette) : style::text(palette), chosen});
+        }
+        if (shown[Layer::regions])
+            for (const SceneRegion& one : regions) {
+                const auto weak = weak_arrow(one, spots);
+                if (!weak || one.weak_text.empty()) continue;
+                const Eigen::Vector3d at = canvas->project(weak->tip);
+                if (at.z() <= 1)
+                    words->labels.push_back({{at.x(), at.y()},
+                                             QString::fromStdString(one.id + ": " + one.weak_text),
+                                             style::alarm(palette),
+                                             false});
+            }
+    }
+    const bool any =
+        std::any_of(spots.begin(), spots.end(), [](const SceneSpot& s) { return s.shift_mm.has_value(); });
+    if ((any && shown[Layer::corrections]) || (!path.after_mm.empty() && shown[Layer::path]))
+        words->foot = SceneView::tr("corrections drawn × %1").arg(scale, 0, 'g', 3);
+    words->update();
+}
+
+SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>(*this)) {
+    setObjectName("scene_view");
+    setAccessibleName(tr("Part in 3D"));
+    setToolTip(
+        tr("Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit."));
+    setFocusPolicy(Qt::StrongFocus);
+    impl_->toolbar = new QWidget(this);
+    auto* row = new QHBoxLayout(impl_->toolbar);
+    row->setContentsMargins(8, 2, 4, 2);
+    row->setSpacing(4);
+    row->addWidget(new QLabel(tr("Part"), impl_->toolbar), 1);
+    const auto button = [&](const QString& word, const QString& tip) {
+        auto* made = new QToolButton(impl_->toolbar);
+        made->setText(word);
+        made->setToolTip(tip);
+        made->setAccessibleName(word);
+        made->setAutoRaise(true);
+        made->setMinimumSize(style::kTargetPx, style::kTargetPx);
+        row->addWidget(made);
+        return made;
+    };
+    const std::pair<QString, View> views[] = {
+        {tr("Front"), View::front}, {tr("Top"), View::top}, {tr("Iso"), View::iso}, {tr("Fit"), View::fit}};
+    for (const auto& [word, which] : views)
+        connect(button(word, tr("View: %1").arg(word)), &QToolButton::clicked, this,
+                [this, which = which] { show_view(which); });
+    auto* layers = button(tr("Layers"), tr("What is drawn"));
+    auto* menu = new QMenu(layers);
+    const std::pair<QString, Layer> names[] = {{tr("Part"), Layer::part},
+                                               {tr("Spots"), Layer::spots},
+                                               {tr("Sensors and laser planes"), Layer::sensors},
+                                               {tr("Regions"), Layer::regions},
+                                               {tr("Corrections"), Layer::corrections},
+                                               {tr("Path before and after"), Layer::path},
+                                               {tr("Robot"), Layer::robot},
+                                               {tr("Labels"), Layer::labels}};
+    for (const auto& [word, which] : names) {
+        QAction* action = menu->addAction(word);
+        action->setCheckable(true);
+        action->setChecked(true);
+        impl_->shown[which] = true;
+        impl_->actions[which] = action;
+        connect(action, &QAction::toggled, this, [this, which = which](bool on) { set_layer(which, on); });
+    }
+    layers->setMenu(menu);
+    layers->setPopupMode(QToolButton::InstantPopup);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(impl_->toolbar);
+    if (opengl_available()) {
+        auto* place = new QWidget(this);
+        auto* stack = new QStackedLayout(place);
+        stack->setStackingMode(QStackedLayout::StackAll);
+        impl_->canvas = new SceneCanvas(place);
+        impl_->canvas->setAccessibleName(tr("Part in 3D"));
+        impl_->words = new SceneLabels(place);
+        stack->addWidget(impl_->words);
+        stack->addWidget(impl_->canvas);
+        stack->setCurrentWidget(impl_->words);
+        column->addWidget(place, 1);
+        setFocusProxy(impl_->canvas);
+        impl_->make_layers();
+        impl_->canvas->on_rendered = [this] { impl_->place_words(); };
+        impl_->canvas->on_click = [this](const QPointF& at) {
+            const SceneSpot* nearest = nullptr;
+            double best = 18;  // px: a gloved click
+            for (const SceneSpot& spot : impl_->spots) {
+                const Eigen::Vector3d p =
+                    impl_->canvas->project(spot.workobject_from_sensor * spot.reference_mm);
+                const double distance = std::hypot(p.x() - at.x(), p.y() - at.y());
+                if (p.z() <= 1 && distance < best) {
+                    best = distance;
+                    nearest = &spot;
+                }
+            }
+            if (!nearest && layer(Layer::part))
+                if (const auto hit = impl_->canvas->pick(at, impl_->manager(Layer::part)->actor()))
+                    emit part_picked(hit->x(), hit->y(), hit->z());
+            const std::string id = nearest ? nearest->id : std::string();
+            if (id != impl_->spot) select_spot(id);
+            emit spot_picked(QString::fromStdString(id));
+        };
+        show_view(View::iso);
+    } else {
+        impl_->sentence = new QLabel(
+            tr("No 3D picture: this display offers no OpenGL 3.2. Everything else works; measuring, "
+               "correcting and "
+               "pushing do not need it. Cure: a graphics driver with OpenGL 3.2, or Mesa's software renderer "
+               "(LIBGL_ALWAYS_SOFTWARE=1)."),
+            this);
+        impl_->sentence->setWordWrap(true);
+        impl_->sentence->setAlignment(Qt::AlignCenter);
+        impl_->sentence->setMargin(24);
+        column->addWidget(impl_->sentence, 1);
+    }
+}
+
+SceneView::~SceneView() = default;
+
+Expected<void> SceneView::set_part_ply(const std::vector<std::byte>& ply) {
+    const auto mesh = mesh_from_ply(ply);
+    if (!mesh) return tl::unexpected(mesh.error());
+    set_part(*mesh);
+    return {};
+}
+
+Expected<void> SceneView::set_part_file(const std::filesystem::path& file, const std::string& unit) {
+    const auto mesh = mesh_from_file(file, unit);
+    if (!mesh) return tl::unexpected(mesh.error());
+    set_part(*mesh);
+    return {};
+}
+
+void SceneView::set_part(const SceneMesh& mesh) {
+    impl_->mesh = mesh;
+    impl_->redraw(Layer::part);
+    if (impl_->first_fit && !mesh.points.empty()) {
+        impl_->first_fit = false;
+        show_view(View::iso);
+    }
+}
+
+void SceneView::set_part_shift(const Pose& workobject_from_part) {
+    impl_->part_shift = workobject_from_part;
+    if (LayerManager* part = impl_->manager(Layer::part)) {
+        vtkNew<vtkMatrix4x4> matrix;
+        for (int r = 0; r < 4; ++r)
+            for (int c = 0; c < 4; ++c) matrix->SetElement(r, c, workobject_from_part.matrix()(r, c));
+        part->actor().SetUserMatrix(matrix);
+    }
+    impl_->changed();
+}
+
+void SceneView::set_spots(const std::vector<SceneSpot>& spots) {
+    impl_->spots = spots;
+    for (const Layer layer : {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections})
+        impl_->redraw(layer);
+}
+
+void SceneView::set_regions(const std::vector<SceneRegion>& regions) {
+    impl_->regions = regions;
+    impl_->redraw(Layer::regions);
+}
+
+void SceneView::set_path(const ScenePath& path) {
+    impl_->path = path;
+    impl_->redraw(Layer::path);
+}
+
+void SceneView::set_robot(const std::optional<SceneRobot>& robot) {
+    impl_->robot = robot;
+    impl_->redraw(Layer::robot);
+}
+
+void SceneView::set_correction_scale(double factor) {
+    impl_->scale = std::clamp(factor, 1.0, 1000.0);
+    impl_->redraw(Layer::corrections);
+    impl_->redraw(Layer::path);
+}
+
+void SceneView::select_spot(const std::string& id) {
+    if (impl_->spot == id) return;
+    impl_->spot = id;
+    impl_->redraw(Layer::spots);
+    impl_->redraw(Layer::sensors);
+}
+
+void SceneView::select_region(const std::string& id) {
+    if (impl_->region == id) return;
+    impl_->region = id;
+    impl_->redraw(Layer::regions);
+}
+
+std::string SceneView::selected_spot() const {
+    return impl_->spot;
+}
+
+void SceneView::show_view(View view) {
+    if (impl_->canvas) impl_->canvas->show_view(view);
+}
+
+void SceneView::set_layer(Layer layer, bool shown) {
+    impl_->shown[layer] = shown;
+    impl_->actions[layer]->setChecked(shown);
+    if (LayerManager* manager = impl_->manager(layer)) manager->set_shown(shown);
+    impl_->changed();
+}
+
+bool SceneView::layer(Layer layer) const {
+    return impl_->shown.at(layer);
+}
+void SceneView::set_toolbar_shown(bool shown) {
+    impl_->toolbar->setVisible(shown);
+}
+bool SceneView::has_opengl() const {
+    return impl_->canvas != nullptr;
+}
+int SceneView::pictures_rendered() const {
+    return impl_->canvas ? impl_->canvas->rendered : 0;
+}
+
+QImage SceneView::picture() {
+    if (!impl_->canvas) return {};
+    QImage image = impl_->canvas->grabFramebuffer().convertToFormat(QImage::Format_RGB32);
+    if (image.isNull()) return image;
+    impl_->place_words();
+    image.setDevicePixelRatio(devicePixelRatioF());
+    QPainter painter(&image);
+    painter.setFont(font());
+    impl_->words->paint(painter);
+    return image;
+}
+
+Expected<void> SceneView::save_picture(const std::filesystem::path& png) {
+    const QImage image = picture();
+    if (image.isNull()) return device_error("no OpenGL picture", "3D view", "use a display with OpenGL 3.2");
+    if (!image.save(QString::fromStdString(png.string()), "PNG"))
+        return file_error("cannot be written", png.string(), "choose a folder that you may write to");
+    return {};
+}
+
+QPointF SceneView::to_screen(const Eigen::Vector3d& point_workobject_mm) const {
+    if (!impl_->canvas) return {-1, -1};
+    const Eigen::Vector3d p = impl_->canvas->project(point_workobject_mm);
+    return impl_->canvas->mapTo(this, QPointF(p.x(), p.y()));
+}
+
+void SceneView::changeEvent(QEvent* event) {
+    QWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange && impl_ && impl_->canvas) impl_->restyle();
+}
+
+void SceneView::keyPressEvent(QKeyEvent* event) {
+    switch (event->key()) {
+        case Qt::Key_1:
+            show_view(View::front);
+            return;
+        case Qt::Key_2:
+            show_view(View::top);
+            return;
+        case Qt::Key_3:
+            show_view(View::iso);
+            return;
+        case Qt::Key_F:
+            show_view(View::fit);
+            return;
+        case Qt::Key_Escape:
+            select_spot({});
+            emit spot_picked({});
+            return;
+        default:
+            QWidget::keyPressEvent(event);
+    }
+}
+
+}  // namespace seamwright

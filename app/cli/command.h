@@ -44,6 +44,7 @@ class CommandLine {
 // One line each in main.cpp.
 void add_correct(CommandLine& line);
 void add_plan(CommandLine& line);
+void add_panel(CommandLine& line);
 void add_filter(CommandLine& line);
 void add_feature(CommandLine& line);
 void add_match(CommandLine& line);

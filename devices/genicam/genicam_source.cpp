@@ -1,5 +1,8 @@
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -8,6 +11,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -20,6 +24,23 @@
 
 namespace seamwright {
 namespace {
+
+// Aravis sets the size of its socket's buffer when the first frame has begun, and a first frame that comes in
+// one burst does not fit in the kernel's default. The socket is found by its port; where it is not, Aravis'
+// way remains.
+void widen_receive_buffer(guint16 port, int bytes) {
+    std::error_code failed;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", failed)) {
+        const int fd = std::atoi(entry.path().filename().c_str());
+        int type = 0;
+        sockaddr_in bound{};
+        socklen_t size = sizeof type, length = sizeof bound;
+        if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM) continue;
+        if (getsockname(fd, reinterpret_cast<sockaddr*>(&bound), &length) != 0 || bound.sin_family != AF_INET)
+            continue;
+        if (ntohs(bound.sin_port) == port) setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+    }
+}
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
@@ -366,6 +387,7 @@ Expected<void> GenicamSource::start_stream() {
             "packet-timeout", static_cast<guint>(settings_.packet_timeout.count() * 1000), "frame-retention",
             static_cast<guint>(settings_.frame_retention.count() * 1000), "socket-buffer",
             ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", bytes, nullptr);
+        widen_receive_buffer(arv_gv_stream_get_port(ARV_GV_STREAM(stream_.get())), bytes);
     }
     for (int i = 0; i < settings_.buffers; ++i) give_back(arv_buffer_new_allocate(payload));
     arv_camera_start_acquisition(camera, g.out());

@@ -1,15 +1,15 @@
 #pragma once
-// ABB controllers (IRC5, OmniCore) by the RAPID module resources/robot/abb/Seamwright.mod.
+// ABB controllers (IRC5, OmniCore) by a RAPID server task of ours.
 //
 // The controller is the server: a semi-static task binds, listens and accepts one client (TCP, port 1025
-// unless the project says another), as ABB's Application manual "Controller software" (3HAC050798, Socket
-// Messaging; option 616-1 PC Interface) has it. The protocol is ours, shaped by RAPID's limits; its messages
-// are in rapid_message.h.
+// unless the project says another), as ABB's Application manual "Controller software", chapter Socket
+// Messaging, has it. The protocol is ours, shaped by RAPID's limits; its messages
+// are in rapid_message.h, which is what the RAPID task has to be written to.
 //
-// Frames are work objects: the name is that of a wobjdata of the generated module SeamwrightSpots.mod, at
-// most 32 characters. write_frame() stages base_from_frame (uframe being identity); the controller puts the
-// staged shift into `oframe` of that work object when the verdict is `corrected`, and SWActivate lets no path
-// run in it before. read_frame() answers the staged frame while one is staged, else the work object itself.
+// Frames are work objects: the name is that of a wobjdata on the controller, at most 32 characters.
+// write_frame() stages base_from_frame (uframe being identity); the controller puts the staged shift into
+// `oframe` of that work object when the verdict is `corrected`, and no path may run in it before.
+// read_frame() answers the staged frame while one is staged, else the work object itself.
 //
 // RAPID's num is single precision: a frame comes back off by at most half a unit in the last place, 0.00025
 // mm a coordinate up to 8 m, 0.0005 mm up to 16 m, and about 1e-5 degree. Both are below what the safety gate
@@ -32,7 +32,6 @@
 
 #include "devices/device_session.h"
 #include "devices/robot_link.h"
-#include "devices/robot_program.h"
 #include "devices/simulated/controller.h"
 
 namespace seamwright {
@@ -41,15 +40,8 @@ Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settin
 
 // The same protocol from the controller's side, before a simulated cell; positions and quaternions go through
 // single precision as on the controller. Settings: {"address": "127.0.0.1", "port": 0, "slow_ms": 300,
-// "trigger_interval_ms": 20, "serial": "SIM-ABB-1", "model": "IRB 6700 (simulated)"}.
+// "trigger_interval_ms": 20, "serial": that of the cell, "model": "IRB 6700 (simulated)"}.
 Expected<std::unique_ptr<SimulatedController>> start_abb_rapid(std::shared_ptr<SimulatedCell> cell,
                                                                const nlohmann::json& settings);
-
-// Seamwright.mod as shipped and SeamwrightSpots.mod from the project. Settings of the request used:
-// {"port": 1025, "trigger_output": "doSeamwright", "tool": "tool0" (the spots' poses are those of the flange;
-// any other tool is refused)}; others are ignored. Refuses names that are no RAPID identifiers or longer than
-// 32 characters, twice the same name (RAPID does not tell upper and lower case apart), spot names longer than
-// 32 characters or with blanks or quotes, and poses beyond 1e5 mm.
-Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request);
 
 }  // namespace seamwright

@@ -1,4 +1,4 @@
-// The simulated ABB controller: Seamwright.mod's side of the protocol, one client at a time.
+// The simulated ABB controller: the RAPID task's side of the protocol, one client at a time.
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ using Milliseconds = std::chrono::milliseconds;
 constexpr Milliseconds kPoll{2};
 
 struct Settings {
-    std::string address = "127.0.0.1", serial = "SIM-ABB-1", model = "IRB 6700 (simulated)";
+    std::string address = "127.0.0.1", serial, model = "IRB 6700 (simulated)";
     std::uint16_t port = 0;
     Milliseconds slow{300}, trigger_interval{20};
 };
@@ -158,7 +158,8 @@ class Controller final : public SimulatedController {
 
     static void spoil(Message& message) {
         if (message.word == "MODE") message.fields = {"DREAM", "ON", "RUN"};
-        if (message.word == "POSE" || message.word == "READ" || message.word == "TRIGGER")
+        if (message.word == "POSE" || message.word == "READ" || message.word == "WRITE" ||
+            message.word == "TRIGGER")
             message.line2 = "1000000000.0000 0.0000 0.0000";
     }
 
@@ -215,6 +216,7 @@ class Controller final : public SimulatedController {
             withdraw();
             staged_[f[0]] = as_num(*pose);
             reply.fields = f;
+            abb::set_pose_lines(reply, staged_.at(f[0]));
         } else if (word == "MEASURE" && f.size() == 2) {
             return measure(request, std::move(reply));
         } else if (word == "VERDICT" && f.size() == 1) {
@@ -303,6 +305,7 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_rapid(std::shared_ptr<S
                                                                const nlohmann::json& settings) {
     auto parsed = parse_settings(settings);
     if (!parsed) return tl::unexpected(parsed.error());
+    if (parsed->serial.empty()) parsed->serial = cell->settings().serial;
     auto listener = TcpListener::listen(parsed->address, parsed->port);
     if (!listener) return tl::unexpected(listener.error());
     return std::make_unique<Controller>(std::move(cell), std::move(*parsed), std::move(*listener));

@@ -154,8 +154,8 @@ class AbbRapidLink final : public RobotLink {
         if (auto ok = check_frame_name(name); !ok) return ok;
         Message request{0, "WRITE", {name}, {}, {}};
         if (auto ok = put_pose(request, base_from_frame); !ok) return ok;
-        auto answer = ask(std::move(request), settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
+        auto staged = pose_of(ask(std::move(request), settings_.timeout));
+        if (!staged) return tl::unexpected(staged.error());
         return {};
     }
 
@@ -206,7 +206,7 @@ class AbbRapidLink final : public RobotLink {
     tl::unexpected<Error> broken(std::string what) {
         drop();
         return device_error(std::move(what), where_,
-                            "load the Seamwright.mod of this version on the controller");
+                            "the controller's module and this program must speak the same version");
     }
     tl::unexpected<Error> lost(Error error) {
         drop();

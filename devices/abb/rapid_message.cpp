@@ -68,7 +68,7 @@ Expected<Message> parse_message(std::string_view bytes, const std::string& where
         if (line.back() != '\n' || !std::all_of(line.begin(), line.end() - 1, printable))
             return device_error(
                 fmt::format("line {} of a message is not 79 printable characters and a line feed", i + 1),
-                where, "load the Seamwright.mod of this version on the controller");
+                where, "the controller's module and this program must speak the same version");
         lines[i] = trimmed(line.substr(0, kLineBytes - 1));
     }
     auto fields = words(lines[0]);
@@ -107,8 +107,8 @@ Expected<Pose> parse_pose_lines(const Message& message, const std::string& where
                             where);
     for (const double value : t)
         if (std::abs(value) > 1e5)
-            return device_error(fmt::format("the controller tells a position of {} mm, out of range", value),
-                                where, "a robot reaches less than 1e5 mm");
+            return device_error(fmt::format("{} mm is no position of a robot", value), where,
+                                "a robot reaches less than 1e5 mm");
     auto rotation = rotation_from_abb({q[0], q[1], q[2], q[3]}, where);
     if (!rotation) return device_error(rotation.error().what, where);
     return make_pose(*rotation, {t[0], t[1], t[2]});

@@ -15,7 +15,7 @@
 //   n MODE                            n MODE AUTO|MANR|MANF|UNDEF ON|OFF|STOP|ESTOP RUN|HALT
 //   n POSE                            n POSE             + pose base_from_flange
 //   n READ frame                      n READ frame       + pose base_from_frame
-//   n WRITE frame                     n WRITE frame          (with a pose; answered when staged)
+//   n WRITE frame                     n WRITE frame      + pose as staged (the request has one too)
 //   n MEASURE count signature         n MEASURE count    compares with its program (program_signature())
 //   n VERDICT CORRECTED|REFUSED|FAILED + text     n VERDICT word
 //   n MOVE                            n MOVE                 (with a pose; answered when standing there)

@@ -27,12 +27,14 @@ std::uint16_t free_port() {
 struct Brand {
     std::string name;
     bool robot_is_client = false;
-    std::string frame;  // a name that its frames can have
+    std::string frame;                         // a name that its frames can have
+    RobotMode external = RobotMode::external;  // how the brand tells that mode
 };
 void PrintTo(const Brand& brand, std::ostream* out) {
     *out << brand.name;
 }
-const std::vector<Brand> kBrands = {{"kuka-eki", true, "BASE_left"}};
+const std::vector<Brand> kBrands = {{"kuka-eki", true, "BASE_left"},
+                                    {"abb-rapid", false, "BASE_left", RobotMode::automatic}};
 
 std::vector<MeasuringMove> program() {
     std::vector<MeasuringMove> moves;
@@ -115,7 +117,7 @@ TEST_P(RobotLaws, TellsWhoItIsAndHowItStands) {
     EXPECT_EQ(identity->driver, GetParam().name);
     EXPECT_EQ(identity->serial, "KRC-4711");
     EXPECT_FALSE(identity->brand.empty());
-    EXPECT_EQ(link->mode(), RobotMode::external);
+    EXPECT_EQ(link->mode(), GetParam().external);
     cell->set_mode(RobotMode::fault);
     EXPECT_EQ(link->mode(), RobotMode::fault);
     cell->move_to(program()[2].trigger);

@@ -64,7 +64,7 @@ Pose far_pose() {
 TEST_F(AbbRapid, TellsWhoItIsAndHowItStands) {
     const auto identity = link->identity();
     ASSERT_TRUE(identity) << identity.error().sentence();
-    EXPECT_EQ(*identity, (RobotIdentity{"abb-rapid", "ABB", "IRB 6700 (simulated)", "SIM-ABB-1"}));
+    EXPECT_EQ(*identity, (RobotIdentity{"abb-rapid", "ABB", "IRB 6700 (simulated)", "SIM-1"}));
     for (const RobotMode mode : {RobotMode::automatic, RobotMode::manual_reduced, RobotMode::manual_full,
                                  RobotMode::stopped, RobotMode::fault}) {
         cell()->set_mode(mode);
@@ -205,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(Every, AbbFault,
                                                    "the connection was closed by the other side"},
                                          FaultCase{ControllerFault::reject_write,
                                                    "the controller refuses WRITE: writing is locked"},
-                                         FaultCase{ControllerFault::out_of_range, "out of range"}),
+                                         FaultCase{ControllerFault::out_of_range, "no position of a robot"}),
                          [](const auto& tested) { return std::string(to_string(tested.param.fault)); });
 
 TEST(AbbRapidSettings, AreChecked) {

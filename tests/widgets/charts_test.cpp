@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include <QSignalSpy>
+#include <QTest>
+#include <cmath>
+#include <limits>
+
+#include "widgets/charts/histogram.h"
+#include "widgets/charts/trend_chart.h"
+
+namespace seamwright {
+namespace {
+
+TEST(Capability, FollowsItsFormulae) {
+    // 1..5: mean 3, s = sqrt(2.5).
+    const Capability c = capability({1, 2, 3, 4, 5, std::numeric_limits<double>::quiet_NaN()}, {0.0, 9.0});
+    EXPECT_EQ(c.count, 5);
+    EXPECT_DOUBLE_EQ(c.mean, 3);
+    EXPECT_NEAR(c.standard_deviation, std::sqrt(2.5), 1e-12);
+    EXPECT_NEAR(*c.cp, 9 / (6 * std::sqrt(2.5)), 1e-12);
+    EXPECT_NEAR(*c.cpk, 3 / (3 * std::sqrt(2.5)), 1e-12);
+    const Capability one_sided = capability({1, 2, 3}, {std::nullopt, 5.0});
+    EXPECT_FALSE(one_sided.cp);
+    EXPECT_NEAR(*one_sided.cpk, 1, 1e-12);
+    EXPECT_FALSE(capability({2, 2, 2}, {0.0, 3.0}).cpk);
+}
+
+TEST(TrendChart, ClickOpensThePartAndLimitsAreCounted) {
+    TrendChart chart;
+    chart.resize(600, 260);
+    chart.set_data("x", "mm", {"1", "2", "3", "4"},
+                   {{"x", {0, 0.5, -0.1, std::nan("")}}, {"z", {0, 0, -0.4, 0}}}, {-0.3, 0.3});
+    EXPECT_EQ(chart.beyond_limits(), 2);
+    chart.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&chart));
+    QTest::qWait(50);
+    QSignalSpy opened(&chart, &TrendChart::part_opened);
+    QTest::mouseClick(chart.focusProxy(), Qt::LeftButton, {},
+                      chart.focusProxy()->mapFrom(&chart, chart.to_screen(2, -0.4)).toPoint());
+    ASSERT_EQ(opened.size(), 1);
+    EXPECT_EQ(opened[0][0].toInt(), 2);
+    QTest::keyClick(chart.focusProxy(), Qt::Key_Left);
+    QTest::keyClick(chart.focusProxy(), Qt::Key_Return);
+    ASSERT_EQ(opened.size(), 2);
+    EXPECT_EQ(opened[1][0].toInt(), 1);
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <QLineEdit>
+#include <QSignalSpy>
+#include <QTest>
+
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/pose_editor.h"
+
+namespace seamwright {
+namespace {
+
+TEST(NumberText, PointAndCommaWhateverTheLanguage) {
+    EXPECT_DOUBLE_EQ(*number_from_text(" 1.5 "), 1.5);
+    EXPECT_DOUBLE_EQ(*number_from_text("-1,5"), -1.5);
+    EXPECT_DOUBLE_EQ(*number_from_text("2e-3"), 0.002);
+    for (const char* bad : {"", "1.000,5", "nan", "inf", "1 2", "0x10", "--1", "1.2.3"})
+        EXPECT_FALSE(number_from_text(bad)) << bad;
+    EXPECT_EQ(text_from_number(-0.0001, 2), "0.00");
+    EXPECT_EQ(text_from_number(12345.678, 2), "12345.68");
+}
+
+TEST(ParameterEditor, CommitsRefusesAndGoesBack) {
+    ParameterEditor editor({"window_mm", "mm", 0, 10, 2, 2, "Half width."});
+    editor.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&editor));
+    auto* line = editor.findChild<QLineEdit*>();
+    QSignalSpy committed(&editor, &ParameterEditor::committed);
+    line->selectAll();
+    QTest::keyClicks(line, "3,25");
+    QTest::keyClick(line, Qt::Key_Return);
+    ASSERT_EQ(committed.size(), 1);
+    EXPECT_DOUBLE_EQ(committed[0][0].toDouble(), 3.25);
+    line->selectAll();
+    QTest::keyClicks(line, "11");
+    QTest::keyClick(line, Qt::Key_Return);
+    EXPECT_TRUE(editor.refused());
+    EXPECT_TRUE(editor.reason().contains("10.00"));
+    EXPECT_DOUBLE_EQ(editor.value(), 3.25);
+    EXPECT_EQ(committed.size(), 1);
+    QTest::keyClick(line, Qt::Key_Escape);
+    EXPECT_FALSE(editor.refused());
+    EXPECT_EQ(line->text(), "3.25");
+    // Untouched, a value keeps more digits than are shown.
+    editor.set_value(1.23456);
+    QTest::keyClick(line, Qt::Key_Return);
+    EXPECT_DOUBLE_EQ(editor.value(), 1.23456);
+}
+
+TEST(PoseText, EveryNotationComesBack) {
+    const Pose pose = make_pose(rotation_from_kuka({30, -20, 110}), {12.5, -300, 7});
+    for (const auto notation : {PoseNotation::kuka_abc, PoseNotation::fanuc_wpr, PoseNotation::abb_quaternion,
+                                PoseNotation::ur_rotvec, PoseNotation::matrix}) {
+        const auto back = pose_from_text(text_from_pose(pose, notation), notation);
+        ASSERT_TRUE(back) << notation_name(notation).toStdString();
+        EXPECT_LT(distance_mm(*back, pose), 1e-3);
+        EXPECT_LT(angle_rad(*back, pose), 1e-6);
+    }
+    const auto pasted = pose_from_text("{X 12.5,Y -300,Z 7,A 30,B -20,C 110}", PoseNotation::kuka_abc);
+    ASSERT_TRUE(pasted);
+    EXPECT_LT(angle_rad(*pasted, pose), 1e-12);
+    EXPECT_FALSE(pose_from_text("1 2 3", PoseNotation::kuka_abc));
+    EXPECT_FALSE(pose_from_text("1 0 0 0  0 2 0 0  0 0 1 0  0 0 0 1", PoseNotation::matrix));
+}
+
+TEST(PoseEditor, TypedNumbersCommitOnce) {
+    PoseEditor editor;
+    editor.set_notation(PoseNotation::abb_quaternion);
+    editor.show();
+    ASSERT_TRUE(QTest::qWaitForWindowExposed(&editor));
+    QSignalSpy committed(&editor, &PoseEditor::committed);
+    auto* x = editor.findChildren<QLineEdit*>().at(0);
+    x->selectAll();
+    QTest::keyClicks(x, "42,5");
+    QTest::keyClick(x, Qt::Key_Return);
+    EXPECT_EQ(committed.size(), 1);
+    EXPECT_DOUBLE_EQ(editor.pose().translation().x(), 42.5);
+}
+
+}  // namespace
+}  // namespace seamwright

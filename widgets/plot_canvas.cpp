@@ -36,7 +36,8 @@ void PlotCanvas::style_axis(QCPAxis* axis, const QWidget& owner) {
     axis->setLabelColor(style::quiet_text(palette));
     axis->setTickLabelFont(owner.font());
     axis->setLabelFont(owner.font());
-    axis->setNumberFormat("f");
+    axis->setNumberFormat("g");
+    axis->setNumberPrecision(5);
     axis->setLabelPadding(2);
     axis->setTickLabelPadding(3);
     axis->grid()->setPen(QPen(style::grid(palette), 1));

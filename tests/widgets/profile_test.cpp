@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <QApplication>
+#include <QMouseEvent>
 #include <QSignalSpy>
 #include <QTest>
 #include <cmath>
@@ -99,8 +101,11 @@ TEST(ProfilePlot, MouseMeasuresPicksAndDragsAWindow) {
     QSignalSpy dragged(&plot, &ProfilePlot::window_dragged);
     plot.set_tool(ProfilePlot::Tool::window);
     QTest::mousePress(canvas, Qt::LeftButton, {}, at(-30, 10));
-    QTest::mouseMove(canvas, at(-20, 0));
-    QTest::mouseMove(canvas, at(5, -8));
+    // Moves as the window system delivers them while a button is held.
+    for (const QPoint to : {at(-20, 0), at(5, -8)}) {
+        QMouseEvent move(QEvent::MouseMove, to, canvas->mapToGlobal(to), Qt::NoButton, Qt::LeftButton, {});
+        QApplication::sendEvent(canvas, &move);
+    }
     QTest::mouseRelease(canvas, Qt::LeftButton, {}, at(5, -8));
     ASSERT_EQ(dragged.size(), 1);
     const QRectF window = dragged[0][0].toRectF();

@@ -88,6 +88,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     split->addWidget(lower);
     split->setStretchFactor(0, 3);
     split->setStretchFactor(1, 2);
+    split->setSizes({360, 240});
     row->addWidget(split, 1);
 
     auto* side = new QWidget(this);

@@ -22,7 +22,7 @@ struct Histogram::Impl {
 };
 
 void Histogram::Impl::rebuild() {
-    const QPalette palette = canvas->palette();
+    const QPalette palette = canvas->parentWidget()->palette();
     canvas->clearPlottables();
     canvas->clearItems();
     std::vector<double> sorted;

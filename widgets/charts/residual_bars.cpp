@@ -17,7 +17,7 @@ struct ResidualBars::Impl {
 };
 
 void ResidualBars::Impl::rebuild() {
-    const QPalette palette = canvas->palette();
+    const QPalette palette = canvas->parentWidget()->palette();
     canvas->clearPlottables();
     canvas->clearItems();
     QSharedPointer<QCPAxisTickerText> ticker(new QCPAxisTickerText);

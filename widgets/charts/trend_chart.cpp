@@ -38,7 +38,7 @@ struct TrendChart::Impl {
 };
 
 void TrendChart::Impl::rebuild() {
-    const QPalette palette = canvas->palette();
+    const QPalette palette = canvas->parentWidget()->palette();
     canvas->clearPlottables();
     canvas->clearItems();
     const auto parts = static_cast<int>(labels.size());

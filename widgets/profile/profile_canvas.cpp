@@ -87,9 +87,9 @@ void ProfileCanvas::view_changed() {
 }
 
 void ProfileCanvas::profile_changed() {
-    if (untouched && profile.size() > 0 && !bounds().isNull()) {
+    if (untouched && !fitted_once_ && isVisible() && !bounds().isNull()) {
         fit();
-        untouched = false;
+        fitted_once_ = true;
     }
     make_trace(profile, live_);
     QRegion region(last_painted_ | live_.bounds);
@@ -444,6 +444,7 @@ void ProfileCanvas::paint_live(QPainter& painter, const QRect&) {
 void ProfileCanvas::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton && event->button() != Qt::MiddleButton) return;
     press_px_ = event->position();
+    press_button_ = event->button();
     press_mm_ = mm(event->position());
     press_x_ = xAxis->range();
     press_y_ = yAxis->range();
@@ -459,7 +460,7 @@ void ProfileCanvas::mouseMoveEvent(QMouseEvent* event) {
     if (!press_px_) return;
     if ((at - *press_px_).manhattanLength() > 4) dragged_ = true;
     if (!dragged_) return;
-    if (tool == ProfilePlot::Tool::window && (event->buttons() & Qt::LeftButton)) {
+    if (tool == ProfilePlot::Tool::window && press_button_ == Qt::LeftButton) {
         const QPointF to = mm(at);
         window = QRectF(*press_mm_, to).normalized();
         request_live();
@@ -509,6 +510,12 @@ void ProfileCanvas::mouseReleaseEvent(QMouseEvent* event) {
 
 void ProfileCanvas::mouseDoubleClickEvent(QMouseEvent*) {
     if (tool == ProfilePlot::Tool::inspect) fit();
+}
+
+// Until somebody moves the picture, it shows all.
+void ProfileCanvas::resizeEvent(QResizeEvent* event) {
+    PlotCanvas::resizeEvent(event);
+    if (untouched && !bounds().isNull()) fit();
 }
 
 void ProfileCanvas::wheelEvent(QWheelEvent* event) {

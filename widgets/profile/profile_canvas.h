@@ -41,6 +41,7 @@ class ProfileCanvas : public PlotCanvas {
     void mouseReleaseEvent(QMouseEvent* event) override;
     void mouseDoubleClickEvent(QMouseEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
   private:
     struct Trace {
@@ -67,7 +68,8 @@ class ProfileCanvas : public PlotCanvas {
     std::vector<QLineF> lines_;
     std::optional<QPointF> press_px_, press_mm_;
     std::optional<QPointF> measure_from_, measure_to_;
-    bool measuring_ = false, dragged_ = false;
+    bool measuring_ = false, dragged_ = false, fitted_once_ = false;
+    Qt::MouseButton press_button_ = Qt::NoButton;
     QCPRange press_x_, press_y_;
 };
 

@@ -148,10 +148,13 @@ void SceneCanvas::show_view(SceneView::View view) {
         camera->SetViewUp(up.x(), up.y(), up.z());
     }
     double box[6];
-    renderer_->ComputeVisiblePropBounds(box);
+    if (part && part->GetVisibility())
+        part->GetBounds(box);
+    else
+        renderer_->ComputeVisiblePropBounds(box);
     if (box[0] <= box[1]) {
         renderer_->ResetCamera(box);
-        camera->Zoom(1.25);
+        camera->Zoom(1.1);
     }
     request_render();
 }

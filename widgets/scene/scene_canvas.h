@@ -32,7 +32,7 @@ class SceneCanvas : public QOpenGLWidget {
     std::function<void(const QPointF&)> on_click;
     std::function<void()> on_rendered;
     int rendered = 0;
-    bool tried_fit = false;
+    vtkActor* part = nullptr;  // what the views are fitted to, while it shows
 
   protected:
     void initializeGL() override;

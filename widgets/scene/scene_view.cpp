@@ -126,6 +126,7 @@ void SceneView::Impl::make_layers() {
     add(Layer::path, false, 3);
     add(Layer::robot, true, 2);
     renderer.SetUseDepthPeeling(false);
+    canvas->part = &manager(Layer::part)->actor();
     restyle();
 }
 

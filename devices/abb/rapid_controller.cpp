@@ -14,6 +14,7 @@
 #include "devices/abb/rapid_message.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/net/socket.h"
+#include "devices/robot_program.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {

@@ -10,6 +10,7 @@
 #include "devices/abb/rapid_message.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/net/socket.h"
+#include "devices/robot_program.h"
 
 namespace seamwright {
 namespace {

@@ -23,8 +23,8 @@ namespace seamwright {
 Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& settings, DeviceSession& session);
 
 // The robot's side, before a simulated cell. Settings: {"address": "127.0.0.1", "port": 54600 (where
-// Seamwright listens), "slow_ms": 300, "trigger_interval_ms": 20, "approach_ms": 20 (to the first spot)}.
-// Connects again when the connection is lost.
+// Seamwright listens), "slow_ms": 300, "trigger_interval_ms": 40 (between two spots: faster than a robot),
+// "approach_ms": 100 (to the first)}. Connects again when the connection is lost.
 Expected<std::unique_ptr<SimulatedController>> start_kuka_eki_controller(std::shared_ptr<SimulatedCell> cell,
                                                                          const nlohmann::json& settings);
 

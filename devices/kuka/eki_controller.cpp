@@ -168,7 +168,7 @@ class EkiController final : public SimulatedController {
 Expected<std::unique_ptr<SimulatedController>> start_kuka_eki_controller(std::shared_ptr<SimulatedCell> cell,
                                                                          const nlohmann::json& settings) {
     std::string address = "127.0.0.1";
-    int port = 54600, slow_ms = 300, trigger_interval_ms = 20, approach_ms = 20;
+    int port = 54600, slow_ms = 300, trigger_interval_ms = 40, approach_ms = 100;
     SettingsReader f(settings, "settings");
     f.only({"address", "port", "slow_ms", "trigger_interval_ms", "approach_ms"});
     f.text("address", address);

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "projects/project_file.h"
@@ -49,10 +50,91 @@ TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
 
     EXPECT_EQ(run_program({"check", project}, folder).exit_code, 0);
     EXPECT_EQ(run_program({"replay", project, "--jobs", "2"}, folder).exit_code, 0);
-    // The project runs on its own devices from the command line, too.
-    r = run_program({"run", project, "--part", "again", "--json", "-"}, folder);
-    EXPECT_EQ(r.exit_code, 0) << r.err;
-    EXPECT_EQ(json::parse(r.out)["regions"].size(), 4u);
+
+    // The cables change nothing: the same cell without them, within what the demo's own noise does.
+    r = run_program(
+        {"demo", "--dir", (folder / "direct").string(), "--parts", "3", "--in-process", "--json", "-"},
+        folder);
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    const json direct = json::parse(r.out)["path"].back();
+    EXPECT_NEAR(direct["after_three_sigma_mm"], all["after_three_sigma_mm"], 0.05);
+    EXPECT_NEAR(direct["after_mean_mm"], all["after_mean_mm"], 0.02);
+    EXPECT_NEAR(direct["before_max_mm"], all["before_max_mm"], 0.01) << "the same parts";
+}
+
+// The plant in small: the cell as a process of its own, the runner waiting for the line's calls.
+TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
+    const std::string out = (folder / "out").string(), project = out + "/demo.seam";
+    ProgramResult r = run_program({"demo", "--dir", out, "--parts", "1"}, folder);
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    FILE* cell =
+        popen((std::string(SEAMWRIGHT_PROGRAM) + " sim-cell " + out + "/cell.json --project " + project +
+               " --camera 127.0.0.1 --controller kuka-eki:54600 > " + out + "/cell.out 2>&1")
+                  .c_str(),
+              "w");
+    ASSERT_TRUE(cell);
+    const auto say = [&](const std::string& line) {
+        std::fputs((line + "\n").c_str(), cell);
+        std::fflush(cell);
+    };
+    const std::string log = out + "/watch.log";
+    const auto logged = [&](const std::string& event) {
+        int count = 0;
+        std::istringstream lines(slurp(log));
+        for (std::string line; std::getline(lines, line);) {
+            const json e = json::parse(line, nullptr, false);
+            EXPECT_TRUE(e.is_object()) << line;
+            count += e.is_object() && e["event"] == event;
+        }
+        return count;
+    };
+    const auto wait_for = [&](const std::string& event, int count) {
+        for (int i = 0; i < 600; ++i) {
+            if (std::filesystem::exists(log) && logged(event) >= count) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        return false;
+    };
+    std::thread line([&] {
+        EXPECT_TRUE(wait_for("connected", 1));
+        say(R"(part {"displacement": {"xyz": [4, -3, 2], "abc": [0.2, 0.1, -0.3]}})");
+        say("start CAR-1");
+        EXPECT_TRUE(wait_for("run", 1));
+        say(R"(part {"displacement": {"xyz": [-6, 5, 1], "abc": [-0.1, 0.3, 0.2]}})");
+        say("start CAR-2");
+        EXPECT_TRUE(wait_for("run", 2));
+        say("fault disconnect");
+        EXPECT_TRUE(wait_for("lost", 1));
+        say("fault none");
+        EXPECT_TRUE(wait_for("back", 1));
+        say("start CAR-3");
+    });
+    r = run_program({"run", project, "--watch", "--push", "--parts", "3", "--log", log, "--json", "-"},
+                    folder);
+    line.join();
+    say("state");
+    say("stop");
+    EXPECT_EQ(pclose(cell), 0) << slurp(out + "/cell.out");
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    const json counts = json::parse(r.out);
+    EXPECT_EQ(counts["corrected"], 3) << slurp(log);
+    EXPECT_EQ(counts["outages"], 1);
+    std::istringstream states(slurp(out + "/cell.out"));
+    json last;
+    for (std::string text; std::getline(states, text);)
+        if (text.starts_with("{")) last = json::parse(text);
+    EXPECT_EQ(last["controllers"][0]["released"], false) << "the runner has gone";
+    EXPECT_EQ(last["controllers"][0]["verdict"], "corrected");
+
+    auto file = ProjectFile::open(project);
+    ASSERT_TRUE(file);
+    const auto runs = *file->runs();
+    ASSERT_GE(runs.size(), 3u);
+    const auto second = file->load_run(runs[runs.size() - 2].number, false);
+    EXPECT_EQ(second->part_id, "CAR-2");
+    const Pose d = second->regions.front().correction->displacement.workobject_from_movedworkobject;
+    EXPECT_NEAR(d.translation().x(), -6, 0.5);
+    EXPECT_NEAR(d.translation().y(), 5, 0.5);
 }
 
 // What the killed program said it had stored (runs are numbered as they are committed).

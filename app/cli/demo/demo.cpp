@@ -6,6 +6,7 @@
 #include <random>
 
 #include "devices/cell_server.h"
+#include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/door.h"
 #include "projects/acquire.h"
@@ -18,9 +19,6 @@ namespace seamwright::cli {
 namespace {
 
 constexpr double kCurveTravelMm = 20;
-// Faster than a robot, slow enough for what a network buffer of the kernel's usual 4 MiB holds while the
-// served camera wakes up.
-constexpr int kApproachMs = 150, kBetweenSpotsMs = 50;
 constexpr const char* kSensor = "A";
 constexpr const char* kRobot = "R1";
 
@@ -190,6 +188,9 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
          default_door_regions())  // the frames that the application program runs in
         settings["robot"]["frames"][frame_name(region.id)] =
             pose_json(default_cell_settings().base_from_workobject);
+    // For `seamwright sim-cell`: the same cell again, for further runs of the project.
+    if (auto written = write_text_file(options.folder / "cell.json", settings.dump(2)); !written)
+        return tl::unexpected(written.error());
     auto opened = SimulatedCell::open(settings);
     if (!opened) return tl::unexpected(opened.error());
     const std::shared_ptr<SimulatedCell> cell = *opened;
@@ -198,10 +199,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     nlohmann::json sensor_settings = settings, robot_settings = settings;
     if (options.loopback) {
         serve.camera_address = options.camera_address;
-        serve.controllers = {{"kuka-eki",
-                              {{"port", options.robot_port},
-                               {"approach_ms", kApproachMs},
-                               {"trigger_interval_ms", kBetweenSpotsMs}}}};
+        serve.controllers = {{"kuka-eki", {{"port", options.robot_port}}}};
         sensor_settings = {{"address", options.camera_address}, {"hardware_trigger", true}};
         robot_settings = {{"port", options.robot_port}};
     }

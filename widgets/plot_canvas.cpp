@@ -69,13 +69,33 @@ void PlotCanvas::due() {
     if (replot_wanted_) {
         replot_wanted_ = false;
         wanted_ = QRegion();
+        if (equal_axes) {
+            plotLayout()->update(QCPLayoutElement::upPreparation);
+            plotLayout()->update(QCPLayoutElement::upMargins);
+            plotLayout()->update(QCPLayoutElement::upLayout);
+            equalise();
+        }
         view_changed();
-        replot(QCustomPlot::rpRefreshHint);  // ends in keep_picture(), which updates all
+        const QRect area = equal_axes ? axisRect()->rect() : QRect();
+        replot(QCustomPlot::rpRefreshHint);              // ends in keep_picture(), which updates all
+        if (equal_axes && axisRect()->rect() != area) {  // other labels, other margins
+            equalise();
+            view_changed();
+            replot(QCustomPlot::rpRefreshHint);
+        }
         return;
     }
     const QRegion region = wanted_;
     wanted_ = QRegion();
     if (!region.isEmpty()) update(region);
+}
+
+// The upright axis takes the scale of the level one.
+void PlotCanvas::equalise() {
+    const QRect area = axisRect()->rect();
+    const double half = 0.5 * xAxis->range().size() * area.height() / std::max(1, area.width());
+    const double middle = yAxis->range().center();
+    yAxis->setRange(middle - half, middle + half);
 }
 
 void PlotCanvas::flush() {

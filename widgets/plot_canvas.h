@@ -40,6 +40,7 @@ class PlotCanvas : public QCustomPlot {
   private:
     void keep_picture();
     void due();
+    void equalise();
 
     QPixmap picture_;
     QTimer timer_;

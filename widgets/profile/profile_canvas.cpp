@@ -95,7 +95,7 @@ void ProfileCanvas::profile_changed() {
     QRegion region(last_painted_ | live_.bounds);
     if (intensity_shown) {
         const QRect area = axisRect()->rect();
-        region += QRect(area.left(), area.bottom() - kIntensity_px, area.width(), kIntensity_px + 1);
+        region += QRect(area.left(), area.bottom() - kIntensity_px - 20, area.width(), kIntensity_px + 21);
     }
     if (residuals_shown) {
         residuals_to_reference(profile, reference, residuals_);
@@ -275,7 +275,8 @@ void ProfileCanvas::paint_intensity(QPainter& painter) {
     painter.setBrush(colour);
     painter.drawRects(rectangles_.data(), static_cast<int>(rectangles_.size()));
     painter.setPen(style::quiet_text(palette()));
-    painter.drawText(QPoint(area.left() + 6, area.bottom() - kIntensity_px - 2),
+    painter.drawText(QRect(area.left(), area.bottom() - kIntensity_px - 20, area.width() - 6, 20),
+                     Qt::AlignRight | Qt::AlignBottom,
                      ProfilePlot::tr("intensity, up to %1").arg(static_cast<double>(maximum), 0, 'f', 0));
 }
 
@@ -326,13 +327,11 @@ void ProfileCanvas::paint_marks(QPainter& painter) {
                                   .arg(2 * nice_error(c(0, 0)), 0, 'f', 2)
                                   .arg(feature->point_mm.y(), 0, 'f', 2)
                                   .arg(2 * nice_error(c(1, 1)), 0, 'f', 2);
+        // In the corner, where no contour runs below it for long.
         const QFontMetrics metrics(painter.font());
-        QRectF box(at + QPointF(14, -14 - metrics.height()),
-                   QSizeF(metrics.horizontalAdvance(label) + 10, metrics.height() + 4));
-        const QRectF area = axisRect()->rect();
-        if (box.right() > area.right()) box.moveRight(std::min(at.x() - 14, area.right()));
-        if (box.left() < area.left()) box.moveLeft(area.left() + 2);
-        if (box.top() < area.top()) box.moveTop(at.y() + 14);
+        const QRect corner = axisRect()->rect();
+        const QRectF box(corner.left() + 4, corner.top() + 2, metrics.horizontalAdvance(label) + 12,
+                         metrics.height() + 4);
         QColor ground = style::plot_ground(colours);
         ground.setAlpha(225);
         painter.fillRect(box, ground);
@@ -508,8 +507,11 @@ void ProfileCanvas::mouseReleaseEvent(QMouseEvent* event) {
     emit plot_.point_picked(QPointF(profile.x_mm[k], profile.z_mm[k]), index);
 }
 
-void ProfileCanvas::mouseDoubleClickEvent(QMouseEvent*) {
-    if (tool == ProfilePlot::Tool::inspect) fit();
+void ProfileCanvas::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (tool == ProfilePlot::Tool::inspect)
+        fit();
+    else
+        mousePressEvent(event);  // two quick clicks of a tool are two clicks
 }
 
 // Until somebody moves the picture, it shows all.

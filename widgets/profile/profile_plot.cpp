@@ -55,7 +55,7 @@ ProfilePlot::ProfilePlot(QWidget* parent) : QWidget(parent), impl_(std::make_uni
     impl_->intensity = button(tr("Intensity"), tr("Brightness of the stripe along x"), true);
     impl_->freeze = button(tr("Freeze"), tr("Hold this profile on the screen (Space)"), true);
     connect(fit_button, &QToolButton::clicked, this, &ProfilePlot::fit);
-    connect(impl_->measure, &QToolButton::toggled, this,
+    connect(impl_->measure, &QToolButton::clicked, this,
             [this](bool on) { set_tool(on ? Tool::measure : Tool::inspect); });
     connect(impl_->residuals, &QToolButton::toggled, this, &ProfilePlot::set_residuals_shown);
     connect(impl_->intensity, &QToolButton::toggled, this, &ProfilePlot::set_intensity_shown);

@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
     add_correct(line);
     add_plan(line);
     add_panel(line);
+    add_evaluate(line);
     add_filter(line);
     add_feature(line);
     add_match(line);

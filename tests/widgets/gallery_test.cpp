@@ -136,6 +136,12 @@ TEST(Gallery, FrozenContour) {
     EXPECT_EQ(view.verdict(), "DRIFTING") << result->yaw_deg;
     EXPECT_NEAR(std::abs(result->yaw_deg), 2, 0.3);
     keep_pictures(view, "view-align-drifting", {1100, 640});
+    // The jitter window follows the keys and asks to be judged again.
+    double asked = 0;
+    QObject::connect(&view, &AlignView::jitter_dragged, [&](double half) { asked = half; });
+    for (int i = 0; i < 5; ++i) QTest::keyClick(view.focusProxy(), Qt::Key_Left);
+    EXPECT_NEAR(asked, options.jitter_mm - 0.5, 1e-9);
+    EXPECT_NEAR(view.jitter_mm(), asked, 1e-9);
     // Cured as the view says.
     const auto straight = pass_with(2 + result->cure_about_z_deg);
     result = check_alignment(straight, options);

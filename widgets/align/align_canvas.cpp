@@ -1,5 +1,6 @@
 #include "widgets/align/align_canvas.h"
 
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <algorithm>
 #include <cmath>
@@ -160,9 +161,22 @@ void OffsetCanvas::mouseMoveEvent(QMouseEvent* event) {
     setCursor(dragging_ || near_line(event->position()) ? Qt::SplitHCursor : Qt::ArrowCursor);
     if (!dragging_) return;
     const double travel = std::abs(rect_of(0)->axis(QCPAxis::atBottom)->pixelToCoord(event->position().x()));
-    jitter_mm = std::clamp(std::round(travel * 10) / 10, 0.1, options_.window_mm);
+    drag_to(travel);
+}
+
+void OffsetCanvas::drag_to(double half_width_mm) {
+    const double rounded = std::clamp(std::round(half_width_mm * 10) / 10, 0.1, options_.window_mm);
+    if (rounded == jitter_mm) return;
+    jitter_mm = rounded;
     request_live();
     if (on_jitter) on_jitter(jitter_mm);
+}
+
+void OffsetCanvas::keyPressEvent(QKeyEvent* event) {
+    if (event->key() == Qt::Key_Left || event->key() == Qt::Key_Right)
+        drag_to(jitter_mm + (event->key() == Qt::Key_Right ? 0.1 : -0.1));
+    else
+        PlotCanvas::keyPressEvent(event);
 }
 
 void OffsetCanvas::mouseReleaseEvent(QMouseEvent* event) {

@@ -28,10 +28,12 @@ class OffsetCanvas : public PlotCanvas {
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
 
   private:
     void rebuild();
     QCPAxisRect* rect_of(int row) const { return rects_[static_cast<std::size_t>(row)]; }
+    void drag_to(double half_width_mm);
     bool near_line(const QPointF& at) const;
     std::array<QCPAxisRect*, 3> rects_{};
     AlignmentResult result_;

@@ -52,7 +52,9 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     auto* split = new QSplitter(Qt::Vertical, this);
     split->setChildrenCollapsible(false);
     impl_->offsets = new OffsetCanvas(split);
-    impl_->offsets->setToolTip(tr("Drag either blue line: how far the trigger may miss"));
+    setFocusProxy(impl_->offsets);
+    impl_->offsets->setToolTip(
+        tr("Drag either blue line, or press Left and Right: how far the trigger may miss"));
     auto* lower = new QWidget(split);
     auto* lower_column = new QVBoxLayout(lower);
     lower_column->setContentsMargins(0, 0, 0, 0);

@@ -75,6 +75,20 @@ TEST(PoseEditor, TypedNumbersCommitOnce) {
     QTest::keyClick(x, Qt::Key_Return);
     EXPECT_EQ(committed.size(), 1);
     EXPECT_DOUBLE_EQ(editor.pose().translation().x(), 42.5);
+    // Half a turn about X, number by number: not refused on the way.
+    editor.activateWindow();
+    ASSERT_TRUE(QTest::qWaitForWindowActive(&editor));
+    const auto lines = editor.findChildren<QLineEdit*>();
+    lines[3]->setFocus();
+    lines[3]->selectAll();
+    QTest::keyClicks(lines[3], "0");
+    lines[4]->setFocus();
+    EXPECT_FALSE(editor.refused());
+    lines[4]->selectAll();
+    QTest::keyClicks(lines[4], "1");
+    QTest::keyClick(lines[4], Qt::Key_Return);
+    EXPECT_FALSE(editor.refused()) << editor.reason().toStdString();
+    EXPECT_NEAR(editor.pose().linear()(1, 1), -1, 1e-12);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "widgets/editors/pose_editor.h"
 
+#include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
 #include <QGridLayout>
@@ -199,8 +200,11 @@ void PoseEditor::set_pose(const Pose& pose) {
 bool PoseEditor::eventFilter(QObject* watched, QEvent* event) {
     const bool in_matrix = watched == impl_->matrix;
     if (event->type() == QEvent::FocusOut) {
-        // Leaving for another field of the same pose commits nothing half typed as a matrix.
-        if (impl_->modified) impl_->take(*this, impl_->typed());
+        // A quaternion is none until its last number is typed: it is taken when the focus leaves all fields.
+        const QWidget* next = QApplication::focusWidget();
+        const bool half_typed =
+            impl_->notation == PoseNotation::abb_quaternion && next && next != this && isAncestorOf(next);
+        if (impl_->modified && !half_typed) impl_->take(*this, impl_->typed());
     } else if (event->type() == QEvent::KeyPress) {
         auto* key = static_cast<QKeyEvent*>(event);
         const bool enter = key->key() == Qt::Key_Return || key->key() == Qt::Key_Enter;

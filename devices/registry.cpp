@@ -6,6 +6,7 @@
 #include "devices/abb/rapid.h"
 #include "devices/genicam/genicam.h"
 #include "devices/kuka/eki.h"
+#include "devices/kuka/program.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
 
@@ -40,7 +41,9 @@ const std::vector<ControllerDriver>& controller_drivers() {
 }
 
 const std::vector<ProgramWriter>& program_writers() {
-    static const std::vector<ProgramWriter> writers = {};
+    static const std::vector<ProgramWriter> writers = {
+        {"kuka", "KRL for EthernetKRL", &write_kuka_program},
+    };
     return writers;
 }
 

@@ -234,7 +234,7 @@ Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& setting
     std::string listen = "127.0.0.1";
     int port = 54600, timeout_ms = 1000;
     SettingsReader f(settings, "settings");
-    f.only({"listen", "port", "timeout_ms"});
+    f.only({"listen", "port", "timeout_ms", "trigger_output", "flag_alive", "flag_command"});
     f.text("listen", listen);
     f.whole("port", port, 0, 65535);
     f.whole("timeout_ms", timeout_ms, 10, 60000);

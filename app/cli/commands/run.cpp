@@ -13,6 +13,7 @@
 #include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/genicam/genicam.h"
 #include "devices/registry.h"
 #include "projects/replay.h"
 #include "projects/station.h"
@@ -211,9 +212,10 @@ void add_replay(CommandLine& line) {
 
 void add_devices(CommandLine& line) {
     auto file = std::make_shared<std::string>();
-    CLI::App* command =
-        line.add("devices", "The drivers there are; with a project: its devices, identities and counters.",
-                 "seamwright devices door_left.seam --json -");
+    CLI::App* command = line.add(
+        "devices",
+        "The drivers there are and the cameras found; with a project: its devices, identities and counters.",
+        "seamwright devices door_left.seam --json -");
     command->add_option("file", *file, "Connect this project's devices")->type_name("FILE.seam");
     line.on(command, [file]() -> Expected<Answer> {
         Answer answer;
@@ -228,7 +230,20 @@ void add_devices(CommandLine& line) {
             answer.json["robot_drivers"].push_back({{"name", d.name}, {"help", d.help}});
             answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
         }
-        if (file->empty()) return answer;
+        if (file->empty()) {
+            answer.json["cameras"] = json::array();
+            answer.text += "cameras found\n";
+            for (const DiscoveredCamera& c : discover_cameras()) {
+                answer.json["cameras"].push_back({{"vendor", c.vendor},
+                                                  {"model", c.model},
+                                                  {"serial", c.serial},
+                                                  {"address", c.address},
+                                                  {"protocol", c.protocol}});
+                answer.text += fmt::format("  {} {} serial {} at {} ({})\n", c.vendor, c.model, c.serial,
+                                           c.address, c.protocol);
+            }
+            return answer;
+        }
         auto station = Station::open(*file, FileAccess::read_only);
         if (!station) return tl::unexpected(station.error());
         if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());

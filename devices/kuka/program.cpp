@@ -1,0 +1,129 @@
+// KRL of a project: the fixed module of resources/robot/kuka and the spots.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/geometry/notation.h"
+#include "devices/exchange/settings.h"
+#include "devices/kuka/program.h"
+#include "kuka_resources.h"
+
+namespace seamwright {
+namespace {
+
+constexpr std::size_t kMostSpots = 64, kMostFrames = 32, kLongestName = 79;  // arrays of seamwright.dat
+constexpr double kFastestCp = 2.0;                                           // m/s
+
+Expected<void> krl_text(const std::string& text, const std::string& where) {
+    const bool plain = std::all_of(text.begin(), text.end(),
+                                   [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
+    if (text.empty() || text.size() > kLongestName || !plain)
+        return input_error("\"" + text + "\" cannot be written in KRL", where,
+                           "use 1 to 79 plain letters, digits and signs without quotes");
+    return {};
+}
+
+std::string krl_frame(const Pose& pose) {
+    const KukaAbc abc = kuka_from_rotation(pose.linear());
+    const Eigen::Vector3d& p = pose.translation();
+    return fmt::format("{{X {:.4f},Y {:.4f},Z {:.4f},A {:.5f},B {:.5f},C {:.5f}}}", p.x(), p.y(), p.z(),
+                       abc.a_deg, abc.b_deg, abc.c_deg);
+}
+
+std::string filled(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
+    std::string out(text);
+    for (const auto& [name, value] : values)
+        for (std::size_t at; (at = out.find("@" + name + "@")) != std::string::npos;)
+            out.replace(at, name.size() + 2, value);
+    return out;
+}
+
+}  // namespace
+
+Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request) {
+    if (request.moves.size() > kMostSpots)
+        return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
+                           request.project, fmt::format("measure at most {} in one program", kMostSpots));
+    if (request.frames.size() > kMostFrames)
+        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
+                           request.project, fmt::format("give at most {}", kMostFrames));
+    std::string listen = "127.0.0.1";
+    int port = 54600, output = 1, alive = 1, command = 2;
+    SettingsReader f(request.settings, "settings");
+    f.text("listen", listen);
+    f.whole("port", port, 1, 65535);
+    f.whole("trigger_output", output, 1, 8192);
+    f.whole("flag_alive", alive, 1, 1024);
+    f.whole("flag_command", command, 1, 1024);
+    if (f.failed()) return tl::unexpected(f.error());
+
+    std::string data = "DEFDAT SEAMWRIGHT_SPOTS PUBLIC\n", setup, path;
+    int n = 0;
+    for (const MeasuringMove& move : request.moves) {
+        ++n;
+        if (auto ok = krl_text(move.spot_id, "spot"); !ok) return tl::unexpected(ok.error());
+        const double cp = move.speed_mm_s / 1000;
+        if (!(cp > 0 && cp <= kFastestCp))
+            return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s),
+                               "spot " + move.spot_id, "give up to 2000 mm/s");
+        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
+            if (!pose->matrix().allFinite() || pose->translation().cwiseAbs().maxCoeff() > 1e5)
+                return input_error("a pose is not finite or beyond 100 m", "spot " + move.spot_id);
+        const std::string point = fmt::format("XSW_{:03}", n);
+        data += fmt::format(
+            "; spot {}\nDECL FRAME {}_ENTRY={}\nDECL FRAME {}_SPOT={}\nDECL FRAME {}_EXIT={}\n", move.spot_id,
+            point, krl_frame(move.entry), point, krl_frame(move.trigger), point, krl_frame(move.exit));
+        setup += fmt::format("SW_SPOT[{},]=\"{}\"\n", n, move.spot_id);
+        path += fmt::format("; spot {}\n$VEL.CP=SW_TRAVEL\nLIN {}_ENTRY C_DIS\n$VEL.CP={:.4f}\n",
+                            move.spot_id, point, cp);
+        if (move.stop_at_trigger)
+            path += fmt::format(
+                "LIN {0}_SPOT\nWAIT SEC 0.3\nPULSE($OUT[SW_TRIGGER_OUT],TRUE,0.02)\n"
+                "SW_FIRE({1},{0}_SPOT)\nWAIT SEC 0.1\n",
+                point, n);
+        else
+            path += fmt::format(
+                "TRIGGER WHEN PATH=0 DELAY=0 DO PULSE($OUT[SW_TRIGGER_OUT],TRUE,0.02)\n"
+                "TRIGGER WHEN PATH=0 DELAY=0 DO SW_FIRE({1},{0}_SPOT) PRIO=-1\n"
+                "LIN {0}_SPOT C_DIS\n",
+                point, n);
+        path += fmt::format("LIN {}_EXIT C_DIS\n", point);
+    }
+    data += "DECL REAL SW_TRAVEL=0.25\nENDDAT\n";
+    int k = 0;
+    for (const ApplicationFrame& frame : request.frames) {
+        ++k;
+        if (auto ok = krl_text(frame.name, "frame of region " + frame.region_id); !ok)
+            return tl::unexpected(ok.error());
+        setup += fmt::format(
+            "; region {}: SW_ACTIVATE({}) before its path\nSW_NAME[{},]=\"{}\"\nSW_FRAME[{}]={}\n",
+            frame.region_id, k, k, frame.name, k, krl_frame(frame.base_from_frame));
+    }
+    setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", k, program_signature(request.moves));
+    const std::string program =
+        "&ACCESS RVO1\n&COMMENT Measuring program of " + request.project.substr(0, 60) +
+        "\nDEF SEAMWRIGHT_SPOTS()\nBAS(#INITMOV,0)\nSW_SETUP()\nSW_BEGIN_PART()\nSW_BUSY=TRUE\n"
+        "; the points are poses of the flange in the robot's base\n$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n"
+        "$APO.CDIS=5\n; straight from exit to the next entry: add via points where the sensor must go round "
+        "something\n" +
+        path +
+        "WAIT SEC 0\nSW_BUSY=FALSE\nSW_WAIT_AT_MOST(20.0)\nEND\n\n"
+        "; Taught frames and names: call it once at the start of the application program.\nGLOBAL DEF "
+        "SW_SETUP()\n" +
+        setup + "END\n";
+    const std::vector<std::pair<std::string, std::string>> values = {
+        {"ADDRESS", listen},
+        {"PORT", std::to_string(port)},
+        {"TRIGGER_OUT", std::to_string(output)},
+        {"FLAG_ALIVE", std::to_string(alive)},
+        {"FLAG_COMMAND", std::to_string(command)}};
+    return std::vector<ProgramFile>{{"Seamwright.xml", filled(resources::Seamwright_xml, values)},
+                                    {"seamwright.dat", filled(resources::seamwright_dat, values)},
+                                    {"seamwright.src", std::string(resources::seamwright_src)},
+                                    {"seamwright_sub.sub", std::string(resources::seamwright_sub_sub)},
+                                    {"seamwright_spots.dat", data},
+                                    {"seamwright_spots.src", program}};
+}
+
+}  // namespace seamwright

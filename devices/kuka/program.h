@@ -1,0 +1,20 @@
+#pragma once
+// KRL for KSS 8.3 and later with EthernetKRL 2.2 and later.
+//
+// Seamwright.xml and seamwright_sub.sub (a task of the submit interpreter) talk to Seamwright;
+// seamwright.src/.dat hold what measuring and application programs call; seamwright_spots.src/.dat are the
+// project's: entry, trigger and exit of every spot as flange poses in the robot's base, linear, triggered
+// path-synchronously at the spot (TRIGGER WHEN PATH), and the application frames. The application calls
+// SW_SETUP() once, SEAMWRIGHT_SPOTS() for each part and SW_ACTIVATE(n) before each region's path.
+//
+// Settings that it reads from the robot's: "listen" and "port" (where the controller connects to),
+// "trigger_output" (1), "flag_alive" (1), "flag_command" (2).
+
+#include "devices/robot_program.h"
+
+namespace seamwright {
+
+// Error (input): more than 64 spots or 32 frames, names that KRL cannot hold, a speed over 2 m/s.
+Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request);
+
+}  // namespace seamwright

@@ -152,6 +152,23 @@ Eigen::Vector3d reference_of(const SceneSpot& spot) {
     return spot.workobject_from_sensor * spot.reference_mm;
 }
 
+// The middle of a region's spots, lifted towards the sensors so that the part does not hide it.
+std::optional<Eigen::Vector3d> lifted_centre(const SceneRegion& region, const std::vector<SceneSpot>& spots) {
+    constexpr double kLift_mm = 80;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero(), up = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (const SceneSpot& spot : spots)
+        if (std::find(region.spot_ids.begin(), region.spot_ids.end(), spot.id) != region.spot_ids.end()) {
+            centre += reference_of(spot);
+            up += spot.workobject_from_sensor.linear().col(2);
+            ++count;
+        }
+    if (count == 0) return std::nullopt;
+    centre /= count;
+    if (up.norm() > 1e-6) centre += kLift_mm * up.normalized();
+    return centre;
+}
+
 QColor faded(QColor colour, int alpha) {
     colour.setAlpha(alpha);
     return colour;
@@ -210,16 +227,9 @@ vtkSmartPointer<vtkPolyData> draw_sensors(const std::vector<SceneSpot>& spots, c
 
 std::optional<WeakArrow> weak_arrow(const SceneRegion& region, const std::vector<SceneSpot>& spots) {
     if (!(region.weak_direction.norm() > 1e-9)) return std::nullopt;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    int count = 0;
-    for (const SceneSpot& spot : spots)
-        if (std::find(region.spot_ids.begin(), region.spot_ids.end(), spot.id) != region.spot_ids.end()) {
-            centre += reference_of(spot);
-            ++count;
-        }
-    if (count == 0) return std::nullopt;
-    centre /= count;
-    return WeakArrow{centre, centre + 130 * region.weak_direction.normalized()};
+    const auto centre = lifted_centre(region, spots);
+    if (!centre) return std::nullopt;
+    return WeakArrow{*centre, *centre + 160 * region.weak_direction.normalized()};
 }
 
 vtkSmartPointer<vtkPolyData> draw_regions(const std::vector<SceneRegion>& regions,
@@ -235,9 +245,7 @@ vtkSmartPointer<vtkPolyData> draw_regions(const std::vector<SceneRegion>& region
             if (std::find(region.spot_ids.begin(), region.spot_ids.end(), spot.id) != region.spot_ids.end())
                 members.push_back(reference_of(spot));
         if (members.empty()) continue;
-        Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-        for (const auto& p : members) centre += p;
-        centre /= static_cast<double>(members.size());
+        const Eigen::Vector3d centre = *lifted_centre(region, spots);
         for (const auto& p : members) painter.line(centre, p, colour);
         if (members.size() >= 3) {
             const Eigen::Vector3d first = (members[0] - centre);
@@ -257,8 +265,8 @@ vtkSmartPointer<vtkPolyData> draw_regions(const std::vector<SceneRegion>& region
             }
         }
         if (const auto weak = weak_arrow(region, spots)) {
-            painter.arrow(weak->centre, weak->tip, 7, style::alarm(palette));
-            painter.arrow(weak->centre, 2 * weak->centre - weak->tip, 7, style::alarm(palette));
+            painter.arrow(weak->centre, weak->tip, 12, style::alarm(palette));
+            painter.arrow(weak->centre, 2 * weak->centre - weak->tip, 12, style::alarm(palette));
         }
     }
     return painter.take();

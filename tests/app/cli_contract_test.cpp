@@ -270,5 +270,59 @@ TEST_F(Cli, ProjectFilesAreMadeToldAndChecked) {
     EXPECT_EQ(answer({"info", again}, 0)["name"], "Door");
 }
 
+TEST_F(Cli, PanelAnswersByTheContract) {
+    json spots = json::array();
+    // Panel and body displaced by pure translations: G = (1, 2, 0) - (0.5, 0, -0.3).
+    const Eigen::Vector3d panel(0.5, 0, -0.3), body(1, 2, 0);
+    for (int n = 0; n < 6; ++n) {
+        const double a = rad_from_deg(60.0 * n);
+        const Eigen::Matrix3d turn = rotation_exp({0, 0, a + (n % 2 ? 0.6 : -0.4)});
+        const Eigen::Vector3d p = turn.transpose() * panel, b = turn.transpose() * body;
+        const Eigen::Vector3d r = rotation_exp({0, 0, a}) * Eigen::Vector3d(500, 0, 0);
+        const Eigen::Vector3d w = rotation_log(turn);
+        spots.push_back(
+            {{"id", "S" + std::to_string(n)},
+             {"gripper_from_sensor", {{"xyz", {r.x(), r.y(), 900}}, {"rotvec_rad", {w.x(), w.y(), w.z()}}}},
+             {"panel", {{"reference", {0, 0, 0}}, {"measured", {p.x(), p.y(), p.z()}}}},
+             {"body", {{"reference", {4, 0, 0}}, {"measured", {4 + b.x(), b.y(), b.z()}}}},
+             {"weights", {1, 0, 1}},
+             {"sigma_mm", 0.05}});
+    }
+    const auto job = write("panel.json", json{{"spots", spots}}.dump());
+    const json a = answer({"panel", job}, 0);
+    EXPECT_EQ(a["status"], "ok");
+    EXPECT_NEAR(a["gripper_motion"]["xyz"][0].get<double>(), 0.5, 1e-6);
+    EXPECT_NEAR(a["gripper_motion"]["xyz"][1].get<double>(), 2.0, 1e-6);
+    EXPECT_NEAR(a["gripper_motion"]["xyz"][2].get<double>(), 0.3, 1e-6);
+    EXPECT_EQ(a["covariance"].size(), 6u);
+    EXPECT_EQ(a["sigma"]["abc_deg"].size(), 3u);
+    for (const json& s : a["spots"]) {
+        EXPECT_NEAR(s["gap_mm"].get<double>(), 0, 1e-6);
+        EXPECT_NEAR(s["flush_mm"].get<double>(), 0, 1e-6);
+        EXPECT_EQ(s["residual_mm"].size(), 3u);
+    }
+    spots.erase(spots.begin() + 2, spots.end());
+    EXPECT_EQ(answer({"panel", write("few.json", json{{"spots", spots}}.dump())}, 1)["status"],
+              "under_determined");
+    spots[0]["panel"].erase("measured");
+    expect_refused({"panel", write("bad.json", json{{"spots", spots}}.dump())}, "spots[0].panel.measured");
+}
+
+TEST_F(Cli, EvaluateIsTheSameForASeedWhateverTheNumberOfJobs) {
+    const std::vector<std::string> arguments{"evaluate", "--experiment", "2", "--seed", "3", "--jobs"};
+    auto one = arguments, three = arguments;
+    one.push_back("1");
+    three.push_back("3");
+    const json a = answer(one, 0);
+    EXPECT_EQ(a, answer(three, 0));
+    const json& e = a["experiments"][0];
+    EXPECT_EQ(e["experiment"], 2);
+    for (const char* column : {"translation", "rotation", "both"}) {
+        EXPECT_GT(e["columns"][column]["three_sigma_mm"].get<double>(), 0.02);
+        EXPECT_EQ(e["columns"][column]["refused"], 0);
+    }
+    EXPECT_EQ(run({"evaluate", "--experiment", "6"}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace seamwright

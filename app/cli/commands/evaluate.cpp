@@ -58,9 +58,10 @@ std::string remark(const EvaluationResult& r, const ExperimentResult& e) {
     return fmt::format(
         "{} {}: frozen-contour check calls {} of {} spots drifting (worst yaw {:.2f} deg); stated sigma "
         "{:.4f} "
-        "mm; deviation grows by {:.4f} mm per mm,\n   a straight line explains {:.0f} %; NEES {:.2f}, 95 % "
+        "mm; deviation grows by {:.4f} mm per mm along {},\n   a straight line explains {:.0f} %; NEES "
+        "{:.2f}, 95 % "
         "interval {:.2f} .. {:.2f}: {}",
-        e.number, e.name, e.flagged, e.spots, e.worst_yaw_deg, e.sigma_mm, e.slope_mm_per_mm,
+        e.number, e.name, e.flagged, e.spots, e.worst_yaw_deg, e.sigma_mm, e.slope_mm_per_mm, e.steepest,
         100 * e.linear_share, e.nees, i.low, i.high,
         holds ? "the stated covariance holds"
               : (e.number == 3 && r.settings.bend_mm == 0

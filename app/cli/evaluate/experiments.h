@@ -54,7 +54,9 @@ struct ExperimentResult {
     double nees = 0;               // mean over the trials of the table
     int spots = 0, flagged = 0;    // spots that the frozen-contour check calls drifting beforehand
     double worst_yaw_deg = 0;
-    // Straight line through mean deviation against |displacement| of the translation column.
+    // Straight line through mean deviation against |displacement| of the translation column, along the axis
+    // where it is steepest.
+    char steepest = 'X';
     double slope_mm_per_mm = 0, linear_share = 0;  // and the share of variance that it explains
 };
 

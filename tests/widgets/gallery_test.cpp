@@ -204,6 +204,20 @@ TEST(Gallery, Scene) {
     EXPECT_EQ(picked.toStdString(), target.id);
     EXPECT_EQ(view.selected_spot(), target.id);
     EXPECT_FALSE(view.set_part_ply({std::byte{1}, std::byte{2}}));
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n500 0 0\n0 500 0\n3 0 1 "
+        "2\n";
+    std::vector<std::byte> bytes;
+    for (const char c : ply) bytes.push_back(static_cast<std::byte>(c));
+    const auto taken = view.set_part_ply(bytes);
+    EXPECT_TRUE(taken) << taken.error().sentence();
+    double z = -1;
+    QObject::connect(&view, &SceneView::part_picked, [&](double, double, double at_z) { z = at_z; });
+    QTest::qWait(60);
+    QTest::mouseClick(canvas, Qt::LeftButton, {},
+                      canvas->mapFrom(&view, view.to_screen({120, 130, 0})).toPoint());
+    EXPECT_NEAR(z, 0, 0.01);
 }
 
 TEST(Gallery, ChartsAndEditors) {

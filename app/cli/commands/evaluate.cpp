@@ -7,6 +7,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/evaluate/experiments.h"
+#include "app/cli/evaluate/panel_experiment.h"
 #include "devices/exchange/files.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
@@ -215,6 +216,30 @@ std::string text_of(const EvaluationResult& r) {
     return text;
 }
 
+Answer panel_answer(int panels, std::uint64_t seed) {
+    const PanelComparison c = compare_panel_fitting(panels, seed);
+    Answer answer;
+    answer.text = fmt::format(
+        "Simulated: {} panels, straight contours, landmark noise {:g} mm, seed {}. Gap and flush after the "
+        "last "
+        "move, against taught:\n",
+        c.panels, c.noise_mm, seed);
+    answer.json = {
+        {"panels", c.panels}, {"noise_mm", c.noise_mm}, {"seed", seed}, {"training_moves", c.training_moves}};
+    for (const auto& [name, way] : {std::pair<const char*, const PanelWay*>{"single_step", &c.single_step},
+                                    {"servoing", &c.servoing}}) {
+        answer.text +=
+            fmt::format("{:<12} rms {:.4f} mm   worst {:.4f} mm   {:.1f} moves   {:.2f} ms   failed {}\n",
+                        name, way->rms_mm, way->worst_mm, way->moves, way->compute_ms, way->failed);
+        answer.json[name] = {{"rms_mm", way->rms_mm},
+                             {"worst_mm", way->worst_mm},
+                             {"moves", way->moves},
+                             {"failed", way->failed}};
+    }
+    answer.text += fmt::format("servoing needed {} training moves beforehand\n", c.training_moves);
+    return answer;
+}
+
 }  // namespace
 
 void add_evaluate(CommandLine& line) {
@@ -228,8 +253,8 @@ void add_evaluate(CommandLine& line) {
         std::string experiment = "all", report;
     };
     auto a = std::make_shared<Arguments>();
-    command->add_option("--experiment", a->experiment, "1 to 5, or all")
-        ->check(CLI::IsMember({"1", "2", "3", "4", "5", "all"}));
+    command->add_option("--experiment", a->experiment, "1 to 5, all, or panel (single step against servoing)")
+        ->check(CLI::IsMember({"1", "2", "3", "4", "5", "all", "panel"}));
     command->add_option("--trials", a->settings.trials, "Trials of efficiency and NEES [2000]")
         ->check(CLI::Range(10, 1000000));
     command->add_option("--seed", a->settings.seed, "Of every random number [1]");
@@ -243,6 +268,7 @@ void add_evaluate(CommandLine& line) {
     command->add_option("--report", a->report, "HTML report with histograms and curves")
         ->type_name("FILE.html");
     line.on(command, [a]() -> Expected<Answer> {
+        if (a->experiment == "panel") return panel_answer(a->settings.trials, a->settings.seed);
         a->settings.experiment = a->experiment == "all" ? 0 : a->experiment[0] - '0';
         auto result = evaluate(a->settings, [](const std::string& s) { fmt::print(stderr, "{}\n", s); });
         if (!result) return tl::unexpected(result.error());

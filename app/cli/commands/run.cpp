@@ -212,12 +212,15 @@ void add_replay(CommandLine& line) {
 
 void add_devices(CommandLine& line) {
     auto file = std::make_shared<std::string>();
-    CLI::App* command = line.add(
-        "devices",
-        "The drivers there are and the cameras found; with a project: its devices, identities and counters.",
-        "seamwright devices door_left.seam --json -");
+    CLI::App* command = line.add("devices",
+                                 "The drivers there are, and with --search the cameras; with a project: its "
+                                 "devices, identities and counters.",
+                                 "seamwright devices door_left.seam --json -");
     command->add_option("file", *file, "Connect this project's devices")->type_name("FILE.seam");
-    line.on(command, [file]() -> Expected<Answer> {
+    auto search = std::make_shared<bool>(false);
+    command->add_flag("--search", *search,
+                      "Ask all networks of this computer for cameras (GigE Vision broadcast)");
+    line.on(command, [file, search]() -> Expected<Answer> {
         Answer answer;
         answer.json = {{"status", "ok"}, {"sensor_drivers", json::array()}, {"robot_drivers", json::array()}};
         answer.text = "sensor drivers\n";
@@ -230,7 +233,7 @@ void add_devices(CommandLine& line) {
             answer.json["robot_drivers"].push_back({{"name", d.name}, {"help", d.help}});
             answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
         }
-        if (file->empty()) {
+        if (*search) {
             answer.json["cameras"] = json::array();
             answer.text += "cameras found\n";
             for (const DiscoveredCamera& c : discover_cameras()) {

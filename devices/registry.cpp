@@ -6,6 +6,7 @@
 #include "devices/abb/rapid.h"
 #include "devices/genicam/genicam.h"
 #include "devices/kuka/eki.h"
+#include "devices/kuka/kvp.h"
 #include "devices/kuka/program.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
@@ -26,6 +27,7 @@ const std::vector<RobotDriver>& robot_drivers() {
     static const std::vector<RobotDriver> drivers = {
         {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
         {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki},
+        {"kuka-kvp", "KUKA, variables of the controller by KUKAVARPROXY", &open_kuka_kvp},
         {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
         {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
     };
@@ -35,6 +37,7 @@ const std::vector<RobotDriver>& robot_drivers() {
 const std::vector<ControllerDriver>& controller_drivers() {
     static const std::vector<ControllerDriver> drivers = {
         {"kuka-eki", "A KUKA controller that connects by EthernetKRL", &start_kuka_eki_controller},
+        {"kuka-kvp", "A KUKA controller with KUKAVARPROXY", &start_kuka_kvp_controller},
         {"abb-rapid", "An ABB controller with our RAPID server task", &start_abb_rapid},
     };
     return drivers;

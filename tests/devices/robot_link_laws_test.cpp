@@ -27,13 +27,14 @@ std::uint16_t free_port() {
 struct Brand {
     std::string name;
     bool robot_is_client = false;
-    std::string frame;                         // a name that its frames can have
-    RobotMode external = RobotMode::external;  // how the brand tells that mode
+    std::string frame;                                                   // a name that its frames can have
+    RobotMode external = RobotMode::external, fault = RobotMode::fault;  // how the brand tells these modes
 };
 void PrintTo(const Brand& brand, std::ostream* out) {
     *out << brand.name;
 }
 const std::vector<Brand> kBrands = {{"kuka-eki", true, "BASE_left"},
+                                    {"kuka-kvp", false, "BASE_left", RobotMode::external, RobotMode::stopped},
                                     {"abb-rapid", false, "BASE_left", RobotMode::automatic}};
 
 std::vector<MeasuringMove> program() {
@@ -119,7 +120,7 @@ TEST_P(RobotLaws, TellsWhoItIsAndHowItStands) {
     EXPECT_FALSE(identity->brand.empty());
     EXPECT_EQ(link->mode(), GetParam().external);
     cell->set_mode(RobotMode::fault);
-    EXPECT_EQ(link->mode(), RobotMode::fault);
+    EXPECT_EQ(link->mode(), GetParam().fault);
     cell->move_to(program()[2].trigger);
     auto at = link->base_from_flange();
     ASSERT_TRUE(at) << at.error().sentence();
@@ -210,10 +211,16 @@ TEST_P(RobotLaws, EveryFaultIsToldReleasesNothingAndPasses) {
         ASSERT_TRUE(recovers());
         measure_all();
         controller->set_fault(fault);
-        auto written = link->write_frame(GetParam().frame, corrected);
-        auto confirmed = link->confirm(PartVerdict::corrected, "");
-        EXPECT_FALSE(written && confirmed) << "a push of that kind must not look done";
-        const Error& error = written ? confirmed.error() : written.error();
+        // As a push does: written, read back, confirmed.
+        auto pushed = link->write_frame(GetParam().frame, corrected);
+        if (pushed) {
+            if (auto back = link->read_frame(GetParam().frame); !back)
+                pushed = tl::unexpected(back.error());
+            else
+                pushed = link->confirm(PartVerdict::corrected, "");
+        }
+        ASSERT_FALSE(pushed) << "a push of that kind must not look done";
+        const Error& error = pushed.error();
         EXPECT_EQ(error.kind, ErrorKind::device);
         EXPECT_THAT(error.sentence(), HasSubstr(words.at(fault)));
         EXPECT_THAT(error.sentence(), HasSubstr("127.0.0.1:")) << "says where";

@@ -1,0 +1,340 @@
+// Seamwright's end of a KUKAVARPROXY connection.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+#include <optional>
+#include <thread>
+
+#include "devices/exchange/settings.h"
+#include "devices/kuka/kvp.h"
+#include "devices/kuka/kvp_message.h"
+#include "devices/net/socket.h"
+#include "devices/robot_program.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct KvpSettings {
+    std::string address;
+    int port = 7000, timeout_ms = 1000, poll_ms = 10, retry_ms = 100, retry_most_ms = 5000;
+};
+
+class KvpLink final : public RobotLink {
+  public:
+    explicit KvpLink(KvpSettings settings)
+        : settings_(std::move(settings)),
+          where_(fmt::format("{}:{}", settings_.address, settings_.port)),
+          timeout_(settings_.timeout_ms),
+          back_off_(settings_.retry_ms) {}
+
+    Expected<RobotIdentity> identity() override {
+        auto values = read({"$KR_SERIALNO", "$TRAFONAME[]"});
+        if (!values) return tl::unexpected(values.error());
+        return RobotIdentity{"kuka-kvp", "KUKA", string_from_krl((*values)[1]),
+                             string_from_krl((*values)[0])};
+    }
+
+    Expected<RobotMode> mode() override {
+        auto values = read({"$STOPMESS", "$MODE_OP"});
+        if (!values) return tl::unexpected(values.error());
+        auto stopped = bool_from_krl((*values)[0]);
+        if (!stopped) return fail(stopped.error());
+        static const std::map<std::string, RobotMode> kModes = {{"#T1", RobotMode::manual_reduced},
+                                                                {"#T2", RobotMode::manual_full},
+                                                                {"#AUT", RobotMode::automatic},
+                                                                {"#EX", RobotMode::external}};
+        const auto mode = kModes.find(string_from_krl((*values)[1]));
+        if (mode == kModes.end())
+            return fail({ErrorKind::device, "\"" + (*values)[1].substr(0, 20) + "\" is no operating mode",
+                         where_, ""});
+        return *stopped ? RobotMode::stopped : mode->second;
+    }
+
+    Expected<Pose> base_from_flange() override { return read_pose("$POS_ACT"); }
+
+    Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
+        auto called = poll_until(timeout, [&]() -> Expected<bool> { return read_bool("SW_CALL"); });
+        if (!called) return tl::unexpected(called.error());
+        auto part = read({"SW_PART[]"});
+        if (!part) return tl::unexpected(part.error());
+        if (auto taken = write({{"SW_CALL", "FALSE"}}); !taken) return tl::unexpected(taken.error());
+        const std::string id = string_from_krl((*part)[0]);
+        return StartSignal{id == "-" ? "" : id, now_ns()};
+    }
+
+    Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
+        told_ = 0;
+        if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return taken;
+        auto state = read({"SW_SIGNATURE[]", "$STOPMESS"});
+        if (!state) return tl::unexpected(state.error());
+        if (string_from_krl((*state)[0]) != program_signature(moves))
+            return device_error("another measuring program is loaded than the project's", where_,
+                                "load the one that `seamwright robot-program` writes");
+        auto stopped = bool_from_krl((*state)[1]);
+        if (!stopped) return fail(stopped.error());
+        if (*stopped) return device_error("the robot is stopped", where_, "start it on its controller");
+        // The last program may be on its way out of the last spot.
+        auto idle = poll_until(timeout_, [&]() -> Expected<bool> {
+            auto busy = read_bool("SW_BUSY");
+            if (!busy) return busy;
+            return !*busy;
+        });
+        if (!idle && is_silence(idle.error()) && connection_)
+            return device_error("the measuring program runs already", where_);
+        if (!idle) return idle;
+        return write({{"SW_FIRED", "0"}, {"SW_GO", "TRUE"}});
+    }
+
+    Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
+        auto fired = poll_until(timeout, [&]() -> Expected<bool> {
+            auto count = read_int("SW_FIRED");
+            if (!count) return tl::unexpected(count.error());
+            if (*count < told_ || *count > 64)
+                return fail({ErrorKind::device,
+                             fmt::format("the controller counts {} triggers after {}", *count, told_), where_,
+                             "measure the part again"});
+            return *count > told_;
+        });
+        if (!fired) return tl::unexpected(fired.error());
+        ++told_;  // the module keeps all of a program, so none is lost between two polls
+        auto values = read({fmt::format("SW_SPOT[{},]", told_), fmt::format("SW_SPOT_AT[{}]", told_)});
+        if (!values) return tl::unexpected(values.error());
+        auto pose = frame_from_krl((*values)[1]);
+        if (!pose) return fail(pose.error());
+        return TriggerEvent{string_from_krl((*values)[0]), now_ns(), *pose};
+    }
+
+    Expected<Pose> read_frame(const std::string& name) override {
+        auto variable = frame_variable(name);
+        if (!variable) return tl::unexpected(variable.error());
+        return read_pose(*variable);
+    }
+
+    Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
+        if (!base_from_frame.matrix().allFinite() ||
+            base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
+            return input_error("the frame is not finite or beyond 100 m", name);
+        auto variable = frame_variable(name);
+        if (!variable) return tl::unexpected(variable.error());
+        return write({{"SW_RELEASED", "FALSE"}, {*variable, krl_from_frame(base_from_frame)}});
+    }
+
+    Expected<void> confirm(PartVerdict verdict, const std::string&) override {
+        const bool released = verdict == PartVerdict::corrected;
+        if (auto told = write({{"SW_RELEASED", released ? "TRUE" : "FALSE"}}); !told) return told;
+        auto back = read_bool("SW_RELEASED");
+        if (!back) return tl::unexpected(back.error());
+        if (*back != released) return device_error("the controller did not keep the verdict", where_);
+        return {};
+    }
+
+    Expected<void> move_to(const Pose& base_from_flange) override {
+        if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
+        auto now = mode();
+        if (!now) return tl::unexpected(now.error());
+        if (*now != RobotMode::manual_reduced)
+            return device_error("moving by command wants T1 with the program SEAMWRIGHT running", where_);
+        if (auto sent = write({{"SW_MOVE_TO", krl_from_frame(base_from_flange)}, {"SW_MOVE", "TRUE"}}); !sent)
+            return sent;
+        auto there = poll_until(timeout_, [&]() -> Expected<bool> {
+            auto moving = read_bool("SW_MOVE");
+            if (!moving) return moving;
+            return !*moving;
+        });
+        if (!there) return tl::unexpected(there.error());
+        return {};
+    }
+
+  private:
+    static std::int64_t now_ns() {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+    }
+    static Timeout left(Clock::time_point until) {
+        return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - Clock::now()));
+    }
+
+    // Back to no connection; answers that are still under way are not taken for later ones.
+    tl::unexpected<Error> fail(Error error) {
+        connection_.reset();
+        stream_.clear();
+        names_.reset();
+        error.where = where_;
+        return tl::unexpected(std::move(error));
+    }
+
+    Expected<void> connected() {
+        if (connection_ && connection_->is_open()) return {};
+        if (Clock::now() < not_before_)
+            return device_error(std::string(kDisconnected) + ", the next attempt is due soon", where_,
+                                "check that KUKAVARPROXY runs on the controller");
+        auto made =
+            TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
+        if (!made) {
+            not_before_ = Clock::now() + back_off_;
+            back_off_ = std::min(2 * back_off_, Timeout(settings_.retry_most_ms));
+            return fail(made.error());
+        }
+        back_off_ = Timeout(settings_.retry_ms);
+        stream_.clear();
+        connection_.emplace(std::move(*made));
+        return {};
+    }
+
+    // All requests in one segment, then their answers in order.
+    Expected<std::vector<KvpAnswer>> ask(std::vector<KvpRequest> requests) {
+        if (auto ready = connected(); !ready) return tl::unexpected(ready.error());
+        const auto until = Clock::now() + timeout_;
+        std::string bytes;
+        for (KvpRequest& r : requests) {
+            r.id = ++last_id_;
+            bytes += kvp_bytes(r);
+        }
+        if (auto sent = connection_->send(bytes_of(bytes), left(until)); !sent) return fail(sent.error());
+        std::vector<KvpAnswer> answers;
+        while (answers.size() < requests.size()) {
+            auto answer = take_kvp_answer(stream_);
+            if (!answer) return fail(answer.error());
+            if (*answer) {
+                const KvpRequest& asked = requests[answers.size()];
+                if ((*answer)->id != asked.id || (*answer)->write != asked.write)
+                    return fail({ErrorKind::device,
+                                 fmt::format("answer {} came to request {} ({})", (*answer)->id, asked.id,
+                                             asked.name),
+                                 where_, "only one program may use this connection"});
+                answers.push_back(std::move(**answer));
+                continue;
+            }
+            std::array<char, 4096> buffer;
+            const auto got =
+                connection_->receive_some(std::as_writable_bytes(std::span(buffer)), left(until));
+            if (!got) return fail(got.error());
+            stream_.append(buffer.data(), *got);
+        }
+        return answers;
+    }
+
+    Expected<std::vector<std::string>> read(const std::vector<std::string>& names) {
+        std::vector<KvpRequest> requests;
+        for (const std::string& name : names) requests.push_back({0, false, name, {}});
+        auto answers = ask(std::move(requests));
+        if (!answers) return tl::unexpected(answers.error());
+        std::vector<std::string> values;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (!(*answers)[i].done)
+                return device_error("the controller refuses to read " + names[i], where_,
+                                    "load seamwright.dat on the controller");
+            values.push_back(std::move((*answers)[i].value));
+        }
+        return values;
+    }
+
+    // In order; all are sent, the first refusal is told.
+    Expected<void> write(const std::vector<std::pair<std::string, std::string>>& values) {
+        std::vector<KvpRequest> requests;
+        for (const auto& [name, value] : values) requests.push_back({0, true, name, value});
+        auto answers = ask(std::move(requests));
+        if (!answers) return tl::unexpected(answers.error());
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (!(*answers)[i].done)
+                return device_error("the controller refuses to write " + values[i].first, where_,
+                                    "check the operating mode and that the variable is global");
+        return {};
+    }
+
+    Expected<bool> read_bool(const std::string& name) {
+        auto values = read({name});
+        if (!values) return tl::unexpected(values.error());
+        auto value = bool_from_krl((*values)[0]);
+        if (!value) return fail(value.error());
+        return value;
+    }
+    Expected<std::int64_t> read_int(const std::string& name) {
+        auto values = read({name});
+        if (!values) return tl::unexpected(values.error());
+        auto value = int_from_krl((*values)[0]);
+        if (!value) return fail(value.error());
+        return value;
+    }
+    Expected<Pose> read_pose(const std::string& variable) {
+        auto values = read({variable});
+        if (!values) return tl::unexpected(values.error());
+        auto pose = frame_from_krl((*values)[0]);
+        if (!pose) return fail(pose.error());
+        return pose;
+    }
+
+    // The module's table, read once a connection; any other name is a variable's own.
+    Expected<std::string> frame_variable(const std::string& name) {
+        if (name.empty() || name.size() > 79)
+            return input_error("\"" + name + "\" is no name of a frame", where_);
+        if (!names_) {
+            auto count = ask({{0, false, "SW_FRAMES", {}}});
+            if (!count) return tl::unexpected(count.error());
+            names_.emplace();
+            if ((*count)[0].done) {
+                auto frames = int_from_krl((*count)[0].value);
+                if (!frames || *frames < 0 || *frames > 32)
+                    return fail({ErrorKind::device, "SW_FRAMES is no number of frames", where_, ""});
+                std::vector<std::string> wanted;
+                for (std::int64_t i = 1; i <= *frames; ++i) wanted.push_back(fmt::format("SW_NAME[{},]", i));
+                if (!wanted.empty()) {
+                    auto names = read(wanted);
+                    if (!names) {
+                        names_.reset();
+                        return tl::unexpected(names.error());
+                    }
+                    for (std::size_t i = 0; i < names->size(); ++i)
+                        (*names_)[string_from_krl((*names)[i])] = fmt::format("SW_FRAME[{}]", i + 1);
+                }
+            }
+        }
+        const auto known = names_->find(name);
+        return known == names_->end() ? name : known->second;
+    }
+
+    template <class Ready>
+    Expected<void> poll_until(std::chrono::milliseconds timeout, const Ready& ready) {
+        for (const auto until = Clock::now() + timeout;;) {
+            auto now = ready();
+            if (!now) return tl::unexpected(now.error());
+            if (*now) return {};
+            if (Clock::now() >= until) return device_error(kNoAnswer, where_);
+            std::this_thread::sleep_for(std::min(Timeout(settings_.poll_ms), left(until)));
+        }
+    }
+
+    const KvpSettings settings_;
+    const std::string where_;
+    const Timeout timeout_;
+    Timeout back_off_;
+    Clock::time_point not_before_{};
+    std::optional<TcpConnection> connection_;
+    std::string stream_;
+    std::uint16_t last_id_ = 0;
+    std::int64_t told_ = 0;
+    std::optional<std::map<std::string, std::string>> names_;
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<RobotLink>> open_kuka_kvp(const nlohmann::json& settings, DeviceSession&) {
+    KvpSettings s;
+    s.address = "127.0.0.1";
+    SettingsReader f(settings, "settings");
+    f.only({"address", "port", "timeout_ms", "poll_ms", "retry_ms", "retry_most_ms", "trigger_output",
+            "flag_alive", "flag_command"});
+    f.text("address", s.address);
+    f.whole("port", s.port, 1, 65535);
+    f.whole("timeout_ms", s.timeout_ms, 10, 60000);
+    f.whole("poll_ms", s.poll_ms, 1, 1000);
+    f.whole("retry_ms", s.retry_ms, 1, 60000);
+    f.whole("retry_most_ms", s.retry_most_ms, 1, 600000);
+    if (f.failed()) return tl::unexpected(f.error());
+    return std::make_unique<KvpLink>(s);
+}
+
+}  // namespace seamwright

@@ -20,7 +20,9 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
     server.cell_ = cell;
     if (!options.program.empty()) cell->store_program(options.program);
     if (!options.camera_address.empty()) {
-        auto camera = ServedCamera::open(cell, {{"address", options.camera_address}});
+        nlohmann::json settings = options.camera;
+        settings["address"] = options.camera_address;
+        auto camera = ServedCamera::open(cell, settings);
         if (!camera) return tl::unexpected(camera.error());
         server.camera_ = std::move(*camera);
         server.camera_address_ = options.camera_address;

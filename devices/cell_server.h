@@ -22,8 +22,9 @@ struct ServedController {
 };
 
 struct CellServerOptions {
-    nlohmann::json cell = nlohmann::json::object();  // as documented in cell.h
-    std::string camera_address;                      // empty = no camera
+    nlohmann::json cell = nlohmann::json::object();    // as documented in cell.h
+    std::string camera_address;                        // empty = no camera
+    nlohmann::json camera = nlohmann::json::object();  // further settings of served_camera.h
     std::vector<ServedController> controllers;
     std::vector<MeasuringMove> program;  // the measuring program that the controllers hold
 };

@@ -1,0 +1,118 @@
+#pragma once
+// A taught door project whose sensor and robot stand behind real protocols on the loopback address.
+
+#include <optional>
+
+#include "devices/cell_server.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/net/socket.h"
+#include "devices/simulated/door.h"
+#include "projects/acquire.h"
+#include "projects/station.h"
+#include "projects/teach.h"
+
+namespace seamwright {
+
+struct ServedCell {
+    std::shared_ptr<SimulatedCell> cell;
+    std::optional<CellServer> server;
+    std::optional<Station> station;
+    SimulatedController& controller() { return *server->controllers().front().second; }
+};
+
+struct ServedCellOptions {
+    std::string driver = "kuka-eki";
+    int width = 640, height = 512;
+    int trigger_interval_ms = 40;
+    double lost_packets_per_mille = 0;  // after teaching
+};
+
+// Calibrated with the cell's truth, taught on the undisplaced door; one region "all" of the default door's
+// spots.
+inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const std::filesystem::path& file) {
+    ServedCell served;
+    const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+    const nlohmann::json frame = pose_json(default_cell_settings().base_from_workobject);
+    auto cell = SimulatedCell::open({{"seed", 5},
+                                     {"optics", {{"width", options.width}, {"height", options.height}}},
+                                     {"buffers", 64},
+                                     {"robot",
+                                      {{"repeatability_mm", 0.01},
+                                       {"repeatability_deg", 0.001},
+                                       {"trigger_jitter_mm", 0.5},
+                                       {"frames", {{"path", frame}}}}}});
+    if (!cell) return tl::unexpected(cell.error());
+    served.cell = *cell;
+
+    Project p;
+    p.name = "served door";
+    p.part.base_from_workobject = served.cell->base_from_workobject();
+    SensorSetup sensor;
+    sensor.id = "A";
+    sensor.driver = "genicam";
+    sensor.settings = {{"address", "127.0.0.1"}, {"hardware_trigger", true}, {"buffers", 32}};
+    sensor.calibration_id = "truth";
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = options.driver;
+    robot.settings = {{"port", port}};
+    Calibration c;
+    c.id = "truth";
+    c.method = "simulated truth";
+    c.sensor_id = "A";
+    c.robot_id = "R1";
+    c.model = served.cell->sensor_model();
+    c.flange_from_sensor = served.cell->flange_from_sensor();
+    c.verdict = "good";
+    Region region;
+    region.id = "all";
+    region.frame_name = "path";
+    region.sigma_limit_mm = 1;
+    region.sigma_limit_deg = 0.5;
+    region.base_from_frame = p.part.base_from_workobject;
+    for (const DoorSpot& door : default_door_spots()) {
+        Spot s;
+        s.id = door.id;
+        s.sensor_id = "A";
+        s.robot_id = "R1";
+        s.base_from_flange = served.cell->flange_for(door.workobject_from_sensor);
+        s.feature.kind = "contour-end";
+        s.feature.parameters = {{"side", 0}, {"segment", 1}};
+        s.sigma_mm = 0.2;
+        s.required = false;
+        p.spots.push_back(s);
+        region.spot_ids.push_back(s.id);
+    }
+    p.regions = {region};
+    p.sensors = {sensor};
+    p.robots = {robot};
+    p.calibrations = {c};
+
+    CellServerOptions serve;
+    serve.camera_address = "127.0.0.1";
+    serve.controllers = {
+        {options.driver, {{"port", port}, {"trigger_interval_ms", options.trigger_interval_ms}}}};
+    serve.program = measuring_program(p, "R1");
+    auto server = CellServer::start(serve, served.cell);
+    if (!server) return tl::unexpected(server.error());
+    served.server.emplace(std::move(*server));
+
+    auto created = ProjectFile::create(file, p, true);
+    if (!created) return tl::unexpected(created.error());
+    served.station.emplace(std::move(*created), p);
+    Station& station = *served.station;
+    if (auto connected = station.connect(); !connected) return tl::unexpected(connected.error());
+    p = station.project();
+    p.calibrations[0].sensor_identity = p.sensors[0].identity;
+    p.calibrations[0].robot_identity = p.robots[0].identity;
+    auto taught = station.run({});
+    if (!taught) return tl::unexpected(taught.error());
+    for (std::size_t i = 0; i < p.spots.size(); ++i) {
+        const SpotMeasurement& m = taught->spots[i];
+        if (m.status == SpotStatus::measured) p.spots[i].reference_mm = m.measured_mm;
+    }
+    if (auto saved = station.edit(p); !saved) return tl::unexpected(saved.error());
+    return served;
+}
+
+}  // namespace seamwright

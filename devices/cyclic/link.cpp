@@ -1,0 +1,327 @@
+#include "devices/cyclic/link.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/silence.h"
+
+namespace seamwright {
+namespace {
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+constexpr std::uint64_t kAcknowledged = 3;  // cycles that followed the whole correction without complaint
+constexpr double kSameMm = 1e-6, kSameRad = 1e-8;
+
+Expected<double> number_within(const nlohmann::json& json, const char* key, double otherwise, double low,
+                               double high) {
+    auto value = json_number_or(json, key, otherwise, "");
+    if (!value) return value;
+    if (!(*value >= low && *value <= high))
+        return input_error(fmt::format("{} is not within {} and {}", *value, low, high), key);
+    return value;
+}
+}  // namespace
+
+Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings,
+                                                   const std::vector<std::string>& own,
+                                                   const std::string& driver, std::uint16_t port) {
+    static const std::vector<std::string> common = {
+        "listen",          "port",             "robot_address",     "cycle_ms",
+        "timeout_ms",      "confirm_timeout_ms", "frames",          "base_from_reference",
+        "flange_from_tcp", "max_translation_mm", "max_rotation_deg", "speed_mm_s",
+        "speed_deg_s",     "acceleration_mm_s2", "acceleration_deg_s2", "max_late",
+        "session_gap_ms",  "max_path_speed_mm_s", "measuring"};
+    if (!settings.is_object()) return input_error("the settings are no object", "settings");
+    for (const auto& [key, value] : settings.items()) {
+        (void)value;
+        if (std::find(common.begin(), common.end(), key) == common.end() &&
+            std::find(own.begin(), own.end(), key) == own.end())
+            return input_error("unknown field", key, "leave it out or correct its name");
+    }
+    CyclicLinkSettings r;
+    r.driver = driver;
+    CyclicSettings& s = r.server;
+    const auto text = [&](const char* key, std::string& value) -> Expected<void> {
+        auto read = json_string_or(settings, key, value, "");
+        if (!read) return tl::unexpected(read.error());
+        value = *read;
+        return {};
+    };
+    if (auto ok = text("listen", s.listen); !ok) return tl::unexpected(ok.error());
+    if (auto ok = text("robot_address", s.robot_address); !ok) return tl::unexpected(ok.error());
+    struct Number {
+        const char* key;
+        double otherwise, low, high;
+        double* real;
+        int* whole;
+    };
+    int port_number = port;
+    const Number numbers[] = {
+        {"port", static_cast<double>(port), 0, 65535, nullptr, &port_number},
+        {"cycle_ms", 4, 1, 1000, nullptr, &s.cycle_ms},
+        {"timeout_ms", 1000, 1, 60000, nullptr, &r.timeout_ms},
+        {"confirm_timeout_ms", 20000, 1, 600000, nullptr, &r.confirm_timeout_ms},
+        {"max_translation_mm", 10, 0, 1000, &s.max_translation_mm, nullptr},
+        {"max_rotation_deg", 2, 0, 45, &s.max_rotation_deg, nullptr},
+        {"speed_mm_s", 20, 1e-3, 1000, &s.ramp.speed_mm_s, nullptr},
+        {"speed_deg_s", 2, 1e-3, 90, &s.ramp.speed_deg_s, nullptr},
+        {"acceleration_mm_s2", 100, 1e-3, 1e5, &s.ramp.acceleration_mm_s2, nullptr},
+        {"acceleration_deg_s2", 10, 1e-3, 1e4, &s.ramp.acceleration_deg_s2, nullptr},
+        {"max_late", 10, 1, 1000, nullptr, &s.max_late},
+        {"session_gap_ms", 500, 20, 60000, nullptr, &s.session_gap_ms},
+        {"max_path_speed_mm_s", 3000, 1, 1e5, &s.max_path_speed_mm_s, nullptr},
+    };
+    for (const Number& n : numbers) {
+        const auto value = number_within(settings, n.key, n.otherwise, n.low, n.high);
+        if (!value) return tl::unexpected(value.error());
+        if (n.real) *n.real = *value;
+        if (n.whole) {
+            if (*value != std::floor(*value)) return input_error("not a whole number", n.key);
+            *n.whole = static_cast<int>(*value);
+        }
+    }
+    s.port = static_cast<std::uint16_t>(port_number);
+    const auto pose = [&](const char* key, Pose& value) -> Expected<void> {
+        if (!settings.contains(key)) return {};
+        auto read = parse_pose(settings.at(key), key);
+        if (!read) return tl::unexpected(read.error());
+        value = *read;
+        return {};
+    };
+    if (auto ok = pose("base_from_reference", r.base_from_reference); !ok) return tl::unexpected(ok.error());
+    if (auto ok = pose("flange_from_tcp", r.flange_from_tcp); !ok) return tl::unexpected(ok.error());
+    if (settings.contains("frames")) {
+        if (!settings["frames"].is_object()) return input_error("not an object of frames", "frames");
+        for (const auto& [name, frame] : settings["frames"].items()) {
+            const std::string where = "frames." + name;
+            if (auto ok = only_fields(frame, {"base_from_frame"}, where); !ok)
+                return tl::unexpected(ok.error());
+            auto field = json_field(frame, "base_from_frame", where);
+            if (!field) return tl::unexpected(field.error());
+            auto taught = parse_pose(**field, where + ".base_from_frame");
+            if (!taught) return tl::unexpected(taught.error());
+            r.taught[name] = *taught;
+        }
+    }
+    if (settings.contains("measuring")) {
+        const nlohmann::json& m = settings["measuring"];
+        if (auto ok = only_fields(m, {"driver", "settings"}, "measuring"); !ok)
+            return tl::unexpected(ok.error());
+        auto name = json_string(m, "driver", "measuring");
+        if (!name) return tl::unexpected(name.error());
+        if (*name == "kuka-rsi" || *name == "abb-egm")
+            return input_error("a cyclic correction cannot measure", "measuring.driver",
+                               "name the driver that runs the measuring program");
+        r.measuring_driver = *name;
+        if (m.contains("settings")) r.measuring = m["settings"];
+    }
+    return r;
+}
+
+CyclicLink::CyclicLink(const CyclicLinkSettings& settings, std::unique_ptr<CyclicServer> server,
+                       std::unique_ptr<RobotLink> measuring)
+    : settings_(settings),
+      server_(std::move(server)),
+      measuring_(std::move(measuring)),
+      written_(settings.taught) {}
+
+CyclicLink::~CyclicLink() {
+    // A robot that is still asking is led back; one that is not drops the correction by itself.
+    if (!server_->state().zero) (void)back_to_zero();
+}
+
+Expected<std::unique_ptr<CyclicLink>> CyclicLink::open(const CyclicLinkSettings& settings,
+                                                       std::unique_ptr<CyclicProtocol> protocol,
+                                                       OpenRobot open_robot, DeviceSession& session) {
+    std::unique_ptr<RobotLink> measuring;
+    if (!settings.measuring_driver.empty()) {
+        if (!open_robot) return usage_error("no measuring link can be opened here", "measuring");
+        auto opened = open_robot(settings.measuring_driver, settings.measuring, session);
+        if (!opened) return tl::unexpected(opened.error());
+        measuring = std::move(*opened);
+    }
+    auto server = CyclicServer::start(settings.server, std::move(protocol));
+    if (!server) return tl::unexpected(server.error());
+    return std::unique_ptr<CyclicLink>(
+        new CyclicLink(settings, std::move(*server), std::move(measuring)));
+}
+
+Expected<void> CyclicLink::no_alarm() {
+    if (auto alarm = server_->take_alarm())
+        return device_error(*alarm, settings_.driver, "the correction is withdrawn; look at the robot");
+    return {};
+}
+
+Expected<CyclicServer::State> CyclicLink::fresh_state() {
+    const auto deadline = Clock::now() + milliseconds(settings_.timeout_ms);
+    const std::int64_t fresh_ns = std::max<std::int64_t>(20LL * settings_.server.cycle_ms, 100) * 1000000;
+    while (true) {
+        if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+        CyclicServer::State state = server_->state();
+        if (state.age_ns >= 0 && state.age_ns < fresh_ns) {
+            if (state.packet.problem) return device_error(state.packet.problem, settings_.driver);
+            return state;
+        }
+        if (Clock::now() >= deadline)
+            return device_error(fmt::format("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
+                                settings_.driver, "check that the robot's program has switched the correction on");
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+}
+
+Expected<RobotIdentity> CyclicLink::identity() {
+    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    if (measuring_) return measuring_->identity();
+    if (auto state = fresh_state(); !state) return tl::unexpected(state.error());
+    return RobotIdentity{settings_.driver, settings_.brand, "", ""};
+}
+
+Expected<RobotMode> CyclicLink::mode() {
+    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    if (measuring_) return measuring_->mode();
+    auto state = fresh_state();
+    if (!state) return tl::unexpected(state.error());
+    return state->packet.mode;
+}
+
+Expected<Pose> CyclicLink::base_from_flange() {
+    auto state = fresh_state();
+    if (!state) {
+        // Between its corrections the robot sends nothing here; the measuring link knows.
+        if (measuring_ && is_silence(state.error())) return measuring_->base_from_flange();
+        return tl::unexpected(state.error());
+    }
+    const auto& tcp = state->packet.actual ? state->packet.actual : state->packet.programmed;
+    if (!tcp) return device_error("the cyclic packets carry no position", settings_.driver,
+                                  "send the Cartesian actual position");
+    return settings_.base_from_reference * *tcp * settings_.flange_from_tcp.inverse();
+}
+
+Expected<StartSignal> CyclicLink::wait_start(milliseconds timeout) {
+    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    return measuring_ ? measuring_->wait_start(timeout) : RobotLink::wait_start(timeout);
+}
+
+Expected<void> CyclicLink::start_measuring(const std::vector<MeasuringMove>& moves) {
+    if (auto ok = no_alarm(); !ok) return ok;
+    if (!measuring_)
+        return usage_error("a cyclic correction alone cannot measure", settings_.driver,
+                           "name a measuring driver in the settings (\"measuring\")");
+    if (auto zero = back_to_zero(); !zero) return zero;
+    return measuring_->start_measuring(moves);
+}
+
+Expected<TriggerEvent> CyclicLink::wait_trigger(milliseconds timeout) {
+    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    if (!measuring_) return usage_error("a cyclic correction alone has no triggers", settings_.driver);
+    return measuring_->wait_trigger(timeout);
+}
+
+Expected<Pose> CyclicLink::read_frame(const std::string& name) {
+    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    const auto it = written_.find(name);
+    if (it == written_.end())
+        return input_error("no frame of this name is in the settings", name, "add it under \"frames\"");
+    return it->second;
+}
+
+Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base_from_frame) {
+    if (auto ok = no_alarm(); !ok) return ok;
+    const auto taught = settings_.taught.find(name);
+    if (taught == settings_.taught.end())
+        return input_error("no frame of this name is in the settings", name, "add it under \"frames\"");
+    if (!base_from_frame.matrix().allFinite()) return input_error("the frame is not finite", name);
+    const Pose b = base_from_frame * taught->second.inverse();
+    const double offset = (base_from_frame.translation() - taught->second.translation()).norm();
+    const double turn = deg_from_rad(rotation_log(b.linear()).norm());
+    const CyclicSettings& s = settings_.server;
+    if (offset > s.max_translation_mm)
+        return device_error(fmt::format("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm",
+                                        offset, s.max_translation_mm),
+                            name);
+    if (turn > s.max_rotation_deg)
+        return device_error(fmt::format("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}",
+                                        turn, s.max_rotation_deg),
+                            name);
+    written_[name] = base_from_frame;
+    return {};
+}
+
+Expected<void> CyclicLink::apply() {
+    std::optional<Pose> b;
+    std::string first;
+    for (const auto& [name, frame] : written_) {
+        const Pose taught = settings_.taught.at(name);
+        const Pose of_this = frame * taught.inverse();
+        // Compared at the frame, where it matters; far from it a rounded rotation has a long lever.
+        if (b && ((*b * taught.translation() - frame.translation()).norm() > kSameMm ||
+                  rotation_log(b->linear().transpose() * of_this.linear()).norm() > kSameRad))
+            return device_error(fmt::format("frames {} and {} want different corrections", first, name),
+                                settings_.driver, "the controller holds one at a time");
+        if (!b) {
+            b = of_this;
+            first = name;
+        }
+    }
+    auto state = fresh_state();
+    if (!state) return tl::unexpected(state.error());
+    if (!state->packet.running)
+        return device_error("the controller does not take corrections: it is not running", settings_.driver,
+                            "start its program");
+    const Pose& r = settings_.base_from_reference;
+    server_->set_target(b ? Pose(r.inverse() * *b * r) : Pose::Identity());
+    const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
+    while (true) {
+        if (auto ok = no_alarm(); !ok) return ok;
+        state = fresh_state();
+        if (!state) return tl::unexpected(state.error());
+        if (state->steady > kAcknowledged) return {};
+        if (Clock::now() >= deadline)
+            return device_error(std::string(kNoAnswer) + ": the correction is not in force", settings_.driver);
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+}
+
+Expected<void> CyclicLink::back_to_zero() {
+    server_->withdraw();
+    const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
+    while (true) {
+        const CyclicServer::State state = server_->state();
+        if (state.zero) return {};
+        if (auto ok = no_alarm(); !ok) return ok;
+        if (Clock::now() >= deadline)
+            return device_error(std::string(kNoAnswer) + ": the correction could not be led back to zero",
+                                settings_.driver, "stop the robot's program");
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+}
+
+Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text) {
+    if (auto ok = no_alarm(); !ok) {
+        server_->withdraw();
+        return ok;
+    }
+    auto done = verdict == PartVerdict::corrected ? apply() : back_to_zero();
+    if (!done) {
+        server_->withdraw();
+        if (measuring_) (void)measuring_->confirm(PartVerdict::failed, done.error().what);
+        return done;
+    }
+    if (!measuring_) return {};
+    auto told = measuring_->confirm(verdict, text);
+    if (!told) server_->withdraw();
+    return told;
+}
+
+Expected<void> CyclicLink::move_to(const Pose& base_from_flange) {
+    if (auto ok = no_alarm(); !ok) return ok;
+    return measuring_ ? measuring_->move_to(base_from_flange) : RobotLink::move_to(base_from_flange);
+}
+
+}  // namespace seamwright

@@ -1,0 +1,92 @@
+#pragma once
+// A RobotLink that corrects the running path instead of a frame on the controller.
+//
+// The application's path is taught in a frame base_from_frame. write_frame() stages the frame of the displaced
+// part; the displacement of the path in base is B = written * taught^-1, and confirm(corrected) ramps it onto
+// the path. The controller holds one displacement at a time: frames that are staged must agree on B. Until
+// confirm(corrected) nothing is sent but zero; start_measuring() and every other verdict ramp back to zero and
+// return when it is reached.
+//
+// Common settings (defaults):
+//   {"listen": "127.0.0.1", "port": the brand's, "robot_address": "" (whoever comes first, until it is silent),
+//    "cycle_ms": 4, "timeout_ms": 1000 (for a packet), "confirm_timeout_ms": 20000 (for a whole ramp),
+//    "frames": {"NAME": {"base_from_frame": POSE as taught}},
+//    "base_from_reference": POSE identity (frame in which the controller tells poses: KUKA $BASE, ABB work object),
+//    "flange_from_tcp": POSE identity (tool whose TCP it tells),
+//    "max_translation_mm": 10, "max_rotation_deg": 2, "speed_mm_s": 20, "speed_deg_s": 2,
+//    "acceleration_mm_s2": 100, "acceleration_deg_s2": 10, "max_late": 10, "session_gap_ms": 500,
+//    "max_path_speed_mm_s": 3000,
+//    "measuring": {"driver": a robot driver, "settings": {...}}}
+// identity, mode, start signal, measuring, triggers and moves are those of the measuring link. Without one the
+// identity is the brand's alone, the mode what the cyclic packets tell, and measuring is refused.
+//
+// Limits are checked twice: when a frame is written (rotation of B, and its offset at the origin of the taught
+// frame), and in every cycle at the programmed position. Alarms of server.h are told, once, by the next call
+// whatever it is; the correction is being withdrawn by then.
+
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "devices/cyclic/server.h"
+#include "devices/device_session.h"
+#include "devices/robot_link.h"
+
+namespace seamwright {
+
+// How a link opens its measuring link: open_robot() of registry.h, which lies above this library.
+using OpenRobot = Expected<std::unique_ptr<RobotLink>> (*)(const std::string& driver,
+                                                           const nlohmann::json& settings,
+                                                           DeviceSession& session);
+
+struct CyclicLinkSettings {
+    CyclicSettings server;
+    std::string driver, brand;
+    int timeout_ms = 1000, confirm_timeout_ms = 20000;
+    std::map<std::string, Pose> taught;  // base_from_frame
+    Pose base_from_reference = Pose::Identity(), flange_from_tcp = Pose::Identity();
+    std::string measuring_driver;
+    nlohmann::json measuring = nlohmann::json::object();
+};
+// The common fields; `own` are the names of the driver's further ones.
+Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings,
+                                                   const std::vector<std::string>& own,
+                                                   const std::string& driver, std::uint16_t port);
+
+class CyclicLink : public RobotLink {
+  public:
+    static Expected<std::unique_ptr<CyclicLink>> open(const CyclicLinkSettings& settings,
+                                                      std::unique_ptr<CyclicProtocol> protocol,
+                                                      OpenRobot open_robot, DeviceSession& session);
+    ~CyclicLink() override;
+    Expected<RobotIdentity> identity() override;
+    Expected<RobotMode> mode() override;
+    Expected<Pose> base_from_flange() override;
+    Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override;
+    Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override;
+    Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override;
+    Expected<Pose> read_frame(const std::string& name) override;
+    Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override;
+    Expected<void> confirm(PartVerdict verdict, const std::string& text) override;
+    Expected<void> move_to(const Pose& base_from_flange) override;
+
+    const CyclicServer& server() const { return *server_; }
+
+  private:
+    CyclicLink(const CyclicLinkSettings& settings, std::unique_ptr<CyclicServer> server,
+               std::unique_ptr<RobotLink> measuring);
+    Expected<void> no_alarm();
+    Expected<CyclicServer::State> fresh_state();
+    Expected<void> apply();
+    Expected<void> back_to_zero();
+
+    const CyclicLinkSettings settings_;
+    std::unique_ptr<CyclicServer> server_;
+    std::unique_ptr<RobotLink> measuring_;  // may be null
+    std::map<std::string, Pose> written_;
+};
+
+}  // namespace seamwright

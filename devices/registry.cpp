@@ -8,6 +8,7 @@
 #include "devices/kuka/eki.h"
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/program.h"
+#include "devices/kuka/rsi.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
 
@@ -28,6 +29,10 @@ const std::vector<RobotDriver>& robot_drivers() {
         {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
         {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki},
         {"kuka-kvp", "KUKA, variables of the controller by KUKAVARPROXY", &open_kuka_kvp},
+        {"kuka-rsi", "KUKA path correction in every cycle (RSI)",
+         [](const nlohmann::json& settings, DeviceSession& session) {
+             return open_kuka_rsi(settings, session, &open_robot);
+         }},
         {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
         {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
     };
@@ -38,6 +43,10 @@ const std::vector<ControllerDriver>& controller_drivers() {
     static const std::vector<ControllerDriver> drivers = {
         {"kuka-eki", "A KUKA controller that connects by EthernetKRL", &start_kuka_eki_controller},
         {"kuka-kvp", "A KUKA controller with KUKAVARPROXY", &start_kuka_kvp_controller},
+        {"kuka-rsi", "A KUKA controller that asks for path corrections (RSI)",
+         [](std::shared_ptr<SimulatedCell> cell, const nlohmann::json& settings) {
+             return start_kuka_rsi(std::move(cell), settings, &start_controller);
+         }},
         {"abb-rapid", "An ABB controller with our RAPID server task", &start_abb_rapid},
     };
     return drivers;

@@ -31,12 +31,25 @@ Expected<double> number_within(const nlohmann::json& json, const char* key, doub
 Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings,
                                                    const std::vector<std::string>& own,
                                                    const std::string& driver, std::uint16_t port) {
-    static const std::vector<std::string> common = {
-        "listen",          "port",             "robot_address",     "cycle_ms",
-        "timeout_ms",      "confirm_timeout_ms", "frames",          "base_from_reference",
-        "flange_from_tcp", "max_translation_mm", "max_rotation_deg", "speed_mm_s",
-        "speed_deg_s",     "acceleration_mm_s2", "acceleration_deg_s2", "max_late",
-        "session_gap_ms",  "max_path_speed_mm_s", "measuring"};
+    static const std::vector<std::string> common = {"listen",
+                                                    "port",
+                                                    "robot_address",
+                                                    "cycle_ms",
+                                                    "timeout_ms",
+                                                    "confirm_timeout_ms",
+                                                    "frames",
+                                                    "base_from_reference",
+                                                    "flange_from_tcp",
+                                                    "max_translation_mm",
+                                                    "max_rotation_deg",
+                                                    "speed_mm_s",
+                                                    "speed_deg_s",
+                                                    "acceleration_mm_s2",
+                                                    "acceleration_deg_s2",
+                                                    "max_late",
+                                                    "session_gap_ms",
+                                                    "max_path_speed_mm_s",
+                                                    "measuring"};
     if (!settings.is_object()) return input_error("the settings are no object", "settings");
     for (const auto& [key, value] : settings.items()) {
         (void)value;
@@ -133,7 +146,13 @@ CyclicLink::CyclicLink(const CyclicLinkSettings& settings, std::unique_ptr<Cycli
 
 CyclicLink::~CyclicLink() {
     // A robot that is still asking is led back; one that is not drops the correction by itself.
-    if (!server_->state().zero) (void)back_to_zero();
+    server_->withdraw();
+    const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
+    while (Clock::now() < deadline) {
+        const CyclicServer::State state = server_->state();
+        if (state.zero || state.age_ns > 100 * 1000000) break;
+        std::this_thread::sleep_for(milliseconds(2));
+    }
 }
 
 Expected<std::unique_ptr<CyclicLink>> CyclicLink::open(const CyclicLinkSettings& settings,
@@ -148,8 +167,7 @@ Expected<std::unique_ptr<CyclicLink>> CyclicLink::open(const CyclicLinkSettings&
     }
     auto server = CyclicServer::start(settings.server, std::move(protocol));
     if (!server) return tl::unexpected(server.error());
-    return std::unique_ptr<CyclicLink>(
-        new CyclicLink(settings, std::move(*server), std::move(measuring)));
+    return std::unique_ptr<CyclicLink>(new CyclicLink(settings, std::move(*server), std::move(measuring)));
 }
 
 Expected<void> CyclicLink::no_alarm() {
@@ -169,8 +187,9 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
             return state;
         }
         if (Clock::now() >= deadline)
-            return device_error(fmt::format("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
-                                settings_.driver, "check that the robot's program has switched the correction on");
+            return device_error(
+                fmt::format("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
+                settings_.driver, "check that the robot's program has switched the correction on");
         std::this_thread::sleep_for(milliseconds(2));
     }
 }
@@ -198,8 +217,9 @@ Expected<Pose> CyclicLink::base_from_flange() {
         return tl::unexpected(state.error());
     }
     const auto& tcp = state->packet.actual ? state->packet.actual : state->packet.programmed;
-    if (!tcp) return device_error("the cyclic packets carry no position", settings_.driver,
-                                  "send the Cartesian actual position");
+    if (!tcp)
+        return device_error("the cyclic packets carry no position", settings_.driver,
+                            "send the Cartesian actual position");
     return settings_.base_from_reference * *tcp * settings_.flange_from_tcp.inverse();
 }
 
@@ -242,13 +262,15 @@ Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base
     const double turn = deg_from_rad(rotation_log(b.linear()).norm());
     const CyclicSettings& s = settings_.server;
     if (offset > s.max_translation_mm)
-        return device_error(fmt::format("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm",
-                                        offset, s.max_translation_mm),
-                            name);
+        return device_error(
+            fmt::format("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm", offset,
+                        s.max_translation_mm),
+            name);
     if (turn > s.max_rotation_deg)
-        return device_error(fmt::format("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}",
-                                        turn, s.max_rotation_deg),
-                            name);
+        return device_error(
+            fmt::format("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}", turn,
+                        s.max_rotation_deg),
+            name);
     written_[name] = base_from_frame;
     return {};
 }
@@ -283,7 +305,8 @@ Expected<void> CyclicLink::apply() {
         if (!state) return tl::unexpected(state.error());
         if (state->steady > kAcknowledged) return {};
         if (Clock::now() >= deadline)
-            return device_error(std::string(kNoAnswer) + ": the correction is not in force", settings_.driver);
+            return device_error(std::string(kNoAnswer) + ": the correction is not in force",
+                                settings_.driver);
         std::this_thread::sleep_for(milliseconds(2));
     }
 }

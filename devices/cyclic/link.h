@@ -1,28 +1,28 @@
 #pragma once
 // A RobotLink that corrects the running path instead of a frame on the controller.
 //
-// The application's path is taught in a frame base_from_frame. write_frame() stages the frame of the displaced
-// part; the displacement of the path in base is B = written * taught^-1, and confirm(corrected) ramps it onto
-// the path. The controller holds one displacement at a time: frames that are staged must agree on B. Until
-// confirm(corrected) nothing is sent but zero; start_measuring() and every other verdict ramp back to zero and
-// return when it is reached.
+// The application's path is taught in a frame base_from_frame. write_frame() stages the frame of the
+// displaced part; the displacement of the path in base is B = written * taught^-1, and confirm(corrected)
+// ramps it onto the path. The controller holds one displacement at a time: frames that are staged must agree
+// on B. Until confirm(corrected) nothing is sent but zero; start_measuring() and every other verdict ramp
+// back to zero and return when it is reached.
 //
 // Common settings (defaults):
-//   {"listen": "127.0.0.1", "port": the brand's, "robot_address": "" (whoever comes first, until it is silent),
+//   {"listen": "127.0.0.1", "port": the brand's, "robot_address": "" (whoever comes first, until it is
+//   silent),
 //    "cycle_ms": 4, "timeout_ms": 1000 (for a packet), "confirm_timeout_ms": 20000 (for a whole ramp),
 //    "frames": {"NAME": {"base_from_frame": POSE as taught}},
-//    "base_from_reference": POSE identity (frame in which the controller tells poses: KUKA $BASE, ABB work object),
-//    "flange_from_tcp": POSE identity (tool whose TCP it tells),
-//    "max_translation_mm": 10, "max_rotation_deg": 2, "speed_mm_s": 20, "speed_deg_s": 2,
-//    "acceleration_mm_s2": 100, "acceleration_deg_s2": 10, "max_late": 10, "session_gap_ms": 500,
-//    "max_path_speed_mm_s": 3000,
+//    "base_from_reference": POSE identity (frame in which the controller tells poses: KUKA $BASE, ABB work
+//    object), "flange_from_tcp": POSE identity (tool whose TCP it tells), "max_translation_mm": 10,
+//    "max_rotation_deg": 2, "speed_mm_s": 20, "speed_deg_s": 2, "acceleration_mm_s2": 100,
+//    "acceleration_deg_s2": 10, "max_late": 10, "session_gap_ms": 500, "max_path_speed_mm_s": 3000,
 //    "measuring": {"driver": a robot driver, "settings": {...}}}
-// identity, mode, start signal, measuring, triggers and moves are those of the measuring link. Without one the
-// identity is the brand's alone, the mode what the cyclic packets tell, and measuring is refused.
+// identity, mode, start signal, measuring, triggers and moves are those of the measuring link. Without one
+// the identity is the brand's alone, the mode what the cyclic packets tell, and measuring is refused.
 //
-// Limits are checked twice: when a frame is written (rotation of B, and its offset at the origin of the taught
-// frame), and in every cycle at the programmed position. Alarms of server.h are told, once, by the next call
-// whatever it is; the correction is being withdrawn by then.
+// Limits are checked twice: when a frame is written (rotation of B, and its offset at the origin of the
+// taught frame), and in every cycle at the programmed position. Alarms of server.h are told, once, by the
+// next call whatever it is; the correction is being withdrawn by then.
 
 #include <initializer_list>
 #include <map>

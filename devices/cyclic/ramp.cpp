@@ -57,6 +57,10 @@ CyclicCorrection CorrectionRamp::at(const Eigen::Vector3d& position_mm) const {
 }
 
 CyclicCorrection CorrectionRamp::step(const Eigen::Vector3d& position_mm) {
+    if (s_ >= 1 && step_ > 0) {
+        step_ = 0;  // the cycle in which the last step's speed ends
+        return at(position_mm);
+    }
     if (pending_ && step_ == 0) begin();
     if (s_ < 1) {
         const double length_mm = ((to_.l - from_.l) * position_mm + (to_.t - from_.t)).norm();
@@ -70,15 +74,14 @@ CyclicCorrection CorrectionRamp::step(const Eigen::Vector3d& position_mm) {
         const double unit = acceleration * cycle_s_ * cycle_s_;
         const double rest = 1 - s_;
         const double braked = std::max(0.0, step_ - unit);
-        double next = pending_ ? braked
-                               : std::min({step_ + unit, speed * cycle_s_, braking_step(rest / unit) * unit});
+        double next =
+            pending_ ? braked : std::min({step_ + unit, speed * cycle_s_, braking_step(rest / unit) * unit});
         next = std::min(next, rest);
         s_ += next;
         step_ = next;
         // The last step: what is left is nothing but rounding.
         if (1 - s_ <= 1e-13) s_ = 1;
         now_ = blend(from_, to_, s_);
-        if (s_ >= 1) step_ = 0;
     }
     return at(position_mm);
 }

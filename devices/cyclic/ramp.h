@@ -38,8 +38,8 @@ class CorrectionRamp {
     // One cycle on; the correction for the programmed position.
     CyclicCorrection step(const Eigen::Vector3d& position_mm);
     CyclicCorrection at(const Eigen::Vector3d& position_mm) const;  // as it is, without a step
-    bool arrived() const;  // at the target, standing
-    bool zero() const;     // no correction, standing
+    bool arrived() const;                                           // at the target, standing
+    bool zero() const;                                              // no correction, standing
     bool target_is_zero() const { return target_.zero; }
 
   private:

@@ -60,7 +60,8 @@ void CyclicServer::run() {
         if (state_.age_ns >= 0 && robot_ &&
             Clock::now() - last_ > std::chrono::milliseconds(settings_.session_gap_ms)) {
             if (!ramp_.zero() || !ramp_.target_is_zero())
-                raise("the robot fell silent under a correction; it drops the correction when it starts anew");
+                raise(
+                    "the robot fell silent under a correction; it drops the correction when it starts anew");
             robot_.reset();
             ramp_.reset();
             state_.steady = 0;
@@ -77,7 +78,8 @@ void CyclicServer::raise(const char* reason) {
 void CyclicServer::handle(std::span<const std::byte> datagram, const Endpoint& from) {
     const auto received = Clock::now();
     const std::lock_guard lock(mutex_);
-    if ((robot_ && *robot_ != from && received - last_ < std::chrono::milliseconds(settings_.session_gap_ms)) ||
+    if ((robot_ && *robot_ != from &&
+         received - last_ < std::chrono::milliseconds(settings_.session_gap_ms)) ||
         (!settings_.robot_address.empty() && from.address != settings_.robot_address)) {
         ++counters_.strangers;
         return;
@@ -101,6 +103,8 @@ void CyclicServer::handle(std::span<const std::byte> datagram, const Endpoint& f
                 return;
             }
             fresh = true;
+        } else if (packet.late < last_late_) {
+            fresh = true;  // the count of late answers began anew
         } else {
             missed = (packet.number - before) / packet.numbers_per_cycle;
             missed = missed > 0 ? missed - 1 : 0;
@@ -157,8 +161,8 @@ void CyclicServer::handle(std::span<const std::byte> datagram, const Endpoint& f
             now->linear() = rotation_exp(-state_.correction.turn_rad) * now->linear();
         }
         if (now) {
-            const double reach = settings_.max_path_speed_mm_s * settings_.cycle_ms / 1e3 *
-                                 static_cast<double>(missed + 1);
+            const double reach =
+                settings_.max_path_speed_mm_s * settings_.cycle_ms / 1e3 * static_cast<double>(missed + 1);
             if (active && !fresh && programmed && (now->translation() - position).norm() > reach)
                 raise("the robot's position jumped further than it can move");
             programmed = now;

@@ -14,8 +14,9 @@
 //   - with relative corrections an answer that may be lost makes the sum in the robot unknown: from then on
 //     all increments are zero until a new session.
 // Alarms: `max_late` late or missed cycles while a correction is in force, `max_late` packets in a row with
-// old numbers, a programmed position that jumps further than `max_path_speed_mm_s` allows, numbers that no robot
-// can mean, an offset beyond the limit, a new session or silence under a correction. An alarm is kept until take_alarm().
+// old numbers, a programmed position that jumps further than `max_path_speed_mm_s` allows, numbers that no
+// robot can mean, an offset beyond the limit, a new session or silence under a correction. An alarm is kept
+// until take_alarm().
 
 #include <atomic>
 #include <chrono>
@@ -35,9 +36,9 @@
 namespace seamwright {
 
 struct CyclicPacket {
-    std::uint64_t number = 0;               // IPOC, seqno
-    std::uint64_t numbers_per_cycle = 1;    // IPOC counts milliseconds
-    std::uint64_t late = 0;                 // answers that the robot counted as late, since its start
+    std::uint64_t number = 0;                // IPOC, seqno
+    std::uint64_t numbers_per_cycle = 1;     // IPOC counts milliseconds
+    std::uint64_t late = 0;                  // answers that the robot counted as late, since its start
     std::optional<Pose> programmed, actual;  // reference_from_tcp, mm
     const char* problem = nullptr;  // numbers that cannot be meant: it is answered, but measures nothing
     bool running = true;            // the controller takes corrections (EGM: states)
@@ -84,7 +85,8 @@ class CyclicServer {
         CyclicPacket packet;
         CyclicCorrection correction;  // as sent last
         bool arrived = false, zero = true;
-        std::uint64_t steady = 0;  // good packets in a row since arrival, none of them telling of a late answer
+        std::uint64_t steady =
+            0;  // good packets in a row since arrival, none of them telling of a late answer
     };
     State state() const;
     CyclicCounters counters() const;

@@ -33,7 +33,8 @@ struct CyclicCounters {
     std::uint64_t bad = 0;            // no packet of the protocol, or numbers that no robot can mean
     std::uint64_t strangers = 0;      // datagrams of another peer than the robot
     std::uint64_t sessions = 0;       // how often the robot began anew
-    double latency_p50_us = 0, latency_p99_us = 0, latency_max_us = 0;  // datagram received -> answer handed over
+    double latency_p50_us = 0, latency_p99_us = 0,
+           latency_max_us = 0;  // datagram received -> answer handed over
 };
 
 }  // namespace seamwright

@@ -1,0 +1,265 @@
+// The robot's end of RSI, before a simulated cell.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "core/geometry/notation.h"
+#include "devices/cyclic/path.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/kuka/rsi.h"
+#include "devices/kuka/rsi_telegram.h"
+#include "devices/net/socket.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+constexpr std::size_t kHistory = 20000;
+
+struct Options {
+    std::string address = "127.0.0.1", sen_type = "ImFree";
+    int port = 49152, cycle_ms = 4, late_limit = 100, restart_ms = 100, slow_ms = 300;
+    bool relative = false, tool = false;
+    double max_translation_mm = 20;
+    SimulatedPath path;
+};
+
+class Rsi final : public SimulatedRsi {
+  public:
+    Rsi(Options options, UdpSocket socket, std::unique_ptr<SimulatedController> measuring)
+        : options_(std::move(options)),
+          socket_(std::move(socket)),
+          measuring_(std::move(measuring)),
+          thread_([this] { run(); }) {}
+    ~Rsi() override {
+        stop_ = true;
+        socket_.close();
+        thread_.join();
+    }
+    std::uint16_t port() const override { return static_cast<std::uint16_t>(options_.port); }
+    Sample newest() const override {
+        const std::lock_guard lock(mutex_);
+        return history_.empty() ? Sample{} : history_.back();
+    }
+    std::vector<Sample> history() const override {
+        const std::lock_guard lock(mutex_);
+        return {history_.begin(), history_.end()};
+    }
+    std::uint64_t stops() const override { return stops_; }
+    std::uint64_t late() const override { return late_total_; }
+    SimulatedController* measuring() override { return measuring_.get(); }
+
+  private:
+    static std::string frame(const char* name, const Pose& pose, double scale = 1) {
+        const KukaAbc abc = kuka_from_rotation(pose.linear());
+        const Eigen::Vector3d p = pose.translation() * scale;
+        return fmt::format(
+            "<{} X=\"{:.9f}\" Y=\"{:.9f}\" Z=\"{:.9f}\" A=\"{:.9f}\" B=\"{:.9f}\" C=\"{:.9f}\" />", name,
+            p.x(), p.y(), p.z(), abc.a_deg, abc.b_deg, abc.c_deg);
+    }
+
+    Pose corrected(const Pose& programmed) const {
+        const Eigen::Vector3d offset(sum_[0], sum_[1], sum_[2]);
+        const Eigen::Matrix3d turn = rotation_from_kuka({sum_[3], sum_[4], sum_[5]});
+        if (options_.tool)
+            return make_pose(programmed.linear() * turn,
+                             programmed.translation() + programmed.linear() * offset);
+        return make_pose(turn * programmed.linear(), programmed.translation() + offset);
+    }
+
+    void begin_session() {
+        sum_ = {};
+        late_ = 0;
+        late_in_row_ = 0;
+        withdraw();
+    }
+
+    void run() {
+        auto next = Clock::now();
+        const auto began = next;
+        begin_session();
+        std::uint64_t ipoc = 4208163634;
+        bool half_sent = false;
+        while (!stop_) {
+            next += milliseconds(options_.cycle_ms);
+            ipoc += static_cast<std::uint64_t>(options_.cycle_ms);
+            const ControllerFault kind = fault();
+            if (kind == ControllerFault::slow) {
+                for (int waited = 0; waited < options_.slow_ms && !stop_; waited += 10)
+                    std::this_thread::sleep_for(milliseconds(10));
+            }
+            // After a pause of the machine the clock goes on from now; a controller would not pause.
+            const auto behind = Clock::now() - next;
+            if (behind > milliseconds(0)) {
+                const auto cycles = behind / milliseconds(options_.cycle_ms) + 1;
+                next += cycles * milliseconds(options_.cycle_ms);
+                if (kind == ControllerFault::slow) {
+                    ipoc += static_cast<std::uint64_t>(cycles * options_.cycle_ms);
+                    late_ += static_cast<std::uint64_t>(cycles);
+                    late_total_ += static_cast<std::uint64_t>(cycles);
+                }
+            }
+            const double time = std::chrono::duration<double>(Clock::now() - began).count();
+            const Pose programmed = options_.path.at(time);
+            const Pose actual = corrected(programmed);
+            if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
+                half_sent = false;
+            const bool wild = kind == ControllerFault::out_of_range;
+            const std::string text =
+                fmt::format("<Rob Type=\"KUKA\">{}{}<Delay D=\"{}\" /><DiL>0</DiL><IPOC>{}</IPOC></Rob>",
+                            frame("RIst", actual, wild ? 1e9 : 1), frame("RSol", programmed, wild ? 1e9 : 1),
+                            late_, kind == ControllerFault::wrong_answer ? 4208163634 : ipoc);
+            const Endpoint to{options_.address, static_cast<std::uint16_t>(options_.port)};
+            switch (kind) {
+                case ControllerFault::silent:
+                    break;
+                case ControllerFault::half_message:
+                case ControllerFault::disconnect:
+                    if (!half_sent) (void)socket_.send_to(bytes_of(text.substr(0, text.size() / 2)), to);
+                    half_sent = true;
+                    break;
+                default:
+                    (void)socket_.send_to(bytes_of(text), to);
+            }
+            const bool in_time = await_answer(next, std::to_string(ipoc));
+            if (in_time) {
+                late_in_row_ = 0;
+            } else {
+                ++late_;
+                ++late_total_;
+                ++late_in_row_;
+            }
+            const bool correcting = std::any_of(sum_.begin(), sum_.end(), [](double x) { return x != 0; });
+            const double size = Eigen::Vector3d(sum_[0], sum_[1], sum_[2]).norm();
+            if (late_in_row_ > options_.late_limit || size > options_.max_translation_mm ||
+                (kind == ControllerFault::reject_write && correcting)) {
+                ++stops_;
+                begin_session();
+                for (int off = 0; off < options_.restart_ms && !stop_; off += 10) {
+                    std::this_thread::sleep_for(milliseconds(10));
+                    ipoc += 10;
+                }
+                next = Clock::now();
+                continue;
+            }
+            if (correcting && !released())
+                take_verdict(PartVerdict::corrected);
+            else if (!correcting && released())
+                withdraw();
+            const std::lock_guard lock(mutex_);
+            history_.push_back({programmed, corrected(programmed), sum_, ipoc});
+            if (history_.size() > kHistory) history_.pop_front();
+        }
+    }
+
+    // Takes answers until the next cycle is due; true if the one to this cycle was among them.
+    bool await_answer(Clock::time_point until, const std::string& ipoc) {
+        std::array<std::byte, kLargestRsiTelegram> buffer;
+        bool answered = false;
+        while (!stop_) {
+            const auto rest = std::chrono::duration_cast<milliseconds>(until - Clock::now());
+            if (answered || Clock::now() >= until) break;
+            Endpoint from;
+            const auto size = socket_.receive(buffer, from, std::max(rest, milliseconds(1)));
+            if (!size) {
+                if (!is_silence(size.error())) std::this_thread::sleep_for(milliseconds(1));
+                continue;
+            }
+            const auto sen = parse_rsi_sen(std::span(buffer).first(*size));
+            if (!sen || sen->ipoc != ipoc || sen->type != options_.sen_type || !sen->rkorr ||
+                !sen->rkorr->usable)
+                continue;
+            answered = true;
+            for (std::size_t k = 0; k < 6; ++k)
+                sum_[k] = options_.relative ? sum_[k] + sen->rkorr->xyzabc[k] : sen->rkorr->xyzabc[k];
+            // Sums of decimals: what rounding of the addition leaves is no correction.
+            if (options_.relative)
+                for (double& x : sum_)
+                    if (std::abs(x) < 1e-10) x = 0;
+        }
+        std::this_thread::sleep_until(until);
+        return answered;
+    }
+
+    const Options options_;
+    UdpSocket socket_;
+    std::unique_ptr<SimulatedController> measuring_;
+    std::array<double, 6> sum_{};
+    std::uint64_t late_ = 0;
+    int late_in_row_ = 0;
+    std::atomic<std::uint64_t> stops_ = 0, late_total_ = 0;
+    mutable std::mutex mutex_;
+    std::deque<Sample> history_;
+    std::atomic<bool> stop_ = false;
+    std::thread thread_;
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<SimulatedCell> cell,
+                                                              const nlohmann::json& settings,
+                                                              StartController start_controller) {
+    if (auto ok = only_fields(settings,
+                              {"address", "port", "cycle_ms", "mode", "reference", "sen_type", "late_limit",
+                               "max_translation_mm", "restart_ms", "speed_mm_s", "slow_ms", "measuring"},
+                              "");
+        !ok)
+        return tl::unexpected(ok.error());
+    Options o;
+    std::string mode = "absolute", reference = "base";
+    for (const auto& [key, value] : {std::pair<const char*, std::string*>{"address", &o.address},
+                                     {"sen_type", &o.sen_type},
+                                     {"mode", &mode},
+                                     {"reference", &reference}}) {
+        auto text = json_string_or(settings, key, *value, "");
+        if (!text) return tl::unexpected(text.error());
+        *value = *text;
+    }
+    if (mode != "absolute" && mode != "relative") return input_error("not absolute or relative", "mode");
+    if (reference != "base" && reference != "tool") return input_error("not base or tool", "reference");
+    o.relative = mode == "relative";
+    o.tool = reference == "tool";
+    for (const auto& [key, value] : {std::pair<const char*, int*>{"port", &o.port},
+                                     {"cycle_ms", &o.cycle_ms},
+                                     {"late_limit", &o.late_limit},
+                                     {"restart_ms", &o.restart_ms},
+                                     {"slow_ms", &o.slow_ms}}) {
+        auto number = json_number_or(settings, key, *value, "");
+        if (!number) return tl::unexpected(number.error());
+        if (!(*number >= 1 && *number <= 65535)) return input_error("not within 1 and 65535", key);
+        *value = static_cast<int>(*number);
+    }
+    for (const auto& [key, value] :
+         {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
+          {"speed_mm_s", &o.path.speed_mm_s}}) {
+        auto number = json_number_or(settings, key, *value, "");
+        if (!number) return tl::unexpected(number.error());
+        if (!(*number >= 0 && *number <= 1e4)) return input_error("not within 0 and 10000", key);
+        *value = *number;
+    }
+    std::unique_ptr<SimulatedController> measuring;
+    if (settings.contains("measuring")) {
+        if (!start_controller) return usage_error("no measuring controller can be started here", "measuring");
+        auto name = json_string(settings["measuring"], "driver", "measuring");
+        if (!name) return tl::unexpected(name.error());
+        if (*name == "kuka-rsi" || *name == "abb-egm")
+            return input_error("a cyclic correction cannot measure", "measuring.driver");
+        auto started =
+            start_controller(*name, cell, settings["measuring"].value("settings", nlohmann::json::object()));
+        if (!started) return started;
+        measuring = std::move(*started);
+    }
+    auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);
+    if (!socket) return tl::unexpected(socket.error());
+    return std::make_unique<Rsi>(std::move(o), std::move(*socket), std::move(measuring));
+}
+
+}  // namespace seamwright

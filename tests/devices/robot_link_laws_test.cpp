@@ -240,10 +240,11 @@ INSTANTIATE_TEST_SUITE_P(Brands, RobotLaws, testing::ValuesIn(kBrands), [](const
 
 TEST(RobotLawsTable, HoldsEveryControllerOfTheRegistry) {
     for (const ControllerDriver& driver : controller_drivers()) {
-        if (driver.name == "kuka-rsi") continue;  // writes a running correction: laws of its own in cyclic/rsi_test.cpp
+        if (driver.name == "kuka-rsi") continue;  // a running correction: its laws are in cyclic/rsi_test.cpp
         EXPECT_TRUE(std::any_of(kBrands.begin(), kBrands.end(), [&](const Brand& b) {
             return b.name == driver.name;
         })) << driver.name;
+    }
 }
 
 }  // namespace

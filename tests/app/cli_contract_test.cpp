@@ -189,8 +189,9 @@ TEST_F(Cli, UsageErrorsEndWithTwo) {
 
 TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     for (const char* command :
-         {"demo", "new", "info", "check", "run", "replay", "export", "import", "correct", "plan", "filter",
-          "feature", "match", "extract", "align", "calibrate", "devices"}) {
+         {"demo",   "new",       "info",    "check",  "run",      "replay",   "export",
+          "import", "correct",   "plan",    "filter", "feature",  "match",    "extract",
+          "align",  "calibrate", "devices", "panel",  "evaluate", "sim-cell", "robot-program"}) {
         const ProgramResult r = run({command, "--help"});
         EXPECT_EQ(r.exit_code, 0) << command;
         EXPECT_THAT(r.out, HasSubstr("Example:")) << command;
@@ -322,6 +323,16 @@ TEST_F(Cli, EvaluateIsTheSameForASeedWhateverTheNumberOfJobs) {
         EXPECT_EQ(e["columns"][column]["refused"], 0);
     }
     EXPECT_EQ(run({"evaluate", "--experiment", "6"}).exit_code, 2);
+}
+
+TEST_F(Cli, DevicesListsTheDrivers) {
+    const json a = answer({"devices"}, 0);
+    std::vector<std::string> names;
+    for (const char* list : {"sensor_drivers", "robot_drivers"})
+        for (const json& driver : a[list]) names.push_back(driver["name"]);
+    EXPECT_THAT(names, testing::IsSupersetOf({"simulated", "replay", "genicam", "kuka-eki", "kuka-kvp",
+                                              "kuka-rsi", "abb-rapid"}));
+    expect_refused({"robot-program", "none.seam", "--brand", "kuka", "--out", "krc"}, "none.seam", 3);
 }
 
 }  // namespace

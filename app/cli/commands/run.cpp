@@ -245,8 +245,8 @@ void add_devices(CommandLine& line) {
                 answer.text += fmt::format("  {} {} serial {} at {} ({})\n", c.vendor, c.model, c.serial,
                                            c.address, c.protocol);
             }
-            return answer;
         }
+        if (file->empty()) return answer;
         auto station = Station::open(*file, FileAccess::read_only);
         if (!station) return tl::unexpected(station.error());
         if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());

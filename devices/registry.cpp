@@ -3,6 +3,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "devices/abb/egm.h"
 #include "devices/abb/rapid.h"
 #include "devices/genicam/genicam.h"
 #include "devices/kuka/eki.h"
@@ -35,6 +36,10 @@ const std::vector<RobotDriver>& robot_drivers() {
          }},
         {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
         {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
+        {"abb-egm", "ABB path correction in every cycle (EGM)",
+         [](const nlohmann::json& settings, DeviceSession& session) {
+             return open_abb_egm(settings, session, &open_robot);
+         }},
     };
     return drivers;
 }
@@ -48,6 +53,10 @@ const std::vector<ControllerDriver>& controller_drivers() {
              return start_kuka_rsi(std::move(cell), settings, &start_controller);
          }},
         {"abb-rapid", "An ABB controller with our RAPID server task", &start_abb_rapid},
+        {"abb-egm", "An ABB controller that asks for path corrections (EGM)",
+         [](std::shared_ptr<SimulatedCell> cell, const nlohmann::json& settings) {
+             return start_abb_egm(std::move(cell), settings, &start_controller);
+         }},
     };
     return drivers;
 }

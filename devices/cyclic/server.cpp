@@ -171,7 +171,7 @@ void CyclicServer::handle(std::span<const std::byte> datagram, const Endpoint& f
     }
     CyclicCorrection correction = state_.correction;
     if (fresh) correction = {};
-    if (!frozen_) correction = packet.running ? ramp_.step(position) : ramp_.at(position);
+    if (!frozen_) correction = ramp_.step(position);
     const double size = correction.offset_mm.norm();
     if (size > settings_.max_translation_mm) {
         correction.offset_mm *= settings_.max_translation_mm / size;
@@ -183,7 +183,9 @@ void CyclicServer::handle(std::span<const std::byte> datagram, const Endpoint& f
     if (!bytes.empty() && socket_.send_to(bytes, from)) ++counters_.answers;
     latency_.record((Clock::now() - received).count());
 
-    state_.steady = ramp_.arrived() && newly_late + missed == 0 && !packet.problem ? state_.steady + 1 : 0;
+    state_.steady = ramp_.arrived() && protocol_->settled() && newly_late + missed == 0 && !packet.problem
+                        ? state_.steady + 1
+                        : 0;
     state_.packet = packet;
     state_.packet.programmed = programmed;
     state_.correction = correction;

@@ -53,6 +53,7 @@ class CyclicProtocol {
     virtual std::span<const std::byte> answer(const CyclicPacket& packet,
                                               const CyclicCorrection& correction) = 0;
     virtual void new_session() {}
+    virtual bool settled() const { return true; }       // tells the whole of the correction it was given last
     virtual bool incremental() const { return false; }  // a lost answer makes the sum unknown
 };
 

@@ -29,6 +29,7 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/cyclic/link.h"
+#include "devices/cyclic/measuring.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/controller.h"
 
@@ -36,10 +37,6 @@ namespace seamwright {
 
 Expected<std::unique_ptr<RobotLink>> open_kuka_rsi(const nlohmann::json& settings, DeviceSession& session,
                                                    OpenRobot open_robot);
-
-// How the simulated controllers start the measuring controller beside themselves: start_controller().
-using StartController = Expected<std::unique_ptr<SimulatedController>> (*)(
-    const std::string& driver, std::shared_ptr<SimulatedCell> cell, const nlohmann::json& settings);
 
 // The robot's side. Settings: {"address": "127.0.0.1", "port": 49152, "cycle_ms": 4, "mode", "reference",
 // "sen_type" as above, "late_limit": 100 (late answers in a row until RSITimeout), "max_translation_mm": 20

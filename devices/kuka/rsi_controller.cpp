@@ -23,6 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t kHistory = 20000;
+constexpr std::uint64_t kFirstIpoc = 4208163634;
 
 struct Options {
     std::string address = "127.0.0.1", sen_type = "ImFree";
@@ -84,9 +85,8 @@ class Rsi final : public SimulatedRsi {
 
     void run() {
         auto next = Clock::now();
-        const auto began = next;
         begin_session();
-        std::uint64_t ipoc = 4208163634;
+        std::uint64_t ipoc = kFirstIpoc;
         bool half_sent = false;
         while (!stop_) {
             next += milliseconds(options_.cycle_ms);
@@ -107,7 +107,8 @@ class Rsi final : public SimulatedRsi {
                     late_total_ += static_cast<std::uint64_t>(cycles);
                 }
             }
-            const double time = std::chrono::duration<double>(Clock::now() - began).count();
+            // The controller's time is its cycle stamp: a pause of this machine stops both.
+            const double time = static_cast<double>(ipoc - kFirstIpoc) / 1e3;
             const Pose programmed = options_.path.at(time);
             const Pose actual = corrected(programmed);
             if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
@@ -116,7 +117,7 @@ class Rsi final : public SimulatedRsi {
             const std::string text =
                 fmt::format("<Rob Type=\"KUKA\">{}{}<Delay D=\"{}\" /><DiL>0</DiL><IPOC>{}</IPOC></Rob>",
                             frame("RIst", actual, wild ? 1e9 : 1), frame("RSol", programmed, wild ? 1e9 : 1),
-                            late_, kind == ControllerFault::wrong_answer ? 4208163634 : ipoc);
+                            late_, kind == ControllerFault::wrong_answer ? kFirstIpoc : ipoc);
             const Endpoint to{options_.address, static_cast<std::uint16_t>(options_.port)};
             switch (kind) {
                 case ControllerFault::silent:
@@ -245,21 +246,11 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
         if (!(*number >= 0 && *number <= 1e4)) return input_error("not within 0 and 10000", key);
         *value = *number;
     }
-    std::unique_ptr<SimulatedController> measuring;
-    if (settings.contains("measuring")) {
-        if (!start_controller) return usage_error("no measuring controller can be started here", "measuring");
-        auto name = json_string(settings["measuring"], "driver", "measuring");
-        if (!name) return tl::unexpected(name.error());
-        if (*name == "kuka-rsi" || *name == "abb-egm")
-            return input_error("a cyclic correction cannot measure", "measuring.driver");
-        auto started =
-            start_controller(*name, cell, settings["measuring"].value("settings", nlohmann::json::object()));
-        if (!started) return started;
-        measuring = std::move(*started);
-    }
+    auto measuring = start_measuring_controller(settings, std::move(cell), start_controller);
+    if (!measuring) return measuring;
     auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);
     if (!socket) return tl::unexpected(socket.error());
-    return std::make_unique<Rsi>(std::move(o), std::move(*socket), std::move(measuring));
+    return std::make_unique<Rsi>(std::move(o), std::move(*socket), std::move(*measuring));
 }
 
 }  // namespace seamwright

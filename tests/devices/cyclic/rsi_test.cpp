@@ -34,10 +34,10 @@ nlohmann::json link_settings(std::uint16_t port) {
             {"speed_deg_s", 10},
             {"acceleration_mm_s2", 500},
             {"acceleration_deg_s2", 100},
-            {"max_late", 30},
+            {"max_late", 60},
             {"timeout_ms", 400},
             {"confirm_timeout_ms", 4000},
-            {"session_gap_ms", 250}};
+            {"session_gap_ms", 500}};
 }
 
 // B about the taught frame, so that the offset there is small.
@@ -155,7 +155,7 @@ void PrintTo(const Fault& f, std::ostream* out) {
 class RsiFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(RsiFault, IsToldLeavesNothingInForceAndEnds) {
-    Pair pair = open_pair({}, {{"late_limit", 40}, {"slow_ms", 60}});
+    Pair pair = open_pair({{"max_late", 30}}, {{"late_limit", 40}, {"slow_ms", 60}});
     ASSERT_TRUE(pair.link->write_frame("PATH", written()));
     const bool refuses = GetParam().fault == ControllerFault::reject_write;
     if (refuses) pair.controller->set_fault(GetParam().fault);
@@ -201,7 +201,7 @@ class HandMade : public testing::Test {
     void open(nlohmann::json more = nlohmann::json::object()) {
         port_ = free_port();
         nlohmann::json settings = link_settings(port_);
-        settings.update({{"session_gap_ms", 3000}, {"max_late", 4}});
+        settings.update({{"session_gap_ms", 1500}, {"max_late", 4}});
         settings.update(more);
         DeviceSession session;
         auto link = open_kuka_rsi(settings, session, nullptr);

@@ -1,0 +1,59 @@
+#pragma once
+// ABB Externally Guided Motion for path correction: the controller (option 689-1) runs SeamwrightEgm.mod
+// (resources/robot/abb), moves by EGMMoveL and EGMMoveC and sends an EgmRobot message by UDP at its sample
+// rate (multiples of 4 ms; EGMActMove \SampleRate, 24 to 48 ms is usual); Seamwright listens on port 6510 and
+// answers each with an EgmSensorPathCorr. Messages: egm_message.h; ramp, alarms and lost packets:
+// devices/cyclic/server.h; frames and common settings: devices/cyclic/link.h. Set "cycle_ms" to the sample
+// rate.
+//
+// What the controller does with a path correction: it shifts the programmed position across the path. Only y
+// and z of path coordinates count (x along the travel, y = tool z x x, z = x x y); a shift along the travel
+// and turns are not made. So of the displacement B this driver tells, at the planned pose, the part of B p -
+// p across the path; what is left over is the shift along the travel (no error of a seam that goes on) and
+// the rotation, which is limited by "max_rotation_deg" (0.5 here). The travel's direction follows from the
+// planned positions (of the measured ones less the correction where none are planned); until it is known zero
+// is told. At a corner path coordinates turn at once: what is told follows with the ramp's speed.
+//
+// Nothing is corrected unless motors are on, RAPID runs and the MCI state is RUNNING; leaving that under a
+// correction is an alarm. EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
+// fault.
+//
+// Further settings (defaults): {"frame": "path" | "sensor", "tcp_from_sensor": POSE identity}. "sensor" tells
+// the same shift along the axes of the sensor frame that EGMActMove was given, for controllers that are set
+// up so.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "devices/cyclic/link.h"
+#include "devices/cyclic/measuring.h"
+#include "devices/simulated/cell.h"
+#include "devices/simulated/controller.h"
+
+namespace seamwright {
+
+Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings, DeviceSession& session,
+                                                  OpenRobot open_robot);
+
+// The robot's side. Settings: {"address": "127.0.0.1", "port": 6510, "cycle_ms": 4, "late_limit": 100 (cycles
+// without an answer until EGM stops: CommTimeout), "max_translation_mm": 20, "restart_ms": 700, "speed_mm_s":
+// 100, "straight": false (a line instead of a circle), "slow_ms": 300, "measuring": {"driver", "settings"}}.
+// Faults: silent, slow, half_message and disconnect as for RSI; wrong_answer is a message of another type;
+// reject_write ends EGM with MCI_ERROR as soon as a correction comes; out_of_range tells positions that no
+// robot has. released() is true while a correction is in force.
+class SimulatedEgm : public SimulatedController {
+  public:
+    struct Sample {
+        Pose programmed = Pose::Identity(), corrected = Pose::Identity();
+        Eigen::Vector3d told_mm = Eigen::Vector3d::Zero(), travel = Eigen::Vector3d::Zero();
+    };
+    virtual Sample newest() const = 0;
+    virtual std::vector<Sample> history() const = 0;
+    virtual std::uint64_t stops() const = 0;
+    virtual SimulatedController* measuring() = 0;
+};
+Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<SimulatedCell> cell,
+                                                             const nlohmann::json& settings,
+                                                             StartController start_controller);
+
+}  // namespace seamwright

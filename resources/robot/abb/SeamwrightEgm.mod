@@ -1,0 +1,38 @@
+MODULE SeamwrightEgm
+    ! Path correction by Seamwright (driver abb-egm) in every sample of Externally Guided Motion, option 689-1.
+    ! System parameters: Communication, Transmission Protocol: Name UCdevice, Type UDPUC, Remote Address the
+    ! computer of Seamwright, Remote Port Number 6510. Motion, External Motion Interface Data: a configuration
+    ! named SeamwrightPath with Level Path.
+    ! The controller asks every SampleRate ms (a multiple of 4); give Seamwright the same as "cycle_ms".
+    LOCAL VAR egmident egm_id;
+
+    ! Set up before the path, robot standing in a fine point. The sensor frame is that of the tool.
+    PROC SeamwrightEgmOn(PERS tooldata tool_used)
+        EGMReset egm_id;
+        EGMGetId egm_id;
+        EGMSetupUC ROB_1, egm_id, "SeamwrightPath", "UCdevice"\PathCorr\APTR\CommTimeout:=1;
+        EGMActMove egm_id, tool_used.tframe\SampleRate:=48;
+    ENDPROC
+
+    PROC SeamwrightEgmOff()
+        EGMReset egm_id;
+    ENDPROC
+
+    ! A path in the shape that EGM wants: up to the first point by ordinary motion with a fine point, along the
+    ! corrected path with EGMMoveL and EGMMoveC only, away by ordinary motion. Joint motion is not corrected.
+    PROC SeamwrightEgmPath(robtarget start, robtarget via, robtarget on_arc, robtarget end, PERS tooldata tool_used,
+        PERS wobjdata wobj_used, speeddata speed)
+        MoveL start, speed, fine, tool_used\WObj:=wobj_used;
+        SeamwrightEgmOn tool_used;
+        EGMMoveL egm_id, via, speed, z5, tool_used\WObj:=wobj_used;
+        EGMMoveC egm_id, on_arc, end, speed, fine, tool_used\WObj:=wobj_used;
+        SeamwrightEgmOff;
+    ERROR
+        IF ERRNO = ERR_UDPUC_COMM THEN
+            ! No answer from Seamwright within CommTimeout: the path is not run uncorrected.
+            TPWrite "Seamwright does not answer (EGM)";
+            SeamwrightEgmOff;
+        ENDIF
+        RAISE;
+    ENDPROC
+ENDMODULE

@@ -88,7 +88,7 @@ class Egm final : public SimulatedEgm {
             if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
                 half_sent = false;
             send(kind, s, half_sent);
-            const bool answered = await_answer(next);
+            const bool answered = await_answer(next, s.tm_ms);
             without_answer_ = answered ? 0 : without_answer_ + 1;
             if (off_ms > 0) {
                 told_.setZero();
@@ -143,10 +143,12 @@ class Egm final : public SimulatedEgm {
         (void)socket_.send_to(bytes, to);
     }
 
-    bool await_answer(Clock::time_point until) {
+    // Takes every correction of the cycle, the newest counts. One that tells this cycle's time is not
+    // followed by another: only what was late lies before it.
+    bool await_answer(Clock::time_point until, std::uint32_t tm_ms) {
         std::array<std::byte, kLargestEgmMessage> buffer;
-        bool answered = false;
-        while (!stop_ && !answered && Clock::now() < until) {
+        bool answered = false, newest = false;
+        while (!stop_ && !newest && Clock::now() < until) {
             Endpoint from;
             const auto rest = std::chrono::duration_cast<milliseconds>(until - Clock::now());
             const auto size = socket_.receive(buffer, from, std::max(rest, milliseconds(1)));
@@ -158,6 +160,7 @@ class Egm final : public SimulatedEgm {
             if (!correction) continue;
             told_ = correction->pos_mm;
             answered = true;
+            newest = correction->tm_ms == tm_ms;
         }
         std::this_thread::sleep_until(until);
         return answered;

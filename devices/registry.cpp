@@ -18,7 +18,8 @@ namespace seamwright {
 const std::vector<SensorDriver>& sensor_drivers() {
     static const std::vector<SensorDriver> drivers = {
         {"simulated", "A car door before a stripe camera, rendered", &open_simulated_sensor},
-        {"replay", "Recorded profiles (CSV) or images of a folder, with poses", &open_replay_sensor},
+        {"replay", "A recorded capture, or profiles (CSV) or images of a folder, with poses",
+         &open_replay_sensor},
         {"genicam", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)",
          &open_genicam_sensor},
     };
@@ -34,7 +35,7 @@ const std::vector<RobotDriver>& robot_drivers() {
          [](const nlohmann::json& settings, DeviceSession& session) {
              return open_kuka_rsi(settings, session, &open_robot);
          }},
-        {"replay", "The poses and spots of a recorded folder", &open_replay_robot},
+        {"replay", "The poses and spots of a recorded capture or folder", &open_replay_robot},
         {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
         {"abb-egm", "ABB path correction in every cycle (EGM)",
          [](const nlohmann::json& settings, DeviceSession& session) {

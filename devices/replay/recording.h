@@ -83,7 +83,7 @@ class Recording {
     std::deque<std::size_t> due_;
 };
 
-// Settings of sensor and robot, both with the same "folder":
+// Settings of sensor and robot, both with the same "folder" (those that name a "file": capture_replay.h):
 //   sensor {"folder": path, "loop": false, "rate_hz": 0 (as fast as asked), "kind": "profiles"|"images",
 //   "bit_depth": 0,
 //           "require_poses": false, "buffers": 16, "vendor": "", "model": "", "serial": folder's name}

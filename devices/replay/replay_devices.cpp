@@ -10,6 +10,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/profile_csv.h"
+#include "devices/replay/capture_replay.h"
 #include "devices/replay/recording.h"
 #include "devices/silence.h"
 
@@ -273,6 +274,7 @@ class ReplayRobot final : public RobotLink {
 
 Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json& settings,
                                                             DeviceSession& session) {
+    if (settings.is_object() && settings.contains("file")) return open_capture_sensor(settings, session);
     if (auto ok = only_fields(settings,
                               {"folder", "loop", "rate_hz", "kind", "bit_depth", "require_poses", "buffers",
                                "vendor", "model", "serial"},
@@ -306,6 +308,7 @@ Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json
 
 Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& settings,
                                                        DeviceSession& session) {
+    if (settings.is_object() && settings.contains("file")) return open_capture_robot(settings, session);
     if (auto ok = only_fields(settings,
                               {"folder", "loop", "kind", "require_poses", "accept_frames", "frames", "mode",
                                "brand", "model", "serial"},

@@ -1,0 +1,244 @@
+// The sensor and the robot of a capture that is played back.
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/replay/capture_replay.h"
+#include "devices/silence.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = CaptureReplay::Clock;
+constexpr std::chrono::milliseconds kSlice{5};
+
+class CaptureSensor final : public ProfileSource {
+  public:
+    CaptureSensor(std::shared_ptr<CaptureReplay> replay, const CaptureSource& source, bool recorded_host_time,
+                  std::size_t buffers)
+        : replay_(std::move(replay)),
+          source_(source),
+          recorded_host_time_(recorded_host_time),
+          pool_(buffers) {}
+
+    ~CaptureSensor() override { replay_->close_sensor(source_.id); }
+
+    SensorIdentity identity() const override {
+        return {"replay", source_.vendor, source_.model, source_.serial};
+    }
+    Expected<void> start() override {
+        running_ = true;
+        return {};
+    }
+    void stop() override { running_ = false; }
+    Expected<void> trigger(const std::string& spot_id) override {
+        if (!running_) return device_error("the sensor is not started", replay_->where());
+        return replay_->trigger(source_.id, spot_id);
+    }
+    Expected<FramePtr> wait_next(std::chrono::milliseconds timeout) override {
+        const auto until = Clock::now() + timeout;
+        FramePtr frame = pool_.acquire();
+        if (!frame) {
+            const std::lock_guard lock(mutex_);
+            ++counters_.underrun;
+            return device_error(fmt::format("all {} frame buffers are in use", pool_.size()),
+                                replay_->where(), "let go of frames that are no longer needed");
+        }
+        for (;;) {
+            if (!running_) return device_error("the sensor is not started", replay_->where());
+            const auto later = replay_->next(source_.id, *frame);
+            if (!later) return tl::unexpected(later.error());
+            if (!*later) break;
+            const auto now = Clock::now();
+            if (now >= until)
+                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                    replay_->where());
+            std::this_thread::sleep_until(std::min({**later, until, now + Clock::duration(kSlice)}));
+        }
+        if (!recorded_host_time_)
+            frame->host_time_ns =
+                std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+        const std::lock_guard lock(mutex_);
+        ++(frame->status == FrameStatus::ok ? counters_.completed : counters_.damaged);
+        latest_ = frame;
+        return frame;
+    }
+    FramePtr latest() const override {
+        const std::lock_guard lock(mutex_);
+        return latest_;
+    }
+    SourceCounters counters() const override {
+        const std::lock_guard lock(mutex_);
+        return counters_;
+    }
+    std::vector<ParameterInfo> parameters() const override { return {}; }
+    Expected<double> get(const std::string& parameter) const override {
+        return usage_error("a capture has no parameter \"" + parameter + "\"", replay_->where());
+    }
+    Expected<void> set(const std::string& parameter, double) override {
+        return usage_error("a capture has no parameter \"" + parameter + "\"", replay_->where());
+    }
+
+  private:
+    std::shared_ptr<CaptureReplay> replay_;
+    const CaptureSource source_;
+    const bool recorded_host_time_;
+    FramePool pool_;
+    std::atomic<bool> running_ = false;
+    mutable std::mutex mutex_;
+    SourceCounters counters_;
+    FramePtr latest_;
+};
+
+class CaptureRobot final : public RobotLink {
+  public:
+    CaptureRobot(std::shared_ptr<CaptureReplay> replay, const CaptureSource& source, bool accept_frames,
+                 std::map<std::string, Pose> frames)
+        : replay_(std::move(replay)),
+          source_(source),
+          accept_frames_(accept_frames),
+          frames_(std::move(frames)) {}
+
+    ~CaptureRobot() override { replay_->close_robot(); }
+
+    Expected<RobotIdentity> identity() override {
+        return RobotIdentity{"replay", source_.vendor, source_.model, source_.serial};
+    }
+    Expected<RobotMode> mode() override { return replay_->mode(); }
+    Expected<Pose> base_from_flange() override {
+        if (const auto pose = replay_->pose()) return *pose;
+        return device_error("the recording has not reached a pose", replay_->where());
+    }
+    Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
+        std::vector<std::string> ids;
+        for (const auto& move : moves) ids.push_back(move.spot_id);
+        return replay_->start_moves(ids);
+    }
+    Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
+        const auto until = Clock::now() + timeout;
+        TriggerEvent trigger;
+        for (;;) {
+            const auto later = replay_->next_trigger(trigger);
+            if (!later) return tl::unexpected(later.error());
+            if (!*later) return trigger;
+            if (Clock::now() >= until)
+                return device_error(fmt::format("{}: no trigger within {} ms", kNoAnswer, timeout.count()),
+                                    replay_->where());
+            std::this_thread::sleep_until(std::min(**later, until));
+        }
+    }
+    Expected<Pose> read_frame(const std::string& name) override {
+        const auto it = frames_.find(name);
+        if (it == frames_.end())
+            return device_error("the recording has no frame \"" + name + "\"", replay_->where(),
+                                "give it in the robot's settings under \"frames\"");
+        return it->second;
+    }
+    Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
+        if (!accept_frames_)
+            return device_error("a recording has no controller to write the frame \"" + name + "\" to",
+                                replay_->where(), "set \"accept_frames\": true to keep frames in memory");
+        frames_[name] = base_from_frame;
+        return {};
+    }
+
+  private:
+    std::shared_ptr<CaptureReplay> replay_;
+    const CaptureSource source_;
+    bool accept_frames_;
+    std::map<std::string, Pose> frames_;
+};
+
+// Opens the file for the first device of a session; the others share it.
+Expected<std::shared_ptr<CaptureReplay>> shared_replay(const nlohmann::json& settings,
+                                                       DeviceSession& session) {
+    const auto file = json_string(settings, "file", "settings");
+    if (!file) return tl::unexpected(file.error());
+    const auto speed = json_number_or(settings, "speed", 1, "settings");
+    if (!speed) return tl::unexpected(speed.error());
+    if (*speed != 0 && !(*speed >= 0.001 && *speed <= 1000))
+        return input_error("must be 0 (as fast as frames are asked for) or 0.001 to 1000", "settings.speed");
+    const auto loop = json_bool_or(settings, "loop", false, "settings");
+    if (!loop) return tl::unexpected(loop.error());
+    std::error_code problem;
+    const auto path = std::filesystem::weakly_canonical(*file, problem);
+    if (problem || file->empty()) return file_error("is no file", *file);
+    auto replay = session.shared<CaptureReplay>(
+        "capture:" + path.string(), [&]() -> Expected<std::shared_ptr<CaptureReplay>> {
+            auto reader = CaptureReader::open(path);
+            if (!reader) return tl::unexpected(reader.error());
+            return std::make_shared<CaptureReplay>(std::move(*reader), *speed, *loop);
+        });
+    if (!replay) return replay;
+    if ((*replay)->speed() != *speed || (*replay)->loop() != *loop)
+        return input_error("the devices of one capture disagree", "settings.speed, settings.loop",
+                           "set them alike");
+    return replay;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<ProfileSource>> open_capture_sensor(const nlohmann::json& settings,
+                                                             DeviceSession& session) {
+    if (auto ok = only_fields(
+            settings, {"file", "source", "speed", "step", "loop", "from", "recorded_host_time", "buffers"},
+            "settings");
+        !ok)
+        return tl::unexpected(ok.error());
+    const auto name = json_string_or(settings, "source", "", "settings");
+    if (!name) return tl::unexpected(name.error());
+    const auto step = json_bool_or(settings, "step", false, "settings");
+    if (!step) return tl::unexpected(step.error());
+    const auto recorded_time = json_bool_or(settings, "recorded_host_time", false, "settings");
+    if (!recorded_time) return tl::unexpected(recorded_time.error());
+    const auto from = json_number_or(settings, "from", 0, "settings");
+    if (!from) return tl::unexpected(from.error());
+    if (!(*from >= 0 && *from <= 1e15) || *from != std::floor(*from))
+        return input_error("must be a whole number, 0 or more", "settings.from");
+    const auto buffers = json_number_or(settings, "buffers", 16, "settings");
+    if (!buffers) return tl::unexpected(buffers.error());
+    if (!(*buffers >= 2 && *buffers <= 4096)) return input_error("must be 2 to 4096", "settings.buffers");
+    auto replay = shared_replay(settings, session);
+    if (!replay) return tl::unexpected(replay.error());
+    const auto source = (*replay)->source(*name, SourceKind::sensor);
+    if (!source) return tl::unexpected(source.error());
+    if (auto ok = (*replay)->open_sensor(*source, static_cast<std::uint64_t>(*from), *step); !ok)
+        return tl::unexpected(ok.error());
+    return std::make_unique<CaptureSensor>(*replay, *source, *recorded_time,
+                                           static_cast<std::size_t>(*buffers));
+}
+
+Expected<std::unique_ptr<RobotLink>> open_capture_robot(const nlohmann::json& settings,
+                                                        DeviceSession& session) {
+    if (auto ok =
+            only_fields(settings, {"file", "source", "speed", "loop", "accept_frames", "frames"}, "settings");
+        !ok)
+        return tl::unexpected(ok.error());
+    const auto name = json_string_or(settings, "source", "", "settings");
+    if (!name) return tl::unexpected(name.error());
+    const auto accept = json_bool_or(settings, "accept_frames", false, "settings");
+    if (!accept) return tl::unexpected(accept.error());
+    std::map<std::string, Pose> frames;
+    if (settings.contains("frames")) {
+        if (auto ok = only_fields(settings["frames"], {}, "settings.frames"); !ok)
+            return tl::unexpected(ok.error());
+        for (const auto& [frame, pose] : settings["frames"].items()) {
+            const auto parsed = parse_pose(pose, "settings.frames." + frame);
+            if (!parsed) return tl::unexpected(parsed.error());
+            frames[frame] = *parsed;
+        }
+    }
+    auto replay = shared_replay(settings, session);
+    if (!replay) return tl::unexpected(replay.error());
+    const auto source = (*replay)->source(*name, SourceKind::robot);
+    if (!source) return tl::unexpected(source.error());
+    if (auto ok = (*replay)->open_robot(*source); !ok) return tl::unexpected(ok.error());
+    return std::make_unique<CaptureRobot>(*replay, *source, *accept, std::move(frames));
+}
+
+}  // namespace seamwright

@@ -250,6 +250,25 @@ struct Station::Impl {
         return all;
     }
 
+    // Asks the person, then the gate again: meanwhile the robot's mode may have changed.
+    bool confirmed(Job& job, std::vector<std::optional<GatePass>>& passes) {
+        for (std::size_t k = 0; k < passes.size(); ++k) {
+            auto before = robot_of(project.regions[k]).read_frame(project.regions[k].frame_name);
+            if (before) job.run.regions[k].push.before = *before;
+        }
+        const bool yes = job.options.confirm_push(job.run) && !job.options.cancel.stop_requested();
+        for (RegionRecord& region : job.run.regions) region.push.before.reset();
+        if (yes) {
+            passes = judge(job);
+            if (std::all_of(passes.begin(), passes.end(), [](const auto& p) { return p.has_value(); }))
+                return true;
+        }
+        job.run.status = yes ? RunStatus::refused : RunStatus::cancelled;
+        job.run.message = yes ? verdict(job.run) : "not pushed: not confirmed";
+        (void)record_event(job, yes ? EventKind::refusal : EventKind::note, "run", job.run.message);
+        return false;
+    }
+
     void push_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
         const EventSink record = [&](EventKind kind, const std::string& subject, const std::string& text) {
             return record_event(job, kind, subject, text);
@@ -361,6 +380,10 @@ Expected<void> Station::edit(const Project& project) {
     return {};
 }
 
+void Station::use(const Project& project) {
+    impl_->project = project;
+}
+
 Expected<void> Station::connect() {
     Impl& i = *impl_;
     i.disconnect();
@@ -457,7 +480,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
 
     // The judged run is in the file before the first byte goes to a robot. If one region is refused none is
     // pushed: half a part corrected is worse than a stopped line.
-    const bool pushing = options.push && run.status == RunStatus::ok && !passes.empty();
+    bool pushing = options.push && run.status == RunStatus::ok && !passes.empty();
     if (pushing) run.status = RunStatus::interrupted;
     run.message = Impl::verdict(run);
     run.finished_utc = utc_now();
@@ -468,6 +491,13 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     }
     run.number = *number;
     for (EventRecord& event : run.events) event.run = run.number;
+    if (pushing && options.confirm_push && !i.confirmed(job, passes)) {
+        pushing = false;
+        if (auto updated = i.file.update_run(run); !updated) {
+            i.confirm_all(job, PartVerdict::failed);
+            return tl::unexpected(updated.error());
+        }
+    }
     if (pushing) {
         run.status = RunStatus::ok;
         i.push_all(job, passes);

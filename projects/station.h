@@ -28,6 +28,11 @@ struct RunOptions {
     AcquireLimits limits;
     std::stop_token cancel;  // heard within kCancelSlice until the first frame is written, then no more
     std::function<void(const RunProgress&)> progress;  // called on the running thread
+    // A person's word before a push run writes: called on the running thread when every region has passed the
+    // gate, with the judged run, which is in the file already, and in each RegionRecord::push.before the
+    // frame that the controller holds now (absent where it could not be read). false ends the run as
+    // cancelled; after true the gate judges once more. Absent: pushed without asking.
+    std::function<bool(const RunRecord& judged)> confirm_push = {};
 };
 
 // One thread at a time.
@@ -44,6 +49,9 @@ class Station {
     ProjectFile& file();
     // Saves, then takes over. Devices stay as connected; connect() again after changing their settings.
     Expected<void> edit(const Project& project);
+    // Takes over without saving, for an editor whose document is saved by its own command: runs keep the
+    // setup they were made with in any case.
+    void use(const Project& project);
 
     // Opens every device of the project through the registry and notes who answered in the project
     // (SensorSetup::identity, RobotSetup::identity). All or nothing.

@@ -14,7 +14,9 @@
 #include <vtkTriangleFilter.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstring>
 
 namespace seamwright {
 namespace {
@@ -110,6 +112,32 @@ Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::s
                            path.string(), "say the unit: \"mm\" or \"m\"");
     }
     return mesh;
+}
+
+std::vector<std::byte> ply_bytes(const TriangleMesh& mesh) {
+    const std::string head = fmt::format(
+        "ply\nformat binary_little_endian 1.0\ncomment millimetres, work object frame\n"
+        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.vertices.size(), mesh.triangles.size());
+    std::vector<std::byte> bytes(head.size() + mesh.vertices.size() * 12 + mesh.triangles.size() * 13);
+    std::byte* at = bytes.data();
+    const auto put = [&](const void* data, std::size_t size) {
+        std::memcpy(at, data, size);
+        at += size;
+    };
+    put(head.data(), head.size());
+    for (const Eigen::Vector3d& v : mesh.vertices) {
+        const Eigen::Vector3f f = v.cast<float>();
+        put(f.data(), 12);
+    }
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+        const unsigned char three = 3;
+        put(&three, 1);
+        const std::array<std::int32_t, 3> corners{t[0], t[1], t[2]};
+        put(corners.data(), 12);
+    }
+    return bytes;
 }
 
 }  // namespace seamwright

@@ -1,7 +1,9 @@
 #pragma once
 // Triangle meshes from STL, PLY and OBJ files.
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 #include "core/error.h"
 #include "devices/simulated/mesh.h"
@@ -12,5 +14,8 @@ namespace seamwright {
 // as "metres suspected", since no part measured here is that small. Polygons are triangulated, degenerate
 // triangles left out. Error (file): missing, unknown extension, unreadable, no triangle, not finite.
 Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::string& unit);
+
+// Binary PLY: float vertices (mm), triangles.
+std::vector<std::byte> ply_bytes(const TriangleMesh& mesh);
 
 }  // namespace seamwright

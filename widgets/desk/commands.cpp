@@ -1,0 +1,94 @@
+#include "widgets/desk/commands.h"
+
+#include <algorithm>
+
+namespace seamwright {
+
+template <>
+std::vector<Spot>& list_of<Spot>(Project& p) {
+    return p.spots;
+}
+template <>
+std::vector<Region>& list_of<Region>(Project& p) {
+    return p.regions;
+}
+template <>
+std::vector<SensorSetup>& list_of<SensorSetup>(Project& p) {
+    return p.sensors;
+}
+template <>
+std::vector<RobotSetup>& list_of<RobotSetup>(Project& p) {
+    return p.robots;
+}
+template <>
+std::vector<Calibration>& list_of<Calibration>(Project& p) {
+    return p.calibrations;
+}
+
+template <>
+QString thing_name<Spot>() {
+    return QCoreApplication::translate("DeskCommand", "spot");
+}
+template <>
+QString thing_name<Region>() {
+    return QCoreApplication::translate("DeskCommand", "region");
+}
+template <>
+QString thing_name<SensorSetup>() {
+    return QCoreApplication::translate("DeskCommand", "sensor");
+}
+template <>
+QString thing_name<RobotSetup>() {
+    return QCoreApplication::translate("DeskCommand", "robot");
+}
+template <>
+QString thing_name<Calibration>() {
+    return QCoreApplication::translate("DeskCommand", "calibration");
+}
+
+void rename_references(Project& project, const Spot*, const std::string& from, const std::string& to) {
+    for (Region& region : project.regions)
+        std::replace(region.spot_ids.begin(), region.spot_ids.end(), from, to);
+}
+void rename_references(Project&, const Region*, const std::string&, const std::string&) {}
+void rename_references(Project& project, const SensorSetup*, const std::string& from, const std::string& to) {
+    for (Spot& spot : project.spots)
+        if (spot.sensor_id == from) spot.sensor_id = to;
+    for (Calibration& calibration : project.calibrations)
+        if (calibration.sensor_id == from) calibration.sensor_id = to;
+}
+void rename_references(Project& project, const RobotSetup*, const std::string& from, const std::string& to) {
+    for (Spot& spot : project.spots)
+        if (spot.robot_id == from) spot.robot_id = to;
+    for (Calibration& calibration : project.calibrations)
+        if (calibration.robot_id == from) calibration.robot_id = to;
+}
+
+CmdSpotEnable::CmdSpotEnable(Editor editor, const std::string& id, std::size_t at, bool enabled)
+    : DeskCommand(std::move(editor)), at_(at), enabled_(enabled) {
+    const QString name = QString::fromStdString(id);
+    setText(enabled ? DeskCommand::tr("Enable spot %1").arg(name)
+                    : DeskCommand::tr("Disable spot %1").arg(name));
+}
+
+CmdCalibrationUse::CmdCalibrationUse(Editor editor, const SensorSetup& sensor, std::size_t at,
+                                     std::string calibration_id)
+    : DeskCommand(std::move(editor)),
+      at_(at),
+      before_(sensor.calibration_id),
+      after_(std::move(calibration_id)) {
+    setText(DeskCommand::tr("Use calibration %1 at sensor %2")
+                .arg(QString::fromStdString(after_), QString::fromStdString(sensor.id)));
+}
+
+CmdPartEdit::CmdPartEdit(Editor editor, PartSetup before, PartSetup after, const QString& text)
+    : DeskCommand(std::move(editor)), before_(std::move(before)), after_(std::move(after)) {
+    setText(text);
+}
+
+CmdProjectRename::CmdProjectRename(Editor editor, std::string before, std::string after)
+    : DeskCommand(std::move(editor)), before_(std::move(before)), after_(std::move(after)) {
+    setText(DeskCommand::tr("Rename project to %1").arg(QString::fromStdString(after_)));
+}
+
+}  // namespace seamwright

@@ -1,0 +1,545 @@
+#include "widgets/desk/desk.h"
+
+#include <algorithm>
+
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/mesh_file.h"
+#include "projects/fields.h"
+#include "projects/measure.h"
+#include "projects/project_json.h"
+
+namespace seamwright {
+namespace {
+
+Expected<void> check_id(const std::string& id) {
+    if (id.empty()) return input_error("the name is empty", {}, "give it a name");
+    if (id.size() > 64) return input_error("the name is longer than 64 signs", {}, "shorten it");
+    return {};
+}
+
+template <class T>
+Expected<void> valid(const Project&, const T&) {
+    return {};
+}
+Expected<void> known_devices(const Project& project, const Spot& spot) {
+    if (!find_sensor(project, spot.sensor_id))
+        return input_error("the sensor \"" + spot.sensor_id + "\" is not in the project", "spot " + spot.id,
+                           "choose one of the project's");
+    if (!find_robot(project, spot.robot_id))
+        return input_error("the robot \"" + spot.robot_id + "\" is not in the project", "spot " + spot.id,
+                           "choose one of the project's");
+    return {};
+}
+template <>
+Expected<void> valid<Spot>(const Project& project, const Spot& spot) {
+    if (auto known = known_devices(project, spot); !known) return known;
+    if (auto rigid = pose_from_matrix(spot.base_from_flange.matrix(), "spot " + spot.id); !rigid)
+        return tl::unexpected(rigid.error());
+    return validate_fields(spot);
+}
+template <>
+Expected<void> valid<Region>(const Project& project, const Region& region) {
+    for (const std::string& id : region.spot_ids)
+        if (!find_spot(project, id))
+            return input_error("there is no spot \"" + id + "\"", "region " + region.id);
+    if (std::none_of(region.free.begin(), region.free.end(), [](bool f) { return f; }))
+        return input_error("no degree of freedom is free", "region " + region.id, "leave at least one free");
+    if (auto rigid = pose_from_matrix(region.base_from_frame.matrix(), "region " + region.id); !rigid)
+        return tl::unexpected(rigid.error());
+    return validate_fields(region);
+}
+template <>
+Expected<void> valid<SensorSetup>(const Project&, const SensorSetup& sensor) {
+    const auto& drivers = sensor_drivers();
+    if (std::none_of(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == sensor.driver; }))
+        return input_error("the driver \"" + sensor.driver + "\" is not known", "sensor " + sensor.id);
+    return check(sensor.filter);
+}
+template <>
+Expected<void> valid<RobotSetup>(const Project&, const RobotSetup& robot) {
+    const auto& drivers = robot_drivers();
+    if (std::none_of(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == robot.driver; }))
+        return input_error("the driver \"" + robot.driver + "\" is not known", "robot " + robot.id);
+    return {};
+}
+
+// Why a thing may not go.
+template <class T>
+Expected<void> removable(const Project& project, const std::string& id) {
+    for (const Spot& spot : project.spots) {
+        if constexpr (std::is_same_v<T, SensorSetup>)
+            if (spot.sensor_id == id)
+                return input_error("spot " + spot.id + " uses it", "sensor " + id,
+                                   "give the spot another sensor first");
+        if constexpr (std::is_same_v<T, RobotSetup>)
+            if (spot.robot_id == id)
+                return input_error("spot " + spot.id + " uses it", "robot " + id,
+                                   "give the spot another robot first");
+    }
+    return {};
+}
+
+std::string now_utc() {
+    return utc_now();
+}
+
+}  // namespace
+
+Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
+    connect(&undo_, &QUndoStack::cleanChanged, this, [this] {
+        if (modified() != was_modified_) emit modified_changed(was_modified_ = modified());
+    });
+    connect(&selection_, &Selection::changed, this, &Desk::set_recipes);
+    connect(&recovery_writer_, &RecoveryWriter::written, this, &Desk::recovery_written);
+    connect(&recovery_writer_, &RecoveryWriter::failed, this, &Desk::trouble);
+    connect(&worker_, &StationWorker::failed, this, [this](const QString& sentence) {
+        note(EventKind::device, "studio", sentence.toStdString());
+        emit trouble(sentence);
+    });
+    connect(&worker_, &StationWorker::state_changed, this, [this](std::shared_ptr<const StationState> state) {
+        const bool changes = state->connected != state_->connected;
+        state_ = std::move(state);
+        if (changes) {
+            if (state_->connected) take_identities(*state_);
+            note(EventKind::device, "studio",
+                 state_->connected ? "devices connected" : "devices disconnected");
+            set_recipes();
+            derive();
+        }
+        emit station_changed();
+    });
+    connect(&worker_, &StationWorker::measured, this, [this](const auto&) {
+        derive();
+        emit runs_changed();
+        emit events_changed();
+    });
+    steps_ = checklist(project_, facts_);
+}
+
+Desk::~Desk() {
+    worker_.close();
+}
+
+std::filesystem::path Desk::path() const {
+    return file_ ? file_->path() : std::filesystem::path();
+}
+
+Editor Desk::editor() {
+    return [this](const std::function<void(Project&)>& change) {
+        change(project_);
+        changed();
+    };
+}
+
+void Desk::changed() {
+    if (file_) {
+        recovery_writer_.write(project_);
+        worker_.use(project_);
+    }
+    if (modified() != was_modified_) emit modified_changed(was_modified_ = modified());
+    // A selected thing that is gone is not selected any more.
+    if (!selection_.spot().empty() && index_of<Spot>(project_, selection_.spot()) < 0)
+        selection_.select_spot("");
+    if (!selection_.region().empty() && index_of<Region>(project_, selection_.region()) < 0)
+        selection_.select_region("");
+    set_recipes();
+    derive();
+    emit project_changed();
+}
+
+void Desk::take_over(ProjectFile file, Project project) {
+    file_.emplace(std::move(file));
+    project_ = std::move(project);
+    undo_.clear();
+    restored_ = false;
+    state_ = std::make_shared<const StationState>();
+    recovery_writer_.open(file_->path());
+    worker_.open(file_->path(), project_);
+    selection_.select_spot(project_.spots.empty() ? "" : project_.spots.front().id);
+    selection_.select_region(project_.regions.empty() ? "" : project_.regions.front().id);
+    selection_.select_sensor(project_.sensors.empty() ? "" : project_.sensors.front().id);
+    was_modified_ = false;
+    set_recipes();
+    derive();
+    emit opened();
+    emit modified_changed(false);
+    emit project_changed();
+    emit runs_changed();
+    emit events_changed();
+}
+
+Expected<void> Desk::create(const std::filesystem::path& path, const Project& project) {
+    if (file_ && path == file_->path()) close();
+    auto file = ProjectFile::create(path, project, true);
+    if (!file) return tl::unexpected(file.error());
+    discard_recovery(path);
+    recovery_.reset();
+    take_over(std::move(*file), project);
+    return {};
+}
+
+Expected<void> Desk::open(const std::filesystem::path& path) {
+    auto file = ProjectFile::open(path);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    recovery_ = find_recovery(path, *project);
+    take_over(std::move(*file), std::move(*project));
+    return {};
+}
+
+void Desk::restore() {
+    if (!recovery_ || !file_) return;
+    project_ = std::move(recovery_->project);
+    recovery_.reset();
+    restored_ = true;
+    note(EventKind::note, "studio", "unsaved edits of an earlier session restored");
+    changed();
+}
+
+void Desk::forget_recovery() {
+    recovery_.reset();
+    if (file_) recovery_writer_.clear();
+}
+
+Expected<void> Desk::save() {
+    if (!file_) return usage_error("no project is open", {}, "open or make one");
+    if (auto saved = file_->save(project_); !saved) return saved;
+    restored_ = false;
+    undo_.setClean();
+    recovery_writer_.clear();
+    if (modified() != was_modified_) emit modified_changed(was_modified_ = modified());
+    return {};
+}
+
+Expected<void> Desk::save_as(const std::filesystem::path& path) {
+    if (!file_) return usage_error("no project is open", {}, "open or make one");
+    if (path == file_->path()) return save();
+    if (worker_.busy())
+        return usage_error("a measurement is running", path.string(), "wait for its end or cancel it");
+    // The old file keeps what was saved there; runs go along.
+    const auto part = std::filesystem::path(path.string() + ".part");
+    std::error_code failed;
+    std::filesystem::copy_file(file_->path(), part, std::filesystem::copy_options::overwrite_existing,
+                               failed);
+    if (failed) return file_error("the copy cannot be written: " + failed.message(), part.string());
+    {
+        auto copy = ProjectFile::open(part);
+        if (!copy) return tl::unexpected(copy.error());
+        if (auto saved = copy->save(project_); !saved) return saved;
+    }
+    std::filesystem::rename(part, path, failed);
+    if (failed) return file_error("the file cannot be replaced: " + failed.message(), path.string());
+    recovery_writer_.clear();
+    recovery_writer_.flush();
+    auto file = ProjectFile::open(path);
+    if (!file) return tl::unexpected(file.error());
+    const std::string spot = selection_.spot(), region = selection_.region();
+    const bool connected = state_->connected;
+    discard_recovery(path);
+    take_over(std::move(*file), project_);
+    selection_.select_spot(spot);
+    selection_.select_region(region);
+    if (connected) worker_.connect_devices();
+    return {};
+}
+
+void Desk::close() {
+    worker_.close();
+    if (file_) {
+        recovery_writer_.clear();
+        recovery_writer_.close();
+    }
+    file_.reset();
+    recovery_.reset();
+    project_ = {};
+    undo_.clear();
+    restored_ = false;
+    derive();
+    emit opened();
+    emit project_changed();
+}
+
+// ------------------------------------------------------------------------------------------------- edits
+
+template <class T>
+Expected<void> Desk::add(T thing, int at) {
+    if (auto ok = check_id(thing.id); !ok) return ok;
+    if (index_of<T>(project_, thing.id) >= 0)
+        return input_error("the name \"" + thing.id + "\" is used already", {}, "choose another");
+    if (auto ok = valid<T>(project_, thing); !ok) return ok;
+    const std::size_t size = list_of<T>(project_).size();
+    const std::size_t where = at < 0 ? size : std::min(size, static_cast<std::size_t>(at));
+    undo_.push(new CmdAdd<T>(editor(), std::move(thing), where));
+    return {};
+}
+
+template <class T>
+Expected<void> Desk::remove(const std::string& id) {
+    const int at = index_of<T>(project_, id);
+    if (at < 0) return input_error("there is no \"" + id + "\"");
+    if (auto ok = removable<T>(project_, id); !ok) return ok;
+    undo_.push(new CmdRemove<T>(editor(), project_, static_cast<std::size_t>(at)));
+    return {};
+}
+
+template <class T>
+Expected<void> Desk::rename(const std::string& from, const std::string& to) {
+    const int at = index_of<T>(project_, from);
+    if (at < 0) return input_error("there is no \"" + from + "\"");
+    if (from == to) return {};
+    if (auto ok = check_id(to); !ok) return ok;
+    if (index_of<T>(project_, to) >= 0)
+        return input_error("the name \"" + to + "\" is used already", {}, "choose another");
+    const bool spot = std::is_same_v<T, Spot> && selection_.spot() == from;
+    const bool region = std::is_same_v<T, Region> && selection_.region() == from;
+    const bool sensor = std::is_same_v<T, SensorSetup> && selection_.sensor() == from;
+    undo_.push(new CmdRename<T>(editor(), static_cast<std::size_t>(at), from, to));
+    if (spot) selection_.select_spot(to);
+    if (region) selection_.select_region(to);
+    if (sensor) selection_.select_sensor(to);
+    return {};
+}
+
+template <class T>
+Expected<void> Desk::move(const std::string& id, int to) {
+    const int at = index_of<T>(project_, id);
+    if (at < 0) return input_error("there is no \"" + id + "\"");
+    const int last = static_cast<int>(list_of<T>(project_).size()) - 1;
+    to = std::clamp(to, 0, last);
+    if (to == at) return {};
+    undo_.push(new CmdMove<T>(editor(), id, static_cast<std::size_t>(at), static_cast<std::size_t>(to)));
+    return {};
+}
+
+template <class T>
+Expected<void> Desk::edit(const T& after, const QString& what) {
+    const int at = index_of<T>(project_, after.id);
+    if (at < 0) return input_error("there is no \"" + after.id + "\"");
+    const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
+    if (to_json_document(before) == to_json_document(after)) return {};
+    if (auto ok = valid<T>(project_, after); !ok) return ok;
+    undo_.push(new CmdEdit<T>(editor(), before, after, static_cast<std::size_t>(at), what));
+    return {};
+}
+
+template <class T>
+std::string Desk::free_id(const std::string& prefix) const {
+    for (int n = 1;; ++n) {
+        std::string id = prefix + std::to_string(n);
+        if (index_of<T>(project_, id) < 0) return id;
+    }
+}
+
+#define SEAMWRIGHT_DESK_EDITS(T)                                                     \
+    template Expected<void> Desk::add<T>(T, int);                                    \
+    template Expected<void> Desk::remove<T>(const std::string&);                     \
+    template Expected<void> Desk::rename<T>(const std::string&, const std::string&); \
+    template Expected<void> Desk::move<T>(const std::string&, int);                  \
+    template Expected<void> Desk::edit<T>(const T&, const QString&);                 \
+    template std::string Desk::free_id<T>(const std::string&) const;
+SEAMWRIGHT_DESK_EDITS(Spot)
+SEAMWRIGHT_DESK_EDITS(Region)
+SEAMWRIGHT_DESK_EDITS(SensorSetup)
+SEAMWRIGHT_DESK_EDITS(RobotSetup)
+#undef SEAMWRIGHT_DESK_EDITS
+template Expected<void> Desk::add<Calibration>(Calibration, int);
+template std::string Desk::free_id<Calibration>(const std::string&) const;
+
+Expected<void> Desk::set_spot_enabled(const std::string& id, bool enabled) {
+    const int at = index_of<Spot>(project_, id);
+    if (at < 0) return input_error("there is no spot \"" + id + "\"");
+    if (project_.spots[static_cast<std::size_t>(at)].enabled == enabled) return {};
+    undo_.push(new CmdSpotEnable(editor(), id, static_cast<std::size_t>(at), enabled));
+    return {};
+}
+
+Expected<void> Desk::set_spot_field(const std::string& id, const std::string& field, double value) {
+    const Spot* spot = find_spot(project_, id);
+    if (!spot) return input_error("there is no spot \"" + id + "\"");
+    Spot after = *spot;
+    if (auto set = set_field(after, field, value); !set) return set;
+    return edit(after, QString::fromStdString(field));
+}
+
+Expected<void> Desk::set_region_field(const std::string& id, const std::string& field, double value) {
+    const int at = index_of<Region>(project_, id);
+    if (at < 0) return input_error("there is no region \"" + id + "\"");
+    Region after = project_.regions[static_cast<std::size_t>(at)];
+    if (auto set = set_field(after, field, value); !set) return set;
+    return edit(after, QString::fromStdString(field));
+}
+
+Expected<void> Desk::use_calibration(const std::string& sensor_id, const std::string& calibration_id) {
+    const int at = index_of<SensorSetup>(project_, sensor_id);
+    if (at < 0) return input_error("there is no sensor \"" + sensor_id + "\"");
+    const SensorSetup& sensor = project_.sensors[static_cast<std::size_t>(at)];
+    if (sensor.calibration_id == calibration_id) return {};
+    const int c = index_of<Calibration>(project_, calibration_id);
+    if (!calibration_id.empty() && c < 0)
+        return input_error("there is no calibration \"" + calibration_id + "\"");
+    if (c >= 0 && project_.calibrations[static_cast<std::size_t>(c)].sensor_id != sensor_id)
+        return input_error("calibration " + calibration_id + " belongs to another sensor",
+                           "sensor " + sensor_id);
+    undo_.push(new CmdCalibrationUse(editor(), sensor, static_cast<std::size_t>(at), calibration_id));
+    return {};
+}
+
+Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
+    if (to_json_document(project_.part) == to_json_document(after) &&
+        project_.part.mesh_ply == after.mesh_ply)
+        return {};
+    if (auto rigid = pose_from_matrix(after.base_from_workobject.matrix(), "part"); !rigid)
+        return tl::unexpected(rigid.error());
+    undo_.push(new CmdPartEdit(editor(), project_.part, after, text));
+    return {};
+}
+
+Expected<void> Desk::import_part(const std::filesystem::path& path, const std::string& unit) {
+    auto mesh = load_mesh(path, unit);
+    if (!mesh) return tl::unexpected(mesh.error());
+    PartSetup after = project_.part;
+    after.mesh_ply = ply_bytes(*mesh);
+    after.mesh_source = path.string();
+    if (after.name.empty()) after.name = path.stem().string();
+    return edit_part(after,
+                     DeskCommand::tr("Import part %1").arg(QString::fromStdString(path.filename().string())));
+}
+
+Expected<void> Desk::rename_project(const std::string& name) {
+    if (name == project_.name) return {};
+    undo_.push(new CmdProjectRename(editor(), project_.name, name));
+    return {};
+}
+
+Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm) {
+    const nlohmann::json part = {
+        {"displacement", pose_json(displacement)}, {"bend_mm", bend_mm}, {"twist_mm", twist_mm}};
+    undo_.beginMacro(DeskCommand::tr("Place the simulated part"));
+    Expected<void> result{};
+    for (const SensorSetup& sensor : std::vector(project_.sensors))
+        if (sensor.driver == "simulated" && result) {
+            SensorSetup after = sensor;
+            after.settings["part"] = part;
+            result = edit(after);
+        }
+    for (const RobotSetup& robot : std::vector(project_.robots))
+        if (robot.driver == "simulated" && result) {
+            RobotSetup after = robot;
+            after.settings["part"] = part;
+            result = edit(after);
+        }
+    undo_.endMacro();
+    return result;
+}
+
+// ------------------------------------------------------------------------------------------ what is known
+
+void Desk::take_identities(const StationState& state) {
+    bool news = false;
+    for (const SensorState& s : state.sensors)
+        for (SensorSetup& setup : project_.sensors)
+            if (setup.id == s.id && !(setup.identity == s.identity)) setup.identity = s.identity, news = true;
+    for (const RobotState& r : state.robots)
+        for (RobotSetup& setup : project_.robots)
+            if (setup.id == r.id && !(setup.identity == r.identity)) setup.identity = r.identity, news = true;
+    if (!news) return;
+    // Who answered is no edit: nobody undoes it. It is saved with the next save, and the station knows it.
+    worker_.use(project_);
+    emit project_changed();
+}
+
+void Desk::set_recipes() {
+    const Spot* selected = find_spot(project_, selection_.spot());
+    for (const SensorSetup& sensor : project_.sensors) {
+        LiveRecipe recipe;
+        recipe.peaks = sensor.peaks;
+        recipe.filter = sensor.filter;
+        for (const Calibration& c : project_.calibrations)
+            if (c.id == sensor.calibration_id) recipe.model = c.model;
+        if (selected && selected->sensor_id == sensor.id) recipe.feature = selected->feature;
+        live_.set_recipe(sensor.id, recipe);
+    }
+}
+
+void Desk::derive() {
+    facts_ = {};
+    facts_.connected = state_->connected;
+    for (const SensorSetup& setup : project_.sensors) {
+        SensorIdentity identity;
+        for (const SensorState& s : state_->sensors)
+            if (s.id == setup.id) identity = s.identity;
+        facts_.sensors.push_back(identity);
+    }
+    if (file_)
+        if (auto all = file_->runs()) {
+            std::int64_t setup = -1;
+            bool counting = true;
+            for (auto it = all->rbegin(); it != all->rend(); ++it) {
+                const bool zero = it->part_id.starts_with(kZeroShiftPrefix);
+                if (!zero) ++facts_.runs;
+                if (!zero || !counting) continue;
+                if (setup < 0) {
+                    setup = it->setup;
+                    facts_.zero_shift_ok = true;
+                    facts_.zero_shift_utc = QString::fromStdString(it->finished_utc);
+                }
+                if (it->setup != setup) {
+                    counting = false;
+                    continue;
+                }
+                ++facts_.zero_shift_runs;
+                facts_.zero_shift_ok = facts_.zero_shift_ok && it->status == RunStatus::ok;
+                if (it->part_id == std::string(kZeroShiftPrefix) + "1") counting = false;  // the row's first
+            }
+            if (setup >= 0)
+                if (auto with = file_->load_setup(setup)) {
+                    const auto same = [](const auto& a, const auto& b) {
+                        if (a.size() != b.size()) return false;
+                        for (std::size_t i = 0; i < a.size(); ++i)
+                            if (to_json_document(a[i]) != to_json_document(b[i])) return false;
+                        return true;
+                    };
+                    bool current = same(with->spots, project_.spots) &&
+                                   same(with->regions, project_.regions) &&
+                                   with->sensors.size() == project_.sensors.size();
+                    for (std::size_t i = 0; current && i < project_.sensors.size(); ++i)
+                        current = with->sensors[i].calibration_id == project_.sensors[i].calibration_id;
+                    facts_.zero_shift_current = current;
+                }
+        }
+    steps_ = checklist(project_, facts_);
+    emit checklist_changed();
+}
+
+Expected<std::vector<RunSummary>> Desk::runs() const {
+    if (!file_) return std::vector<RunSummary>{};
+    return file_->runs();
+}
+
+Expected<RunRecord> Desk::run(std::int64_t number) const {
+    if (!file_) return usage_error("no project is open");
+    return file_->load_run(number, false);
+}
+
+Expected<std::vector<EventRecord>> Desk::events() const {
+    if (!file_) return std::vector<EventRecord>{};
+    return file_->events();
+}
+
+Expected<void> Desk::delete_run(std::int64_t number) {
+    if (!file_) return usage_error("no project is open");
+    auto deleted = file_->delete_run(number);
+    derive();
+    emit runs_changed();
+    return deleted;
+}
+
+void Desk::note(EventKind kind, const std::string& subject, const std::string& text) {
+    if (!file_) return;
+    if (auto id = file_->append_event({0, now_utc(), 0, kind, subject, text}); !id)
+        emit trouble(QString::fromStdString(id.error().sentence()));
+    emit events_changed();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,128 @@
+#pragma once
+// The open project as a document: every edit validated and undoable, saved on demand, kept against crashes in
+// between, measured with as it stands on the screen.
+//
+// Files. Save writes the project file. Until then every edit goes to FILE.seam.recovery at once (recovery.h).
+// Runs and events are in the project file as soon as they are finished, with the setup they were made with.
+
+#include <QObject>
+#include <QUndoStack>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "widgets/desk/checklist.h"
+#include "widgets/desk/commands.h"
+#include "widgets/desk/recovery.h"
+#include "widgets/desk/selection.h"
+#include "widgets/desk/station_worker.h"
+
+namespace seamwright {
+
+class Desk : public QObject {
+    Q_OBJECT
+  public:
+    explicit Desk(QObject* parent = nullptr);
+    ~Desk() override;
+
+    // --- the document
+    bool is_open() const { return file_.has_value(); }
+    const Project& project() const { return project_; }
+    std::filesystem::path path() const;
+    bool modified() const { return !undo_.isClean() || restored_; }
+    QUndoStack& undo_stack() { return undo_; }
+    Selection& selection() { return selection_; }
+    StationWorker& worker() { return worker_; }
+    LiveFeed& live() { return live_; }
+
+    // An existing file is replaced (the caller has asked).
+    Expected<void> create(const std::filesystem::path& path, const Project& project);
+    // Opens as saved. What a crash left is in recovery() until restore() or forget_recovery().
+    Expected<void> open(const std::filesystem::path& path);
+    const std::optional<Recovery>& recovery() const { return recovery_; }
+    void restore();
+    void forget_recovery();
+    Expected<void> save();
+    Expected<void> save_as(const std::filesystem::path& path);  // with runs and events
+    void close();                                               // unsaved edits are dropped
+
+    // --- edits; an Error changes nothing, and so does an edit that is none
+    // T: Spot, Region, SensorSetup, RobotSetup, Calibration (add only). `at` < 0: at the end.
+    template <class T>
+    Expected<void> add(T thing, int at = -1);
+    template <class T>
+    Expected<void> remove(const std::string& id);
+    template <class T>
+    Expected<void> rename(const std::string& from, const std::string& to);
+    template <class T>
+    Expected<void> move(const std::string& id, int to);
+    // The thing of that id becomes `after`; `what` names the field for the undo list.
+    template <class T>
+    Expected<void> edit(const T& after, const QString& what = {});
+    Expected<void> set_spot_enabled(const std::string& id, bool enabled);
+    Expected<void> set_spot_field(const std::string& id, const std::string& field, double value);
+    Expected<void> set_region_field(const std::string& id, const std::string& field, double value);
+    Expected<void> use_calibration(const std::string& sensor_id, const std::string& calibration_id);
+    Expected<void> edit_part(const PartSetup& after, const QString& text);
+    // STL, PLY, OBJ; `unit` "mm", "m", or "" (refused when metres are suspected).
+    Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);
+    Expected<void> rename_project(const std::string& name);
+    // Where the simulated part truly stands, in the settings of all simulated devices; connect again.
+    Expected<void> place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm);
+    // A free id: "S1", "S2", ...
+    template <class T>
+    std::string free_id(const std::string& prefix) const;
+
+    // --- what else is known
+    const StationState& station() const { return *state_; }
+    const std::array<StepState, 7>& steps() const { return steps_; }
+    Expected<std::vector<RunSummary>> runs() const;
+    Expected<RunRecord> run(std::int64_t number) const;  // without captures
+    Expected<std::vector<EventRecord>> events() const;
+    Expected<void> delete_run(std::int64_t number);
+    const ProjectFile& file() const { return *file_; }
+    void note(EventKind kind, const std::string& subject, const std::string& text);
+
+  signals:
+    void opened();           // another project, or none
+    void project_changed();  // by edit, undo, redo, restore
+    void modified_changed(bool modified);
+    void checklist_changed();
+    void station_changed();
+    void runs_changed();
+    void events_changed();
+    void recovery_written();
+    void trouble(QString sentence);
+
+  private:
+    Editor editor();
+    void take_over(ProjectFile file, Project project);
+    void changed();
+    void derive();
+    void set_recipes();
+    void take_identities(const StationState& state);
+
+    QUndoStack undo_;
+    Selection selection_;
+    LiveFeed live_;
+    StationWorker worker_;
+    RecoveryWriter recovery_writer_;
+    std::optional<ProjectFile> file_;
+    Project project_;
+    std::optional<Recovery> recovery_;
+    std::shared_ptr<const StationState> state_ = std::make_shared<const StationState>();
+    DeskFacts facts_;
+    std::array<StepState, 7> steps_;
+    bool restored_ = false, was_modified_ = false;
+};
+
+// Index in the list; -1 = unknown.
+template <class T>
+int index_of(const Project& project, const std::string& id) {
+    const std::vector<T>& list = list_of<T>(project);
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].id == id) return static_cast<int>(i);
+    return -1;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,156 @@
+#include "widgets/desk/live_feed.h"
+
+#include <chrono>
+
+#include "core/features/feature.h"
+
+namespace seamwright {
+
+using Clock = std::chrono::steady_clock;
+
+struct LiveFeed::Lane {
+    ProfileSource* source = nullptr;
+    LiveRecipe recipe;
+    bool recipe_changed = true;
+    std::unique_ptr<FeatureFinder> finder;
+    std::uint64_t last_sequence = 0;
+    std::int64_t last_time_ns = -1;
+    std::uint64_t number = 0;
+    double rate_hz = 0;
+    Clock::time_point last_seen;
+    ProfileCandidates candidates;
+    std::shared_ptr<const LiveSnapshot> newest;
+};
+
+namespace {
+
+// Frame -> peaks -> candidates -> tracked profile; the reason when there is none.
+std::string convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandidates& candidates,
+                    LiveSnapshot& snapshot) {
+    if (frame.status != FrameStatus::ok) return "damaged frame: " + std::string(to_string(frame.status));
+    if (frame.profile.size() > 0) {
+        snapshot.profile = frame.profile;
+        if (auto filtered = filter_profile(snapshot.profile, recipe.filter); !filtered)
+            return filtered.error().sentence();
+        return {};
+    }
+    if (frame.image.empty()) return "the frame is empty";
+    if (auto found = find_peaks(frame.image, recipe.peaks, snapshot.peaks); !found)
+        return found.error().sentence();
+    if (!recipe.model) return "no calibration: the image has no millimetres";
+    to_millimetres(snapshot.peaks, *recipe.model, candidates);
+    if (auto tracked = track_stripe(candidates, recipe.filter, snapshot.profile); !tracked)
+        return tracked.error().sentence();
+    return {};
+}
+
+}  // namespace
+
+LiveFeed::LiveFeed(QObject* parent)
+    : QObject(parent), thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+LiveFeed::~LiveFeed() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+void LiveFeed::attach(std::map<std::string, ProfileSource*> sources) {
+    const std::lock_guard use(use_mutex_);
+    const std::lock_guard lock(mutex_);
+    lanes_.clear();
+    for (auto& [id, source] : sources) {
+        auto lane = std::make_shared<Lane>();
+        lane->source = source;
+        if (const auto it = recipes_.find(id); it != recipes_.end()) lane->recipe = it->second;
+        lanes_[id] = std::move(lane);
+    }
+}
+
+void LiveFeed::detach() {
+    const std::lock_guard use(use_mutex_);
+    const std::lock_guard lock(mutex_);
+    lanes_.clear();
+}
+
+void LiveFeed::set_recipe(const std::string& sensor_id, const LiveRecipe& recipe) {
+    const std::lock_guard lock(mutex_);
+    recipes_[sensor_id] = recipe;
+    if (const auto it = lanes_.find(sensor_id); it != lanes_.end()) {
+        it->second->recipe = recipe;
+        it->second->recipe_changed = true;
+    }
+}
+
+std::shared_ptr<const LiveSnapshot> LiveFeed::latest(const std::string& sensor_id) const {
+    const std::lock_guard lock(mutex_);
+    const auto it = lanes_.find(sensor_id);
+    return it == lanes_.end() ? nullptr : it->second->newest;
+}
+
+void LiveFeed::taken() {
+    told_ = false;
+}
+
+void LiveFeed::work(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        bool fresh = false;
+        std::vector<std::pair<std::string, std::shared_ptr<Lane>>> lanes;
+        {
+            const std::lock_guard lock(mutex_);
+            lanes.assign(lanes_.begin(), lanes_.end());
+        }
+        for (auto& [id, lane] : lanes) {
+            FramePtr frame;
+            SourceCounters counters;
+            {
+                const std::lock_guard use(use_mutex_);
+                {
+                    const std::lock_guard lock(mutex_);
+                    const auto it = lanes_.find(id);
+                    if (it == lanes_.end() || it->second != lane) continue;  // detached meanwhile
+                }
+                frame = lane->source->latest();
+                if (!frame ||
+                    (frame->sequence == lane->last_sequence && frame->host_time_ns == lane->last_time_ns))
+                    continue;
+                counters = lane->source->counters();
+            }
+            lane->last_sequence = frame->sequence;
+            lane->last_time_ns = frame->host_time_ns;
+            LiveRecipe recipe;
+            {
+                const std::lock_guard lock(mutex_);
+                recipe = lane->recipe;
+                if (lane->recipe_changed) {
+                    lane->recipe_changed = false;
+                    lane->finder.reset();
+                    if (recipe.feature)
+                        if (auto made = make_feature_finder(*recipe.feature)) lane->finder = std::move(*made);
+                }
+            }
+            auto snapshot = std::make_shared<LiveSnapshot>();
+            snapshot->sensor_id = id;
+            snapshot->number = ++lane->number;
+            snapshot->frame = frame;
+            snapshot->counters = counters;
+            snapshot->trouble = convert(*frame, recipe, lane->candidates, *snapshot);
+            if (snapshot->trouble.empty() && lane->finder)
+                snapshot->feature = lane->finder->find(snapshot->profile);
+            const auto now = Clock::now();
+            if (lane->number > 1) {
+                const double seconds = std::chrono::duration<double>(now - lane->last_seen).count();
+                const double rate = seconds > 1e-6 ? 1 / seconds : 0;
+                lane->rate_hz = lane->rate_hz > 0 ? 0.9 * lane->rate_hz + 0.1 * rate : rate;
+            }
+            lane->last_seen = now;
+            snapshot->rate_hz = lane->rate_hz;
+            const std::lock_guard lock(mutex_);
+            lane->newest = std::move(snapshot);
+            fresh = true;
+        }
+        if (fresh && !told_.exchange(true)) emit arrived();
+        std::this_thread::sleep_for(std::chrono::milliseconds(fresh ? 2 : 8));
+    }
+}
+
+}  // namespace seamwright

@@ -1,0 +1,74 @@
+#pragma once
+// What the sensors see, for screens: newest frames only, turned into profiles by the project's recipe on a
+// thread of its own. Whoever triggers the sensors (StationWorker when nothing runs, a run, a free-running
+// sensor) does not wait for it and is not waited for.
+
+#include <QObject>
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/features/feature.h"
+#include "core/profile/filter.h"
+#include "core/profile/peaks.h"
+#include "core/profile/sensor_model.h"
+#include "devices/profile_source.h"
+
+namespace seamwright {
+
+// How a sensor's frames become a profile, and which feature is looked for.
+struct LiveRecipe {
+    PeakOptions peaks;
+    FilterOptions filter;
+    std::optional<SensorModel> model;      // absent: images have no millimetres
+    std::optional<FeatureRecipe> feature;  // of the selected spot
+};
+
+struct LiveSnapshot {
+    std::string sensor_id;
+    std::uint64_t number = 0;        // counts snapshots of the sensor
+    Profile profile;                 // filtered; empty when the frame shows no stripe
+    std::optional<Feature> feature;  // of LiveRecipe::feature
+    FramePtr frame;                  // raw image where the sensor gives one
+    StripePeaks peaks;               // of the image
+    double rate_hz = 0;              // frames seen by the screen
+    SourceCounters counters;
+    std::string trouble;  // why there is no profile; empty when there is one
+};
+
+class LiveFeed : public QObject {
+    Q_OBJECT
+  public:
+    explicit LiveFeed(QObject* parent = nullptr);
+    ~LiveFeed() override;
+
+    // The sources must stay until detach() has returned.
+    void attach(std::map<std::string, ProfileSource*> sources);
+    void detach();
+    void set_recipe(const std::string& sensor_id, const LiveRecipe& recipe);
+    // nullptr before the first frame.
+    std::shared_ptr<const LiveSnapshot> latest(const std::string& sensor_id) const;
+
+  signals:
+    void arrived();  // at least one sensor has a newer snapshot; coalesced
+
+  public slots:
+    void taken();  // the receiver has drawn: the next arrival is told again
+
+  private:
+    struct Lane;
+    void work(const std::stop_token& stop);
+    mutable std::mutex mutex_;  // sources, recipes, snapshots
+    std::mutex use_mutex_;      // held while a source is asked
+    std::map<std::string, std::shared_ptr<Lane>> lanes_;
+    std::map<std::string, LiveRecipe> recipes_;
+    std::atomic<bool> told_ = false;
+    std::jthread thread_;
+};
+
+}  // namespace seamwright

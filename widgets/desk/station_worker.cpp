@@ -1,0 +1,410 @@
+#include "widgets/desk/station_worker.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "projects/acquire.h"
+#include "projects/measure.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kLivePeriod{60}, kLiveFrame{400}, kRobotPeriod{500}, kRest{5};
+constexpr const char* kSimulated = "simulated";
+
+QString text_of(const Error& error) {
+    return QString::fromStdString(error.sentence());
+}
+
+}  // namespace
+
+// Sensors running for the screen.
+struct StationWorker::Live {
+    struct Sensor {
+        ProfileSource* source;
+        SoftwareTriggered by_software;
+        std::string trouble;
+        bool ended = false;
+    };
+    std::map<std::string, Sensor> sensors;
+    ~Live() {
+        for (auto& [id, sensor] : sensors) sensor.source->stop();
+    }
+};
+
+StationWorker::StationWorker(LiveFeed& feed, QObject* parent)
+    : QObject(parent), feed_(feed), thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+StationWorker::~StationWorker() {
+    cancel();
+    thread_.request_stop();
+    wake_.notify_all();
+    thread_.join();
+    stop_live();
+    feed_.detach();
+}
+
+void StationWorker::open(const std::filesystem::path& file, const Project& project) {
+    cancel();
+    const std::lock_guard lock(mutex_);
+    queue_.clear();
+    newest_project_.reset();
+    open_request_.emplace(file, project);
+    close_request_ = false;
+    opened_ = true;
+    wake_.notify_all();
+}
+
+void StationWorker::close() {
+    cancel();
+    std::unique_lock lock(mutex_);
+    queue_.clear();
+    open_request_.reset();
+    if (!opened_) return;
+    close_request_ = true;
+    wake_.notify_all();
+    wake_.wait(lock, [&] { return !close_request_; });
+}
+
+void StationWorker::use(const Project& project) {
+    const std::lock_guard lock(mutex_);
+    newest_project_ = std::make_unique<Project>(project);
+    wake_.notify_all();
+}
+
+bool StationWorker::busy() const {
+    const std::lock_guard lock(mutex_);
+    return busy_ || !queue_.empty();
+}
+
+void StationWorker::cancel() {
+    const std::lock_guard lock(mutex_);
+    cancel_.request_stop();
+    push_answer_ = false;
+    wake_.notify_all();
+}
+
+void StationWorker::answer_push(bool yes) {
+    const std::lock_guard lock(mutex_);
+    push_answer_ = yes;
+    wake_.notify_all();
+}
+
+void StationWorker::post(const QString& what, Task task) {
+    const std::lock_guard lock(mutex_);
+    queue_.push_back({what, std::move(task)});
+    wake_.notify_all();
+}
+
+std::function<void(const RunProgress&)> StationWorker::progress_sink() {
+    return [this](const RunProgress& p) { emit progressed(p.done, p.total, QString::fromStdString(p.text)); };
+}
+
+void StationWorker::connect_devices() {
+    post(tr("Connecting"), [this](Station& station, const std::stop_token&) {
+        feed_.detach();
+        connect_trouble_.clear();
+        auto connected = station.connect();
+        if (!connected) {
+            connect_trouble_ = connected.error().sentence();
+            emit failed(QString::fromStdString(connect_trouble_));
+        } else {
+            std::map<std::string, ProfileSource*> sources;
+            for (const SensorSetup& setup : station.project().sensors)
+                sources[setup.id] = station.sensor(setup.id);
+            // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
+            // see; a real one is never moved from here.
+            for (const RobotSetup& setup : station.project().robots) {
+                RobotLink* robot = station.robot(setup.id);
+                if (setup.driver != kSimulated || robot->base_from_flange()) continue;
+                for (const Spot& spot : station.project().spots)
+                    if (spot.robot_id == setup.id) {
+                        (void)robot->move_to(spot.base_from_flange);
+                        break;
+                    }
+            }
+            feed_.attach(std::move(sources));
+        }
+        publish(station);
+    });
+}
+
+void StationWorker::disconnect_devices() {
+    post(tr("Disconnecting"), [this](Station& station, const std::stop_token&) {
+        feed_.detach();
+        connect_trouble_.clear();
+        station.disconnect();
+        publish(station);
+    });
+}
+
+void StationWorker::run_one(Station& station, RunOptions options) {
+    auto run = station.run(options);
+    if (!run) {
+        emit failed(text_of(run.error()));
+        return;
+    }
+    emit measured(std::make_shared<const RunRecord>(std::move(*run)));
+}
+
+void StationWorker::measure(const std::string& part_id, bool push, bool keep_images) {
+    post(tr("Measuring"), [=, this](Station& station, const std::stop_token& cancelled) {
+        RunOptions options;
+        options.part_id = part_id;
+        options.push = push;
+        options.keep_images = keep_images;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        if (push)
+            options.confirm_push = [&](const RunRecord& judged) {
+                {
+                    const std::lock_guard lock(mutex_);
+                    if (cancelled.stop_requested()) return false;
+                    push_answer_.reset();
+                }
+                emit confirm_push(std::make_shared<const RunRecord>(judged));
+                std::unique_lock lock(mutex_);
+                wake_.wait(lock, [&] { return push_answer_.has_value(); });
+                return *push_answer_;
+            };
+        run_one(station, std::move(options));
+    });
+}
+
+void StationWorker::zero_shift(int runs) {
+    post(tr("Zero shift"), [=, this](Station& station, const std::stop_token& cancelled) {
+        int done = 0;
+        for (; done < runs && !cancelled.stop_requested(); ++done) {
+            RunOptions options;
+            options.part_id = fmt::format("zero shift {}", done + 1);
+            options.cancel = cancelled;
+            options.progress = [&](const RunProgress& p) {
+                emit progressed(
+                    done * p.total + p.done, runs * p.total,
+                    tr("run %1 of %2: %3").arg(done + 1).arg(runs).arg(QString::fromStdString(p.text)));
+            };
+            auto run = station.run(options);
+            if (!run) {
+                emit failed(text_of(run.error()));
+                break;
+            }
+            const bool broken = run->status == RunStatus::device;
+            if (broken) emit failed(QString::fromStdString(run->message));
+            emit measured(std::make_shared<const RunRecord>(std::move(*run)));
+            if (broken) break;
+        }
+        emit zero_shift_done(done);
+    });
+}
+
+void StationWorker::teach(const Spot& draft, int repeats) {
+    post(tr("Teaching"), [=, this](Station& station, const std::stop_token& cancelled) {
+        TeachOptions options;
+        options.repeats = repeats;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        auto spot = teach_spot(station, draft, options);
+        if (!spot)
+            emit failed(text_of(spot.error()));
+        else
+            emit taught(std::make_shared<const TaughtSpot>(std::move(*spot)));
+    });
+}
+
+void StationWorker::record_pass(const Spot& spot, double step_mm, const AlignmentOptions& alignment) {
+    post(tr("Recording the pass"), [=, this](Station& station, const std::stop_token& cancelled) {
+        PassOptions options;
+        options.step_mm = step_mm;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        auto pass = seamwright::record_pass(station, spot, options);
+        if (!pass) return emit failed(text_of(pass.error()));
+        auto result = std::make_shared<PassResult>();
+        result->spot_id = spot.id;
+        result->pass = std::move(*pass);
+        result->options = alignment;
+        if (result->pass.profiles.empty())
+            return emit failed(
+                tr("spot %1: no profile was seen on the whole pass").arg(QString::fromStdString(spot.id)));
+        auto judged = check_alignment(result->pass.profiles, alignment);
+        if (!judged) return emit failed(text_of(judged.error()));
+        result->result = std::move(*judged);
+        if (auto curve = fit_contour_curve(result->pass.references)) result->curve = *curve;
+        emit passed(std::move(result));
+    });
+}
+
+void StationWorker::jog_simulated(const std::string& robot_id, const Pose& base_from_flange) {
+    post(tr("Moving the simulated robot"), [=, this](Station& station, const std::stop_token&) {
+        const RobotSetup* setup = find_robot(station.project(), robot_id);
+        RobotLink* robot = station.robot(robot_id);
+        if (!setup || !robot || setup->driver != kSimulated)
+            return emit failed(tr("only a simulated robot is moved from here"));
+        if (auto moved = robot->move_to(base_from_flange); !moved) emit failed(text_of(moved.error()));
+        publish(station);
+    });
+}
+
+void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std::string& name,
+                                         double value) {
+    post(tr("Setting the sensor"), [=, this](Station& station, const std::stop_token&) {
+        ProfileSource* sensor = station.sensor(sensor_id);
+        if (!sensor)
+            return emit failed(tr("sensor %1 is not connected").arg(QString::fromStdString(sensor_id)));
+        if (auto set = sensor->set(name, value); !set) emit failed(text_of(set.error()));
+        publish(station);
+    });
+}
+
+void StationWorker::publish(Station& station) {
+    auto state = std::make_shared<StationState>();
+    state->connected = station.connected();
+    state->trouble = connect_trouble_;
+    for (const SensorSetup& setup : station.project().sensors) {
+        ProfileSource* sensor = station.sensor(setup.id);
+        if (!sensor) continue;
+        SensorState s;
+        s.id = setup.id;
+        s.identity = sensor->identity();
+        s.counters = sensor->counters();
+        s.parameters = sensor->parameters();
+        for (const ParameterInfo& info : s.parameters)
+            if (auto value = sensor->get(info.name)) s.values[info.name] = *value;
+        if (live_)
+            if (const auto it = live_->sensors.find(setup.id); it != live_->sensors.end())
+                s.trouble = it->second.trouble;
+        state->sensors.push_back(std::move(s));
+    }
+    for (const RobotSetup& setup : station.project().robots) {
+        RobotLink* robot = station.robot(setup.id);
+        if (!robot) continue;
+        RobotState r;
+        r.id = setup.id;
+        r.identity = setup.identity;
+        if (auto mode = robot->mode())
+            r.mode = *mode;
+        else
+            r.trouble = mode.error().sentence();
+        if (r.trouble.empty())
+            if (auto at = robot->base_from_flange()) r.base_from_flange = *at;
+        state->robots.push_back(std::move(r));
+    }
+    emit state_changed(std::move(state));
+}
+
+void StationWorker::stop_live() {
+    live_.reset();
+}
+
+// One turn of the live sensors; returns within about a frame.
+void StationWorker::idle(Station& station) {
+    if (!station.connected()) return;
+    if (!live_) {
+        live_ = std::make_unique<Live>();
+        for (const SensorSetup& setup : station.project().sensors) {
+            ProfileSource* sensor = station.sensor(setup.id);
+            if (!sensor) continue;
+            auto by_software = SoftwareTriggered::begin(*sensor);
+            if (!by_software) continue;
+            if (auto started = sensor->start(); !started) continue;
+            live_->sensors.emplace(setup.id, Live::Sensor{sensor, std::move(*by_software), {}, false});
+        }
+    }
+    for (auto& [id, sensor] : live_->sensors) {
+        if (sensor.ended) continue;
+        if (auto fired = sensor.source->trigger(""); !fired) {
+            sensor.trouble = fired.error().sentence();
+            continue;
+        }
+        auto frame = sensor.source->wait_next(kLiveFrame);
+        if (frame) {
+            sensor.trouble.clear();
+        } else {
+            sensor.trouble = frame.error().sentence();
+            sensor.ended = frame.error().what == kEndOfRecording;
+        }
+    }
+}
+
+void StationWorker::work(const std::stop_token& stop) {
+    auto next_live = Clock::now(), next_state = next_live;
+    while (!stop.stop_requested()) {
+        Request request;
+        {
+            std::unique_lock lock(mutex_);
+            wake_.wait_until(lock, stop, std::min(next_live, Clock::now() + kLivePeriod), [&] {
+                return open_request_ || close_request_ || !queue_.empty() || newest_project_;
+            });
+            if (stop.stop_requested()) break;
+            if (open_request_ || close_request_) {
+                auto opening = std::move(open_request_);
+                open_request_.reset();
+                lock.unlock();
+                stop_live();
+                feed_.detach();
+                station_.reset();
+                connect_trouble_.clear();
+                if (opening) {
+                    auto file = ProjectFile::open(opening->first);
+                    if (file)
+                        station_.emplace(std::move(*file), std::move(opening->second));
+                    else
+                        emit failed(text_of(file.error()));
+                }
+                emit state_changed(std::make_shared<const StationState>());
+                lock.lock();
+                if (close_request_) {
+                    close_request_ = false;
+                    opened_ = false;
+                }
+                lock.unlock();
+                wake_.notify_all();
+                continue;
+            }
+            if (newest_project_ && station_) {
+                station_->use(*newest_project_);
+                newest_project_.reset();
+            }
+            if (!queue_.empty()) {
+                request = std::move(queue_.front());
+                queue_.pop_front();
+                cancel_ = std::stop_source();
+                busy_ = true;
+            }
+        }
+        if (!station_) {
+            if (request.task) {
+                const std::lock_guard lock(mutex_);
+                busy_ = false;
+            }
+            next_live = Clock::now() + kLivePeriod;
+            continue;
+        }
+        if (request.task) {
+            emit busy_changed(true, request.what);
+            stop_live();
+            request.task(*station_, cancel_.get_token());
+            {
+                const std::lock_guard lock(mutex_);
+                busy_ = false;
+            }
+            publish(*station_);
+            emit busy_changed(false, request.what);
+            next_live = Clock::now();
+            continue;
+        }
+        if (Clock::now() >= next_live) {
+            idle(*station_);
+            next_live = Clock::now() + kLivePeriod / 2;
+        }
+        if (station_->connected() && Clock::now() >= next_state) {
+            publish(*station_);
+            next_state = Clock::now() + kRobotPeriod;
+        }
+    }
+    stop_live();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,122 @@
+#pragma once
+// The one thread that talks to the devices. It owns the Station; the screen queues requests and gets values
+// back by signals (queued into the receiver's thread). Nothing here blocks the caller, except close().
+//
+// While nothing is asked, the sensors run live (software triggers about every 60 ms where the sensor waits
+// for triggers, LiveFeed shows the newest frame) and the robots are asked for mode and pose twice a second.
+
+#include <QObject>
+#include <QString>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "core/alignment/alignment.h"
+#include "projects/station.h"
+#include "projects/teach.h"
+#include "widgets/desk/live_feed.h"
+
+namespace seamwright {
+
+struct SensorState {
+    std::string id;
+    SensorIdentity identity;
+    SourceCounters counters;
+    std::vector<ParameterInfo> parameters;  // of the device: exposure_us, ...
+    ParameterValues values;
+    std::string trouble;  // why no frames come; empty when they do
+};
+
+struct RobotState {
+    std::string id;
+    RobotIdentity identity;
+    RobotMode mode = RobotMode::unknown;
+    std::optional<Pose> base_from_flange;
+    std::string trouble;  // why it does not answer
+};
+
+struct StationState {
+    bool connected = false;
+    std::vector<SensorState> sensors;
+    std::vector<RobotState> robots;
+    std::string trouble;  // of the last attempt to connect
+};
+
+struct PassResult {
+    std::string spot_id;
+    RecordedPass pass;
+    AlignmentOptions options;
+    AlignmentResult result;
+    std::optional<ContourCurve> curve;  // of the spot's feature over the travel
+};
+
+class StationWorker : public QObject {
+    Q_OBJECT
+  public:
+    explicit StationWorker(LiveFeed& feed, QObject* parent = nullptr);
+    ~StationWorker() override;
+
+    // Of another project: devices are disconnected first. Waits for what runs (cancels it).
+    void open(const std::filesystem::path& file, const Project& project);
+    void close();
+    void use(const Project& project);  // newest wins; counts from the next request
+
+    void connect_devices();
+    void disconnect_devices();
+    void measure(const std::string& part_id, bool push, bool keep_images);
+    void zero_shift(int runs);
+    void teach(const Spot& draft, int repeats);
+    void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
+    void jog_simulated(const std::string& robot_id, const Pose& base_from_flange);  // other drivers refuse
+    void set_sensor_parameter(const std::string& sensor_id, const std::string& name, double value);
+    void answer_push(bool yes);  // to confirm_push
+    void cancel();
+    bool busy() const;
+
+  signals:
+    void state_changed(std::shared_ptr<const seamwright::StationState> state);
+    void busy_changed(bool busy, QString what);
+    void progressed(int done, int total, QString text);
+    void failed(QString sentence);
+    void measured(std::shared_ptr<const seamwright::RunRecord> run);
+    void confirm_push(std::shared_ptr<const seamwright::RunRecord> judged);
+    void zero_shift_done(int runs);
+    void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
+    void passed(std::shared_ptr<const seamwright::PassResult> pass);
+
+  private:
+    struct Live;
+    using Task = std::function<void(Station&, const std::stop_token&)>;
+    void post(const QString& what, Task task);
+    void work(const std::stop_token& stop);
+    void idle(Station& station);
+    void stop_live();
+    void publish(Station& station);
+    void run_one(Station& station, RunOptions options);
+    std::function<void(const RunProgress&)> progress_sink();
+
+    LiveFeed& feed_;
+    mutable std::mutex mutex_;
+    std::condition_variable_any wake_;
+    struct Request {
+        QString what;
+        Task task;
+    };
+    std::deque<Request> queue_;
+    std::unique_ptr<Project> newest_project_;
+    std::optional<std::pair<std::filesystem::path, Project>> open_request_;
+    bool close_request_ = false, busy_ = false, opened_ = false;
+    std::stop_source cancel_;
+    std::optional<bool> push_answer_;
+    std::unique_ptr<Live> live_;
+    std::optional<Station> station_;
+    std::string connect_trouble_;
+    std::jthread thread_;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,176 @@
+#include "widgets/pages/align_page.h"
+
+#include <cmath>
+
+#include "projects/measure.h"
+
+namespace seamwright {
+
+AlignPage::AlignPage(Desk& desk, const Views& views)
+    : StepPage(desk, views, Step::align,
+               tr("While the robot passes the spot along the contour, the profile should stand still. Then "
+                  "trigger "
+                  "jitter does no harm.")) {
+    tree_ = new SpotTree(desk);
+    box().addWidget(tree_);
+    const auto spin = [this](const QString& name, double low, double high, double value, int decimals,
+                             const QString& label, const QString& tip) {
+        auto* s = new QDoubleSpinBox;
+        s->setObjectName(name);
+        s->setRange(low, high);
+        s->setDecimals(decimals);
+        s->setValue(value);
+        s->setSuffix(QStringLiteral(" mm"));
+        add_field(box(), label, s, tip);
+        return s;
+    };
+    step_ = spin("pass_step", 0.1, 20, 2, 1, tr("Step of the pass"), tr("Travel between two profiles"));
+    tolerance_ = spin("pass_tolerance", 0.001, 5, 0.05, 3, tr("Tolerance"),
+                      tr("Error that the trigger jitter may cause at most"));
+    start_ = make_button("start_pass", "play", tr("Run entry -> exit"),
+                         tr("The robot goes along the contour and stops at every step; nothing is written"),
+                         [this] { start(); });
+    box().addLayout(make_row({start_}));
+    box().addWidget(make_progress());
+    verdict_ = make_text({});
+    verdict_->setObjectName("align_verdict");
+    QFont font = verdict_->font();
+    font.setPointSizeF(font.pointSizeF() * 1.5);
+    verdict_->setFont(font);
+    box().addWidget(verdict_);
+    numbers_ = make_text({});
+    numbers_->setObjectName("align_numbers");
+    box().addWidget(numbers_);
+    accept_ =
+        make_button("accept_pass", "check", tr("Accept"),
+                    tr("Keeps jitter window and the contour's curve with the spot"), [this] { accept(); });
+    adopt_ = make_button(
+        "adopt_pose", "rotate", tr("Adopt turned pose"),
+        tr("Turns the taught pose about the reference point by the rotation that cures it; teach again then"),
+        [this] { adopt(); });
+    box().addLayout(make_row({accept_, adopt_}));
+    box().addStretch(1);
+
+    connect(&desk_.worker(), &StationWorker::passed, this, [this](std::shared_ptr<const PassResult> pass) {
+        pass_ = std::make_shared<PassResult>(*pass);
+        show_result();
+    });
+    connect(views_.align, &AlignView::jitter_dragged, this, &AlignPage::judge);
+    connect(tolerance_, &QDoubleSpinBox::editingFinished, this, [this] {
+        if (pass_) judge(pass_->options.jitter_mm);
+    });
+    connect(&desk_, &Desk::opened, this, [this] { pass_.reset(); });
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        if (isVisible()) start_->setEnabled(spot() && desk_.station().connected && !desk_.worker().busy());
+    });
+}
+
+void AlignPage::entered() {
+    views_.raise(views_.align);
+}
+
+const Spot* AlignPage::spot() const {
+    return find_spot(desk_.project(), desk_.selection().spot());
+}
+
+void AlignPage::refresh() {
+    tree_->refresh();
+    start_->setEnabled(spot() && desk_.station().connected);
+    if (pass_ && (!spot() || pass_->spot_id != spot()->id)) {
+        pass_.reset();
+        views_.align->clear();
+    }
+    show_result();
+}
+
+void AlignPage::start() {
+    if (!spot()) return;
+    AlignmentOptions options;
+    options.jitter_mm = spot()->jitter_mm;
+    options.tolerance_mm = tolerance_->value();
+    options.window_mm = std::max(spot()->entry_mm, spot()->exit_mm);
+    options.reference_mm = Eigen::Vector2d(spot()->reference_mm.x(), spot()->reference_mm.z());
+    desk_.worker().record_pass(*spot(), step_->value(), options);
+}
+
+void AlignPage::judge(double jitter_mm) {
+    if (!pass_) return;
+    pass_->options.jitter_mm = jitter_mm;
+    pass_->options.tolerance_mm = tolerance_->value();
+    if (auto judged = check_alignment(pass_->pass.profiles, pass_->options)) {
+        pass_->result = std::move(*judged);
+        show_result();
+    }
+}
+
+void AlignPage::show_result() {
+    const bool here = pass_ && spot() && pass_->spot_id == spot()->id;
+    accept_->setEnabled(here && pass_->curve && pass_->result.status == AlignmentStatus::frozen);
+    adopt_->setEnabled(here && pass_->result.status == AlignmentStatus::drifting);
+    if (!here) {
+        const bool accepted = spot() && spot()->curve;
+        set_verdict(*verdict_, accepted ? tr("accepted earlier") : tr("no pass recorded"), Tone::plain);
+        numbers_->setText(spot() ? tr("Entry %1 mm, exit %2 mm, jitter +-%3 mm")
+                                       .arg(number(spot()->entry_mm, 1), number(spot()->exit_mm, 1),
+                                            number(spot()->jitter_mm, 2))
+                                 : tr("Choose a spot."));
+        return;
+    }
+    views_.align->set_result(pass_->pass.profiles, pass_->result, pass_->options);
+    const AlignmentResult& r = pass_->result;
+    switch (r.status) {
+        case AlignmentStatus::frozen:
+            set_verdict(*verdict_, tr("FROZEN"), Tone::good);
+            break;
+        case AlignmentStatus::drifting:
+            set_verdict(*verdict_, tr("DRIFTING"), Tone::alarm);
+            break;
+        case AlignmentStatus::shape_changes:
+            set_verdict(*verdict_, tr("SHAPE CHANGES"), Tone::alarm);
+            break;
+        case AlignmentStatus::not_enough_profiles:
+            set_verdict(*verdict_, tr("NOT ENOUGH PROFILES"), Tone::attention);
+            break;
+    }
+    QString text =
+        tr("yaw %1 deg, pitch %2 deg, radius %3, expected error %4 mm")
+            .arg(number(r.yaw_deg, 3), number(r.pitch_deg, 3),
+                 std::isfinite(r.radius_mm) ? number(r.radius_mm, 0) + QStringLiteral(" mm") : tr("straight"),
+                 number(r.expected_error_mm, 3));
+    if (!pass_->curve)
+        text += "\n" + tr("The feature was found in too few profiles to learn the contour's curve.");
+    if (!r.cure.empty()) text += "\n" + tr("To cure: %1").arg(QString::fromStdString(r.cure));
+    numbers_->setText(text);
+}
+
+void AlignPage::accept() {
+    if (!spot() || !pass_ || !pass_->curve) return;
+    Spot s = *spot();
+    s.curve = pass_->curve;
+    s.jitter_mm = pass_->options.jitter_mm;
+    done(desk_.edit(s, tr("alignment")));
+}
+
+void AlignPage::adopt() {
+    const Spot* s = spot();
+    if (!s || !pass_) return;
+    const Calibration* c = calibration_of(desk_.project(), *s);
+    const Pose flange_from_sensor = c ? c->flange_from_sensor : Pose::Identity();
+    const Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(rad_from_deg(pass_->result.cure_about_z_deg), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rad_from_deg(pass_->result.cure_about_x_deg), Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
+    const Eigen::Vector3d r = s->reference_mm;
+    Spot after = *s;
+    after.base_from_flange = s->base_from_flange * flange_from_sensor * make_pose(turn, r - turn * r) *
+                             flange_from_sensor.inverse();
+    after.curve.reset();
+    after.reference_profile = {};
+    if (done(desk_.edit(after, tr("pose")))) {
+        pass_.reset();
+        views_.align->clear();
+        show_result();
+    }
+}
+
+}  // namespace seamwright

@@ -1,0 +1,35 @@
+#pragma once
+// The frozen contour: pass entry -> trigger -> exit, verdict, accept.
+
+#include <QDoubleSpinBox>
+
+#include "widgets/pages/spot_tree.h"
+#include "widgets/pages/step_page.h"
+
+namespace seamwright {
+
+class AlignPage : public StepPage {
+    Q_OBJECT
+  public:
+    AlignPage(Desk& desk, const Views& views);
+
+  protected:
+    void refresh() override;
+    void entered() override;
+
+  private:
+    const Spot* spot() const;
+    void start();
+    void judge(double jitter_mm);
+    void show_result();
+    void accept();
+    void adopt();
+
+    SpotTree* tree_;
+    QDoubleSpinBox *step_, *tolerance_;
+    QPushButton *start_, *accept_, *adopt_;
+    QLabel *verdict_, *numbers_;
+    std::shared_ptr<PassResult> pass_;
+};
+
+}  // namespace seamwright

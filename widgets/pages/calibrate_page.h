@@ -1,0 +1,24 @@
+#pragma once
+// The project's calibrations as cards: method, verdict, age, which one is in use, and the command that makes
+// one.
+
+#include <QComboBox>
+
+#include "widgets/pages/step_page.h"
+
+namespace seamwright {
+
+class CalibratePage : public StepPage {
+    Q_OBJECT
+  public:
+    CalibratePage(Desk& desk, const Views& views);
+
+  protected:
+    void refresh() override;
+
+  private:
+    QVBoxLayout* cards_;
+    std::string shown_;
+};
+
+}  // namespace seamwright

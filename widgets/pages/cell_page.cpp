@@ -1,0 +1,342 @@
+#include "widgets/pages/cell_page.h"
+
+#include <fmt/format.h>
+
+#include <QFileDialog>
+#include <QInputDialog>
+
+#include "devices/simulated/random.h"
+#include "projects/measure.h"
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+namespace {
+constexpr int kSensorRole = Qt::UserRole;
+constexpr std::array kModes{RobotMode::unknown, RobotMode::manual_reduced, RobotMode::manual_full,
+                            RobotMode::automatic, RobotMode::external};
+}  // namespace
+
+CellPage::CellPage(Desk& desk, const Views& views)
+    : StepPage(desk, views, Step::cell,
+               tr("Which sensors and robots there are, and which part they look at. Connect them here.")) {
+    connect_ = make_button("connect", "plug", tr("Connect"), tr("Open all sensors and robots of the project"),
+                           [this] { desk_.worker().connect_devices(); });
+    disconnect_ =
+        make_button("disconnect", "unplug", tr("Disconnect"), tr("Let go of all sensors and robots"),
+                    [this] { desk_.worker().disconnect_devices(); });
+    box().addLayout(make_row({connect_, disconnect_}));
+    box().addWidget(make_progress());
+
+    box().addWidget(make_heading(tr("Sensors and robots")));
+    devices_ = make_table("devices", {tr("Name"), tr("Kind"), tr("Driver"), tr("State")},
+                          tr("Sensors and robots of the project"));
+    devices_->setMinimumHeight(150);
+    connect(devices_, &QTableWidget::currentCellChanged, this, [this] {
+        if (sensor_chosen()) desk_.selection().select_sensor(chosen());
+        show_device();
+    });
+    box().addWidget(devices_);
+    rename_ = make_button("rename_device", "rename", tr("Rename"), tr("Give the device another name"),
+                          [this] { rename_device(); });
+    remove_ = make_button("remove_device", "remove", tr("Remove"), tr("Take the device out of the project"),
+                          [this] { remove_device(); });
+    box().addLayout(make_row({make_button("add_sensor", "sensor", tr("Add sensor"), tr("A further sensor"),
+                                          [this] { add_device(true); }),
+                              make_button("add_robot", "robot", tr("Add robot"), tr("A further robot"),
+                                          [this] { add_device(false); })}));
+    box().addLayout(make_row({rename_, remove_}));
+    answers_ = make_text({});
+    box().addWidget(answers_);
+
+    driver_ = new QComboBox;
+    driver_->setObjectName("driver");
+    add_field(box(), tr("Driver"), driver_, tr("How the device is spoken to"));
+    mode_row_ = new QWidget;
+    auto* mode_box = new QVBoxLayout(mode_row_);
+    mode_box->setContentsMargins(0, 0, 0, 0);
+    mode_ = new QComboBox;
+    mode_->setObjectName("required_mode");
+    for (const RobotMode m : kModes)
+        mode_->addItem(m == RobotMode::unknown ? tr("any but stopped and fault")
+                                               : QString::fromStdString(std::string(to_string(m))));
+    add_field(*mode_box, tr("Push only in mode"), mode_,
+              tr("Pushes are refused while the robot is in another mode"));
+    box().addWidget(mode_row_);
+    auto* settings_name = new QLabel(tr("Settings (JSON)"));
+    box().addWidget(settings_name);
+    settings_ = new QPlainTextEdit;
+    settings_->setObjectName("settings");
+    settings_->setAccessibleName(tr("Settings (JSON)"));
+    settings_->setToolTip(tr("Address, port, serial number and whatever else the driver documents"));
+    settings_->setTabChangesFocus(true);
+    settings_->setMinimumHeight(110);
+    settings_name->setBuddy(settings_);
+    box().addWidget(settings_);
+    settings_state_ = make_text({});
+    box().addWidget(settings_state_);
+    connect(settings_, &QPlainTextEdit::textChanged, this, [this] {
+        const bool ok = nlohmann::json::accept(settings_->toPlainText().toStdString());
+        set_verdict(*settings_state_, ok ? QString() : tr("refused: this is no JSON"),
+                    ok ? Tone::plain : Tone::alarm);
+        apply_->setEnabled(ok && !chosen().empty());
+    });
+    apply_ = make_button("apply_device", "check", tr("Apply"),
+                         tr("Take driver and settings over; connect again afterwards"), [this] { apply(); });
+    box().addLayout(make_row({apply_}));
+    parameters_ = new QWidget;
+    parameters_box_ = new QVBoxLayout(parameters_);
+    parameters_box_->setContentsMargins(0, 0, 0, 0);
+    box().addWidget(parameters_);
+
+    box().addWidget(make_heading(tr("Part")));
+    part_ = make_text({});
+    part_->setObjectName("part");
+    box().addWidget(part_);
+    unit_ = new QComboBox;
+    unit_->setObjectName("mesh_unit");
+    unit_->addItem(tr("millimetre (checked)"), QString());
+    unit_->addItem(tr("millimetre"), QStringLiteral("mm"));
+    unit_->addItem(tr("metre"), QStringLiteral("m"));
+    add_field(box(), tr("Unit of the file"), unit_, tr("STL, PLY and OBJ do not say their unit"));
+    box().addLayout(make_row({make_button("import_part", "part", tr("Import part..."),
+                                          tr("Mesh of the part in the work object frame: STL, PLY or OBJ"),
+                                          [this] { import_part(); })}));
+    auto* frame_label = new QLabel(tr("Work object in the robot's base"));
+    box().addWidget(frame_label);
+    workobject_ = new PoseEditor;
+    workobject_->setObjectName("workobject");
+    workobject_->setToolTip(tr("base_from_workobject: where the part as taught stands"));
+    workobject_->setAccessibleName(tr("Work object in the robot's base"));
+    box().addWidget(workobject_);
+    connect(workobject_, &PoseEditor::committed, this, [this] {
+        PartSetup part = desk_.project().part;
+        part.base_from_workobject = workobject_->pose();
+        done(desk_.edit_part(part, tr("Change the work object's frame")));
+    });
+
+    simulated_ = new QWidget;
+    auto* sim = new QVBoxLayout(simulated_);
+    sim->setContentsMargins(0, 0, 0, 0);
+    sim->addWidget(make_heading(tr("Simulated part")));
+    sim->addWidget(make_text(
+        tr("Puts the next part into the simulated fixture: up to 10 mm and 0.6 degrees off, a little "
+           "bent. Or the taught one again.")));
+    place_ = make_button("place_part", "shift", tr("Displace"), tr("The next simulated part, displaced"),
+                         [this] { place_part(); });
+    auto* home = make_button("home_part", "home", tr("As taught"),
+                             tr("The simulated part where it was taught"), [this] {
+                                 if (done(desk_.place_simulated_part(Pose::Identity(), 0, 0)))
+                                     desk_.worker().connect_devices();
+                             });
+    sim->addLayout(make_row({place_, home}));
+    box().addWidget(simulated_);
+    box().addStretch(1);
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        if (isVisible()) refresh();
+    });
+}
+
+bool CellPage::sensor_chosen() const {
+    const auto* item = devices_->currentRow() < 0 ? nullptr : devices_->item(devices_->currentRow(), 0);
+    return item && item->data(kSensorRole).toBool();
+}
+
+std::string CellPage::chosen() const {
+    const auto* item = devices_->currentRow() < 0 ? nullptr : devices_->item(devices_->currentRow(), 0);
+    return item ? item->text().toStdString() : std::string();
+}
+
+void CellPage::refresh() {
+    const Project& p = desk_.project();
+    const StationState& s = desk_.station();
+    QVector<QStringList> rows;
+    for (const SensorSetup& sensor : p.sensors) {
+        QString state = tr("not connected");
+        for (const SensorState& k : s.sensors)
+            if (k.id == sensor.id)
+                state = k.trouble.empty() ? tr("ok, %1 frames").arg(k.counters.completed)
+                                          : tr("no frame: %1").arg(QString::fromStdString(k.trouble));
+        rows << QStringList{QString::fromStdString(sensor.id), tr("sensor"),
+                            QString::fromStdString(sensor.driver), state};
+    }
+    for (const RobotSetup& robot : p.robots) {
+        QString state = tr("not connected");
+        for (const RobotState& k : s.robots)
+            if (k.id == robot.id)
+                state = k.trouble.empty()
+                            ? tr("ok, %1").arg(QString::fromStdString(std::string(to_string(k.mode))))
+                            : tr("silent: %1").arg(QString::fromStdString(k.trouble));
+        rows << QStringList{QString::fromStdString(robot.id), tr("robot"),
+                            QString::fromStdString(robot.driver), state};
+    }
+    const std::string before = chosen();
+    set_rows(*devices_, rows);
+    for (int r = 0; r < devices_->rowCount(); ++r)
+        devices_->item(r, 0)->setData(kSensorRole, r < static_cast<int>(p.sensors.size()));
+    if (devices_->currentRow() < 0 && devices_->rowCount() > 0) devices_->setCurrentCell(0, 0);
+    if (before != chosen() || !settings_->hasFocus()) show_device();
+    connect_->setEnabled(desk_.is_open() && !p.sensors.empty());
+    disconnect_->setEnabled(s.connected);
+    part_->setText(
+        p.part.mesh_ply.empty()
+            ? tr("No mesh. Everything works without one; the 3D view is empty then.")
+            : tr("%1, from %2")
+                  .arg(QString::fromStdString(p.part.name), QString::fromStdString(p.part.mesh_source)));
+    if (!workobject_->hasFocus()) workobject_->set_pose(p.part.base_from_workobject);
+    simulated_->setVisible(std::any_of(p.sensors.begin(), p.sensors.end(),
+                                       [](const SensorSetup& x) { return x.driver == "simulated"; }));
+}
+
+void CellPage::show_device() {
+    const Project& p = desk_.project();
+    const bool sensor = sensor_chosen();
+    const std::string id = chosen();
+    for (QWidget* w : std::initializer_list<QWidget*>{driver_, settings_, rename_, remove_, apply_})
+        w->setEnabled(!id.empty());
+    mode_row_->setVisible(!id.empty() && !sensor);
+    const QSignalBlocker quiet(driver_);
+    driver_->clear();
+    QString identity;
+    if (sensor)
+        for (const SensorDriver& d : sensor_drivers())
+            driver_->addItem(QString::fromStdString(std::string(d.name)),
+                             QString::fromStdString(std::string(d.help)));
+    else
+        for (const RobotDriver& d : robot_drivers())
+            driver_->addItem(QString::fromStdString(std::string(d.name)),
+                             QString::fromStdString(std::string(d.help)));
+    for (int i = 0; i < driver_->count(); ++i) driver_->setItemData(i, driver_->itemData(i), Qt::ToolTipRole);
+    const auto show = [&](const auto& setup, const std::string& model) {
+        driver_->setCurrentText(QString::fromStdString(setup.driver));
+        const QString text = QString::fromStdString(setup.settings.dump(2));
+        if (settings_->toPlainText() != text) settings_->setPlainText(text);
+        identity = setup.identity.serial.empty() ? tr("never connected")
+                                                 : tr("answers as %1, serial %2")
+                                                       .arg(QString::fromStdString(model),
+                                                            QString::fromStdString(setup.identity.serial));
+    };
+    if (const SensorSetup* s = find_sensor(p, id); s && sensor)
+        show(*s, s->identity.vendor + " " + s->identity.model);
+    if (const RobotSetup* r = find_robot(p, id); r && !sensor) {
+        show(*r, r->identity.brand + " " + r->identity.model);
+        for (std::size_t i = 0; i < kModes.size(); ++i)
+            if (kModes[i] == r->required_mode) mode_->setCurrentIndex(static_cast<int>(i));
+    }
+    if (id.empty()) settings_->clear();
+    answers_->setText(identity);
+    show_parameters();
+}
+
+// The connected sensor's own settings; made anew when another sensor is shown.
+void CellPage::show_parameters() {
+    const SensorState* state = nullptr;
+    for (const SensorState& s : desk_.station().sensors)
+        if (sensor_chosen() && s.id == chosen()) state = &s;
+    std::string key = state ? state->id : "";
+    if (state)
+        for (const ParameterInfo& info : state->parameters) key += "/" + info.name;
+    if (key == shown_parameters_) return;
+    shown_parameters_ = key;
+    while (QLayoutItem* item = parameters_box_->takeAt(0)) {
+        if (item->widget()) item->widget()->deleteLater();
+        delete item;
+    }
+    if (!state || state->parameters.empty()) return;
+    parameters_box_->addWidget(
+        make_heading(tr("Exposure and trigger of sensor %1").arg(QString::fromStdString(state->id))));
+    for (const ParameterInfo& info : state->parameters) {
+        auto* editor = new ParameterEditor(info);
+        if (const auto it = state->values.find(info.name); it != state->values.end())
+            editor->set_value(it->second);
+        connect(editor, &ParameterEditor::committed, this,
+                [this, id = state->id, name = info.name](double value) {
+                    desk_.worker().set_sensor_parameter(id, name, value);
+                });
+        parameters_box_->addWidget(editor);
+    }
+}
+
+void CellPage::add_device(bool sensor) {
+    std::string id;
+    bool ok = false;
+    if (sensor) {
+        SensorSetup s;
+        for (char letter = 'A'; letter <= 'Z' && id.empty(); ++letter)
+            if (!find_sensor(desk_.project(), std::string(1, letter))) id = std::string(1, letter);
+        s.id = id;
+        s.driver = "simulated";
+        ok = done(desk_.add(s));
+    } else {
+        RobotSetup r;
+        r.id = id = desk_.free_id<RobotSetup>("R");
+        r.driver = "simulated";
+        // Sensor and robot of one simulated cell have the same settings.
+        for (const SensorSetup& s : desk_.project().sensors)
+            if (s.driver == "simulated") r.settings = s.settings;
+        ok = done(desk_.add(r));
+    }
+    if (!ok) return;
+    refresh();
+    for (int row = 0; row < devices_->rowCount(); ++row)
+        if (devices_->item(row, 0)->text().toStdString() == id &&
+            devices_->item(row, 0)->data(kSensorRole).toBool() == sensor)
+            devices_->setCurrentCell(row, 0);
+    driver_->setFocus();
+}
+
+void CellPage::remove_device() {
+    if (chosen().empty()) return;
+    if (sensor_chosen())
+        done(desk_.remove<SensorSetup>(chosen()));
+    else
+        done(desk_.remove<RobotSetup>(chosen()));
+}
+
+void CellPage::rename_device() {
+    if (chosen().empty()) return;
+    bool ok = false;
+    const QString name = QInputDialog::getText(this, tr("Rename"), tr("New name"), QLineEdit::Normal,
+                                               QString::fromStdString(chosen()), &ok);
+    if (!ok) return;
+    if (sensor_chosen())
+        done(desk_.rename<SensorSetup>(chosen(), name.trimmed().toStdString()));
+    else
+        done(desk_.rename<RobotSetup>(chosen(), name.trimmed().toStdString()));
+}
+
+void CellPage::apply() {
+    const auto settings = nlohmann::json::parse(settings_->toPlainText().toStdString(), nullptr, false);
+    if (settings.is_discarded()) return;
+    if (sensor_chosen()) {
+        SensorSetup s = *find_sensor(desk_.project(), chosen());
+        s.driver = driver_->currentText().toStdString();
+        s.settings = settings;
+        done(desk_.edit(s, tr("settings")));
+    } else {
+        RobotSetup r = *find_robot(desk_.project(), chosen());
+        r.driver = driver_->currentText().toStdString();
+        r.settings = settings;
+        r.required_mode = kModes[static_cast<std::size_t>(std::max(0, mode_->currentIndex()))];
+        done(desk_.edit(r, tr("settings")));
+    }
+}
+
+void CellPage::import_part() {
+    const QString file =
+        QFileDialog::getOpenFileName(this, tr("Import part"), {}, tr("Meshes (*.stl *.ply *.obj)"));
+    if (!file.isEmpty())
+        done(desk_.import_part(file.toStdString(), unit_->currentData().toString().toStdString()));
+}
+
+void CellPage::place_part() {
+    Random random(0x5ea3, ++placed_ + static_cast<std::uint64_t>(desk_.undo_stack().index()));
+    Eigen::Vector3d t, w;
+    for (int i = 0; i < 3; ++i) t[i] = random.uniform(-10, 10) / std::sqrt(3.0);
+    for (int i = 0; i < 3; ++i) w[i] = rad_from_deg(random.uniform(-0.6, 0.6)) / std::sqrt(3.0);
+    if (done(desk_.place_simulated_part(make_pose(rotation_exp(w), t), random.uniform(-0.3, 0.3),
+                                        random.uniform(-0.2, 0.2))))
+        desk_.worker().connect_devices();
+}
+
+}  // namespace seamwright

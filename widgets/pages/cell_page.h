@@ -1,0 +1,45 @@
+#pragma once
+// Sensors, robots and the part: what there is, whether it answers, and its settings.
+
+#include <QComboBox>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+
+#include "widgets/editors/pose_editor.h"
+#include "widgets/pages/step_page.h"
+
+namespace seamwright {
+
+class CellPage : public StepPage {
+    Q_OBJECT
+  public:
+    CellPage(Desk& desk, const Views& views);
+
+  protected:
+    void refresh() override;
+
+  private:
+    void add_device(bool sensor);
+    void remove_device();
+    void rename_device();
+    void apply();
+    void show_device();
+    void show_parameters();
+    void import_part();
+    void place_part();
+    bool sensor_chosen() const;
+    std::string chosen() const;
+
+    QTableWidget* devices_;
+    QPushButton *connect_, *disconnect_, *remove_, *rename_, *apply_, *place_;
+    QComboBox *driver_, *mode_, *unit_;
+    QPlainTextEdit* settings_;
+    QLabel *settings_state_, *part_, *answers_;
+    QWidget *mode_row_, *parameters_, *simulated_;
+    QVBoxLayout* parameters_box_;
+    PoseEditor* workobject_;
+    std::string shown_parameters_;
+    std::uint64_t placed_ = 0;
+};
+
+}  // namespace seamwright

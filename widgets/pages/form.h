@@ -1,0 +1,36 @@
+#pragma once
+// The few shapes that all pages are made of: buttons of finger size with icon, word and tooltip, labelled
+// rows, read-only tables.
+
+#include <QIcon>
+#include <QLabel>
+#include <QPushButton>
+#include <QTableWidget>
+#include <QVBoxLayout>
+#include <functional>
+
+namespace seamwright {
+
+// resources/icons/<name>.svg in the colour of the palette's text.
+QIcon icon(const QString& name, const QPalette& palette);
+
+// `name` is the object name, for tests and style.
+QPushButton* make_button(const QString& name, const QString& icon_name, const QString& text,
+                         const QString& tip, const std::function<void()>& clicked);
+QLabel* make_heading(const QString& text);
+QLabel* make_text(const QString& text);  // wraps
+// A verdict: the word is bold, its colour one of style.h's.
+enum class Tone { plain, good, attention, alarm };
+void set_verdict(QLabel& label, const QString& text, Tone tone);
+QHBoxLayout* make_row(std::initializer_list<QWidget*> widgets);
+// Name above or beside a field, as its buddy and accessible name.
+void add_field(QVBoxLayout& layout, const QString& label, QWidget* field, const QString& tip);
+
+// Read only, one row selected at a time, first column left and the others right aligned.
+QTableWidget* make_table(const QString& name, const QStringList& header, const QString& tip);
+void set_rows(QTableWidget& table, const QVector<QStringList>& rows);
+
+// "12.34", with as many decimals as given; "-" for what is no number.
+QString number(double value, int decimals);
+
+}  // namespace seamwright

@@ -1,0 +1,228 @@
+#include "widgets/pages/regions_page.h"
+
+#include <QInputDialog>
+#include <cmath>
+
+#include "projects/fields.h"
+#include "projects/measure.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+
+RegionsPage::RegionsPage(Desk& desk, const Views& views)
+    : StepPage(desk, views, Step::regions,
+               tr("A region is what moves as one piece: its spots tell where it has gone, its frame is what "
+                  "the robot "
+                  "gets.")) {
+    list_ = new QListWidget;
+    list_->setObjectName("regions");
+    list_->setAccessibleName(tr("Regions"));
+    list_->setToolTip(tr("The project's regions"));
+    list_->setMaximumHeight(140);
+    connect(list_, &QListWidget::currentTextChanged, this, [this](const QString& id) {
+        if (!filling_ && !id.isEmpty()) desk_.selection().select_region(id.toStdString());
+    });
+    box().addWidget(list_);
+    rename_ = make_button("rename_region", "rename", tr("Rename"), tr("Another name for the region"), [this] {
+        if (!region()) return;
+        bool ok = false;
+        const QString name =
+            QInputDialog::getText(this, tr("Rename region"), tr("New name"), QLineEdit::Normal,
+                                  QString::fromStdString(region()->id), &ok);
+        if (ok) done(desk_.rename<Region>(region()->id, name.trimmed().toStdString()));
+    });
+    remove_ = make_button("remove_region", "remove", tr("Remove"), tr("Take the region out; its spots stay"),
+                          [this] {
+                              if (region()) done(desk_.remove<Region>(region()->id));
+                          });
+    box().addLayout(make_row({make_button("add_region", "add", tr("Add region"), tr("A further region"),
+                                          [this] {
+                                              Region r;
+                                              r.id = desk_.free_id<Region>("Region");
+                                              r.frame_name = "BASE_" + r.id;
+                                              r.base_from_frame = desk_.project().part.base_from_workobject;
+                                              const std::string id = r.id;
+                                              if (done(desk_.add(r))) desk_.selection().select_region(id);
+                                          }),
+                              rename_, remove_}));
+    inspector_ = new QWidget;
+    auto* in = new QVBoxLayout(inspector_);
+    in->setContentsMargins(0, 0, 0, 0);
+    box().addWidget(inspector_);
+
+    verdict_ = make_text({});
+    verdict_->setObjectName("plan_verdict");
+    in->addWidget(verdict_);
+    plan_ = make_table("plan", {tr("Direction"), tr("Free"), tr("Predicted 3 sigma")},
+                       tr("What the region will be able to tell"));
+    plan_->setMinimumHeight(7 * style::kTargetPx);
+    in->addWidget(plan_);
+    advice_ = make_text({});
+    advice_->setObjectName("plan_advice");
+    in->addWidget(advice_);
+
+    in->addWidget(make_heading(tr("Spots of the region")));
+    spots_ = new QListWidget;
+    spots_->setObjectName("region_spots");
+    spots_->setAccessibleName(tr("Spots of the region"));
+    spots_->setToolTip(tr("Ticked spots belong to the region; a spot may belong to several"));
+    spots_->setMinimumHeight(180);
+    connect(spots_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
+        if (filling_ || !region()) return;
+        Region r = *region();
+        const std::string id = item->text().toStdString();
+        std::erase(r.spot_ids, id);
+        if (item->checkState() == Qt::Checked) {  // in the order of measuring
+            r.spot_ids.push_back(id);
+            std::sort(r.spot_ids.begin(), r.spot_ids.end(), [&](const std::string& a, const std::string& b) {
+                return index_of<Spot>(desk_.project(), a) < index_of<Spot>(desk_.project(), b);
+            });
+        }
+        done(desk_.edit(r, tr("spots")));
+    });
+    connect(spots_, &QListWidget::currentTextChanged, this, [this](const QString& id) {
+        if (!filling_ && !id.isEmpty()) desk_.selection().select_spot(id.toStdString());
+    });
+    in->addWidget(spots_);
+
+    in->addWidget(make_heading(tr("Free degrees of freedom (work object)")));
+    const QStringList names{tr("X"), tr("Y"), tr("Z"), tr("A about Z"), tr("B about Y"), tr("C about X")};
+    auto* grid = new QGridLayout;
+    for (int i = 0; i < 6; ++i) {
+        auto* b = new QCheckBox(names[i]);
+        b->setObjectName(QStringLiteral("free_%1").arg(i));
+        b->setToolTip(tr("Ticked: the correction may move this way. Not ticked: exactly 0"));
+        b->setMinimumHeight(style::kTargetPx);
+        connect(b, &QCheckBox::clicked, this, [this, i](bool on) {
+            if (!region()) return;
+            Region r = *region();
+            r.free[static_cast<std::size_t>(i)] = on;
+            if (!done(desk_.edit(r, tr("degrees of freedom")))) refresh();
+        });
+        free_[static_cast<std::size_t>(i)] = b;
+        grid->addWidget(b, i / 3, i % 3);
+    }
+    in->addLayout(grid);
+
+    in->addWidget(make_heading(tr("Frame on the controller")));
+    frame_ = new QLineEdit;
+    frame_->setObjectName("frame_name");
+    add_field(*in, tr("Name"), frame_,
+              tr("As the controller calls the base or work object that the path runs in"));
+    connect(frame_, &QLineEdit::editingFinished, this, [this] {
+        if (!region()) return;
+        Region r = *region();
+        r.frame_name = frame_->text().trimmed().toStdString();
+        done(desk_.edit(r, tr("frame")));
+    });
+    frame_pose_ = new PoseEditor;
+    frame_pose_->setObjectName("frame_pose");
+    frame_pose_->setAccessibleName(tr("Frame as taught"));
+    frame_pose_->setToolTip(tr("base_from_frame for the undisplaced part"));
+    connect(frame_pose_, &PoseEditor::committed, this, [this] {
+        if (!region()) return;
+        Region r = *region();
+        r.base_from_frame = frame_pose_->pose();
+        done(desk_.edit(r, tr("frame")));
+    });
+    in->addWidget(frame_pose_);
+
+    in->addWidget(make_heading(tr("Limits")));
+    for (const Field<Region>& f : region_fields()) {
+        auto* editor = new ParameterEditor(f.info);
+        connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
+            if (region()) done(desk_.set_region_field(region()->id, name, value));
+        });
+        editors_.push_back(editor);
+        in->addWidget(editor);
+    }
+    box().addStretch(1);
+}
+
+void RegionsPage::entered() {
+    views_.raise(views_.scene);
+}
+
+const Region* RegionsPage::region() const {
+    const int at = index_of<Region>(desk_.project(), desk_.selection().region());
+    return at < 0 ? nullptr : &desk_.project().regions[static_cast<std::size_t>(at)];
+}
+
+void RegionsPage::refresh() {
+    filling_ = true;
+    const Project& p = desk_.project();
+    list_->clear();
+    for (const Region& r : p.regions) {
+        auto* item = new QListWidgetItem(QString::fromStdString(r.id), list_);
+        item->setSizeHint({0, style::kTargetPx});
+        if (r.id == desk_.selection().region()) list_->setCurrentItem(item);
+    }
+    const Region* r = region();
+    inspector_->setVisible(r);
+    rename_->setEnabled(r);
+    remove_->setEnabled(r);
+    if (r) {
+        const int scroll = spots_->currentRow();
+        spots_->clear();
+        for (const Spot& s : p.spots) {
+            auto* item = new QListWidgetItem(QString::fromStdString(s.id), spots_);
+            item->setSizeHint({0, style::kTargetPx});
+            item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
+            const bool in = std::find(r->spot_ids.begin(), r->spot_ids.end(), s.id) != r->spot_ids.end();
+            item->setCheckState(in ? Qt::Checked : Qt::Unchecked);
+        }
+        if (scroll >= 0) spots_->setCurrentRow(scroll);
+        for (std::size_t i = 0; i < 6; ++i) free_[i]->setChecked(r->free[i]);
+        if (!frame_->hasFocus()) frame_->setText(QString::fromStdString(r->frame_name));
+        frame_pose_->set_pose(r->base_from_frame);
+        for (std::size_t i = 0; i < editors_.size(); ++i) editors_[i]->set_value(region_fields()[i].get(*r));
+        show_plan(*r);
+    }
+    filling_ = false;
+}
+
+void RegionsPage::show_plan(const Region& r) {
+    const auto plan = plan_region(planned_observations(desk_.project(), r), correction_options(r));
+    if (!plan) {
+        set_verdict(*verdict_, QString::fromStdString(plan.error().what), Tone::attention);
+        set_rows(*plan_, {});
+        advice_->clear();
+        return;
+    }
+    if (plan->status == CorrectionStatus::ok)
+        set_verdict(*verdict_,
+                    tr("observable; weakest: %1, sigma %2 mm at the spots")
+                        .arg(QString::fromStdString(plan->weakest), number(plan->sigma_at_spots_mm, 3)),
+                    plan->sigma_at_spots_mm <= r.sigma_limit_mm ? Tone::good : Tone::attention);
+    else
+        set_verdict(*verdict_,
+                    tr("under-determined: %1")
+                        .arg(QString::fromStdString(plan->unobservable.empty() ? plan->weakest
+                                                                               : plan->unobservable.front())),
+                    Tone::alarm);
+    const QStringList names{tr("X"), tr("Y"), tr("Z"), tr("A about Z"), tr("B about Y"), tr("C about X")};
+    QVector<QStringList> rows;
+    for (int i = 0; i < 6; ++i) {
+        const bool free = r.free[static_cast<std::size_t>(i)];
+        const double sigma = i < 3 ? plan->sigma_xyz_mm[i] : plan->sigma_abc_deg[i - 3];
+        rows << QStringList{names[i], free ? tr("yes") : tr("no"),
+                            !free ? tr("exactly 0")
+                            : !std::isfinite(sigma)
+                                ? tr("not observed")
+                                : number(3 * sigma, i < 3 ? 3 : 4) +
+                                      (i < 3 ? QStringLiteral(" mm") : QStringLiteral(" deg"))};
+    }
+    set_rows(*plan_, rows);
+    QString text = QString::fromStdString(plan->advice);
+    if (!plan->uncontrolled.empty()) {
+        QStringList ids;
+        for (const std::string& id : plan->uncontrolled) ids << QString::fromStdString(id);
+        text += (text.isEmpty() ? QString() : QStringLiteral("\n")) +
+                tr("A wrong measure of %1 mm could not be found at: %2")
+                    .arg(kFindableErrorMm)
+                    .arg(ids.join(", "));
+    }
+    advice_->setText(text);
+}
+
+}  // namespace seamwright

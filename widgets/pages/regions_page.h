@@ -1,0 +1,39 @@
+#pragma once
+// Regions: which spots, what may move, limits, and what that will be able to tell.
+
+#include <QCheckBox>
+#include <QLineEdit>
+#include <QListWidget>
+#include <array>
+
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/pose_editor.h"
+#include "widgets/pages/step_page.h"
+
+namespace seamwright {
+
+class RegionsPage : public StepPage {
+    Q_OBJECT
+  public:
+    RegionsPage(Desk& desk, const Views& views);
+
+  protected:
+    void refresh() override;
+    void entered() override;
+
+  private:
+    const Region* region() const;
+    void show_plan(const Region& region);
+    QListWidget *list_, *spots_;
+    QPushButton *rename_, *remove_;
+    QWidget* inspector_;
+    std::array<QCheckBox*, 6> free_{};
+    QLineEdit* frame_;
+    PoseEditor* frame_pose_;
+    std::vector<ParameterEditor*> editors_;
+    QLabel *verdict_, *advice_;
+    QTableWidget* plan_;
+    bool filling_ = false;
+};
+
+}  // namespace seamwright

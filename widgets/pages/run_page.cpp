@@ -1,0 +1,434 @@
+#include "widgets/pages/run_page.h"
+
+#include <fmt/format.h>
+
+#include <QDateTime>
+#include <QFileDialog>
+#include <QMessageBox>
+#include <cmath>
+#include <set>
+
+#include "core/geometry/notation.h"
+#include "devices/exchange/files.h"
+#include "projects/measure.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+namespace {
+
+std::array<double, 6> six(const Pose& pose) {
+    const KukaAbc abc = kuka_from_rotation(pose.linear());
+    return {pose.translation().x(),
+            pose.translation().y(),
+            pose.translation().z(),
+            abc.a_deg,
+            abc.b_deg,
+            abc.c_deg};
+}
+
+QString frame_text(const std::optional<Pose>& pose) {
+    if (!pose) return QStringLiteral("-");
+    const auto v = six(*pose);
+    QStringList parts;
+    for (std::size_t i = 0; i < 6; ++i) parts << number(v[i], i < 3 ? 2 : 3);
+    return parts.join("  ");
+}
+
+QString status_text(RunStatus status) {
+    switch (status) {
+        case RunStatus::ok:
+            return RunPage::tr("ok");
+        case RunStatus::refused:
+            return RunPage::tr("refused");
+        case RunStatus::alarm:
+            return RunPage::tr("ALARM");
+        case RunStatus::device:
+            return RunPage::tr("device failed");
+        case RunStatus::cancelled:
+            return RunPage::tr("cancelled");
+        case RunStatus::interrupted:
+            return RunPage::tr("interrupted");
+    }
+    return {};
+}
+
+Tone tone_of(RunStatus status) {
+    return status == RunStatus::ok          ? Tone::good
+           : status == RunStatus::cancelled ? Tone::plain
+           : status == RunStatus::refused   ? Tone::attention
+                                            : Tone::alarm;
+}
+
+}  // namespace
+
+RunPage::RunPage(Desk& desk, const Views& views)
+    : StepPage(desk, views, Step::run,
+               tr("Measure the part, look at the result, push the corrected frames.")) {
+    part_ = new QLineEdit;
+    part_->setObjectName("part_id");
+    part_->setPlaceholderText(tr("run number"));
+    add_field(box(), tr("Part"), part_,
+              tr("Identity of the part that stands there; empty: the run's number"));
+    images_ = new QCheckBox(tr("Keep raw images"));
+    images_->setObjectName("keep_images");
+    images_->setToolTip(tr("Camera images are stored with the run, beside the profiles"));
+    images_->setMinimumHeight(style::kTargetPx);
+    box().addWidget(images_);
+    measure_ =
+        make_button("measure", "measure", tr("Measure"),
+                    tr("Measures and judges; nothing is written to the robot"), [this] { measure(false); });
+    measure_push_ = make_button("measure_push", "push", tr("Measure, then push..."),
+                                tr("Measures, shows what would be written, and asks before it is pushed"),
+                                [this] { measure(true); });
+    for (QPushButton* b : {measure_, measure_push_}) {
+        b->setMinimumHeight(44);
+        QFont font = b->font();
+        font.setBold(true);
+        b->setFont(font);
+    }
+    box().addLayout(make_row({measure_, measure_push_}));
+    box().addWidget(make_progress());
+
+    confirm_ = new QWidget;
+    confirm_->setObjectName("confirm");
+    auto* ask_box = new QVBoxLayout(confirm_);
+    ask_box->setContentsMargins(0, 0, 0, 0);
+    question_ = make_text({});
+    ask_box->addWidget(question_);
+    frames_ = make_table("push_frames", {tr("Frame"), tr("X Y Z mm  A B C deg")},
+                         tr("What would be written, and what stands there"));
+    frames_->setMinimumHeight(200);
+    ask_box->addWidget(frames_);
+    push_ = make_button("push", "push", tr("Push"),
+                        tr("Writes these frames to the robot, reads them back and compares"),
+                        [this] { answer(true); });
+    push_->setMinimumHeight(44);
+    decline_ = make_button("decline", "stop", tr("Do not push"), tr("Nothing is written; the run is kept"),
+                           [this] { answer(false); });
+    decline_->setMinimumHeight(44);
+    ask_box->addLayout(make_row({push_, decline_}));
+    confirm_->hide();
+    box().addWidget(confirm_);
+
+    verdict_ = make_text({});
+    verdict_->setObjectName("run_verdict");
+    box().addWidget(verdict_);
+    gate_ = make_text({});
+    gate_->setObjectName("gate");
+    box().addWidget(gate_);
+    regions_ = make_table("run_regions",
+                          {tr("Region"), tr("Verdict"), tr("X mm"), tr("Y mm"), tr("Z mm"), tr("A deg"),
+                           tr("B deg"), tr("C deg"), tr("Push")},
+                          tr("Displacement per region with its sigma"));
+    regions_->setMinimumHeight(6 * style::kTargetPx);
+    box().addWidget(regions_);
+    spots_ = make_table("run_spots", {tr("Spot"), tr("Verdict"), tr("dx mm"), tr("dz mm"), tr("Why")},
+                        tr("What every spot measured against its reference"));
+    spots_->setMinimumHeight(8 * style::kTargetPx);
+    connect(spots_, &QTableWidget::currentCellChanged, this, [this](int row) {
+        if (row >= 0 && spots_->item(row, 0))
+            desk_.selection().select_spot(spots_->item(row, 0)->text().toStdString());
+    });
+    connect(regions_, &QTableWidget::currentCellChanged, this, [this](int row) {
+        if (row >= 0 && regions_->item(row, 0))
+            desk_.selection().select_region(regions_->item(row, 0)->text().toStdString());
+    });
+    box().addWidget(spots_);
+
+    box().addWidget(make_heading(tr("History")));
+    history_ = make_table("history", {tr("Run"), tr("Part"), tr("When"), tr("Status")},
+                          tr("All runs of the project, newest first"));
+    history_->setMinimumHeight(8 * style::kTargetPx);
+    connect(history_, &QTableWidget::cellActivated, this, [this](int row) {
+        if (row >= 0 && row < static_cast<int>(summaries_.size()))
+            if (auto run = desk_.run(summaries_[static_cast<std::size_t>(row)].number))
+                show_run(std::make_shared<const RunRecord>(std::move(*run)));
+    });
+    box().addWidget(history_);
+    open_ = make_button("open_run", "open", tr("Show"),
+                        tr("Shows the chosen run above (Enter, double click)"), [this] {
+                            if (auto run = desk_.run(chosen()))
+                                show_run(std::make_shared<const RunRecord>(std::move(*run)));
+                        });
+    compare_ = make_button("compare_runs", "compare", tr("Compare"),
+                           tr("The chosen run beside the one shown above"), [this] { compare(); });
+    export_ = make_button("export_csv", "export", tr("Export CSV..."), tr("All runs: one line a region"),
+                          [this] { export_csv(); });
+    delete_ = make_button(
+        "delete_run", "remove", tr("Delete..."), tr("Deletes the chosen run with its raw data"), [this] {
+            const auto number = chosen();
+            if (number <= 0) return;
+            // Raw data do not come back: the one place where a question stands before a deletion.
+            if (QMessageBox::question(
+                    this, tr("Delete run"),
+                    tr("Delete run %1 with its raw data? This cannot be undone.").arg(number)) ==
+                QMessageBox::Yes)
+                done(desk_.delete_run(number));
+        });
+    box().addLayout(make_row({open_, compare_}));
+    box().addLayout(make_row({export_, delete_}));
+    differences_ = make_table("differences", {tr("Region"), tr("Difference X Y Z mm"), tr("A B C deg")},
+                              tr("Second run minus first"));
+    differences_->setMinimumHeight(5 * style::kTargetPx);
+    differences_->hide();
+    box().addWidget(differences_);
+    box().addStretch(1);
+
+    connect(&desk_.worker(), &StationWorker::measured, this, &RunPage::show_run);
+    connect(&desk_.worker(), &StationWorker::confirm_push, this, &RunPage::ask);
+    connect(&desk_.worker(), &StationWorker::busy_changed, this, [this](bool busy) {
+        if (!busy) confirm_->hide();
+        measure_->setEnabled(!busy && desk_.station().connected);
+        measure_push_->setEnabled(!busy && desk_.station().connected);
+    });
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        const bool free = desk_.station().connected && !desk_.worker().busy();
+        measure_->setEnabled(free);
+        measure_push_->setEnabled(free);
+    });
+    connect(views_.trend, &TrendChart::part_opened, this, [this](int index) {
+        if (!isVisible() || index < 0 || index >= static_cast<int>(summaries_.size())) return;
+        const auto& s = summaries_[summaries_.size() - 1 - static_cast<std::size_t>(index)];
+        if (auto run = desk_.run(s.number)) show_run(std::make_shared<const RunRecord>(std::move(*run)));
+    });
+    connect(&desk_, &Desk::opened, this, [this] {
+        shown_.reset();
+        confirm_->hide();
+    });
+}
+
+void RunPage::entered() {
+    views_.raise(views_.residuals);
+    views_.raise(views_.scene);
+}
+
+void RunPage::measure(bool push) {
+    if (!desk_.station().connected || desk_.worker().busy()) return;
+    desk_.worker().measure(part_->text().trimmed().toStdString(), push, images_->isChecked());
+}
+
+std::int64_t RunPage::chosen() const {
+    const int row = history_->currentRow();
+    return row < 0 || row >= static_cast<int>(summaries_.size())
+               ? 0
+               : summaries_[static_cast<std::size_t>(row)].number;
+}
+
+void RunPage::refresh() {
+    measure_->setEnabled(desk_.station().connected && !desk_.worker().busy());
+    measure_push_->setEnabled(desk_.station().connected && !desk_.worker().busy());
+    show_history();
+    if (!shown_ && !summaries_.empty()) {
+        if (auto run = desk_.run(summaries_.front().number))
+            show_run(std::make_shared<const RunRecord>(std::move(*run)));
+    } else if (!shown_) {
+        set_verdict(*verdict_, tr("Nothing was measured yet."), Tone::plain);
+        gate_->clear();
+        for (QTableWidget* t : {regions_, spots_}) set_rows(*t, {});
+    }
+}
+
+void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
+    shown_ = std::move(run);
+    const RunRecord& r = *shown_;
+    set_verdict(
+        *verdict_,
+        tr("Run %1, part %2: %3. %4")
+            .arg(r.number)
+            .arg(QString::fromStdString(r.part_id), status_text(r.status), QString::fromStdString(r.message)),
+        tone_of(r.status));
+    QVector<QStringList> rows;
+    QStringList refusals;
+    for (const RegionRecord& region : r.regions) {
+        QStringList row{QString::fromStdString(region.region_id)};
+        if (region.correction) {
+            row << (region.gate_passed
+                        ? tr("passed the gate")
+                        : QString::fromStdString(std::string(to_string(region.correction->status))) +
+                              tr(", refused"));
+            const auto v = six(region.correction->displacement.workobject_from_movedworkobject);
+            for (std::size_t k = 0; k < 6; ++k) {
+                const double sigma = k < 3 ? region.correction->sigma_xyz_mm[static_cast<int>(k)]
+                                           : region.correction->sigma_abc_deg[static_cast<int>(k) - 3];
+                const int decimals = k < 3 ? 2 : 3;
+                row << tr("%1 ± %2").arg(number(v[k], decimals), number(sigma, decimals));
+            }
+        } else {
+            row << tr("not solved") << "-"
+                << "-"
+                << "-"
+                << "-"
+                << "-"
+                << "-";
+        }
+        row << QString::fromStdString(std::string(to_string(region.push.status)));
+        rows << row;
+        for (const std::string& reason : region.refusals)
+            refusals << tr("%1: %2").arg(QString::fromStdString(region.region_id),
+                                         QString::fromStdString(reason));
+    }
+    set_rows(*regions_, rows);
+    set_verdict(*gate_,
+                refusals.isEmpty() ? tr("Safety gate: every region passes.")
+                                   : tr("Safety gate refuses: %1").arg(refusals.join("; ")),
+                refusals.isEmpty() ? Tone::plain : Tone::attention);
+    rows.clear();
+    std::vector<ResidualBar> bars;
+    for (const SpotMeasurement& m : r.spots) {
+        const Spot* spot = find_spot(desk_.project(), m.spot_id);
+        const bool ok = m.status == SpotStatus::measured;
+        const Eigen::Vector3d d = spot && ok ? Eigen::Vector3d(m.measured_mm - spot->reference_mm)
+                                             : Eigen::Vector3d::Constant(std::nan(""));
+        rows << QStringList{QString::fromStdString(m.spot_id),
+                            QString::fromStdString(std::string(to_string(m.status))), number(d.x(), 2),
+                            number(d.z(), 2), QString::fromStdString(m.message)};
+        for (const RegionRecord& region : r.regions) {
+            if (!region.correction) continue;
+            bool found = false;
+            for (const SpotResidual& s : region.correction->spots)
+                if (s.id == m.spot_id && !found) {
+                    bars.push_back({QString::fromStdString(s.id), s.residual_mm, m.sigma_mm, s.used});
+                    found = true;
+                }
+            if (found) break;
+        }
+    }
+    set_rows(*spots_, rows);
+    views_.residuals->set_data(bars);
+    emit run_shown(shown_);
+}
+
+void RunPage::ask(std::shared_ptr<const RunRecord> judged) {
+    show_run(judged);
+    QVector<QStringList> rows;
+    std::set<std::string> robots;
+    for (const RegionRecord& region : judged->regions) {
+        const int at = index_of<Region>(desk_.project(), region.region_id);
+        if (at >= 0) {
+            const Region& r = desk_.project().regions[static_cast<std::size_t>(at)];
+            rows << QStringList{tr("%1 now").arg(QString::fromStdString(r.frame_name)),
+                                frame_text(region.push.before)};
+            rows << QStringList{tr("%1 new").arg(QString::fromStdString(r.frame_name)),
+                                frame_text(region.base_from_frame)};
+            if (!r.spot_ids.empty())
+                if (const Spot* s = find_spot(desk_.project(), r.spot_ids.front()))
+                    robots.insert(s->robot_id);
+        }
+    }
+    set_rows(*frames_, rows);
+    frames_->setMinimumHeight((static_cast<int>(rows.size()) + 1) * style::kTargetPx + 8);
+    QStringList names;
+    for (const std::string& id : robots) names << QString::fromStdString(id);
+    question_->setText(tr("These frames would be written. Nothing has been sent yet."));
+    push_->setText(tr("Push %1 frames to %2").arg(judged->regions.size()).arg(names.join(", ")));
+    push_->setAccessibleName(push_->text());
+    confirm_->show();
+    decline_->setFocus();
+}
+
+void RunPage::answer(bool yes) {
+    confirm_->hide();
+    desk_.worker().answer_push(yes);
+}
+
+void RunPage::show_history() {
+    const auto runs = desk_.runs();
+    summaries_.clear();
+    if (runs) summaries_.assign(runs->rbegin(), runs->rend());
+    QVector<QStringList> rows;
+    for (const RunSummary& s : summaries_) {
+        const QDateTime at = QDateTime::fromString(QString::fromStdString(s.started_utc), Qt::ISODateWithMs);
+        rows << QStringList{QString::number(s.number), QString::fromStdString(s.part_id),
+                            at.toLocalTime().toString("dd.MM. HH:mm"),
+                            s.push && s.status == RunStatus::ok ? tr("ok, pushed") : status_text(s.status)};
+    }
+    set_rows(*history_, rows);
+    for (QPushButton* b : {open_, compare_, export_, delete_}) b->setEnabled(!summaries_.empty());
+    if (!isVisible()) return;
+    // The region's displacement over the last parts.
+    const std::string id = desk_.selection().region();
+    std::vector<QString> labels;
+    std::vector<TrendSeries> series{{tr("X"), {}}, {tr("Y"), {}}, {tr("Z"), {}}};
+    TrendLimits limits;
+    const int at = index_of<Region>(desk_.project(), id);
+    if (at >= 0) {
+        const double most = desk_.project().regions[static_cast<std::size_t>(at)].limits.translation_mm;
+        if (std::isfinite(most)) limits = {-most, most};
+    }
+    const std::size_t newest = std::min<std::size_t>(summaries_.size(), 100);
+    for (std::size_t i = newest; i-- > 0;) {
+        auto run = desk_.run(summaries_[i].number);
+        labels.push_back(QString::number(summaries_[i].number));
+        Eigen::Vector3d t = Eigen::Vector3d::Constant(std::nan(""));
+        if (run)
+            for (const RegionRecord& r : run->regions)
+                if (r.region_id == id && r.correction)
+                    t = r.correction->displacement.workobject_from_movedworkobject.translation();
+        for (int k = 0; k < 3; ++k) series[static_cast<std::size_t>(k)].values.push_back(t[k]);
+    }
+    views_.trend->set_data(tr("Displacement of region %1").arg(QString::fromStdString(id)),
+                           QStringLiteral("mm"), labels, series, limits);
+    std::vector<double> all;
+    for (const TrendSeries& s : series) all.insert(all.end(), s.values.begin(), s.values.end());
+    views_.histogram->set_data(tr("Displacement, X Y Z"), QStringLiteral("mm"), all, limits);
+}
+
+void RunPage::compare() {
+    auto other = desk_.run(chosen());
+    if (!other || !shown_) return;
+    QVector<QStringList> rows;
+    for (const RegionRecord& a : shown_->regions)
+        for (const RegionRecord& b : other->regions) {
+            if (a.region_id != b.region_id || !a.correction || !b.correction) continue;
+            const auto x = six(a.correction->displacement.workobject_from_movedworkobject),
+                       y = six(b.correction->displacement.workobject_from_movedworkobject);
+            QStringList mm, deg;
+            for (std::size_t k = 0; k < 3; ++k)
+                mm << number(y[k] - x[k], 3), deg << number(y[k + 3] - x[k + 3], 4);
+            rows << QStringList{QString::fromStdString(a.region_id), mm.join("  "), deg.join("  ")};
+        }
+    differences_->setHorizontalHeaderLabels(
+        {tr("Region"), tr("Run %1 - %2: X Y Z mm").arg(other->number).arg(shown_->number), tr("A B C deg")});
+    set_rows(*differences_, rows);
+    differences_->show();
+}
+
+void RunPage::export_csv() {
+    const QString file =
+        QFileDialog::getSaveFileName(this, tr("Export CSV"), QStringLiteral("runs.csv"), tr("CSV (*.csv)"));
+    if (file.isEmpty()) return;
+    std::string text =
+        "run,part,started_utc,push,status,region,region_status,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,sigma_x_mm,"
+        "sigma_y_mm,"
+        "sigma_z_mm,sigma_a_deg,sigma_b_deg,sigma_c_deg,gate_passed,push_status\n";
+    const auto quoted = [](std::string s) {
+        std::string out = "\"";
+        for (char c : s) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+        return out + "\"";
+    };
+    for (auto it = summaries_.rbegin(); it != summaries_.rend(); ++it) {
+        auto run = desk_.run(it->number);
+        if (!run) {
+            done(tl::unexpected(run.error()));
+            return;
+        }
+        for (const RegionRecord& r : run->regions) {
+            text +=
+                fmt::format("{},{},{},{},{},{},{}", run->number, quoted(run->part_id), run->started_utc,
+                            run->push ? 1 : 0, to_string(run->status), quoted(r.region_id),
+                            r.correction ? to_string(r.correction->status) : std::string_view("not_solved"));
+            if (r.correction) {
+                for (double v : six(r.correction->displacement.workobject_from_movedworkobject))
+                    text += fmt::format(",{}", v);
+                for (int k = 0; k < 3; ++k) text += fmt::format(",{}", r.correction->sigma_xyz_mm[k]);
+                for (int k = 0; k < 3; ++k) text += fmt::format(",{}", r.correction->sigma_abc_deg[k]);
+            } else {
+                text += ",,,,,,,,,,,,";
+            }
+            text += fmt::format(",{},{}\n", r.gate_passed ? 1 : 0, to_string(r.push.status));
+        }
+    }
+    done(write_text_file(file.toStdString(), text));
+}
+
+}  // namespace seamwright

@@ -1,0 +1,79 @@
+#include "widgets/pages/spot_tree.h"
+
+#include <QHeaderView>
+
+#include "projects/measure.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+namespace {
+constexpr int kKind = Qt::UserRole, kId = Qt::UserRole + 1;
+}
+
+SpotTree::SpotTree(Desk& desk, QWidget* parent) : QTreeWidget(parent), desk_(desk) {
+    setObjectName("spot_tree");
+    setAccessibleName(tr("Spots and regions"));
+    setToolTip(tr("Spots in the order of measuring, and regions with their spots"));
+    setColumnCount(2);
+    setHeaderLabels({tr("Spot / region"), tr("State")});
+    header()->setSectionResizeMode(0, QHeaderView::Stretch);
+    header()->setSectionResizeMode(1, QHeaderView::ResizeToContents);
+    header()->setStretchLastSection(false);
+    setUniformRowHeights(true);
+    setMinimumHeight(190);
+    setIndentation(16);
+    connect(this, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
+        if (filling_ || !item) return;
+        const std::string id = item->data(0, kId).toString().toStdString();
+        if (item->data(0, kKind).toString() == "spot") desk_.selection().select_spot(id);
+        if (item->data(0, kKind).toString() == "region") desk_.selection().select_region(id);
+    });
+    connect(&desk_.selection(), &Selection::changed, this, [this] {
+        if (!isVisible()) return;
+        refresh();
+    });
+}
+
+void SpotTree::refresh() {
+    filling_ = true;
+    const QTreeWidgetItem* before = currentItem();
+    const bool region_current = before && before->data(0, kKind).toString() == "region";
+    clear();
+    const Project& p = desk_.project();
+    const auto make = [](QTreeWidgetItem* parent, const QString& kind, const std::string& id,
+                         const QString& state) {
+        auto* item = new QTreeWidgetItem(parent, {QString::fromStdString(id), state});
+        item->setData(0, kKind, kind);
+        item->setData(0, kId, QString::fromStdString(id));
+        item->setSizeHint(0, {0, style::kTargetPx - 4});
+        return item;
+    };
+    const auto state_of = [](const Spot& s) {
+        return !s.enabled                        ? tr("disabled")
+               : s.reference_profile.size() == 0 ? tr("no reference")
+               : !s.curve                        ? tr("taught")
+                                                 : tr("taught, aligned");
+    };
+    auto* spots = new QTreeWidgetItem(this, {tr("Spots (%1)").arg(p.spots.size()), {}});
+    QTreeWidgetItem* current = nullptr;
+    for (const Spot& s : p.spots) {
+        auto* item = make(spots, "spot", s.id, state_of(s));
+        if (s.id == desk_.selection().spot()) current = item;
+    }
+    auto* regions = new QTreeWidgetItem(this, {tr("Regions (%1)").arg(p.regions.size()), {}});
+    for (const Region& r : p.regions) {
+        auto* item = make(regions, "region", r.id, tr("%1 spots").arg(r.spot_ids.size()));
+        for (const std::string& id : r.spot_ids)
+            if (const Spot* s = find_spot(p, id)) make(item, "spot", id, state_of(*s));
+        if (region_current && r.id == desk_.selection().region()) current = item;
+    }
+    spots->setExpanded(true);
+    regions->setExpanded(true);
+    if (current) {
+        setCurrentItem(current);
+        scrollToItem(current);
+    }
+    filling_ = false;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,21 @@
+#pragma once
+// Spots in measuring order and regions with their spots; follows and sets the selection.
+
+#include <QTreeWidget>
+
+#include "widgets/desk/desk.h"
+
+namespace seamwright {
+
+class SpotTree : public QTreeWidget {
+    Q_OBJECT
+  public:
+    explicit SpotTree(Desk& desk, QWidget* parent = nullptr);
+    void refresh();
+
+  private:
+    Desk& desk_;
+    bool filling_ = false;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,88 @@
+#include "widgets/pages/step_page.h"
+
+#include <QTimer>
+
+#include "widgets/style.h"
+
+namespace seamwright {
+
+StepPage::StepPage(Desk& desk, const Views& views, Step step, const QString& purpose)
+    : desk_(desk), views_(views), step_(step), box_(new QVBoxLayout(this)) {
+    box_->setContentsMargins(12, 10, 12, 12);
+    box_->setSpacing(8);
+    auto* title = new QLabel(step_name(step));
+    QFont font = title->font();
+    font.setPointSizeF(font.pointSizeF() * 1.4);
+    font.setBold(true);
+    title->setFont(font);
+    title->setObjectName("page_title");
+    box_->addWidget(title);
+    box_->addWidget(make_text(purpose));
+    state_ = make_text({});
+    state_->setObjectName("page_state");
+    box_->addWidget(state_);
+    connect(&desk_, &Desk::project_changed, this, &StepPage::later);
+    connect(&desk_, &Desk::checklist_changed, this, &StepPage::later);
+    connect(&desk_, &Desk::runs_changed, this, &StepPage::later);
+    connect(&desk_.selection(), &Selection::changed, this, &StepPage::later);
+}
+
+void StepPage::showEvent(QShowEvent* event) {
+    QWidget::showEvent(event);
+    entered();
+    later();
+}
+
+// Several changes in one turn of the event loop are one refresh.
+void StepPage::later() {
+    if (due_ || !isVisible()) return;
+    due_ = true;
+    QTimer::singleShot(0, this, [this] {
+        due_ = false;
+        const StepState& s = desk_.steps()[static_cast<std::size_t>(step_)];
+        const Tone tone = s.stale                        ? Tone::attention
+                          : s.status == StepStatus::done ? Tone::good
+                          : s.status == StepStatus::next ? Tone::plain
+                                                         : Tone::attention;
+        set_verdict(*state_,
+                    tr("%1: %2").arg(s.stale ? status_word(StepStatus::stale) : status_word(s.status), s.why),
+                    tone);
+        refresh();
+    });
+}
+
+bool StepPage::done(const Expected<void>& result) {
+    if (!result) emit desk_.trouble(QString::fromStdString(result.error().sentence()));
+    return result.has_value();
+}
+
+QWidget* StepPage::make_progress() {
+    auto* holder = new QWidget;
+    auto* row = new QHBoxLayout(holder);
+    row->setContentsMargins(0, 0, 0, 0);
+    auto* bar = new QProgressBar;
+    bar->setObjectName("progress");
+    bar->setAccessibleName(tr("Progress"));
+    bar->setToolTip(tr("How far the measuring is"));
+    bar->setMinimumHeight(style::kTargetPx);
+    bar->setTextVisible(true);
+    auto* cancel = make_button("cancel", "stop", tr("Cancel"), tr("Stop the measuring; nothing is pushed"),
+                               [this] { desk_.worker().cancel(); });
+    row->addWidget(bar, 1);
+    row->addWidget(cancel);
+    holder->setVisible(desk_.worker().busy());
+    connect(&desk_.worker(), &StationWorker::busy_changed, holder,
+            [holder, bar](bool busy, const QString& what) {
+                holder->setVisible(busy);
+                bar->setRange(0, 0);
+                bar->setFormat(what);
+            });
+    connect(&desk_.worker(), &StationWorker::progressed, bar, [bar](int at, int total, const QString& text) {
+        bar->setRange(0, std::max(1, total));
+        bar->setValue(at);
+        bar->setFormat(text);
+    });
+    return holder;
+}
+
+}  // namespace seamwright

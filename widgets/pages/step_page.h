@@ -1,0 +1,47 @@
+#pragma once
+// What every step's page has: its heading, what the step is for, its state of the checklist, and refreshing
+// only while it is seen.
+
+#include <QLabel>
+#include <QProgressBar>
+#include <QVBoxLayout>
+#include <QWidget>
+
+#include "widgets/desk/desk.h"
+#include "widgets/pages/form.h"
+#include "widgets/pages/views.h"
+
+namespace seamwright {
+
+class StepPage : public QWidget {
+    Q_OBJECT
+  public:
+    StepPage(Desk& desk, const Views& views, Step step, const QString& purpose);
+    Step step() const { return step_; }
+
+  signals:
+    void run_shown(std::shared_ptr<const seamwright::RunRecord> run);  // a page shows this run: for the scene
+
+  protected:
+    // Fills the page from the desk. Called when shown and whenever the desk or the selection changed.
+    virtual void refresh() = 0;
+    virtual void entered() {}
+    void showEvent(QShowEvent* event) override;
+    QVBoxLayout& box() { return *box_; }
+    // Says an edit's Error in the window's message line; true when there was none.
+    bool done(const Expected<void>& result);
+    // Start, cancel, and how far it is; shown while the worker is busy.
+    QWidget* make_progress();
+
+    Desk& desk_;
+    const Views& views_;
+
+  private:
+    void later();
+    Step step_;
+    QVBoxLayout* box_;
+    QLabel* state_;
+    bool due_ = false;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,406 @@
+#include "widgets/pages/teach_page.h"
+
+#include <QInputDialog>
+#include <cmath>
+
+#include "projects/fields.h"
+#include "projects/measure.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+namespace {
+
+// The accepted points of a profile within a range of x.
+Profile cut_out(const Profile& profile, const QRectF& window) {
+    Profile piece;
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        if (profile.filtered() && profile.segment[i] == kOutlier) continue;
+        const double x = profile.x_mm[i], z = profile.z_mm[i];
+        if (!(x >= window.left() && x <= window.right() && z >= window.top() && z <= window.bottom()))
+            continue;
+        piece.x_mm.push_back(x);
+        piece.z_mm.push_back(z);
+        if (!profile.intensity.empty()) piece.intensity.push_back(profile.intensity[i]);
+        if (profile.filtered()) piece.segment.push_back(profile.segment[i]);
+    }
+    return piece;
+}
+
+}  // namespace
+
+TeachPage::TeachPage(Desk& desk, const Views& views)
+    : StepPage(desk, views, Step::teach,
+               tr("Jog the sensor over the contour, take the pose, point at the feature, measure its "
+                  "reference.")) {
+    tree_ = new SpotTree(desk);
+    box().addWidget(tree_);
+    duplicate_ = make_button("duplicate_spot", "copy", tr("Duplicate"), tr("The same spot once more"),
+                             [this] { duplicate_spot(); });
+    rename_ = make_button("rename_spot", "rename", tr("Rename"), tr("Another name for the spot"),
+                          [this] { rename_spot(); });
+    up_ = make_button("spot_up", "up", tr("Up"), tr("Measure it one earlier"), [this] {
+        if (spot()) done(desk_.move<Spot>(spot()->id, index_of<Spot>(desk_.project(), spot()->id) - 1));
+    });
+    down_ = make_button("spot_down", "down", tr("Down"), tr("Measure it one later"), [this] {
+        if (spot()) done(desk_.move<Spot>(spot()->id, index_of<Spot>(desk_.project(), spot()->id) + 1));
+    });
+    remove_ = make_button("remove_spot", "remove", tr("Remove"), tr("Take the spot out; undo brings it back"),
+                          [this] {
+                              if (spot()) done(desk_.remove<Spot>(spot()->id));
+                          });
+    box().addLayout(
+        make_row({make_button("add_spot", "add", tr("Add spot"), tr("A new spot at the robot's present pose"),
+                              [this] { add_spot(); }),
+                  duplicate_, rename_}));
+    box().addLayout(make_row({up_, down_, remove_}));
+
+    inspector_ = new QWidget;
+    auto* in = new QVBoxLayout(inspector_);
+    in->setContentsMargins(0, 0, 0, 0);
+    box().addWidget(inspector_);
+    enabled_ = new QCheckBox(tr("Enabled"));
+    enabled_->setObjectName("spot_enabled");
+    enabled_->setToolTip(tr("A disabled spot is not measured"));
+    required_ = new QCheckBox(tr("Required"));
+    required_->setObjectName("spot_required");
+    required_->setToolTip(tr("Nothing is pushed when a required spot was not measured"));
+    for (QCheckBox* b : {enabled_, required_}) b->setMinimumHeight(style::kTargetPx);
+    connect(enabled_, &QCheckBox::clicked, this, [this](bool on) {
+        if (spot()) done(desk_.set_spot_enabled(spot()->id, on));
+    });
+    connect(required_, &QCheckBox::clicked, this, [this](bool on) {
+        if (!spot()) return;
+        Spot s = *spot();
+        s.required = on;
+        done(desk_.edit(s, tr("required")));
+    });
+    in->addLayout(make_row({enabled_, required_}));
+
+    in->addWidget(make_heading(tr("Pose of the flange at the trigger")));
+    pose_ = new PoseEditor;
+    pose_->setObjectName("spot_pose");
+    pose_->setAccessibleName(tr("Pose of the flange at the trigger"));
+    pose_->setToolTip(
+        tr("base_from_flange, in the notation of the robot's brand; paste a whole pose into any field"));
+    in->addWidget(pose_);
+    connect(pose_, &PoseEditor::committed, this, [this] {
+        if (!spot()) return;
+        Spot s = *spot();
+        s.base_from_flange = pose_->pose();
+        done(desk_.edit(s, tr("pose")));
+    });
+    take_ = make_button("take_pose", "robot", tr("Take from the robot"),
+                        tr("The pose where the robot stands now"), [this] { take_pose(); });
+    go_ = make_button("go_there", "shift", tr("Go there"),
+                      tr("Moves the simulated robot to the spot; a real one is jogged"), [this] {
+                          if (spot())
+                              desk_.worker().jog_simulated(spot()->robot_id, spot()->base_from_flange);
+                      });
+    in->addLayout(make_row({take_, go_}));
+    sensor_ = new QComboBox;
+    sensor_->setObjectName("spot_sensor");
+    add_field(*in, tr("Sensor"), sensor_, tr("The sensor that looks at the spot"));
+    robot_ = new QComboBox;
+    robot_->setObjectName("spot_robot");
+    add_field(*in, tr("Robot"), robot_, tr("The robot that carries the sensor"));
+    connect(sensor_, &QComboBox::textActivated, this, [this](const QString& id) {
+        if (!spot()) return;
+        Spot s = *spot();
+        s.sensor_id = id.toStdString();
+        done(desk_.edit(s, tr("sensor")));
+    });
+    connect(robot_, &QComboBox::textActivated, this, [this](const QString& id) {
+        if (!spot()) return;
+        Spot s = *spot();
+        s.robot_id = id.toStdString();
+        done(desk_.edit(s, tr("robot")));
+    });
+
+    in->addWidget(make_heading(tr("Feature of the contour")));
+    kind_ = new QComboBox;
+    kind_->setObjectName("feature_kind");
+    for (const FeatureKind& k : feature_kinds()) kind_->addItem(QString::fromStdString(std::string(k.name)));
+    add_field(*in, tr("Kind"), kind_, tr("Which point of the contour is measured"));
+    connect(kind_, &QComboBox::textActivated, this, &TeachPage::set_kind);
+    kind_help_ = make_text({});
+    in->addWidget(kind_help_);
+    pick_ = make_button("pick", "pick", tr("Point at it"),
+                        tr("Click the contour in the live profile, where the feature is"), [this] {
+                            views_.profile->set_tool(ProfilePlot::Tool::inspect);
+                            views_.raise(views_.profile);
+                            views_.profile->setFocus();
+                        });
+    window_ =
+        make_button("template_window", "window", tr("Drag template"),
+                    tr("Drag a window in the live profile: the contour inside becomes the template"), [this] {
+                        views_.profile->set_tool(ProfilePlot::Tool::window);
+                        views_.raise(views_.profile);
+                        views_.profile->setFocus();
+                    });
+    click_ = make_button("reference_click", "target", tr("Reference by click"),
+                         tr("Click the reference point in the live profile; it need not lie on the contour"),
+                         [this] {
+                             views_.profile->set_tool(ProfilePlot::Tool::reference);
+                             views_.raise(views_.profile);
+                             views_.profile->setFocus();
+                         });
+    in->addLayout(make_row({pick_, window_}));
+    in->addLayout(make_row({click_}));
+    parameters_ = new QVBoxLayout;
+    in->addLayout(parameters_);
+
+    in->addWidget(make_heading(tr("Reference")));
+    reference_ = make_text({});
+    reference_->setObjectName("reference");
+    in->addWidget(reference_);
+    repeats_ = new QSpinBox;
+    repeats_->setObjectName("repeats");
+    repeats_->setRange(1, 1000);
+    repeats_->setValue(5);
+    add_field(*in, tr("Repeats"), repeats_, tr("How often the reference is measured"));
+    measure_ =
+        make_button("measure_reference", "measure", tr("Measure reference"),
+                    tr("The robot stands still at the spot and measures; mean and spread are shown"), [this] {
+                        if (spot()) desk_.worker().teach(*spot(), repeats_->value());
+                    });
+    in->addLayout(make_row({measure_}));
+    in->addWidget(make_progress());
+    spread_ = make_text({});
+    spread_->setObjectName("spread");
+    in->addWidget(spread_);
+
+    in->addWidget(make_heading(tr("Pass, weights and noise")));
+    fields_ = new QVBoxLayout;
+    in->addLayout(fields_);
+    for (const Field<Spot>& f : spot_fields()) {
+        auto* editor = new ParameterEditor(f.info);
+        connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
+            if (spot()) done(desk_.set_spot_field(spot()->id, name, value));
+        });
+        field_editors_.push_back(editor);
+        fields_->addWidget(editor);
+    }
+    box().addStretch(1);
+
+    connect(views_.profile, &ProfilePlot::point_picked, this, [this](const QPointF& p) {
+        if (isVisible()) picked(p);
+    });
+    connect(views_.profile, &ProfilePlot::window_dragged, this, [this](const QRectF& w) {
+        if (isVisible()) take_template(w);
+    });
+    connect(views_.profile, &ProfilePlot::reference_clicked, this, [this](const QPointF& p) {
+        if (!isVisible() || !spot()) return;
+        Spot s = *spot();
+        if (s.feature.kind == "template") {
+            s.feature.template_reference_mm = {p.x(), p.y()};
+        }
+        s.reference_mm = {p.x(), 0, p.y()};
+        done(desk_.edit(s, tr("reference point")));
+        views_.profile->set_tool(ProfilePlot::Tool::inspect);
+    });
+    connect(&desk_.worker(), &StationWorker::taught, this, [this](std::shared_ptr<const TaughtSpot> taught) {
+        const Spot* s = find_spot(desk_.project(), taught->spot.id);
+        if (!s) return;
+        // Only what was measured: the draft may have been edited meanwhile. The curve of an earlier pass was
+        // about the old reference.
+        Spot after = *s;
+        after.reference_mm = taught->spot.reference_mm;
+        after.reference_profile = taught->spot.reference_profile;
+        after.curve.reset();
+        if (done(desk_.edit(after, tr("reference"))))
+            spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
+                                 .arg(taught->measurements.size())
+                                 .arg(number(taught->spread_mm.x(), 4), number(taught->spread_mm.y(), 4))
+                                 .arg(taught->left_out));
+    });
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
+    });
+}
+
+void TeachPage::entered() {
+    views_.raise(views_.profile);
+    views_.raise(views_.scene);
+}
+
+void TeachPage::hideEvent(QHideEvent* event) {
+    views_.profile->set_tool(ProfilePlot::Tool::inspect);
+    StepPage::hideEvent(event);
+}
+
+const Spot* TeachPage::spot() const {
+    return find_spot(desk_.project(), desk_.selection().spot());
+}
+
+void TeachPage::refresh() {
+    tree_->refresh();
+    const Spot* s = spot();
+    const bool connected = desk_.station().connected;
+    inspector_->setVisible(s != nullptr);
+    for (QPushButton* b : {duplicate_, rename_, up_, down_, remove_}) b->setEnabled(s);
+    measure_->setEnabled(s && connected);
+    if (!s) return;
+    enabled_->setChecked(s->enabled);
+    required_->setChecked(s->required);
+    if (const RobotSetup* r = find_robot(desk_.project(), s->robot_id);
+        r && !pose_->isAncestorOf(focusWidget())) {
+        pose_->set_notation(notation_of_brand(r->identity.brand));
+        pose_->set_pose(s->base_from_flange);
+    } else {
+        pose_->set_pose(s->base_from_flange);
+    }
+    const RobotSetup* robot = find_robot(desk_.project(), s->robot_id);
+    go_->setVisible(robot && robot->driver == "simulated");
+    take_->setEnabled(connected);
+    go_->setEnabled(connected);
+    sensor_->clear();
+    robot_->clear();
+    for (const SensorSetup& x : desk_.project().sensors) sensor_->addItem(QString::fromStdString(x.id));
+    for (const RobotSetup& x : desk_.project().robots) robot_->addItem(QString::fromStdString(x.id));
+    sensor_->setCurrentText(QString::fromStdString(s->sensor_id));
+    robot_->setCurrentText(QString::fromStdString(s->robot_id));
+    kind_->setCurrentText(QString::fromStdString(s->feature.kind));
+    if (const FeatureKind* kind = feature_kind(s->feature.kind))
+        kind_help_->setText(QString::fromStdString(std::string(kind->help)));
+    window_->setVisible(s->feature.kind == "template");
+    pick_->setVisible(s->feature.kind != "template");
+    show_parameters(*s);
+    reference_->setText(s->reference_profile.size() == 0
+                            ? tr("Not measured yet.")
+                            : tr("x %1   z %2 mm in the sensor; %3 points of contour kept")
+                                  .arg(number(s->reference_mm.x(), 3), number(s->reference_mm.z(), 3))
+                                  .arg(s->reference_profile.size()));
+    for (std::size_t i = 0; i < field_editors_.size(); ++i)
+        field_editors_[i]->set_value(spot_fields()[i].get(*s));
+}
+
+void TeachPage::show_parameters(const Spot& s) {
+    const FeatureKind* kind = feature_kind(s.feature.kind);
+    if (!kind) return;
+    if (shown_kind_ != s.feature.kind) {
+        shown_kind_ = s.feature.kind;
+        for (ParameterEditor* e : parameter_editors_) e->deleteLater();
+        parameter_editors_.clear();
+        for (const ParameterInfo& info : kind->parameters) {
+            auto* editor = new ParameterEditor(info);
+            connect(editor, &ParameterEditor::committed, this, [this, name = info.name](double value) {
+                if (!spot()) return;
+                Spot after = *spot();
+                after.feature.parameters[name] = value;
+                done(desk_.edit(after, QString::fromStdString(name)));
+            });
+            parameter_editors_.push_back(editor);
+            parameters_->addWidget(editor);
+        }
+    }
+    for (ParameterEditor* e : parameter_editors_)
+        e->set_value(parameter(s.feature.parameters, kind->parameters, e->info().name));
+}
+
+void TeachPage::add_spot() {
+    const Project& p = desk_.project();
+    if (p.sensors.empty() || p.robots.empty()) {
+        done(usage_error("a spot needs a sensor and a robot", "step Cell", "add them first"));
+        return;
+    }
+    Spot s;
+    s.id = desk_.free_id<Spot>("S");
+    s.sensor_id = p.sensors.front().id;
+    s.robot_id = p.robots.front().id;
+    if (const Spot* like = spot()) {
+        s.sensor_id = like->sensor_id;
+        s.robot_id = like->robot_id;
+        s.base_from_flange = like->base_from_flange;
+    }
+    for (const RobotState& r : desk_.station().robots)
+        if (r.id == s.robot_id && r.base_from_flange) s.base_from_flange = *r.base_from_flange;
+    const std::string id = s.id;
+    if (done(desk_.add(std::move(s)))) desk_.selection().select_spot(id);
+}
+
+void TeachPage::duplicate_spot() {
+    if (!spot()) return;
+    Spot s = *spot();
+    s.id = desk_.free_id<Spot>("S");
+    const std::string id = s.id;
+    const int at = index_of<Spot>(desk_.project(), spot()->id) + 1;
+    if (done(desk_.add(std::move(s), at))) desk_.selection().select_spot(id);
+}
+
+void TeachPage::rename_spot() {
+    if (!spot()) return;
+    bool ok = false;
+    const QString name = QInputDialog::getText(this, tr("Rename spot"), tr("New name"), QLineEdit::Normal,
+                                               QString::fromStdString(spot()->id), &ok);
+    if (ok) done(desk_.rename<Spot>(spot()->id, name.trimmed().toStdString()));
+}
+
+void TeachPage::take_pose() {
+    if (!spot()) return;
+    for (const RobotState& r : desk_.station().robots)
+        if (r.id == spot()->robot_id && r.base_from_flange) {
+            Spot s = *spot();
+            s.base_from_flange = *r.base_from_flange;
+            done(desk_.edit(s, tr("pose")));
+            return;
+        }
+    done(
+        device_error("the robot tells no pose", "robot " + spot()->robot_id, "connect it, or type the pose"));
+}
+
+void TeachPage::set_kind(const QString& kind) {
+    if (!spot()) return;
+    Spot s = *spot();
+    s.feature.kind = kind.toStdString();
+    s.feature.parameters.clear();
+    done(desk_.edit(s, tr("feature")));
+}
+
+// The nearer end of the contour decides the side; other kinds have no choice to make here.
+void TeachPage::picked(const QPointF& point) {
+    const Spot* s = spot();
+    if (!s) return;
+    const auto snapshot = desk_.live().latest(s->sensor_id);
+    if (!snapshot || snapshot->profile.size() == 0) return;
+    Spot after = *s;
+    if (s->feature.kind == "contour-end") {
+        double left = std::numeric_limits<double>::infinity(), right = -left;
+        for (std::size_t i = 0; i < snapshot->profile.size(); ++i) {
+            if (snapshot->profile.segment[i] == kOutlier) continue;
+            left = std::min(left, snapshot->profile.x_mm[i]);
+            right = std::max(right, snapshot->profile.x_mm[i]);
+        }
+        after.feature.parameters["side"] = std::abs(point.x() - left) <= std::abs(point.x() - right) ? 0 : 1;
+    } else if (s->feature.kind == "corner") {
+        // Lines to both sides of the place that was pointed at.
+        after.feature.parameters["split"] = 1;
+        after.feature.parameters["left_to_mm"] = point.x() - 0.5;
+        after.feature.parameters["right_from_mm"] = point.x() + 0.5;
+        after.feature.parameters["left_from_mm"] = point.x() - 15;
+        after.feature.parameters["right_to_mm"] = point.x() + 15;
+    } else {
+        return;
+    }
+    done(desk_.edit(after, tr("feature")));
+}
+
+void TeachPage::take_template(const QRectF& window) {
+    const Spot* s = spot();
+    if (!s || s->feature.kind != "template") return;
+    const auto snapshot = desk_.live().latest(s->sensor_id);
+    const Profile piece = snapshot ? cut_out(snapshot->profile, window) : Profile();
+    if (piece.size() < 20) {
+        done(input_error("the window holds fewer than 20 points of the contour", "spot " + s->id,
+                         "drag a larger one"));
+        return;
+    }
+    Spot after = *s;
+    after.feature.template_profile = piece;
+    // Until it is clicked: the contour point in the middle of the window.
+    const std::size_t middle = piece.size() / 2;
+    after.feature.template_reference_mm = {piece.x_mm[middle], piece.z_mm[middle]};
+    done(desk_.edit(after, tr("template")));
+    views_.profile->set_tool(ProfilePlot::Tool::inspect);
+}
+
+}  // namespace seamwright

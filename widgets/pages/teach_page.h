@@ -1,0 +1,50 @@
+#pragma once
+// Spots: where the robot stands, which feature of the contour, its reference.
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QSpinBox>
+
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/pose_editor.h"
+#include "widgets/pages/spot_tree.h"
+#include "widgets/pages/step_page.h"
+
+namespace seamwright {
+
+class TeachPage : public StepPage {
+    Q_OBJECT
+  public:
+    TeachPage(Desk& desk, const Views& views);
+
+  protected:
+    void refresh() override;
+    void entered() override;
+    void hideEvent(QHideEvent* event) override;
+
+  private:
+    const Spot* spot() const;
+    void add_spot();
+    void duplicate_spot();
+    void rename_spot();
+    void take_pose();
+    void set_kind(const QString& kind);
+    void picked(const QPointF& point_mm);
+    void take_template(const QRectF& window_mm);
+    void show_parameters(const Spot& spot);
+
+    SpotTree* tree_;
+    QPushButton *duplicate_, *rename_, *up_, *down_, *remove_, *take_, *go_, *measure_;
+    QPushButton *pick_, *window_, *click_;
+    QCheckBox *enabled_, *required_;
+    PoseEditor* pose_;
+    QComboBox *sensor_, *robot_, *kind_;
+    QLabel *kind_help_, *reference_, *spread_;
+    QSpinBox* repeats_;
+    QVBoxLayout *parameters_, *fields_;
+    QWidget* inspector_;
+    std::string shown_kind_;
+    std::vector<ParameterEditor*> parameter_editors_, field_editors_;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,155 @@
+#include "widgets/pages/views.h"
+
+#include <cmath>
+
+#include "projects/measure.h"
+
+namespace seamwright {
+
+std::string shown_sensor(const Desk& desk, const Selection& selection) {
+    if (const Spot* spot = find_spot(desk.project(), selection.spot())) return spot->sensor_id;
+    if (find_sensor(desk.project(), selection.sensor())) return selection.sensor();
+    return desk.project().sensors.empty() ? std::string() : desk.project().sensors.front().id;
+}
+
+Pose workobject_from_sensor(const Project& project, const Spot& spot) {
+    const Calibration* calibration = calibration_of(project, spot);
+    return project.part.base_from_workobject.inverse() * spot.base_from_flange *
+           (calibration ? calibration->flange_from_sensor : Pose::Identity());
+}
+
+ViewFeeder::ViewFeeder(Desk& desk, Views views, QObject* parent)
+    : QObject(parent), desk_(desk), views_(std::move(views)) {
+    connect(&desk_.live(), &LiveFeed::arrived, this, &ViewFeeder::live);
+    connect(&desk_, &Desk::project_changed, this, [this] {
+        project();
+        selected();
+    });
+    connect(&desk_, &Desk::opened, this, [this] {
+        shifts_.clear();
+        views_.align->clear();
+    });
+    connect(&desk_, &Desk::station_changed, this, &ViewFeeder::robot);
+    connect(&desk_.selection(), &Selection::changed, this, &ViewFeeder::selected);
+    connect(views_.scene, &SceneView::spot_picked, this, [this](const QString& id) {
+        if (!id.isEmpty()) desk_.selection().select_spot(id.toStdString());
+    });
+    connect(views_.residuals, &ResidualBars::spot_picked, this,
+            [this](const QString& id) { desk_.selection().select_spot(id.toStdString()); });
+    project();
+    selected();
+    robot();
+    desk_.live().taken();
+}
+
+void ViewFeeder::live() {
+    desk_.live().taken();
+    const std::string sensor = shown_sensor(desk_, desk_.selection());
+    const auto snapshot = desk_.live().latest(sensor);
+    if (!snapshot) return;
+    if (sensor == last_sensor_ && snapshot->number == last_number_) return;
+    last_sensor_ = sensor;
+    last_number_ = snapshot->number;
+    const auto dropped = snapshot->counters.damaged + snapshot->counters.underrun;
+    QString caption = tr("sensor %1   %2 /s   %3 dropped")
+                          .arg(QString::fromStdString(sensor))
+                          .arg(std::lround(snapshot->rate_hz))
+                          .arg(dropped);
+    if (!snapshot->trouble.empty()) caption += "   " + QString::fromStdString(snapshot->trouble);
+    if (caption != caption_) {
+        caption_ = caption;
+        views_.profile->set_caption(caption);
+        views_.camera->set_caption(caption);
+    }
+    if (views_.profile->isVisible()) {
+        views_.profile->set_profile(snapshot->profile);
+        views_.profile->set_feature(snapshot->feature);
+    }
+    if (views_.camera->isVisible() && snapshot->frame)
+        views_.camera->set_frame(snapshot->frame->image, &snapshot->peaks);
+    if (views_.align->isVisible()) views_.align->set_live(snapshot->profile);
+}
+
+void ViewFeeder::selected() {
+    const Selection& s = desk_.selection();
+    views_.scene->select_spot(s.spot());
+    views_.scene->select_region(s.region());
+    views_.residuals->select(QString::fromStdString(s.spot()));
+    const Spot* spot = find_spot(desk_.project(), s.spot());
+    if (spot && spot->reference_profile.size() > 0)
+        views_.profile->set_reference(spot->reference_profile,
+                                      Eigen::Vector2d(spot->reference_mm.x(), spot->reference_mm.z()));
+    else
+        views_.profile->clear_reference();
+    if (spot && spot->feature.kind == "template" && spot->feature.template_profile.size() > 0)
+        views_.profile->set_template(spot->feature.template_profile);
+    else
+        views_.profile->clear_template();
+}
+
+void ViewFeeder::project() {
+    const Project& p = desk_.project();
+    if (p.part.mesh_ply != shown_mesh_) {
+        shown_mesh_ = p.part.mesh_ply;
+        (void)views_.scene->set_part_ply(shown_mesh_);  // import has read it: it is a PLY
+    }
+    std::vector<SceneSpot> spots;
+    for (const Spot& spot : p.spots) {
+        SceneSpot s;
+        s.id = spot.id;
+        s.workobject_from_sensor = workobject_from_sensor(p, spot);
+        s.reference_mm = spot.reference_mm;
+        s.enabled = spot.enabled;
+        if (const auto it = shifts_.find(spot.id); it != shifts_.end()) s.shift_mm = it->second;
+        spots.push_back(std::move(s));
+    }
+    views_.scene->set_spots(spots);
+    std::vector<SceneRegion> regions;
+    for (const Region& region : p.regions) {
+        SceneRegion r;
+        r.id = region.id;
+        r.spot_ids = region.spot_ids;
+        if (auto plan = plan_region(planned_observations(p, region), correction_options(region))) {
+            const Eigen::Vector3d along = plan->weakest_direction.head<3>();
+            if (along.norm() > 0.1 && region.id == desk_.selection().region())
+                r.weak_direction = along.normalized();
+            r.weak_text = plan->weakest;
+        }
+        regions.push_back(std::move(r));
+    }
+    views_.scene->set_regions(regions);
+}
+
+void ViewFeeder::robot() {
+    const std::string sensor = shown_sensor(desk_, desk_.selection());
+    const Project& p = desk_.project();
+    const SensorSetup* setup = find_sensor(p, sensor);
+    const Calibration* calibration = nullptr;
+    if (setup)
+        for (const Calibration& c : p.calibrations)
+            if (c.id == setup->calibration_id) calibration = &c;
+    for (const RobotState& r : desk_.station().robots) {
+        if (!r.base_from_flange || (calibration && calibration->robot_id != r.id)) continue;
+        SceneRobot robot;
+        robot.workobject_from_flange = p.part.base_from_workobject.inverse() * *r.base_from_flange;
+        robot.workobject_from_sensor =
+            robot.workobject_from_flange * (calibration ? calibration->flange_from_sensor : Pose::Identity());
+        views_.scene->set_robot(robot);
+        return;
+    }
+    views_.scene->set_robot(std::nullopt);
+}
+
+void ViewFeeder::show_run(const RunRecord* run) {
+    shifts_.clear();
+    if (run)
+        for (const SpotMeasurement& m : run->spots) {
+            const Spot* spot = find_spot(desk_.project(), m.spot_id);
+            if (!spot || m.status != SpotStatus::measured) continue;
+            shifts_[m.spot_id] = workobject_from_sensor(desk_.project(), *spot).linear() *
+                                 (m.measured_mm - spot->reference_mm);
+        }
+    project();
+}
+
+}  // namespace seamwright

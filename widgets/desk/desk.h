@@ -81,6 +81,7 @@ class Desk : public QObject {
     Expected<std::vector<EventRecord>> events() const;
     Expected<void> delete_run(std::int64_t number);
     const ProjectFile& file() const { return *file_; }
+    void retranslate() { derive(); }  // texts in the new language
     void note(EventKind kind, const std::string& subject, const std::string& text);
 
   signals:

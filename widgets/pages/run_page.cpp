@@ -16,6 +16,8 @@
 namespace seamwright {
 namespace {
 
+constexpr std::size_t kCharted = 100;  // newest runs in the chart
+
 std::array<double, 6> six(const Pose& pose) {
     const KukaAbc abc = kuka_from_rotation(pose.linear());
     return {pose.translation().x(),
@@ -187,8 +189,11 @@ RunPage::RunPage(Desk& desk, const Views& views)
         measure_push_->setEnabled(free);
     });
     connect(views_.trend, &TrendChart::part_opened, this, [this](int index) {
-        if (!isVisible() || index < 0 || index >= static_cast<int>(summaries_.size())) return;
-        const auto& s = summaries_[summaries_.size() - 1 - static_cast<std::size_t>(index)];
+        if (!isVisible() || index < 0 ||
+            index >= static_cast<int>(std::min<std::size_t>(summaries_.size(), kCharted)))
+            return;
+        const auto& s = summaries_[std::min<std::size_t>(summaries_.size(), kCharted) - 1 -
+                                   static_cast<std::size_t>(index)];
         if (auto run = desk_.run(s.number)) show_run(std::make_shared<const RunRecord>(std::move(*run)));
     });
     connect(&desk_, &Desk::opened, this, [this] {
@@ -355,7 +360,7 @@ void RunPage::show_history() {
         const double most = desk_.project().regions[static_cast<std::size_t>(at)].limits.translation_mm;
         if (std::isfinite(most)) limits = {-most, most};
     }
-    const std::size_t newest = std::min<std::size_t>(summaries_.size(), 100);
+    const std::size_t newest = std::min<std::size_t>(summaries_.size(), kCharted);
     for (std::size_t i = newest; i-- > 0;) {
         auto run = desk_.run(summaries_[i].number);
         labels.push_back(QString::number(summaries_[i].number));

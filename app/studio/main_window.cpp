@@ -1,0 +1,573 @@
+#include "app/studio/main_window.h"
+
+#include <QAction>
+#include <QCloseEvent>
+#include <QDateTime>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QFrame>
+#include <QHBoxLayout>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QMimeData>
+#include <QScrollArea>
+#include <QSettings>
+#include <QStatusBar>
+#include <QToolBar>
+#include <QToolButton>
+#include <cmath>
+
+#include "app/studio/command_palette.h"
+#include "app/studio/event_list.h"
+#include "app/studio/studio.h"
+#include "devices/exchange/files.h"
+#include "projects/exchange.h"
+#include "widgets/pages/align_page.h"
+#include "widgets/pages/calibrate_page.h"
+#include "widgets/pages/cell_page.h"
+#include "widgets/pages/prove_page.h"
+#include "widgets/pages/regions_page.h"
+#include "widgets/pages/run_page.h"
+#include "widgets/pages/teach_page.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kPageWidth = 440;
+constexpr int kLayoutVersion = 1;
+
+// A dock's head: name, full, float. A double click makes the dock full.
+class DockTitle : public QWidget {
+  public:
+    DockTitle(QDockWidget* dock, const std::function<void()>& full, const QString& full_tip,
+              const QString& float_tip)
+        : QWidget(dock), full_(full) {
+        auto* row = new QHBoxLayout(this);
+        row->setContentsMargins(8, 0, 2, 0);
+        row->setSpacing(2);
+        auto* name = new QLabel(dock->windowTitle());
+        QFont font = name->font();
+        font.setBold(true);
+        name->setFont(font);
+        row->addWidget(name, 1);
+        auto* whole = make_button("dock_full", "window", {}, full_tip, full);
+        auto* loose = make_button("dock_float", "export", {}, float_tip,
+                                  [dock] { dock->setFloating(!dock->isFloating()); });
+        for (QPushButton* b : {whole, loose}) {
+            b->setFlat(true);
+            b->setFixedSize(style::kTargetPx, style::kTargetPx);
+            b->setStyleSheet("padding: 0");
+            row->addWidget(b);
+        }
+    }
+
+  protected:
+    void mouseDoubleClickEvent(QMouseEvent*) override { full_(); }
+
+  private:
+    std::function<void()> full_;
+};
+
+}  // namespace
+
+MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
+    setObjectName("main_window");
+    setAcceptDrops(true);
+    setDockOptions(AllowNestedDocks | AllowTabbedDocks | AnimatedDocks);
+    setTabPosition(Qt::RightDockWidgetArea, QTabWidget::South);
+    make_docks();
+    make_central();
+    make_actions();
+    make_status();
+    feeder_ = new ViewFeeder(desk_, views_, this);
+    connect(run_page_, &StepPage::run_shown, this,
+            [this](std::shared_ptr<const RunRecord> run) { feeder_->show_run(run.get()); });
+
+    connect(&desk_, &Desk::modified_changed, this, &MainWindow::refresh_title);
+    connect(&desk_, &Desk::opened, this, [this] {
+        refresh_title();
+        trouble_->hide();
+    });
+    connect(&desk_, &Desk::trouble, this, &MainWindow::tell);
+    connect(&desk_, &Desk::checklist_changed, this, &MainWindow::refresh_next);
+    connect(&desk_, &Desk::station_changed, this, &MainWindow::refresh_status);
+    connect(&desk_, &Desk::runs_changed, this, &MainWindow::refresh_status);
+    connect(&desk_, &Desk::events_changed, this, &MainWindow::refresh_status);
+    connect(&desk_, &Desk::recovery_written, this, [this] {
+        saved_->setText(desk_.modified() ? tr("autosaved %1").arg(QTime::currentTime().toString("HH:mm:ss"))
+                                         : QString());
+    });
+    connect(&desk_, &Desk::modified_changed, this, [this](bool modified) {
+        if (!modified) saved_->setText(tr("saved"));
+    });
+    // A push that waits for its answer is shown wherever one is.
+    connect(&desk_.worker(), &StationWorker::confirm_push, this, [this] { show_step(Step::run); });
+
+    default_layout_ = saveState(kLayoutVersion);
+    resize(1440, 900);
+    QSettings& s = studio_.settings();
+    if (s.contains("geometry")) restoreGeometry(s.value("geometry").toByteArray());
+    if (s.contains("layout")) restoreState(s.value("layout").toByteArray(), kLayoutVersion);
+    refresh_title();
+    refresh_next();
+    refresh_status();
+}
+
+MainWindow::~MainWindow() = default;
+
+QAction* MainWindow::action(const QString& name, const QString& icon_name, const QString& text,
+                            const QKeySequence& keys, const std::function<void()>& run) {
+    auto* a = new QAction(text, this);
+    a->setObjectName(name);
+    if (!icon_name.isEmpty()) a->setIcon(icon(icon_name, palette()));
+    if (!keys.isEmpty()) a->setShortcut(keys);
+    QString plain = text;
+    plain.remove('&');
+    a->setToolTip(keys.isEmpty()
+                      ? plain
+                      : plain + QStringLiteral("  (") + keys.toString(QKeySequence::NativeText) + ")");
+    connect(a, &QAction::triggered, this, run);
+    addAction(a);
+    return a;
+}
+
+void MainWindow::make_actions() {
+    auto* file = menuBar()->addMenu(tr("&File"));
+    file->addAction(
+        action("new", "new", tr("&New project..."), QKeySequence::New, [this] { new_project(); }));
+    file->addAction(action("open", "open", tr("&Open..."), QKeySequence::Open, [this] { open_project(); }));
+    recent_ = file->addMenu(tr("Recent"));
+    connect(recent_, &QMenu::aboutToShow, this, [this] {
+        recent_->clear();
+        for (const QString& path : studio_.recent())
+            recent_->addAction(path, this, [this, path] {
+                if (may_leave()) studio_.open(path);
+            });
+    });
+    auto* save_action = action("save", "save", tr("&Save"), QKeySequence::Save, [this] { save(); });
+    file->addAction(save_action);
+    file->addAction(
+        action("save_as", "save", tr("Save &as..."), QKeySequence("Ctrl+Shift+S"), [this] { save_as(); }));
+    file->addSeparator();
+    file->addAction(
+        action("import_json", "import", tr("Import project (JSON)..."), {}, [this] { import_project(); }));
+    file->addAction(
+        action("export_json", "export", tr("Export project (JSON)..."), {}, [this] { export_project(); }));
+    file->addSeparator();
+    file->addAction(action("demo", "home", tr("Open the demo project"), {}, [this] {
+        if (may_leave()) studio_.open_demo(false);
+    }));
+    file->addAction(action("fresh_demo", "home", tr("Start the demo project anew"), {}, [this] {
+        if (QMessageBox::question(this, tr("Demo project"),
+                                  tr("Replace your demo project and its runs by a fresh one?")) ==
+            QMessageBox::Yes)
+            studio_.open_demo(true);
+    }));
+    file->addSeparator();
+    file->addAction(action("quit", "", tr("&Quit"), QKeySequence::Quit, [this] { close(); }));
+
+    auto* edit = menuBar()->addMenu(tr("&Edit"));
+    QUndoStack& stack = desk_.undo_stack();
+    QAction* undo = stack.createUndoAction(this, tr("Undo"));
+    undo->setShortcut(QKeySequence::Undo);
+    undo->setIcon(icon("undo", palette()));
+    undo->setObjectName("undo");
+    QAction* redo = stack.createRedoAction(this, tr("Redo"));
+    redo->setShortcut(QKeySequence("Ctrl+Y"));
+    redo->setIcon(icon("redo", palette()));
+    redo->setObjectName("redo");
+    for (QAction* a : {undo, redo}) {
+        addAction(a);
+        edit->addAction(a);
+    }
+    edit->addSeparator();
+    QAction* palette_action =
+        action("palette", "search", tr("All actions..."), QKeySequence("Ctrl+K"), [this] {
+            auto* dialog = new CommandPalette(all_actions(), this);
+            dialog->setAttribute(Qt::WA_DeleteOnClose);
+            dialog->open();
+        });
+    edit->addAction(palette_action);
+
+    auto* steps = menuBar()->addMenu(tr("&Steps"));
+    for (const Step step : kSteps)
+        steps->addAction(action(QStringLiteral("step_%1").arg(static_cast<int>(step) + 1), step_icon(step),
+                                tr("Step %1: %2").arg(static_cast<int>(step) + 1).arg(step_name(step)),
+                                QKeySequence(QStringLiteral("Ctrl+%1").arg(static_cast<int>(step) + 1)),
+                                [this, step] { show_step(step); }));
+    steps->addAction(action("next", "next", tr("Go to the next step"), QKeySequence("Ctrl+Return"),
+                            [this] { show_step(next_step(desk_.steps())); }));
+
+    auto* run = menuBar()->addMenu(tr("&Measure"));
+    run->addAction(action("connect_all", "plug", tr("Connect devices"), QKeySequence("F4"),
+                          [this] { desk_.worker().connect_devices(); }));
+    run->addAction(action("disconnect_all", "unplug", tr("Disconnect devices"), QKeySequence("Shift+F4"),
+                          [this] { desk_.worker().disconnect_devices(); }));
+    run->addAction(action("measure_now", "measure", tr("Measure"), QKeySequence("F5"), [this] {
+        show_step(Step::run);
+        run_page_->measure(false);
+    }));
+    run->addAction(
+        action("measure_and_push", "push", tr("Measure, then push..."), QKeySequence("F6"), [this] {
+            show_step(Step::run);
+            run_page_->measure(true);
+        }));
+    run->addAction(action("cancel_work", "stop", tr("Cancel the measuring"), QKeySequence("Ctrl+."),
+                          [this] { desk_.worker().cancel(); }));
+
+    auto* view = menuBar()->addMenu(tr("&View"));
+    int key = 1;
+    for (QDockWidget* dock : docks_)
+        view->addAction(action("show_" + dock->objectName(), "", tr("Show %1").arg(dock->windowTitle()),
+                               QKeySequence(QStringLiteral("Alt+%1").arg(key++)), [dock] {
+                                   dock->show();
+                                   dock->raise();
+                                   dock->widget()->setFocus();
+                               }));
+    view->addAction(action("full", "window", tr("One view alone, and back"), QKeySequence("F11"), [this] {
+        QDockWidget* focused = docks_.front();
+        for (QDockWidget* dock : docks_)
+            if (dock->isAncestorOf(focusWidget())) focused = dock;
+        toggle_full(full_ ? full_ : focused);
+    }));
+    view->addAction(action("freeze", "stop", tr("Freeze the live profile, and go on"),
+                           QKeySequence("Ctrl+Space"),
+                           [this] { views_.profile->set_frozen(!views_.profile->frozen()); }));
+    view->addAction(action("reset_layout", "home", tr("Docks as at first"), {}, [this] {
+        if (full_) toggle_full(full_);
+        restoreState(default_layout_, kLayoutVersion);
+    }));
+    view->addSeparator();
+    QAction* language = action("language", "language", tr("Deutsch"), QKeySequence("Ctrl+L"), [this] {
+        // The window is built anew, after this signal has returned.
+        QMetaObject::invokeMethod(
+            &studio_, [&s = studio_] { s.set_language(s.language() == "de" ? "en" : "de"); },
+            Qt::QueuedConnection);
+    });
+    QAction* theme =
+        action("theme", "theme", studio_.dark() ? tr("Light theme") : tr("Dark theme"),
+               QKeySequence("Ctrl+T"), [this] {
+                   QMetaObject::invokeMethod(
+                       &studio_, [&s = studio_] { s.set_dark(!s.dark()); }, Qt::QueuedConnection);
+               });
+    view->addAction(language);
+    view->addAction(theme);
+
+    auto* bar = addToolBar(tr("Tools"));
+    bar->setObjectName("tools");
+    bar->setMovable(false);
+    bar->setIconSize({20, 20});
+    bar->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    menuBar()->setCornerWidget(bar, Qt::TopRightCorner);
+    for (QAction* a : {save_action, undo, redo, palette_action, language, theme}) bar->addAction(a);
+    undo->setPriority(QAction::LowPriority);
+    redo->setPriority(QAction::LowPriority);
+    for (auto* b : bar->findChildren<QToolButton*>())
+        b->setAccessibleName(b->text().isEmpty() ? tr("More") : b->text());
+    for (auto* b : bar->findChildren<QToolButton*>())
+        if (b->toolTip().isEmpty()) b->setToolTip(tr("More"));
+}
+
+QDockWidget* MainWindow::add_dock(const QString& name, const QString& title, QWidget* view) {
+    auto* dock = new QDockWidget(title, this);
+    dock->setObjectName(name);
+    dock->setWidget(view);
+    dock->setTitleBarWidget(new DockTitle(
+        dock, [this, dock] { toggle_full(dock); }, tr("This view alone, and back (F11)"),
+        tr("In a window of its own, and back")));
+    docks_ << dock;
+    return dock;
+}
+
+void MainWindow::make_docks() {
+    views_.profile = new ProfilePlot;
+    views_.camera = new CameraView;
+    views_.scene = new SceneView;
+    views_.align = new AlignView;
+    views_.residuals = new ResidualBars;
+    views_.trend = new TrendChart;
+    views_.histogram = new Histogram;
+    auto* charts = new QWidget;
+    auto* chart_box = new QVBoxLayout(charts);
+    chart_box->setContentsMargins(0, 0, 0, 0);
+    chart_box->addWidget(views_.trend, 3);
+    chart_box->addWidget(views_.histogram, 2);
+
+    QDockWidget* profile = add_dock("dock_profile", tr("Live profile"), views_.profile);
+    QDockWidget* camera = add_dock("dock_camera", tr("Camera image"), views_.camera);
+    QDockWidget* scene = add_dock("dock_scene", tr("Part in 3D"), views_.scene);
+    QDockWidget* align = add_dock("dock_align", tr("Frozen contour"), views_.align);
+    QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), views_.residuals);
+    QDockWidget* trend = add_dock("dock_charts", tr("Charts"), charts);
+    QDockWidget* events = add_dock("dock_events", tr("Events"), new EventList(desk_));
+    addDockWidget(Qt::RightDockWidgetArea, profile);
+    tabifyDockWidget(profile, camera);
+    addDockWidget(Qt::RightDockWidgetArea, scene);
+    for (QDockWidget* d : {align, residuals, trend, events}) tabifyDockWidget(scene, d);
+    profile->raise();
+    scene->raise();
+    views_.raise = [this](QWidget* view) {
+        for (QDockWidget* d : docks_)
+            if (d->widget() == view || d->isAncestorOf(view)) {
+                d->show();
+                d->raise();
+            }
+    };
+}
+
+void MainWindow::make_central() {
+    auto* central = new QWidget;
+    central->setMaximumWidth(164 + kPageWidth + 120);
+    auto* columns = new QHBoxLayout;
+    columns->setContentsMargins(0, 0, 0, 0);
+    columns->setSpacing(0);
+    rail_ = new StepRail(desk_);
+    columns->addWidget(rail_);
+    pages_ = new QStackedWidget;
+    pages_->setMinimumWidth(kPageWidth);
+    run_page_ = new RunPage(desk_, views_);
+    const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
+                                                 new CalibratePage(desk_, views_),
+                                                 new TeachPage(desk_, views_),
+                                                 new AlignPage(desk_, views_),
+                                                 new RegionsPage(desk_, views_),
+                                                 new ProvePage(desk_, views_),
+                                                 run_page_};
+    for (StepPage* page : pages) {
+        auto* scroll = new QScrollArea;
+        scroll->setWidgetResizable(true);
+        scroll->setFrameShape(QFrame::NoFrame);
+        scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        scroll->setFocusPolicy(Qt::NoFocus);
+        scroll->setWidget(page);
+        pages_->addWidget(scroll);
+    }
+    columns->addWidget(pages_, 1);
+    connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);
+
+    trouble_ = new QFrame;
+    trouble_->setObjectName("trouble");
+    auto* trouble_row = new QHBoxLayout(trouble_);
+    trouble_row->setContentsMargins(10, 4, 4, 4);
+    trouble_text_ = make_text({});
+    trouble_text_->setObjectName("trouble_text");
+    trouble_row->addWidget(trouble_text_, 1);
+    trouble_row->addWidget(make_button("dismiss", "check", tr("Understood"),
+                                       tr("Puts the message away; the event log keeps it"),
+                                       [this] { trouble_->hide(); }));
+    trouble_->hide();
+    next_ = make_button("next_step", "next", {}, tr("Go to the next step"),
+                        [this] { show_step(next_step(desk_.steps())); });
+    auto* box = new QVBoxLayout(central);
+    box->setContentsMargins(4, 0, 0, 4);
+    box->addWidget(trouble_);
+    box->addLayout(columns, 1);
+    box->addWidget(next_);
+    setCentralWidget(central);
+}
+
+void MainWindow::make_status() {
+    const auto label = [this](const QString& name, const QString& tip) {
+        auto* l = new QLabel;
+        l->setObjectName(name);
+        l->setToolTip(tip);
+        l->setContentsMargins(8, 0, 8, 0);
+        return l;
+    };
+    sensors_ = label("status_sensors", tr("Sensors: state, rate, dropped frames"));
+    robots_ = label("status_robots", tr("Robots: mode and state"));
+    push_ = label("status_push", tr("The last push"));
+    events_ = label("status_events", tr("Alarms and refusals in the event log"));
+    saved_ = label("status_saved", tr("Whether edits are saved"));
+    for (QLabel* l : {sensors_, robots_, push_, events_}) statusBar()->addWidget(l);
+    statusBar()->addPermanentWidget(saved_);
+    statusBar()->setSizeGripEnabled(false);
+}
+
+void MainWindow::show_step(Step step) {
+    step_ = step;
+    pages_->setCurrentIndex(static_cast<int>(step));
+    rail_->show_step(step);
+}
+
+void MainWindow::toggle_full(QDockWidget* dock) {
+    if (full_) {
+        full_ = nullptr;
+        centralWidget()->show();
+        restoreState(before_full_, kLayoutVersion);
+        return;
+    }
+    before_full_ = saveState(kLayoutVersion);
+    full_ = dock;
+    for (QDockWidget* d : docks_)
+        if (d != dock) d->hide();
+    centralWidget()->hide();
+    dock->show();
+}
+
+QList<QAction*> MainWindow::all_actions() const {
+    QList<QAction*> list;
+    for (QAction* a : actions())
+        if (!a->text().isEmpty() && !a->isSeparator()) list << a;
+    return list;
+}
+
+void MainWindow::remember() {
+    if (full_) toggle_full(full_);
+    studio_.settings().setValue("geometry", saveGeometry());
+    studio_.settings().setValue("layout", saveState(kLayoutVersion));
+}
+
+void MainWindow::refresh_title() {
+    const QString file = QFileInfo(QString::fromStdString(desk_.path().string())).fileName();
+    setWindowTitle(tr("%1[*] - Seamwright").arg(file.isEmpty() ? tr("no project") : file));
+    setWindowModified(desk_.modified());
+}
+
+void MainWindow::refresh_next() {
+    for (const StepState& s : desk_.steps())
+        if (s.status == StepStatus::next) {
+            next_->setText(tr("Next: %1 - %2").arg(step_name(s.step), s.why));
+            next_->setAccessibleName(next_->text());
+            next_->setToolTip(next_->text());
+        }
+}
+
+void MainWindow::refresh_status() {
+    QStringList sensors, robots;
+    for (const SensorState& s : desk_.station().sensors) {
+        const auto live = desk_.live().latest(s.id);
+        sensors << (s.trouble.empty() ? tr("sensor %1 ok %2 /s, %3 dropped")
+                                            .arg(QString::fromStdString(s.id))
+                                            .arg(live ? std::lround(live->rate_hz) : 0)
+                                            .arg(s.counters.damaged + s.counters.underrun)
+                                      : tr("sensor %1 no frame").arg(QString::fromStdString(s.id)));
+    }
+    for (const RobotState& r : desk_.station().robots)
+        robots << (r.trouble.empty() ? tr("robot %1 %2 ok")
+                                           .arg(QString::fromStdString(r.id),
+                                                QString::fromStdString(std::string(to_string(r.mode))))
+                                     : tr("robot %1 silent").arg(QString::fromStdString(r.id)));
+    if (!desk_.station().connected) sensors = {tr("not connected")};
+    sensors_->setText(sensors.join("   "));
+    robots_->setText(robots.join("   "));
+    QString push;
+    if (const auto runs = desk_.runs())
+        for (auto it = runs->rbegin(); it != runs->rend() && push.isEmpty(); ++it)
+            if (it->push && it->status == RunStatus::ok)
+                push = tr("last push %1, run %2 verified")
+                           .arg(QDateTime::fromString(QString::fromStdString(it->finished_utc),
+                                                      Qt::ISODateWithMs)
+                                    .toLocalTime()
+                                    .toString("HH:mm"))
+                           .arg(it->number);
+    push_->setText(push.isEmpty() ? tr("nothing pushed") : push);
+}
+
+void MainWindow::tell(const QString& sentence) {
+    trouble_text_->setText(sentence);
+    trouble_->show();
+}
+
+bool MainWindow::may_leave() {
+    if (!desk_.modified()) return true;
+    QMessageBox box(
+        QMessageBox::Question, tr("Unsaved edits"),
+        tr("%1 has unsaved edits.").arg(QFileInfo(QString::fromStdString(desk_.path().string())).fileName()),
+        QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
+    box.setObjectName("unsaved_question");
+    const int answer = box.exec();
+    if (answer == QMessageBox::Save) return save();
+    return answer == QMessageBox::Discard;
+}
+
+bool MainWindow::save() {
+    if (auto saved = desk_.save(); !saved) {
+        tell(QString::fromStdString(saved.error().sentence()));
+        return false;
+    }
+    return true;
+}
+
+void MainWindow::new_project() {
+    if (!may_leave()) return;
+    const QString file = QFileDialog::getSaveFileName(
+        this, tr("New project"), studio_.data_folder() + "/project.seam", tr("Seamwright projects (*.seam)"));
+    if (!file.isEmpty()) studio_.create(file.endsWith(".seam") ? file : file + ".seam");
+}
+
+void MainWindow::open_project() {
+    if (!may_leave()) return;
+    const QString file =
+        QFileDialog::getOpenFileName(this, tr("Open project"), {}, tr("Seamwright projects (*.seam)"));
+    if (!file.isEmpty()) studio_.open(file);
+}
+
+void MainWindow::save_as() {
+    const QString file =
+        QFileDialog::getSaveFileName(this, tr("Save as"), QString::fromStdString(desk_.path().string()),
+                                     tr("Seamwright projects (*.seam)"));
+    if (file.isEmpty()) return;
+    if (auto saved = desk_.save_as(file.toStdString()); !saved)
+        tell(QString::fromStdString(saved.error().sentence()));
+}
+
+void MainWindow::export_project() {
+    const QString file =
+        QFileDialog::getSaveFileName(this, tr("Export project"), "project.json", tr("JSON (*.json)"));
+    if (file.isEmpty()) return;
+    if (auto written = write_text_file(file.toStdString(),
+                                       seamwright::export_project(desk_.project(), true).dump(2) + "\n");
+        !written)
+        tell(QString::fromStdString(written.error().sentence()));
+}
+
+void MainWindow::import_project() {
+    if (!may_leave()) return;
+    const QString from = QFileDialog::getOpenFileName(this, tr("Import project"), {}, tr("JSON (*.json)"));
+    if (from.isEmpty()) return;
+    auto text = read_text_file(from.toStdString());
+    if (!text) return tell(QString::fromStdString(text.error().sentence()));
+    const auto json = nlohmann::json::parse(*text, nullptr, false);
+    if (json.is_discarded()) return tell(tr("%1 is no JSON").arg(from));
+    auto project = seamwright::import_project(json, from.toStdString());
+    if (!project) return tell(QString::fromStdString(project.error().sentence()));
+    const QString file = QFileDialog::getSaveFileName(this, tr("Save the imported project as"), {},
+                                                      tr("Seamwright projects (*.seam)"));
+    if (file.isEmpty()) return;
+    if (auto made = desk_.create(file.toStdString(), *project); !made)
+        tell(QString::fromStdString(made.error().sentence()));
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    if (!may_leave()) {
+        event->ignore();
+        return;
+    }
+    remember();
+    desk_.close();
+    event->accept();
+    QApplication::quit();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+    for (const QUrl& url : event->mimeData()->urls()) {
+        const QString ending = QFileInfo(url.toLocalFile()).suffix().toLower();
+        if (QStringList{"seam", "stl", "ply", "obj"}.contains(ending)) event->acceptProposedAction();
+    }
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+    for (const QUrl& url : event->mimeData()->urls()) {
+        const QString file = url.toLocalFile();
+        if (file.endsWith(".seam", Qt::CaseInsensitive)) {
+            if (may_leave()) studio_.open(file);
+            return;
+        }
+        if (auto imported = desk_.import_part(file.toStdString(), ""); !imported)
+            tell(QString::fromStdString(imported.error().sentence()));
+    }
+}
+
+}  // namespace seamwright

@@ -1,0 +1,77 @@
+#pragma once
+// Rail and step page on the left, views as docks on the right, status below; see the pages for what they do.
+
+#include <QDockWidget>
+#include <QLabel>
+#include <QMainWindow>
+#include <QStackedWidget>
+#include <array>
+#include <map>
+
+#include "app/studio/step_rail.h"
+#include "widgets/pages/views.h"
+
+namespace seamwright {
+
+class Studio;
+class StepPage;
+class RunPage;
+
+class MainWindow : public QMainWindow {
+    Q_OBJECT
+  public:
+    explicit MainWindow(Studio& studio);
+    ~MainWindow() override;
+
+    void show_step(Step step);
+    Step step() const { return step_; }
+    const Views& views() const { return views_; }
+    void remember();                      // layout into the settings
+    void toggle_full(QDockWidget* dock);  // one view alone, and back
+    QList<QAction*> all_actions() const;  // what the palette lists
+    bool may_leave();                     // asks about unsaved edits
+
+  protected:
+    void closeEvent(QCloseEvent* event) override;
+    void dragEnterEvent(QDragEnterEvent* event) override;
+    void dropEvent(QDropEvent* event) override;
+
+  private:
+    QAction* action(const QString& name, const QString& icon_name, const QString& text,
+                    const QKeySequence& keys, const std::function<void()>& run);
+    void make_actions();
+    void make_docks();
+    void make_central();
+    void make_status();
+    QDockWidget* add_dock(const QString& name, const QString& title, QWidget* view);
+    void refresh_title();
+    void refresh_status();
+    void refresh_next();
+    void tell(const QString& sentence);
+    void new_project();
+    void open_project();
+    void save_as();
+    void export_project();
+    void import_project();
+    bool save();
+
+    Studio& studio_;
+    Desk& desk_;
+    Views views_;
+    ViewFeeder* feeder_ = nullptr;
+    StepRail* rail_ = nullptr;
+    QStackedWidget* pages_ = nullptr;
+    RunPage* run_page_ = nullptr;
+    QPushButton* next_ = nullptr;
+    QFrame* trouble_ = nullptr;
+    QLabel* trouble_text_ = nullptr;
+    QLabel *sensors_ = nullptr, *robots_ = nullptr, *push_ = nullptr, *events_ = nullptr, *saved_ = nullptr;
+    QMenu* recent_ = nullptr;
+    QList<QDockWidget*> docks_;
+    QByteArray before_full_;
+    QDockWidget* full_ = nullptr;
+    Step step_ = Step::cell;
+    QByteArray default_layout_;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,31 @@
+#pragma once
+// The checklist as navigation: seven steps, each with its state in words, one of them next.
+
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+#include <array>
+
+#include "widgets/desk/desk.h"
+
+namespace seamwright {
+
+class StepRail : public QWidget {
+    Q_OBJECT
+  public:
+    explicit StepRail(Desk& desk);
+    void show_step(Step step);
+
+  signals:
+    void step_chosen(seamwright::Step step);
+
+  private:
+    void refresh();
+    Desk& desk_;
+    std::array<QPushButton*, 7> buttons_{};
+    std::array<QLabel*, 7> states_{};
+};
+
+QString step_icon(Step step);
+
+}  // namespace seamwright

@@ -9,26 +9,25 @@ namespace seamwright {
 namespace {
 
 constexpr std::size_t kShown = 500;
+}
 
-QString kind_text(EventKind kind) {
+QString EventList::kind_text(EventKind kind) {
     switch (kind) {
         case EventKind::note:
-            return EventList::tr("note");
+            return tr("note");
         case EventKind::refusal:
-            return EventList::tr("refusal");
+            return tr("refusal");
         case EventKind::push_attempt:
-            return EventList::tr("push attempt");
+            return tr("push attempt");
         case EventKind::push:
-            return EventList::tr("push");
+            return tr("push");
         case EventKind::alarm:
-            return EventList::tr("ALARM");
+            return tr("ALARM");
         case EventKind::device:
-            return EventList::tr("device");
+            return tr("device");
     }
     return {};
 }
-
-}  // namespace
 
 EventList::EventList(Desk& desk) : QTableWidget(0, 4), desk_(desk) {
     setObjectName("events");

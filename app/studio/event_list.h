@@ -17,6 +17,7 @@ class EventList : public QTableWidget {
     void showEvent(QShowEvent* event) override;
 
   private:
+    static QString kind_text(EventKind kind);
     Desk& desk_;
 };
 

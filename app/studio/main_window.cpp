@@ -90,7 +90,12 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
         trouble_->hide();
     });
     connect(&desk_, &Desk::trouble, this, &MainWindow::tell);
-    connect(&desk_, &Desk::checklist_changed, this, &MainWindow::refresh_next);
+    connect(&desk_, &Desk::checklist_changed, this, [this] {
+        refresh_next();
+        if (!beginning_ || !desk_.station().connected) return;
+        beginning_ = false;
+        show_step(next_step(desk_.steps()));
+    });
     connect(&desk_, &Desk::station_changed, this, &MainWindow::refresh_status);
     connect(&desk_, &Desk::runs_changed, this, &MainWindow::refresh_status);
     connect(&desk_, &Desk::events_changed, this, &MainWindow::refresh_status);
@@ -104,8 +109,9 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     // A push that waits for its answer is shown wherever one is.
     connect(&desk_.worker(), &StationWorker::confirm_push, this, [this] { show_step(Step::run); });
 
-    default_layout_ = saveState(kLayoutVersion);
     resize(1440, 900);
+    resizeDocks({docks_[0], docks_[2]}, {430, 430}, Qt::Vertical);
+    default_layout_ = saveState(kLayoutVersion);
     QSettings& s = studio_.settings();
     if (s.contains("geometry")) restoreGeometry(s.value("geometry").toByteArray());
     if (s.contains("layout")) restoreState(s.value("layout").toByteArray(), kLayoutVersion);
@@ -344,7 +350,10 @@ void MainWindow::make_central() {
         pages_->addWidget(scroll);
     }
     columns->addWidget(pages_, 1);
-    connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);
+    connect(rail_, &StepRail::step_chosen, this, [this](Step step) {
+        beginning_ = false;
+        show_step(step);
+    });
 
     trouble_ = new QFrame;
     trouble_->setObjectName("trouble");
@@ -389,6 +398,11 @@ void MainWindow::show_step(Step step) {
     step_ = step;
     pages_->setCurrentIndex(static_cast<int>(step));
     rail_->show_step(step);
+}
+
+void MainWindow::begin_at_next() {
+    show_step(next_step(desk_.steps()));
+    beginning_ = true;
 }
 
 void MainWindow::toggle_full(QDockWidget* dock) {

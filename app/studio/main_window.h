@@ -24,6 +24,9 @@ class MainWindow : public QMainWindow {
     ~MainWindow() override;
 
     void show_step(Step step);
+    // Shows the next step, and once more when the devices have connected: an opened project begins where its
+    // work goes on.
+    void begin_at_next();
     Step step() const { return step_; }
     const Views& views() const { return views_; }
     void remember();                      // layout into the settings
@@ -71,6 +74,7 @@ class MainWindow : public QMainWindow {
     QByteArray before_full_;
     QDockWidget* full_ = nullptr;
     Step step_ = Step::cell;
+    bool beginning_ = false;
     QByteArray default_layout_;
 };
 

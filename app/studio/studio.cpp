@@ -14,6 +14,12 @@
 #include "app/studio/look.h"
 #include "app/studio/main_window.h"
 
+// Outside of any namespace, as Qt wants it: a static library's resources are linked only when named.
+static void link_resources() {
+    Q_INIT_RESOURCE(icons);
+    Q_INIT_RESOURCE(studio_translations);
+}
+
 namespace seamwright {
 namespace {
 constexpr int kRecent = 10;
@@ -21,6 +27,7 @@ constexpr int kRecent = 10;
 
 Studio::Studio(QApplication& application, const StudioOptions& options)
     : application_(application), options_(options) {
+    link_resources();
     settings_ = options.settings.isEmpty()
                     ? std::make_unique<QSettings>(QStringLiteral("seamwright"), QStringLiteral("studio"))
                     : std::make_unique<QSettings>(options.settings, QSettings::IniFormat);
@@ -107,7 +114,7 @@ bool Studio::open(const QString& file) {
                                         [](const SensorSetup& s) { return s.driver == "simulated"; });
     // A simulated cell is there at once. Real devices are connected by a person.
     if (simulated && options_.connect) desk_.worker().connect_devices();
-    window_->show_step(next_step(desk_.steps()));
+    window_->begin_at_next();
     return true;
 }
 
@@ -137,7 +144,7 @@ bool Studio::open_demo(bool fresh) {
     }
     remember(file);
     if (options_.connect) desk_.worker().connect_devices();
-    window_->show_step(next_step(desk_.steps()));
+    window_->begin_at_next();
     return true;
 }
 

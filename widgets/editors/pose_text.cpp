@@ -31,20 +31,17 @@ std::vector<double> numbers_of(QString text) {
 }  // namespace
 
 QString notation_name(PoseNotation notation) {
-    const auto tr = [](const char* text) {
-        return QCoreApplication::translate("seamwright::PoseEditor", text);
-    };
     switch (notation) {
         case PoseNotation::kuka_abc:
-            return tr("KUKA A B C (Z-Y'-X'')");
+            return PoseEditor::tr("KUKA A B C (Z-Y'-X'')");
         case PoseNotation::fanuc_wpr:
-            return tr("FANUC W P R");
+            return PoseEditor::tr("FANUC W P R");
         case PoseNotation::abb_quaternion:
-            return tr("ABB quaternion (w first)");
+            return PoseEditor::tr("ABB quaternion (w first)");
         case PoseNotation::ur_rotvec:
-            return tr("UR rotation vector");
+            return PoseEditor::tr("UR rotation vector");
         case PoseNotation::matrix:
-            return tr("Matrix 4 x 4");
+            return PoseEditor::tr("Matrix 4 x 4");
     }
     return {};
 }

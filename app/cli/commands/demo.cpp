@@ -38,7 +38,7 @@ Expected<Answer> demo(const DemoOptions& options) {
     if (auto written = write_text_file(outcome->report_file, demo_report(*outcome)); !written)
         return tl::unexpected(written.error());
     int pushed = 0;
-    for (const DemoPart& part : outcome->parts) pushed += part.run.status == RunStatus::ok;
+    for (const DemoPart& part : outcome->parts) pushed += part.pushed();
     const auto spots = statistics(*outcome, &DemoPart::spots), path = statistics(*outcome, &DemoPart::path);
     const bool ok = pushed == static_cast<int>(outcome->parts.size());
     Answer answer;
@@ -62,10 +62,12 @@ Expected<Answer> demo(const DemoOptions& options) {
         fmt::format("calibrated chain against the cell's truth: {:.3f} mm\n", outcome->calibration.truth_mm);
     answer.text += fmt::format("{} of {} parts corrected and pushed\n", pushed, outcome->parts.size());
     for (const DemoPart& part : outcome->parts)
-        if (part.run.status != RunStatus::ok)
+        if (!part.pushed())
             answer.text += fmt::format("  {}: {}\n", part.run.part_id, part.run.message);
-    answer.text += statistic_text("deviation at the spots", spots);
-    answer.text += statistic_text("deviation along the bead", path);
+    if (pushed > 0) {
+        answer.text += statistic_text("deviation at the spots, pushed parts", spots);
+        answer.text += statistic_text("deviation along the bead, pushed parts", path);
+    }
     answer.text += fmt::format(
         "\nsimulated (noise, jitter, repeatability and seed are stated in the report), {:.1f} s\nproject "
         "{}\nreport  {}\n",

@@ -155,13 +155,15 @@ std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
         DemoStatistic row;
         row.region_id = name;
         double n = 0, sum = 0, squares = 0;
-        for (const DemoPart& part : outcome.parts)
+        for (const DemoPart& part : outcome.parts) {
+            if (!part.pushed()) continue;
             for (const DemoDeviation& d : part.*which) {
                 if (name != "all" && d.region_id != name) continue;
                 row.before_max_mm = std::max(row.before_max_mm, d.before_mm.norm());
                 row.after_max_mm = std::max(row.after_max_mm, d.after_mm.norm());
                 for (double v : d.after_mm) n += 1, sum += v, squares += v * v;
             }
+        }
         if (n > 1) {
             row.after_mean_mm = sum / n;
             row.after_three_sigma_mm = 3 * std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1)));

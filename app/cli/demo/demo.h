@@ -57,6 +57,7 @@ struct DemoPart {
     PartState truth;
     RunRecord run;
     std::vector<DemoDeviation> spots, path;
+    bool pushed() const { return run.status == RunStatus::ok; }  // else the robot lays no bead on it
 };
 
 struct DemoTaughtSpot {
@@ -81,7 +82,7 @@ struct DemoStatistic {
     std::string region_id;
     double before_max_mm = 0, after_mean_mm = 0, after_three_sigma_mm = 0, after_max_mm = 0;
 };
-// Over all parts; one row a region, then one for all ("all").
+// Over the parts that were pushed; one row a region, then one for all ("all").
 std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
                                       std::vector<DemoDeviation> DemoPart::*which);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/cli/demo/demo.h"
@@ -136,9 +137,14 @@ void correction_chapter(Page& page, const DemoOutcome& o) {
         rows.push_back({part.run.part_id, fmt::format("{}", part.run.number),
                         std::string(to_string(part.run.status)), mm(d.translation().norm(), 2),
                         mm(deg_from_rad(angle_rad(d, Pose::Identity()))), mm(part.truth.bend.bend_mm, 2),
-                        mm(part.truth.bend.twist_mm, 2), mm(before, 2), mm(after)});
+                        mm(part.truth.bend.twist_mm, 2), mm(before, 2),
+                        part.pushed() ? mm(after) : "no bead laid"});
     }
     page.table(rows);
+    const auto pushed =
+        std::count_if(o.parts.begin(), o.parts.end(), [](const DemoPart& p) { return p.pushed(); });
+    page.paragraph(fmt::format("The figures below hold for the {} of {} parts that were pushed.", pushed,
+                               o.parts.size()));
     page.heading("Deviation at the spots", 3);
     page.table(statistic_rows(statistics(o, &DemoPart::spots)),
                "Across the edge and in height; the direction along the edge does not move the bead.");
@@ -161,7 +167,7 @@ void correction_chapter(Page& page, const DemoOutcome& o) {
             a.x.push_back(d.arc_mm), a.y.push_back(d.after_mm.x());
         }
         before.series.push_back(b);
-        after.series.push_back(a);
+        if (o.parts[i].pushed()) after.series.push_back(a);
     }
     page.figures({svg(before), svg(after)},
                  "Every part in its own colour. Between two regions the correction changes from one frame to "
@@ -194,8 +200,10 @@ std::string demo_picture(const DemoOutcome& o) {
     }
     Series before{"uncorrected (1 x)", {}, {}, Mark::dots, colour::kVermilion};
     Series after{fmt::format("corrected ({} x)", kMagnify), {}, {}, Mark::dots, colour::kAmber};
-    if (!o.parts.empty())
-        for (const DemoDeviation& d : o.parts.front().path) {
+    if (const auto part =
+            std::find_if(o.parts.begin(), o.parts.end(), [](const DemoPart& p) { return p.pushed(); });
+        part != o.parts.end())
+        for (const DemoDeviation& d : part->path) {
             const std::size_t i = static_cast<std::size_t>(d.arc_mm / 10 + 0.5);
             const Eigen::Vector3d along =
                 (path[(i + 1) % path.size()] - path[(i + path.size() - 1) % path.size()]).normalized();
@@ -212,8 +220,8 @@ std::string demo_picture(const DemoOutcome& o) {
 std::string demo_report(const DemoOutcome& o) {
     Page page("Seamwright demo: door left");
     const auto path = statistics(o, &DemoPart::path);
-    const bool all_ok = std::all_of(o.parts.begin(), o.parts.end(),
-                                    [](const DemoPart& p) { return p.run.status == RunStatus::ok; });
+    const bool all_ok =
+        std::all_of(o.parts.begin(), o.parts.end(), [](const DemoPart& p) { return p.pushed(); });
     page.verdict(all_ok ? "all parts corrected and pushed" : "some parts were refused",
                  all_ok ? Tone::good : Tone::attention,
                  fmt::format("bead off by up to {:.2f} mm before, {:.3f} mm (3 sigma) after",

@@ -12,6 +12,8 @@
 #include "devices/kuka/rsi.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
+#include "devices/ur/program.h"
+#include "devices/ur/rtde.h"
 
 namespace seamwright {
 
@@ -36,6 +38,7 @@ const std::vector<RobotDriver>& robot_drivers() {
              return open_kuka_rsi(settings, session, &open_robot);
          }},
         {"replay", "The poses and spots of a recorded capture or folder", &open_replay_robot},
+        {"ur-rtde", "Universal Robots, registers and poses by RTDE", &open_ur_rtde},
         {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
         {"abb-egm", "ABB path correction in every cycle (EGM)",
          [](const nlohmann::json& settings, DeviceSession& session) {
@@ -53,6 +56,7 @@ const std::vector<ControllerDriver>& controller_drivers() {
          [](std::shared_ptr<SimulatedCell> cell, const nlohmann::json& settings) {
              return start_kuka_rsi(std::move(cell), settings, &start_controller);
          }},
+        {"ur-rtde", "A Universal Robots controller with RTDE and dashboard", &start_ur_rtde_controller},
         {"abb-rapid", "An ABB controller with our RAPID server task", &start_abb_rapid},
         {"abb-egm", "An ABB controller that asks for path corrections (EGM)",
          [](std::shared_ptr<SimulatedCell> cell, const nlohmann::json& settings) {
@@ -65,6 +69,7 @@ const std::vector<ControllerDriver>& controller_drivers() {
 const std::vector<ProgramWriter>& program_writers() {
     static const std::vector<ProgramWriter> writers = {
         {"kuka", "KRL for EthernetKRL", &write_kuka_program},
+        {"ur", "URScript for RTDE", &write_ur_program},
     };
     return writers;
 }

@@ -35,7 +35,8 @@ void PrintTo(const Brand& brand, std::ostream* out) {
 }
 const std::vector<Brand> kBrands = {{"kuka-eki", true, "BASE_left"},
                                     {"kuka-kvp", false, "BASE_left", RobotMode::external, RobotMode::stopped},
-                                    {"abb-rapid", false, "BASE_left", RobotMode::automatic}};
+                                    {"abb-rapid", false, "BASE_left", RobotMode::automatic},
+                                    {"ur-rtde", false, "BASE_left"}};
 
 std::vector<MeasuringMove> program() {
     std::vector<MeasuringMove> moves;
@@ -71,14 +72,17 @@ class RobotLaws : public testing::TestWithParam<Brand> {
         cell->set_mode(RobotMode::external);
         cell->store_program(program());
         ASSERT_TRUE(cell->write_frame(GetParam().frame, taught));
-        const nlohmann::json controller_settings = {{"port", port}, {"slow_ms", kTimeoutMs * 2}};
+        nlohmann::json link_settings = {{"port", port}, {"timeout_ms", kTimeoutMs}};
+        controller_settings = {{"port", port}, {"slow_ms", kTimeoutMs * 2}};
+        if (GetParam().name == "ur-rtde")
+            link_settings["dashboard_port"] = controller_settings["dashboard_port"] = free_port();
         const auto start = [&] {
             auto started = start_controller(GetParam().name, cell, controller_settings);
             ASSERT_TRUE(started) << started.error().sentence();
             controller = std::move(*started);
         };
         if (!GetParam().robot_is_client) start();
-        auto opened = open_robot(GetParam().name, {{"port", port}, {"timeout_ms", kTimeoutMs}}, session);
+        auto opened = open_robot(GetParam().name, link_settings, session);
         ASSERT_TRUE(opened) << opened.error().sentence();
         link = std::move(*opened);
         if (GetParam().robot_is_client) start();
@@ -110,6 +114,7 @@ class RobotLaws : public testing::TestWithParam<Brand> {
     DeviceSession session;
     std::unique_ptr<RobotLink> link;
     std::unique_ptr<SimulatedController> controller;
+    nlohmann::json controller_settings;
 };
 
 TEST_P(RobotLaws, TellsWhoItIsAndHowItStands) {
@@ -190,7 +195,7 @@ TEST_P(RobotLaws, ALostControllerIsToldAndComesBack) {
         EXPECT_EQ(frame.error().kind, ErrorKind::device);
         EXPECT_LT(Clock::now() - begun, std::chrono::seconds(3)) << "no call blocks longer than its time-out";
     }
-    auto started = start_controller(GetParam().name, cell, {{"port", port}});
+    auto started = start_controller(GetParam().name, cell, controller_settings);
     ASSERT_TRUE(started) << started.error().sentence();
     controller = std::move(*started);
     EXPECT_TRUE(recovers());

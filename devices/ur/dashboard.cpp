@@ -1,0 +1,58 @@
+#include "devices/ur/dashboard.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace seamwright::ur {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kLongestLine = 1000;
+
+Dashboard::Dashboard(std::string address, std::uint16_t port, Timeout timeout)
+    : address_(std::move(address)),
+      where_(fmt::format("dashboard of {}:{}", address_, port)),
+      port_(port),
+      timeout_(timeout) {}
+
+tl::unexpected<Error> Dashboard::fail(Error error) {
+    connection_.reset();
+    received_.clear();
+    error.where = where_;
+    return tl::unexpected(std::move(error));
+}
+
+Expected<std::string> Dashboard::line(Clock::time_point until) {
+    std::array<char, 512> buffer;
+    for (;;) {
+        if (const auto end = received_.find('\n'); end != std::string::npos) {
+            std::string text = received_.substr(0, end);
+            received_.erase(0, end + 1);
+            if (text.ends_with('\r')) text.pop_back();
+            return text;
+        }
+        if (received_.size() > kLongestLine)
+            return fail({ErrorKind::device, "an answer without an end came", {}, {}});
+        const auto left = std::chrono::ceil<Timeout>(until - Clock::now());
+        auto got =
+            connection_->receive_some(std::as_writable_bytes(std::span(buffer)), std::max(Timeout(1), left));
+        if (!got) return fail(got.error());
+        received_.append(buffer.data(), *got);
+    }
+}
+
+Expected<std::string> Dashboard::ask(const std::string& question) {
+    const auto until = Clock::now() + timeout_;
+    if (!connection_) {
+        auto made = TcpConnection::connect(address_, port_, timeout_);
+        if (!made) return fail(made.error());
+        connection_.emplace(std::move(*made));
+        received_.clear();
+        if (auto greeting = line(until); !greeting) return greeting;
+    }
+    if (auto sent = connection_->send(bytes_of(question + "\n"), timeout_); !sent) return fail(sent.error());
+    return line(until);
+}
+
+}  // namespace seamwright::ur

@@ -1,0 +1,80 @@
+#pragma once
+// What Seamwright and its URScript module (resources/robot/ur/seamwright.script) say to each other in RTDE's
+// registers.
+//
+// Integer and double registers from `first_register` on (24: the first of those that the RTDE guide leaves to
+// RTDE clients; 24 to 47 there are). A request is one data package: number, command, arguments, pose; the
+// controller takes a package as a whole. The module does what it asks and then sets kAnswered to the
+// request's number, last of all. So a frame is never half written, and an answer is never taken for that of
+// another request.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "core/geometry/pose.h"
+
+namespace seamwright::ur {
+
+inline constexpr int kFirstRegister = 24, kLastRegister = 47;
+inline constexpr std::int32_t kModuleVersion = 530101;  // in kModule while the module runs
+inline constexpr int kMostSpots = 64, kMostFrames = 32;
+
+// Integer registers that the module writes, counted from the first.
+enum Output : int {
+    kModule,
+    kAnswered,
+    kStatus,
+    kSignatureHigh,  // of the measuring program (program_signature())
+    kSignatureLow,
+    kFired,  // triggers of the present part
+    kCall,   // 1: the line calls for a part
+    kPart,   // its id in 4 registers, part_registers()
+    kReleased = kPart + 4,
+    kOutputs
+};
+// And those that Seamwright writes. The pose of a request and of its answer: 6 doubles, metres and rotation
+// vector.
+enum Input : int { kNumber, kCommand, kArgument, kHigh, kLow, kInputs };
+
+enum class Command : std::int32_t {
+    read = 1,     // argument: frame; answers its pose
+    write = 2,    // argument: frame, with its pose; takes the permission back; answers the pose as written
+    measure = 3,  // high, low: signature; starts the program or lets it go on
+    trigger = 4,  // argument: number from 1; answers the pose at that trigger
+    verdict = 5,  // argument: 1 corrected, 2 refused, 3 failed
+    move = 6,     // with a pose; answered when the robot stands there
+    taken = 7     // the call was heard
+};
+
+enum class Status : std::int32_t {
+    done = 0,
+    no_frame = 1,
+    other_program = 2,
+    running = 3,      // the measuring program runs already
+    in_use = 4,       // a path runs in the frames: no write
+    not_teaching = 5  // moves want the program sw_teach() to run
+};
+// The refusal in words; empty for `done`.
+std::string_view refusal(std::int32_t status);
+
+// Registers hold no text. A frame's name travels as its FNV-1a hash of 32 bits (two names of one program with
+// the same hash are refused when the program is written), a program's signature as its two halves, a part's
+// id as up to 16 characters, 4 a register: (position in part_alphabet() + 1) times 96^0 to 96^3, 0 = end.
+// Characters outside the alphabet are left out.
+std::int32_t frame_number(std::string_view name);
+std::pair<std::int32_t, std::int32_t> signature_numbers(std::string_view signature);
+std::string_view part_alphabet();  // printable ASCII without " and backslash
+std::array<std::int32_t, 4> part_registers(std::string_view part_id);
+std::string part_from_registers(const std::array<std::int32_t, 4>& registers);
+
+// Metres and rotation vector on the wire. Error (device): not finite, beyond 100 m, a rotation vector over 4
+// pi.
+std::array<double, 6> ur_pose(const Pose& pose);
+Expected<Pose> pose_from_ur(const std::array<double, 6>& pose, const std::string& where);
+
+}  // namespace seamwright::ur

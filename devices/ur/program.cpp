@@ -1,0 +1,111 @@
+// URScript of a project.
+
+#include "devices/ur/program.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "devices/exchange/settings.h"
+#include "devices/ur/module.h"
+#include "ur_resources.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kFastest_m_s = 2.0;
+
+std::string script_pose(const Pose& pose) {
+    const auto v = ur::ur_pose(pose);
+    return fmt::format("p[{:.7f}, {:.7f}, {:.7f}, {:.8f}, {:.8f}, {:.8f}]", v[0], v[1], v[2], v[3], v[4],
+                       v[5]);
+}
+
+Expected<void> check_pose(const Pose& pose, const std::string& where) {
+    if (pose.matrix().allFinite() && pose.translation().cwiseAbs().maxCoeff() <= 1e5) return {};
+    return input_error("a pose is not finite or beyond 100 m", where);
+}
+
+// As a comment may hold it.
+std::string plain(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text.substr(0, 79);
+}
+
+std::string filled(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
+    std::string out(text);
+    for (const auto& [name, value] : values)
+        if (const std::size_t at = out.find("@" + name + "@"); at != std::string::npos)
+            out.replace(at, name.size() + 2, value);
+    return out;
+}
+
+}  // namespace
+
+Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& request) {
+    if (request.moves.size() > ur::kMostSpots)
+        return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
+                           request.project, fmt::format("measure at most {} in one program", ur::kMostSpots));
+    if (request.frames.size() > ur::kMostFrames)
+        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
+                           request.project, fmt::format("give at most {}", ur::kMostFrames));
+    int first = ur::kFirstRegister, output = 0;
+    SettingsReader f(request.settings, "settings");
+    f.whole("first_register", first, 0, ur::kLastRegister + 1 - ur::kOutputs);
+    f.whole("trigger_output", output, 0, 7);
+    if (f.failed()) return tl::unexpected(f.error());
+
+    std::string passes;
+    int n = 0;
+    for (const MeasuringMove& move : request.moves) {
+        const std::string where = "spot " + move.spot_id;
+        if (!(move.speed_mm_s > 0 && move.speed_mm_s <= 1000 * kFastest_m_s))
+            return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s), where,
+                               "give up to 2000 mm/s");
+        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
+            if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
+        passes += fmt::format("  # spot {}\n  sw_pass({}, {}, {}, {}, {:.4f}, {})\n", plain(move.spot_id),
+                              ++n, script_pose(move.entry), script_pose(move.trigger), script_pose(move.exit),
+                              move.speed_mm_s / 1000, move.stop_at_trigger ? "True" : "False");
+    }
+    std::map<std::int32_t, std::string> names;
+    std::vector<std::string> numbers, frames;
+    std::string list;
+    for (const ApplicationFrame& frame : request.frames) {
+        const std::string where = "frame of region " + frame.region_id;
+        if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
+        const auto [at, fresh] = names.emplace(ur::frame_number(frame.name), frame.name);
+        if (!fresh)
+            return input_error(
+                fmt::format("\"{}\" and \"{}\" are one frame to the controller", at->second, frame.name),
+                where, "name one of them otherwise");
+        numbers.push_back(std::to_string(at->first));
+        frames.push_back(script_pose(frame.base_from_frame));
+        list += fmt::format("# sw_activate({}): region {}, frame {}\n", frames.size(), plain(frame.region_id),
+                            plain(frame.name));
+    }
+    const std::size_t count = frames.size();
+    if (count == 0) numbers = {"0"}, frames = {script_pose(Pose::Identity())};  // URScript has no empty list
+    const auto [high, low] = ur::signature_numbers(program_signature(request.moves));
+    const std::vector<std::string> spots(std::max<std::size_t>(1, request.moves.size()),
+                                         "p[0, 0, 0, 0, 0, 0]");
+    const std::string project = fmt::format(
+        "# project {}\n{}global sw_signature_high = {}\nglobal sw_signature_low = {}\nglobal sw_frame_count "
+        "= {}\n"
+        "global sw_names = [{}]\nglobal sw_frames = [{}]\nglobal sw_spot_at = [{}]\n",
+        plain(request.project), list, high, low, count, fmt::join(numbers, ", "), fmt::join(frames, ", "),
+        fmt::join(spots, ", "));
+    return std::vector<ProgramFile>{
+        {"seamwright.script",
+         filled(resources::seamwright_script, {{"ALPHABET", std::string(ur::part_alphabet())},
+                                               {"FIRST", std::to_string(first)},
+                                               {"TRIGGER_OUT", std::to_string(output)},
+                                               {"PROJECT", project},
+                                               {"PASSES", passes},
+                                               {"MODULE", std::to_string(ur::kModuleVersion)}})}};
+}
+
+}  // namespace seamwright

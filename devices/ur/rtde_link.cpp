@@ -1,0 +1,499 @@
+// Seamwright's end of an RTDE connection.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "devices/exchange/settings.h"
+#include "devices/net/socket.h"
+#include "devices/robot_program.h"
+#include "devices/ur/dashboard.h"
+#include "devices/ur/module.h"
+#include "devices/ur/rtde.h"
+#include "devices/ur/rtde_message.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using rtde::Package;
+using rtde::Recipe;
+using ur::Command;
+
+constexpr Timeout kStale{100};  // older state is waited for anew
+
+struct RtdeSettings {
+    std::string address = "127.0.0.1";
+    int port = 30004, dashboard_port = 29999, timeout_ms = 1000, move_timeout_ms = 60000,
+        first_register = ur::kFirstRegister, retry_ms = 100, retry_most_ms = 5000;
+    double frequency_hz = 125;
+};
+
+// One data package of the controller.
+struct State {
+    Pose base_from_tcp = Pose::Identity();
+    std::optional<Error> bad_pose;
+    Pose flange_from_tcp = Pose::Identity();
+    std::int32_t robot_mode = 0, safety_mode = 0;
+    std::uint32_t runtime = 0;
+    std::array<std::int32_t, ur::kOutputs> numbers{};
+    std::array<double, 6> pose{};
+    Clock::time_point at{};
+};
+
+class RtdeLink final : public RobotLink {
+  public:
+    explicit RtdeLink(RtdeSettings settings)
+        : settings_(std::move(settings)),
+          where_(fmt::format("ur-rtde {}:{}", settings_.address, settings_.port)),
+          timeout_(settings_.timeout_ms),
+          dashboard_(settings_.address, static_cast<std::uint16_t>(settings_.dashboard_port), timeout_),
+          back_off_(settings_.retry_ms) {}
+
+    Expected<RobotIdentity> identity() override {
+        auto model = dashboard_.ask("get robot model");
+        if (!model) return tl::unexpected(model.error());
+        auto serial = dashboard_.ask("get serial number");
+        if (!serial) return tl::unexpected(serial.error());
+        return RobotIdentity{"ur-rtde", "Universal Robots", *model, *serial};
+    }
+
+    Expected<RobotMode> mode() override {
+        auto state = coming();
+        if (!state) return tl::unexpected(state.error());
+        constexpr int kRobotRunning = 7, kProgramPlaying = 2;
+        switch ((*state)->safety_mode) {
+            case 1:  // normal
+            case 2:
+                break;  // reduced
+            case 3:     // protective stop
+            case 4:     // recovery
+            case 5:
+                return RobotMode::stopped;  // safeguard stop
+            case 6:
+            case 7:
+            case 8:
+            case 9:
+                return RobotMode::fault;  // emergency stops, violation, fault
+            default:
+                return RobotMode::unknown;
+        }
+        if ((*state)->robot_mode != kRobotRunning || (*state)->runtime != kProgramPlaying)
+            return RobotMode::stopped;
+        auto remote = dashboard_.ask("is in remote control");  // CB3 does not know the question
+        if (!remote) return tl::unexpected(remote.error());
+        if (remote->starts_with("true")) return RobotMode::external;
+        auto operational = dashboard_.ask("get operational mode");
+        if (!operational) return tl::unexpected(operational.error());
+        return operational->starts_with("MANUAL") ? RobotMode::manual_reduced : RobotMode::automatic;
+    }
+
+    Expected<Pose> base_from_flange() override {
+        auto state = coming();
+        if (!state) return tl::unexpected(state.error());
+        if ((*state)->bad_pose) return fail(*(*state)->bad_pose);
+        return (*state)->base_from_tcp * (*state)->flange_from_tcp.inverse();
+    }
+
+    Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
+        auto called = wait_until(timeout, [](const State& s) { return s.numbers[ur::kCall] == 1; });
+        if (!called) return tl::unexpected(called.error());
+        std::array<std::int32_t, 4> part{};
+        std::copy_n(state_->numbers.begin() + ur::kPart, 4, part.begin());
+        if (auto taken = ask(Command::taken); !taken) return tl::unexpected(taken.error());
+        return StartSignal{ur::part_from_registers(part), now_ns()};
+    }
+
+    Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
+        auto now = mode();
+        if (!now) return tl::unexpected(now.error());
+        if (*now == RobotMode::stopped || *now == RobotMode::fault)
+            return device_error("the robot is stopped", where_, "start its program on the controller");
+        spots_.clear();
+        told_ = 0;
+        for (const MeasuringMove& move : moves) spots_.push_back(move.spot_id);
+        const auto [high, low] = ur::signature_numbers(program_signature(moves));
+        auto started = ask(Command::measure, 0, high, low);
+        if (!started) return tl::unexpected(started.error());
+        return {};
+    }
+
+    Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
+        auto fired = wait_until(timeout, [this](const State& s) {
+            return s.numbers[ur::kFired] != static_cast<std::int32_t>(told_);
+        });
+        if (!fired) return tl::unexpected(fired.error());
+        const std::int64_t heard_ns = now_ns();
+        const std::int32_t count = state_->numbers[ur::kFired];
+        if (count < static_cast<std::int32_t>(told_) || count > static_cast<std::int32_t>(spots_.size()))
+            return fail({ErrorKind::device,
+                         fmt::format("the controller counts {} triggers after {}", count, told_), where_,
+                         "measure the part again"});
+        // The module keeps all of a part, so none is lost between two packages.
+        auto answer = ask(Command::trigger, static_cast<std::int32_t>(told_ + 1));
+        if (!answer) return tl::unexpected(answer.error());
+        return TriggerEvent{spots_[told_++], heard_ns, *answer};
+    }
+
+    Expected<Pose> read_frame(const std::string& name) override {
+        return named(name, ask(Command::read, ur::frame_number(name)));
+    }
+
+    Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
+        if (!base_from_frame.matrix().allFinite() ||
+            base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
+            return input_error("the frame is not finite or beyond 100 m", name);
+        auto written =
+            named(name, ask(Command::write, ur::frame_number(name), 0, 0, ur::ur_pose(base_from_frame)));
+        if (!written) return tl::unexpected(written.error());
+        return {};
+    }
+
+    Expected<void> confirm(PartVerdict verdict, const std::string&) override {
+        const bool released = verdict == PartVerdict::corrected;
+        auto told = ask(Command::verdict, released ? 1 : verdict == PartVerdict::refused ? 2 : 3);
+        if (!told) return tl::unexpected(told.error());
+        if ((state_->numbers[ur::kReleased] == 1) != released)
+            return device_error("the controller did not keep the verdict", where_);
+        return {};
+    }
+
+    Expected<void> move_to(const Pose& base_from_flange) override {
+        if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
+        auto there =
+            ask(Command::move, 0, 0, 0, ur::ur_pose(base_from_flange), Timeout(settings_.move_timeout_ms));
+        if (!there) return tl::unexpected(there.error());
+        return {};
+    }
+
+  private:
+    static std::int64_t now_ns() {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+    }
+    static Timeout left(Clock::time_point until) {
+        return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - Clock::now()));
+    }
+
+    tl::unexpected<Error> fail(Error error) {
+        connection_.reset();
+        state_.reset();
+        stream_.clear();
+        error.where = where_;
+        return tl::unexpected(std::move(error));
+    }
+
+    Expected<Pose> named(const std::string& name, Expected<Pose> answer) const {
+        if (!answer && answer.error().what.find("no such frame") != std::string::npos) {
+            Error error = answer.error();
+            error.what += ": " + name;
+            return tl::unexpected(error);
+        }
+        return answer;
+    }
+
+    // The next package that is no text; the newest text is kept for those that end in failure.
+    Expected<Package> receive(Clock::time_point until) {
+        std::array<char, 4096> buffer;
+        for (;;) {
+            auto package = rtde::take_package(stream_);
+            if (!package) return fail(package.error());
+            if (*package) {
+                if ((*package)->type != rtde::Type::text) return std::move(**package);
+                said_ = rtde::text_of((*package)->payload, version_);
+                continue;
+            }
+            const auto got =
+                connection_->receive_some(std::as_writable_bytes(std::span(buffer)), left(until));
+            if (!got) return fail(got.error());
+            stream_.append(buffer.data(), *got);
+        }
+    }
+
+    Expected<Package> request(const Package& question, Clock::time_point until) {
+        if (auto sent = connection_->send(bytes_of(rtde::package_bytes(question)), left(until)); !sent)
+            return fail(sent.error());
+        for (;;) {
+            auto answer = receive(until);
+            if (!answer || answer->type == question.type) return answer;
+            if (answer->type != rtde::Type::data)
+                return fail({ErrorKind::device,
+                             fmt::format("answer {} came to request {}", static_cast<int>(answer->type),
+                                         static_cast<int>(question.type)),
+                             where_, "only RTDE of Universal Robots listens there"});
+        }
+    }
+
+    Expected<bool> accepted(const Package& question, Clock::time_point until) {
+        auto answer = request(question, until);
+        if (!answer) return tl::unexpected(answer.error());
+        auto yes = rtde::accepted_of(answer->payload);
+        if (!yes) return fail(yes.error());
+        return yes;
+    }
+
+    Expected<Recipe> recipe(const Package& question, const std::vector<std::string>& names, bool numbered,
+                            Clock::time_point until) {
+        auto answer = request(question, until);
+        if (!answer) return tl::unexpected(answer.error());
+        return rtde::recipe_of(answer->payload, names, numbered);
+    }
+
+    std::vector<std::string> output_names(bool with_offset) const {
+        std::vector<std::string> names = {"actual_TCP_pose", "robot_mode", "safety_mode", "runtime_state"};
+        for (int i = 0; i < ur::kOutputs; ++i)
+            names.push_back(fmt::format("output_int_register_{}", settings_.first_register + i));
+        for (int i = 0; i < 6; ++i)
+            names.push_back(fmt::format("output_double_register_{}", settings_.first_register + i));
+        if (with_offset) names.emplace_back("tcp_offset");
+        return names;
+    }
+
+    static bool expected_kinds(const Recipe& r) {
+        using rtde::Kind;
+        std::vector<Kind> kinds = {Kind::vector6, Kind::int32, Kind::int32, Kind::uint32};
+        kinds.insert(kinds.end(), ur::kOutputs, Kind::int32);
+        kinds.insert(kinds.end(), 6, Kind::real);
+        if (r.kinds.size() > kinds.size()) kinds.push_back(Kind::vector6);
+        return r.kinds == kinds;
+    }
+
+    Expected<void> negotiate(Clock::time_point until) {
+        version_ = 2;
+        auto second = accepted({rtde::Type::protocol_version, rtde::version_payload(2)}, until);
+        if (!second) return tl::unexpected(second.error());
+        if (!*second) {
+            version_ = 1;
+            auto first = accepted({rtde::Type::protocol_version, rtde::version_payload(1)}, until);
+            if (!first) return tl::unexpected(first.error());
+            if (!*first)
+                return fail({ErrorKind::device, "the controller accepts neither RTDE 2 nor 1", {}, {}});
+        }
+        const bool numbered = version_ == 2;
+        for (const bool with_offset : {true, false}) {
+            const auto names = output_names(with_offset);
+            auto outputs = recipe(
+                {rtde::Type::setup_outputs, rtde::outputs_request(names, version_, settings_.frequency_hz)},
+                names, numbered, until);
+            if (!outputs && with_offset && connection_) continue;
+            if (!outputs) return fail(outputs.error());
+            outputs_ = std::move(*outputs);
+            break;
+        }
+        std::vector<std::string> names;
+        for (int i = 0; i < ur::kInputs; ++i)
+            names.push_back(fmt::format("input_int_register_{}", settings_.first_register + i));
+        for (int i = 0; i < 6; ++i)
+            names.push_back(fmt::format("input_double_register_{}", settings_.first_register + i));
+        auto inputs = recipe({rtde::Type::setup_inputs, rtde::inputs_request(names)}, names, true, until);
+        if (!inputs) return fail(inputs.error());
+        inputs_ = std::move(*inputs);
+        std::vector<rtde::Kind> kinds(ur::kInputs, rtde::Kind::int32);
+        kinds.insert(kinds.end(), 6, rtde::Kind::real);
+        if (!expected_kinds(outputs_) || inputs_.kinds != kinds)
+            return fail({ErrorKind::device,
+                         "the answer gives the variables other types than the RTDE guide",
+                         {},
+                         {}});
+        auto started = accepted({rtde::Type::start, {}}, until);
+        if (!started) return tl::unexpected(started.error());
+        if (!*started)
+            return fail({ErrorKind::device, "the controller refuses to start RTDE" + heard(), {}, {}});
+        return {};
+    }
+
+    std::string heard() const { return said_.empty() ? "" : ", saying: " + said_; }
+
+    Expected<void> connected() {
+        if (connection_ && connection_->is_open()) return {};
+        if (Clock::now() < not_before_)
+            return device_error(std::string(kDisconnected) + ", the next attempt is due soon", where_,
+                                "check that the controller is on");
+        auto made =
+            TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
+        if (made) {
+            connection_.emplace(std::move(*made));
+            stream_.clear();
+            said_.clear();
+            // Far from the numbers of a connection that the module may still hold an unanswered request of.
+            number_ = static_cast<std::int32_t>(now_ns() / 1000 % 1'000'000'000) + 1;
+            if (auto ready = negotiate(Clock::now() + timeout_); ready) {
+                back_off_ = Timeout(settings_.retry_ms);
+                return {};
+            } else {
+                made = tl::unexpected(ready.error());
+            }
+        }
+        not_before_ = Clock::now() + back_off_;
+        back_off_ = std::min(2 * back_off_, Timeout(settings_.retry_most_ms));
+        return fail(made.error());
+    }
+
+    Expected<void> take(const Package& package) {
+        if (package.type != rtde::Type::data)
+            return fail({ErrorKind::device,
+                         fmt::format("answer {} came and nothing was asked", static_cast<int>(package.type)),
+                         {},
+                         {}});
+        auto values = rtde::values_of(package.payload, outputs_);
+        if (!values) return fail(values.error());
+        State s;
+        const auto vector = [&](std::size_t i) { return std::get<std::array<double, 6>>((*values)[i]); };
+        auto tcp = ur::pose_from_ur(vector(0), where_);
+        if (tcp)
+            s.base_from_tcp = *tcp;
+        else
+            s.bad_pose = tcp.error();
+        s.robot_mode = std::get<std::int32_t>((*values)[1]);
+        s.safety_mode = std::get<std::int32_t>((*values)[2]);
+        s.runtime = std::get<std::uint32_t>((*values)[3]);
+        for (std::size_t i = 0; i < s.numbers.size(); ++i)
+            s.numbers[i] = std::get<std::int32_t>((*values)[4 + i]);
+        for (std::size_t i = 0; i < 6; ++i) s.pose[i] = std::get<double>((*values)[4 + s.numbers.size() + i]);
+        if (const std::size_t at = 4 + s.numbers.size() + 6; at < values->size()) {
+            auto offset = ur::pose_from_ur(vector(at), where_);
+            if (offset)
+                s.flange_from_tcp = *offset;
+            else
+                s.bad_pose = offset.error();
+        }
+        s.at = Clock::now();
+        state_ = s;
+        return {};
+    }
+
+    Expected<void> next_state(Clock::time_point until) {
+        auto package = receive(until);
+        if (!package) return tl::unexpected(package.error());
+        return take(*package);
+    }
+
+    // What has come already, and the next package where that is too old.
+    Expected<const State*> newest() {
+        if (auto ready = connected(); !ready) return tl::unexpected(ready.error());
+        std::array<char, 4096> buffer;
+        for (;;) {
+            const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), Timeout(0));
+            if (!got && !is_silence(got.error())) return fail(got.error());
+            if (got) stream_.append(buffer.data(), *got);
+            for (;;) {
+                auto package = rtde::take_package(stream_);
+                if (!package) return fail(package.error());
+                if (!*package) break;
+                if ((*package)->type == rtde::Type::text)
+                    said_ = rtde::text_of((*package)->payload, version_);
+                else if (auto taken = take(**package); !taken)
+                    return tl::unexpected(taken.error());
+            }
+            if (!got) break;
+        }
+        if (!state_ || Clock::now() - state_->at > kStale)
+            if (auto fresh = next_state(Clock::now() + timeout_); !fresh)
+                return tl::unexpected(fresh.error());
+        return &*state_;
+    }
+
+    // The next package from this moment on: how the robot stands now.
+    Expected<const State*> coming() {
+        auto state = newest();
+        if (!state) return state;
+        if (auto next = next_state(Clock::now() + timeout_); !next) return tl::unexpected(next.error());
+        return &*state_;
+    }
+
+    // Silence of the awaited thing is no silence of the controller: the connection stays.
+    template <class Ready>
+    Expected<void> wait_until(std::chrono::milliseconds timeout, const Ready& ready) {
+        const auto until = Clock::now() + timeout;
+        auto state = newest();
+        if (!state) return tl::unexpected(state.error());
+        while (!ready(*state_)) {
+            if (Clock::now() >= until) return device_error(kNoAnswer, where_);
+            if (auto next = next_state(Clock::now() + timeout_); !next) return next;
+        }
+        return {};
+    }
+
+    // The pose of the answer, where the command has one.
+    Expected<Pose> ask(Command command, std::int32_t argument = 0, std::int32_t high = 0,
+                       std::int32_t low = 0, const std::array<double, 6>& pose = {},
+                       std::optional<Timeout> timeout = {}) {
+        auto state = newest();
+        if (!state) return tl::unexpected(state.error());
+        if ((*state)->numbers[ur::kModule] != ur::kModuleVersion)
+            return device_error(
+                "the module seamwright.script does not run", where_,
+                "load what `seamwright robot-program --brand ur` writes and start the program");
+        const std::int32_t before = (*state)->numbers[ur::kAnswered];
+        number_ = number_ >= 2'000'000'000 ? 1 : number_ + 1;
+        std::vector<rtde::Value> values = {number_, static_cast<std::int32_t>(command), argument, high, low};
+        for (const double v : pose) values.emplace_back(v);
+        const auto until = Clock::now() + timeout.value_or(timeout_);
+        const std::string bytes =
+            rtde::package_bytes({rtde::Type::data, rtde::data_payload(inputs_, values)});
+        if (auto sent = connection_->send(bytes_of(bytes), timeout_); !sent) return fail(sent.error());
+        for (;;) {
+            if (auto next = next_state(std::min(until, Clock::now() + timeout_)); !next)
+                return tl::unexpected(next.error());
+            const std::int32_t answered = state_->numbers[ur::kAnswered];
+            if (answered == number_) break;
+            if (answered != before)
+                return fail({ErrorKind::device,
+                             fmt::format("answer {} came to request {}", answered, number_),
+                             {},
+                             "only one program may use these registers"});
+            if (state_->runtime != 2)  // the program stopped while it was at it
+                return fail(
+                    {ErrorKind::device, "the controller's program was stopped before it answered", {}, {}});
+            if (Clock::now() >= until)
+                return fail({ErrorKind::device, std::string(kNoAnswer) + " of the module", {}, {}});
+        }
+        if (const auto why = ur::refusal(state_->numbers[ur::kStatus]); !why.empty())
+            return device_error(fmt::format("the controller refuses: {}", why), where_);
+        if (command != Command::read && command != Command::write && command != Command::trigger)
+            return Pose::Identity();
+        auto answer = ur::pose_from_ur(state_->pose, where_);
+        if (!answer) return fail(answer.error());
+        return answer;
+    }
+
+    const RtdeSettings settings_;
+    const std::string where_;
+    const Timeout timeout_;
+    ur::Dashboard dashboard_;
+    Timeout back_off_;
+    Clock::time_point not_before_{};
+    std::optional<TcpConnection> connection_;
+    std::string stream_, said_;
+    int version_ = 2;
+    Recipe outputs_, inputs_;
+    std::optional<State> state_;
+    std::int32_t number_ = 0;
+    std::vector<std::string> spots_;
+    std::size_t told_ = 0;
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<RobotLink>> open_ur_rtde(const nlohmann::json& settings, DeviceSession&) {
+    RtdeSettings s;
+    SettingsReader f(settings, "settings");
+    f.only({"address", "port", "dashboard_port", "timeout_ms", "move_timeout_ms", "frequency_hz",
+            "first_register", "retry_ms", "retry_most_ms"});
+    f.text("address", s.address);
+    f.whole("port", s.port, 1, 65535);
+    f.whole("dashboard_port", s.dashboard_port, 1, 65535);
+    f.whole("timeout_ms", s.timeout_ms, 10, 60000);
+    f.whole("move_timeout_ms", s.move_timeout_ms, 10, 3600000);
+    f.number("frequency_hz", s.frequency_hz, 1, 500);
+    f.whole("first_register", s.first_register, 0, ur::kLastRegister + 1 - ur::kOutputs);
+    f.whole("retry_ms", s.retry_ms, 1, 60000);
+    f.whole("retry_most_ms", s.retry_most_ms, 1, 600000);
+    if (f.failed()) return tl::unexpected(f.error());
+    return std::make_unique<RtdeLink>(s);
+}
+
+}  // namespace seamwright

@@ -1,0 +1,197 @@
+// The link before controllers of other kinds than today's: an old protocol, a network that breaks and joins
+// packages, registers that belong to somebody else.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "devices/net/socket.h"
+#include "devices/simulated/cell.h"
+#include "devices/ur/module.h"
+#include "devices/ur/rtde.h"
+#include "devices/ur/rtde_message.h"
+
+namespace seamwright {
+namespace {
+
+using testing::HasSubstr;
+
+std::shared_ptr<SimulatedCell> cell() {
+    static const auto shared =
+        SimulatedCell::open(
+            {{"optics", {{"width", 64}, {"height", 64}}},
+             {"robot", {{"frames", {{"left", {{"xyz", {900, -450, 500}}, {"abc", {12, -4, 3}}}}}}}}})
+            .value();
+    return shared;
+}
+
+std::vector<MeasuringMove> program(int spots) {
+    std::vector<MeasuringMove> moves;
+    for (int i = 1; i <= spots; ++i) {
+        MeasuringMove m;
+        m.spot_id = "S" + std::to_string(i);
+        m.entry = m.trigger = m.exit =
+            make_pose(rotation_exp({0.1 * i, 0.2, -0.3}), {800.0 + 10 * i, -200, 600});
+        moves.push_back(m);
+    }
+    return moves;
+}
+
+std::unique_ptr<RobotLink> link_to(std::uint16_t port,
+                                   const nlohmann::json& more = nlohmann::json::object()) {
+    nlohmann::json settings = {{"port", port}, {"timeout_ms", 1000}, {"retry_ms", 1}};
+    settings.update(more);
+    DeviceSession session;
+    auto link = open_ur_rtde(settings, session);
+    EXPECT_TRUE(link) << link.error().sentence();
+    return std::move(*link);
+}
+
+std::unique_ptr<SimulatedController> controller(nlohmann::json settings) {
+    settings["port"] = 0;
+    settings["dashboard_port"] = TcpListener::listen("127.0.0.1", 0)->port();
+    cell()->set_mode(RobotMode::automatic);
+    cell()->store_program(program(5));
+    auto started = start_ur_rtde_controller(cell(), settings);
+    EXPECT_TRUE(started) << started.error().sentence();
+    return std::move(*started);
+}
+
+// Passes bytes on, from the controller in pieces of `piece` bytes.
+class Relay {
+  public:
+    Relay(std::uint16_t to, std::size_t piece) : listener_(TcpListener::listen("127.0.0.1", 0).value()) {
+        thread_ = std::jthread([this, to, piece](const std::stop_token& stop) {
+            while (!stop.stop_requested()) {
+                auto client = listener_.accept(Timeout(2));
+                if (!client) continue;
+                auto server = TcpConnection::connect("127.0.0.1", to, Timeout(1000));
+                if (!server) continue;
+                while (!stop.stop_requested() && pass(*client, *server, 4096) &&
+                       pass(*server, *client, piece)) {
+                }
+            }
+        });
+    }
+    std::uint16_t port() const { return listener_.port(); }
+
+  private:
+    static bool pass(TcpConnection& from, TcpConnection& to, std::size_t piece) {
+        std::array<std::byte, 4096> buffer;
+        const auto got = from.receive_some(buffer, Timeout(1));
+        if (!got) return is_silence(got.error());
+        for (std::size_t at = 0; at < *got; at += piece)
+            if (!to.send(std::span(buffer).subspan(at, std::min(piece, *got - at)), Timeout(500)))
+                return false;
+        return true;
+    }
+    TcpListener listener_;
+    std::jthread thread_;
+};
+
+void measure_and_push(RobotLink& link) {
+    auto at = link.base_from_flange();
+    ASSERT_TRUE(at) << at.error().sentence();
+    cell()->move_to(program(5)[1].trigger);
+    EXPECT_LT(distance_mm(*link.base_from_flange(), program(5)[1].trigger), 1e-6) << "the tool is taken off";
+    ASSERT_TRUE(link.start_measuring(program(5)));
+    for (const MeasuringMove& move : program(5)) {
+        auto trigger = link.wait_trigger(std::chrono::seconds(5));
+        ASSERT_TRUE(trigger) << trigger.error().sentence();
+        EXPECT_EQ(trigger->spot_id, move.spot_id);
+        EXPECT_LT(distance_mm(*trigger->base_from_flange, move.trigger), 1e-6);
+    }
+    const Pose frame = make_pose(rotation_exp({0.2, 0.1, -0.4}), {910, -440, 505});
+    ASSERT_TRUE(link.write_frame("left", frame));
+    EXPECT_LT(distance_mm(*link.read_frame("left"), frame), 1e-6);
+    ASSERT_TRUE(link.confirm(PartVerdict::corrected, ""));
+}
+
+TEST(UrRtde, OldControllersSpeakVersionOneAndTellNoOffset) {
+    auto robot = controller({{"protocol_version", 1}, {"tells_tcp_offset", false}});
+    auto link = link_to(robot->port());
+    // No dashboard question is asked for what RTDE tells itself.
+    cell()->move_to(program(5)[0].trigger);
+    auto at = link->base_from_flange();
+    ASSERT_TRUE(at) << at.error().sentence();
+    EXPECT_LT(distance_mm(*at, program(5)[0].trigger), 1e-6);
+    auto frame = link->read_frame("left");
+    EXPECT_TRUE(frame) << frame.error().sentence();
+}
+
+TEST(UrRtde, BrokenAndJoinedPackagesAreOne) {
+    for (const std::size_t piece : {1UL, 7UL, 4096UL}) {
+        nlohmann::json settings = {{"trigger_interval_ms", 0}, {"approach_ms", 0}, {"port", 0}};
+        const std::uint16_t dashboard = TcpListener::listen("127.0.0.1", 0)->port();
+        settings["dashboard_port"] = dashboard;
+        cell()->set_mode(RobotMode::automatic);
+        cell()->store_program(program(5));
+        auto robot = start_ur_rtde_controller(cell(), settings);
+        ASSERT_TRUE(robot);
+        Relay relay((*robot)->port(), piece);
+        auto link = link_to(relay.port(), {{"dashboard_port", dashboard}});
+        measure_and_push(*link);
+        EXPECT_TRUE((*robot)->released());
+    }
+}
+
+TEST(UrRtde, RegistersMayLieElsewhere) {
+    auto robot = controller({{"first_register", 3}});
+    EXPECT_TRUE(link_to(robot->port(), {{"first_register", 3}})->read_frame("left"));
+    auto elsewhere = link_to(robot->port())->read_frame("left");
+    ASSERT_FALSE(elsewhere);
+    EXPECT_THAT(elsewhere.error().sentence(), HasSubstr("seamwright.script does not run"));
+}
+
+TEST(UrRtde, MovesWantTheTeachProgram) {
+    auto robot = controller({});
+    auto link = link_to(robot->port());
+    EXPECT_THAT(link->move_to(program(1)[0].trigger).error().sentence(), HasSubstr("sw_teach()"));
+    cell()->set_mode(RobotMode::manual_reduced);
+    ASSERT_TRUE(link->move_to(program(3)[2].trigger));
+    EXPECT_LT(distance_mm(*link->base_from_flange(), program(3)[2].trigger), 1e-6);
+}
+
+TEST(UrRtde, RegistersOfAnotherProgramAreRefusedByName) {
+    auto listener = TcpListener::listen("127.0.0.1", 0).value();
+    const std::uint16_t port = listener.port();
+    std::jthread robot([&listener](const std::stop_token& stop) {
+        auto client = listener.accept(Timeout(5000));
+        std::string stream;
+        std::array<char, 4096> buffer;
+        while (client && !stop.stop_requested()) {
+            const auto got = client->receive_some(std::as_writable_bytes(std::span(buffer)), Timeout(20));
+            if (!got && !is_silence(got.error())) return;
+            if (got) stream.append(buffer.data(), *got);
+            auto package = rtde::take_package(stream);
+            if (!package || !*package) continue;
+            std::string answer(1, '\1');
+            if ((*package)->type == rtde::Type::setup_outputs) {
+                answer += "VECTOR6D,INT32,INT32,UINT32";
+                for (int i = 0; i < ur::kOutputs; ++i) answer += ",INT32";
+                for (int i = 0; i < 6; ++i) answer += ",DOUBLE";
+                answer += ",VECTOR6D";
+            }
+            if ((*package)->type == rtde::Type::setup_inputs) {
+                answer = std::string(1, '\0') + "INT32,IN_USE,INT32,INT32,INT32";
+                for (int i = 0; i < 6; ++i) answer += ",DOUBLE";
+            }
+            (void)client->send(bytes_of(rtde::package_bytes({(*package)->type, answer})), Timeout(500));
+        }
+    });
+    auto read = link_to(port)->read_frame("left");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error().sentence(), HasSubstr("another program already writes input_int_register_25"));
+}
+
+TEST(UrRtde, SettingsOutOfRangeAreRefused) {
+    DeviceSession session;
+    for (const char* text : {R"({"port": 0})", R"({"first_register": 37})", R"({"frequency_hz": "fast"})",
+                             R"({"timeout_ms": 1.5})", R"({"prot": 1})"})
+        EXPECT_FALSE(open_ur_rtde(nlohmann::json::parse(text), session)) << text;
+}
+
+}  // namespace
+}  // namespace seamwright

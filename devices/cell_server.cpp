@@ -15,7 +15,7 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options) {
 }
 
 Expected<CellServer> CellServer::start(const CellServerOptions& options,
-                                       std::shared_ptr<SimulatedCell> cell) {
+                                       const std::shared_ptr<SimulatedCell>& cell) {
     CellServer server;
     server.cell_ = cell;
     if (!options.program.empty()) cell->store_program(options.program);

@@ -34,7 +34,7 @@ class CellServer {
   public:
     static Expected<CellServer> start(const CellServerOptions& options);
     // The same on a cell that is there already; options.cell is not looked at.
-    static Expected<CellServer> start(const CellServerOptions& options, std::shared_ptr<SimulatedCell> cell);
+    static Expected<CellServer> start(const CellServerOptions& options, const std::shared_ptr<SimulatedCell>& cell);
     CellServer(CellServer&&) noexcept;
     CellServer& operator=(CellServer&&) noexcept;
     ~CellServer();

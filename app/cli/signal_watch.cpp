@@ -18,7 +18,7 @@ class SignalWatch {
     SignalWatch() {
         std::signal(SIGINT, on_signal);
         std::signal(SIGTERM, on_signal);
-        thread_ = std::jthread([this](std::stop_token done) {
+        thread_ = std::jthread([this](const std::stop_token& done) {
             while (!done.stop_requested()) {
                 if (g_signalled) source_.request_stop();
                 std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -82,7 +82,7 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     make_status();
     feeder_ = new ViewFeeder(desk_, views_, this);
     connect(run_page_, &StepPage::run_shown, this,
-            [this](std::shared_ptr<const RunRecord> run) { feeder_->show_run(run.get()); });
+            [this](const std::shared_ptr<const RunRecord>& run) { feeder_->show_run(run.get()); });
 
     connect(&desk_, &Desk::modified_changed, this, &MainWindow::refresh_title);
     connect(&desk_, &Desk::opened, this, [this] {

@@ -483,9 +483,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     const double first_mean = between / system.count;
     for (size_t k = 1; k < starts.size(); ++k) {
         Model other = starts[k].model;
-        std::vector<Section> same = sections;
         const double cost =
-            solve_reduced(same, other, radius_free, std::numeric_limits<double>::infinity(), 60);
+            solve_reduced(sections, other, radius_free, std::numeric_limits<double>::infinity(), 60);
         const bool different = angle_rad(other.flange_from_sensor, model.flange_from_sensor) > 0.02 ||
                                distance_mm(other.flange_from_sensor, model.flange_from_sensor) > 5;
         if (different) second_cost = std::min(second_cost, cost);

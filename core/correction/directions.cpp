@@ -75,7 +75,7 @@ std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<do
     std::vector<std::string> words;
     if (xi.cols() == 0) return words;
     const Eigen::JacobiSVD<Eigen::MatrixXd> span(xi, Eigen::ComputeThinU);
-    const Eigen::MatrixXd u = span.matrixU();
+    const Eigen::MatrixXd& u = span.matrixU();
     // Combinations ordered by how much rotation they hold; the last ones are translations.
     const Eigen::JacobiSVD<Eigen::MatrixXd> parts(u.bottomRows(3), Eigen::ComputeFullV);
     Eigen::Index turning = 0;
@@ -119,7 +119,8 @@ std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<do
             place = fmt::format(" through ({:.1f}, {:.1f}, {:.1f})", no_minus(point.x()), no_minus(point.y()),
                                 no_minus(point.z()));
         const std::string direction = axis_words(axis);
-        const std::string about = (direction[0] == '(' ? "the axis " : "") + direction + place;
+        std::string about = direction[0] == '(' ? "the axis " : "";
+        about.append(direction).append(place);
         if (std::abs(pitch) > kTranslationShare * spread)
             words.push_back(fmt::format("rotation about {} with {:.1f} mm along it per degree", about,
                                         rad_from_deg(pitch)));

@@ -45,7 +45,8 @@ Eigen::Matrix2d landmark_bound(std::span<const Eigen::Vector2d> points,
     assert(points.size() == normals.size());
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Eigen::Vector2d lever = points[i] - landmark_mm, n = normals[i];
+        const Eigen::Vector2d lever = points[i] - landmark_mm;
+        const Eigen::Vector2d& n = normals[i];
         const Eigen::Vector3d row(n.x(), n.y(), lever.x() * n.y() - lever.y() * n.x());
         information += row * row.transpose() / (sigma_mm * sigma_mm);
     }

@@ -33,7 +33,7 @@ Sensitivity learn_sensitivity(const ServoValues& values, const ServoingOptions& 
     }
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(out.matrix * scale.asDiagonal(),
                                                 Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Eigen::VectorXd s = svd.singularValues();
+    const Eigen::VectorXd& s = svd.singularValues();
     out.condition = s.size() == 6 && s[5] > 0 ? s[0] / s[5] : std::numeric_limits<double>::infinity();
     out.usable = out.condition <= options.condition_limit;
     if (out.usable)

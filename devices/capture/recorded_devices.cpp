@@ -143,7 +143,7 @@ std::unique_ptr<RobotLink> record_robot(std::unique_ptr<RobotLink> robot, std::s
 
 Expected<std::unique_ptr<RecordingSession>> RecordingSession::start(std::shared_ptr<Recorder> recorder,
                                                                     std::vector<Sensor> sensors,
-                                                                    std::vector<Robot> robots) {
+                                                                    const std::vector<Robot>& robots) {
     std::unique_ptr<RecordingSession> session(new RecordingSession);
     session->recorder_ = std::move(recorder);
     for (const Sensor& s : sensors) {

@@ -128,7 +128,7 @@ class RecordingSession {
     // All or nothing: a sensor that does not start ends it.
     static Expected<std::unique_ptr<RecordingSession>> start(std::shared_ptr<Recorder> recorder,
                                                              std::vector<Sensor> sensors,
-                                                             std::vector<Robot> robots);
+                                                             const std::vector<Robot>& robots);
     ~RecordingSession();  // stops
     // Ends within the devices' time-outs of 100 ms and a little.
     void stop();

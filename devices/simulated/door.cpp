@@ -101,7 +101,7 @@ std::vector<Vector2d> cross_section() {
 }
 
 // Raised bead along a line: height above the panel.
-double bead(double x, double y, Vector2d a, Vector2d b, double half_width, double height) {
+double bead(double x, double y, const Vector2d& a, const Vector2d& b, double half_width, double height) {
     const Vector2d d = b - a, p(x, y);
     const double s = std::clamp(d.dot(p - a) / d.squaredNorm(), 0.0, 1.0);
     return height * smooth_step(1.6 - 1.6 * (p - a - s * d).norm() / half_width);

@@ -54,7 +54,7 @@ LiveFeed::~LiveFeed() {
     thread_.join();
 }
 
-void LiveFeed::attach(std::map<std::string, ProfileSource*> sources) {
+void LiveFeed::attach(const std::map<std::string, ProfileSource*>& sources) {
     const std::lock_guard use(use_mutex_);
     const std::lock_guard lock(mutex_);
     lanes_.clear();

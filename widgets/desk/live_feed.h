@@ -48,7 +48,7 @@ class LiveFeed : public QObject {
     ~LiveFeed() override;
 
     // The sources must stay until detach() has returned.
-    void attach(std::map<std::string, ProfileSource*> sources);
+    void attach(const std::map<std::string, ProfileSource*>& sources);
     void detach();
     void set_recipe(const std::string& sensor_id, const LiveRecipe& recipe);
     // nullptr before the first frame.

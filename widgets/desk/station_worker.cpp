@@ -140,7 +140,7 @@ void StationWorker::disconnect_devices() {
     });
 }
 
-void StationWorker::run_one(Station& station, RunOptions options) {
+void StationWorker::run_one(Station& station, const RunOptions& options) {
     auto run = station.run(options);
     if (!run) {
         emit failed(text_of(run.error()));

@@ -97,7 +97,7 @@ class StationWorker : public QObject {
     void idle(Station& station);
     void stop_live();
     void publish(Station& station);
-    void run_one(Station& station, RunOptions options);
+    void run_one(Station& station, const RunOptions& options);
     std::function<void(const RunProgress&)> progress_sink();
 
     LiveFeed& feed_;

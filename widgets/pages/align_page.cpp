@@ -51,7 +51,7 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     box().addLayout(make_row({accept_, adopt_}));
     box().addStretch(1);
 
-    connect(&desk_.worker(), &StationWorker::passed, this, [this](std::shared_ptr<const PassResult> pass) {
+    connect(&desk_.worker(), &StationWorker::passed, this, [this](const std::shared_ptr<const PassResult>& pass) {
         pass_ = std::make_shared<PassResult>(*pass);
         show_result();
     });

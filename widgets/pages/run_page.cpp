@@ -303,7 +303,7 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
     emit run_shown(shown_);
 }
 
-void RunPage::ask(std::shared_ptr<const RunRecord> judged) {
+void RunPage::ask(const std::shared_ptr<const RunRecord>& judged) {
     show_run(judged);
     QVector<QStringList> rows;
     std::set<std::string> robots;
@@ -406,7 +406,7 @@ void RunPage::export_csv() {
         "run,part,started_utc,push,status,region,region_status,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,sigma_x_mm,"
         "sigma_y_mm,"
         "sigma_z_mm,sigma_a_deg,sigma_b_deg,sigma_c_deg,gate_passed,push_status\n";
-    const auto quoted = [](std::string s) {
+    const auto quoted = [](const std::string& s) {
         std::string out = "\"";
         for (char c : s) out += c == '"' ? std::string("\"\"") : std::string(1, c);
         return out + "\"";

@@ -21,7 +21,7 @@ class RunPage : public StepPage {
 
   private:
     void show_run(std::shared_ptr<const RunRecord> run);
-    void ask(std::shared_ptr<const RunRecord> judged);
+    void ask(const std::shared_ptr<const RunRecord>& judged);
     void answer(bool yes);
     void show_history();
     void export_csv();

@@ -198,7 +198,7 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         done(desk_.edit(s, tr("reference point")));
         views_.profile->set_tool(ProfilePlot::Tool::inspect);
     });
-    connect(&desk_.worker(), &StationWorker::taught, this, [this](std::shared_ptr<const TaughtSpot> taught) {
+    connect(&desk_.worker(), &StationWorker::taught, this, [this](const std::shared_ptr<const TaughtSpot>& taught) {
         const Spot* s = find_spot(desk_.project(), taught->spot.id);
         if (!s) return;
         // Only what was measured: the draft may have been edited meanwhile. The curve of an earlier pass was

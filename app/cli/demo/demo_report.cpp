@@ -204,7 +204,7 @@ std::string demo_picture(const DemoOutcome& o) {
             std::find_if(o.parts.begin(), o.parts.end(), [](const DemoPart& p) { return p.pushed(); });
         part != o.parts.end())
         for (const DemoDeviation& d : part->path) {
-            const std::size_t i = static_cast<std::size_t>(d.arc_mm / 10 + 0.5);
+            const std::size_t i = static_cast<std::size_t>(std::lround(d.arc_mm / 10));
             const Eigen::Vector3d along =
                 (path[(i + 1) % path.size()] - path[(i + path.size() - 1) % path.size()]).normalized();
             const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(along).normalized();

@@ -29,6 +29,17 @@ struct Station::Impl {
     std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
     std::map<std::string, std::unique_ptr<RobotLink>> robots;
 
+    std::shared_ptr<Recorder> recorder;
+    std::map<std::string, std::int64_t> recorded;  // sources of the recording, kept across reconnects
+
+    template <class Add>
+    Expected<std::int64_t> recorded_as(const std::string& name, const Add& add) {
+        if (const auto known = recorded.find(name); known != recorded.end()) return known->second;
+        auto source = add();
+        if (source) recorded[name] = *source;
+        return source;
+    }
+
     Impl(ProjectFile f, Project p) : file(std::move(f)), project(std::move(p)) {}
 
     // One run in the making.
@@ -357,6 +368,11 @@ const Project& Station::project() const {
 ProjectFile& Station::file() {
     return impl_->file;
 }
+void Station::record_to(std::shared_ptr<Recorder> recorder) {
+    impl_->recorder = std::move(recorder);
+    impl_->recorded.clear();
+}
+
 bool Station::connected() const {
     return impl_->connected;
 }
@@ -395,13 +411,26 @@ Expected<void> Station::connect() {
     for (const SensorSetup& setup : i.project.sensors) {
         auto sensor = open_sensor(setup.driver, setup.settings, i.session);
         if (!sensor) return give_up(sensor.error(), "sensor " + setup.id);
+        if (i.recorder) {
+            auto source = i.recorded_as("sensor " + setup.id, [&] {
+                return i.recorder->add_sensor(setup.id, (*sensor)->identity());
+            });
+            if (!source) return give_up(source.error(), "sensor " + setup.id);
+            *sensor = record_sensor(std::move(*sensor), i.recorder, *source);
+        }
         i.sensors[setup.id] = std::move(*sensor);
     }
     for (const RobotSetup& setup : i.project.robots) {
         auto robot = open_robot(setup.driver, setup.settings, i.session);
         if (!robot) return give_up(robot.error(), "robot " + setup.id);
-        if (auto identity = (*robot)->identity(); !identity)
-            return give_up(identity.error(), "robot " + setup.id);
+        auto identity = (*robot)->identity();
+        if (!identity) return give_up(identity.error(), "robot " + setup.id);
+        if (i.recorder) {
+            auto source = i.recorded_as("robot " + setup.id,
+                                        [&] { return i.recorder->add_robot(setup.id, *identity); });
+            if (!source) return give_up(source.error(), "robot " + setup.id);
+            *robot = record_robot(std::move(*robot), i.recorder, *source);
+        }
         i.robots[setup.id] = std::move(*robot);
     }
     i.connected = true;

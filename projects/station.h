@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <string>
 
+#include "devices/capture/recorder.h"
 #include "devices/registry.h"
 #include "projects/acquire.h"
 #include "projects/project_file.h"
@@ -59,6 +60,9 @@ class Station {
     // The same with devices made elsewhere (tests, a simulation already running).
     void connect(std::map<std::string, std::unique_ptr<ProfileSource>> sensors,
                  std::map<std::string, std::unique_ptr<RobotLink>> robots);
+    // Everything that devices deliver from the next connect() on goes into this recording too (nullptr: no
+    // more).
+    void record_to(std::shared_ptr<Recorder> recorder);
     void disconnect();
     bool connected() const;
     ProfileSource* sensor(const std::string& id);  // nullptr when not connected

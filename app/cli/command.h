@@ -55,6 +55,7 @@ void add_calibrate(CommandLine& line);
 void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, import
 void add_run(CommandLine& line);
+void add_record(CommandLine& line);
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);
 void add_sim_cell(CommandLine& line);

@@ -6,6 +6,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/feature_setting.h"
+#include "app/cli/recording.h"
 #include "app/cli/result_json.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
@@ -31,6 +32,7 @@ Expected<Answer> new_project(const std::string& path, const std::string& name) {
 }
 
 Expected<Answer> info(const std::string& path) {
+    if (seam_file_kind(path) == SeamFile::capture) return capture_info(path);
     auto file = ProjectFile::open(path, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
@@ -89,6 +91,7 @@ Expected<Answer> info(const std::string& path) {
 
 // 0 sound; 1 findings of plausibility; 3 the file itself is damaged.
 Expected<Answer> check_project(const std::string& path) {
+    if (seam_file_kind(path) == SeamFile::capture) return capture_check(path);
     auto file = ProjectFile::open(path, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
     Answer answer;
@@ -113,6 +116,7 @@ Expected<Answer> check_project(const std::string& path) {
 struct ExportArguments {
     std::string file, out, profiles, format = "csv";
     std::int64_t run = 0;
+    bool taught_profiles = false;
 };
 
 Expected<Answer> export_command(const ExportArguments& a) {
@@ -123,7 +127,7 @@ Expected<Answer> export_command(const ExportArguments& a) {
     Answer answer;
     answer.json = {{"status", "ok"}};
     if (!a.out.empty()) {
-        auto document = export_file(*file);
+        auto document = export_file(*file, a.taught_profiles);
         if (!document) return tl::unexpected(document.error());
         if (auto written = write_text_file(a.out, document->dump(2) + "\n"); !written)
             return tl::unexpected(written.error());
@@ -242,7 +246,8 @@ void add_project_commands(CommandLine& line) {
     }
     {
         auto path = std::make_shared<std::string>();
-        CLI::App* command = line.add("info", "Summarise a project.", "seamwright info door_left.seam");
+        CLI::App* command =
+            line.add("info", "Summarise a project or a recorded capture.", "seamwright info door_left.seam");
         command->add_option("file", *path, "The project")->required()->type_name("FILE.seam");
         line.on(command, [path] { return info(*path); });
     }
@@ -261,6 +266,9 @@ void add_project_commands(CommandLine& line) {
                      "  seamwright export door_left.seam --profiles profiles --format ply --run 3");
         command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
         command->add_option("--out", a->out, "Project, runs and events as JSON")->type_name("FILE.json");
+        command->add_flag(
+            "--with-taught", a->taught_profiles,
+            "In the JSON, the spots' reference profiles and templates too: import gives a project that runs");
         command->add_option("--profiles", a->profiles, "Folder for the run's profiles, one file a spot")
             ->type_name("DIR");
         command->add_option("--format", a->format, "csv: sensor frame; ply, pcd: points in base")

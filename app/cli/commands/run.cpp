@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "app/cli/command.h"
+#include "app/cli/recording.h"
 #include "app/cli/result_json.h"
 #include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
@@ -27,7 +28,7 @@ using nlohmann::json;
 struct RunArguments {
     std::string file, part;
     bool push = false, dry_run = false, keep_images = false, watch = false;
-    std::string log;
+    std::string log, record;
     std::int64_t parts = 0, keep_runs = 0;
 };
 
@@ -85,6 +86,9 @@ Expected<Answer> watch_project(const RunArguments& a) {
     options.parts = a.parts;
     options.keep_runs = a.keep_runs;
     options.cancel = stop_on_signal();
+    auto recorder = open_recorder(a.record, {.images = true});
+    if (!recorder) return tl::unexpected(recorder.error());
+    station->record_to(*recorder);
     options.tell = [&](const WatchEvent& e) {
         print_status(e);
         if (*log) (*log)->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
@@ -98,12 +102,18 @@ Expected<Answer> watch_project(const RunArguments& a) {
     answer.text =
         fmt::format("{} parts: {} corrected, {} refused, {} failed, {} alarms, {} outages\n", counts->parts,
                     counts->corrected, counts->refused, counts->failed, counts->alarms, counts->lost);
+    station->disconnect();
+    if (auto told = tell_recording(recorder->get(), a.record, answer); !told)
+        return tl::unexpected(told.error());
     return answer;
 }
 
 Expected<Answer> run(const RunArguments& a) {
     auto station = Station::open(a.file);
     if (!station) return tl::unexpected(station.error());
+    auto recorder = open_recorder(a.record, {.images = true});
+    if (!recorder) return tl::unexpected(recorder.error());
+    station->record_to(*recorder);
     if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
     RunOptions options;
     options.part_id = a.part;
@@ -122,6 +132,9 @@ Expected<Answer> run(const RunArguments& a) {
                        : record->status == RunStatus::device || record->status == RunStatus::alarm
                            ? kExitDevice
                            : kExitVerdict;
+    station->disconnect();
+    if (auto told = tell_recording(recorder->get(), a.record, answer); !told)
+        return tl::unexpected(told.error());
     return answer;
 }
 
@@ -182,6 +195,8 @@ void add_run(CommandLine& line) {
         command->add_flag("--push", a->push, "Write the corrected frames, if the safety gate passes them");
     command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);
     command->add_flag("--keep-images", a->keep_images, "Keep the raw images with the run");
+    command->add_option("--record", a->record, "Every frame, trigger and pose of the session into a capture")
+        ->type_name("FILE");
     auto* watching =
         command->add_flag("--watch", a->watch,
                           "Car after car: wait for the robot's start signal, measure, tell the robot, "

@@ -1,0 +1,107 @@
+// A session recorded from the command line, and measured again from its capture.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "run_program.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Record : public testing::Test {
+  protected:
+    std::filesystem::path folder = test_folder("record");
+    std::string project = (folder / "out" / "demo.seam").string();
+    void SetUp() override {
+        const auto demo =
+            run_program({"demo", "--in-process", "--parts", "1", "--dir", (folder / "out").string()}, folder);
+        ASSERT_EQ(demo.exit_code, 0) << demo.err;
+    }
+    ~Record() override { std::filesystem::remove_all(folder); }
+    json answer_of(const std::vector<std::string>& arguments, int exit_code = 0) {
+        auto with_json = arguments;
+        with_json.insert(with_json.end(), {"--json", "-"});
+        const auto r = run_program(with_json, folder);
+        EXPECT_EQ(r.exit_code, exit_code) << r.err;
+        return json::parse(r.out, nullptr, false);
+    }
+};
+
+TEST_F(Record, ARunIsMeasuredAgainFromItsCapture) {
+    const std::string capture = (folder / "run.capture").string();
+    const json run = answer_of({"run", project, "--part", "CAR-7", "--record", capture});
+    ASSERT_EQ(run["recording"]["sources"]["A"]["frames"], 12) << run.dump(1).substr(0, 2000);
+    EXPECT_EQ(run["recording"]["sources"]["A"]["dropped"], 0);
+    const json info = answer_of({"info", capture});
+    EXPECT_EQ(info["kind"], "capture");
+    EXPECT_EQ(info["sources"][0]["counters"]["frames"], 12);
+    EXPECT_EQ(info["sources"][1]["events"]["trigger"], 12);
+    EXPECT_EQ(answer_of({"check", capture})["status"], "ok");
+
+    // The same project on the recording instead of the devices.
+    const std::string exported = (folder / "project.json").string(), again = (folder / "again.seam").string();
+    answer_of({"export", project, "--out", exported, "--with-taught"});
+    json text = json::parse(std::ifstream(exported));
+    text["runs"] = json::array();
+    text["events"] = json::array();
+    for (const char* kind : {"sensors", "robots"})
+        for (json& device : text["project"][kind]) {
+            device["driver"] = "replay";
+            device["settings"] = {{"file", capture}, {"source", device["id"]}, {"speed", 0}};
+        }
+    std::ofstream(exported) << text.dump();
+    answer_of({"import", again, "--from", exported});
+    const json replayed = answer_of({"run", again, "--part", "CAR-7"}, 1);
+    EXPECT_THAT(replayed["message"].get<std::string>(), HasSubstr("calibrated was [simulated"))
+        << "a recording is no device: nothing of it may be pushed";
+    ASSERT_EQ(replayed["regions"].size(), run["regions"].size()) << replayed.dump(1).substr(0, 2000);
+    for (std::size_t i = 0; i < run["regions"].size(); ++i)
+        EXPECT_EQ(replayed["regions"][i]["correction"], run["regions"][i]["correction"]) << "bit for bit";
+}
+
+TEST_F(Record, RefusesAnExistingFileAndUnknownDevices) {
+    const std::string capture = (folder / "there").string();
+    std::ofstream(capture) << "mine";
+    EXPECT_EQ(run_program({"record", project, "--out", capture, "--seconds", "1"}, folder).exit_code, 3);
+    std::string kept;
+    std::getline(std::ifstream(capture), kept);
+    EXPECT_EQ(kept, "mine");
+    const auto r = run_program({"record", project, "--out", capture + "2", "--sensor", "Z"}, folder);
+    EXPECT_EQ(r.exit_code, 2);
+    EXPECT_THAT(r.err, HasSubstr("no sensor \"Z\""));
+    EXPECT_FALSE(std::filesystem::exists(capture + "2"));
+}
+
+TEST_F(Record, EndsInOrderOnSigterm) {
+    const std::string capture = (folder / "signal.capture").string();
+    // "exec" gives the shell's process to the program, so that its number is the program's.
+    const std::string command = "echo $$ > " + (folder / "pid").string() + "; exec " + SEAMWRIGHT_PROGRAM +
+                                " record " + project + " --out " + capture +
+                                " --trigger-hz 20 > /dev/null 2>&1";
+    int status = -1;
+    std::thread program([&] { status = std::system(("sh -c '" + command + "'").c_str()); });
+    for (int i = 0; i < 200 && !std::filesystem::exists(capture); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    int pid = 0;
+    std::ifstream(folder / "pid") >> pid;
+    ASSERT_GT(pid, 1);
+    kill(pid, SIGTERM);
+    program.join();
+    EXPECT_EQ(status, 0);
+    const json info = answer_of({"info", capture});
+    EXPECT_EQ(info["end"], "stopped");
+    EXPECT_FALSE(info["finished_utc"].get<std::string>().empty());
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -97,7 +97,7 @@ Expected<FramePtr> TriggeredFrames::at(const TriggerEvent& trigger, std::chrono:
 Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
                                              const std::stop_token& cancel) {
     FramePtr frame = std::exchange(early_, nullptr);
-    if (!frame) {
+    while (!frame || is_over(*frame)) {
         auto next = next_frame(sensor_, timeout, cancel);
         if (!next) return next;
         frame = std::move(*next);
@@ -128,7 +128,13 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
 
 Expected<void> TriggeredFrames::finish() {
     if (!hardware_triggered(setup_)) return {};
-    if (early_ || sensor_.wait_next(std::chrono::milliseconds(0)))
+    bool more = early_ != nullptr;
+    while (!more) {
+        const auto left = sensor_.wait_next(std::chrono::milliseconds(0));
+        if (!left) break;
+        more = !is_over(**left);
+    }
+    if (more)
         return device_error("the sensor exposed more often than the robot fired", "sensor " + setup_.id,
                             "check the trigger line between robot and sensor");
     return {};

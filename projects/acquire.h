@@ -58,6 +58,10 @@ class TriggeredFrames {
   private:
     Expected<FramePtr> in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
                                 const std::stop_token& cancel);
+    // A late or damaged frame that was told as lost when its turn was over; a sound one is never passed over.
+    bool is_over(const Frame& frame) const {
+        return frame.status != FrameStatus::ok && expected_ && frame.sequence < *expected_;
+    }
     ProfileSource& sensor_;
     const SensorSetup& setup_;
     FramePtr early_;  // came already, belongs to a later trigger

@@ -79,6 +79,18 @@ TEST_F(WiredSensor, ADamagedFrameKeepsItsPlace) {
     EXPECT_EQ((*at("S3"))->sequence, 3u);
 }
 
+TEST_F(WiredSensor, AFrameAfterItsTurnIsPassedOver) {
+    for (std::uint64_t k : {1u, 3u}) arrives(k);
+    arrives(2, 0, FrameStatus::late);
+    arrives(4);
+    arrives(3, 0, FrameStatus::incomplete);
+    EXPECT_EQ((*at("S1"))->sequence, 1u);
+    EXPECT_EQ((*at("S2"))->status, FrameStatus::incomplete);
+    EXPECT_EQ((*at("S3"))->sequence, 3u);
+    EXPECT_EQ((*at("S4"))->sequence, 4u);
+    EXPECT_TRUE(paired.finish()) << "a late frame is no further exposure";
+}
+
 TEST_F(WiredSensor, ATriggerWithoutExposureFailsTheRun) {
     arrives(1);
     arrives(2);

@@ -112,6 +112,15 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
         if (m.status == SpotStatus::measured) p.spots[i].reference_mm = m.measured_mm;
     }
     if (auto saved = station.edit(p); !saved) return tl::unexpected(saved.error());
+    if (options.lost_packets_per_mille > 0) {  // from here on
+        station.disconnect();
+        served.server.reset();
+        serve.camera = {{"lost_packets_per_mille", options.lost_packets_per_mille}};
+        auto lossy = CellServer::start(serve, served.cell);
+        if (!lossy) return tl::unexpected(lossy.error());
+        served.server.emplace(std::move(*lossy));
+        if (auto connected = station.connect(); !connected) return tl::unexpected(connected.error());
+    }
     return served;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "devices/abb/egm.h"
+#include "devices/abb/program.h"
 #include "devices/abb/rapid.h"
 #include "devices/genicam/genicam.h"
 #include "devices/kuka/eki.h"
@@ -69,6 +70,7 @@ const std::vector<ControllerDriver>& controller_drivers() {
 const std::vector<ProgramWriter>& program_writers() {
     static const std::vector<ProgramWriter> writers = {
         {"kuka", "KRL for EthernetKRL", &write_kuka_program},
+        {"abb", "RAPID with a server task", &write_abb_program},
         {"ur", "URScript for RTDE", &write_ur_program},
     };
     return writers;

@@ -11,6 +11,7 @@
 #include "devices/registry.h"
 #include "devices/silence.h"
 #include "devices/simulated/cell.h"
+#include "tests/devices/relay.h"
 
 namespace seamwright {
 namespace {
@@ -72,7 +73,7 @@ class RobotLaws : public testing::TestWithParam<Brand> {
         cell->set_mode(RobotMode::external);
         cell->store_program(program());
         ASSERT_TRUE(cell->write_frame(GetParam().frame, taught));
-        nlohmann::json link_settings = {{"port", port}, {"timeout_ms", kTimeoutMs}};
+        link_settings = {{"port", port}, {"timeout_ms", kTimeoutMs}};
         controller_settings = {{"port", port}, {"slow_ms", kTimeoutMs * 2}};
         if (GetParam().name == "ur-rtde")
             link_settings["dashboard_port"] = controller_settings["dashboard_port"] = free_port();
@@ -114,7 +115,7 @@ class RobotLaws : public testing::TestWithParam<Brand> {
     DeviceSession session;
     std::unique_ptr<RobotLink> link;
     std::unique_ptr<SimulatedController> controller;
-    nlohmann::json controller_settings;
+    nlohmann::json controller_settings, link_settings;
 };
 
 TEST_P(RobotLaws, TellsWhoItIsAndHowItStands) {
@@ -150,6 +151,42 @@ TEST_P(RobotLaws, AFrameIsReadBackAsWrittenAndReleasedByTheVerdictAlone) {
     ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
     ASSERT_TRUE(link->start_measuring(program()));
     EXPECT_FALSE(controller->released()) << "a new part begins";
+}
+
+// However the network cuts the stream, it is the same stream.
+TEST_P(RobotLaws, BrokenAndJoinedMessagesAreOne) {
+    for (const std::size_t piece : {1UL, 13UL}) {
+        SCOPED_TRACE(piece);
+        link.reset();
+        controller.reset();
+        nlohmann::json far = controller_settings, near = link_settings;
+        std::optional<Relay> relay;
+        const auto start = [&] {
+            if (GetParam().robot_is_client) {
+                relay.emplace(port, piece);
+                far["port"] = relay->port();
+            }
+            controller = std::move(start_controller(GetParam().name, cell, far).value());
+            if (!GetParam().robot_is_client) {
+                relay.emplace(port, piece);
+                near["port"] = relay->port();
+            }
+        };
+        if (!GetParam().robot_is_client) start();
+        near["timeout_ms"] = 2000;
+        link = std::move(open_robot(GetParam().name, near, session).value());
+        if (GetParam().robot_is_client) start();
+        ASSERT_TRUE(recovers());
+        measure_all();
+        ASSERT_TRUE(link->write_frame(GetParam().frame, corrected));
+        auto back = link->read_frame(GetParam().frame);
+        ASSERT_TRUE(back) << back.error().sentence();
+        EXPECT_LT(distance_mm(*back, corrected), 1e-3);
+        ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+        EXPECT_TRUE(controller->released());
+        link.reset();  // before the network that it uses
+        controller.reset();
+    }
 }
 
 TEST_P(RobotLaws, UnknownFrameIsRefusedByName) {

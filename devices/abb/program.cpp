@@ -1,0 +1,129 @@
+// RAPID of a project.
+
+#include "devices/abb/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "abb_resources.h"
+#include "core/geometry/notation.h"
+#include "devices/abb/rapid_message.h"
+#include "devices/exchange/settings.h"
+
+namespace seamwright {
+namespace {
+
+constexpr std::size_t kMostSpots = 64, kMostFrames = 32;  // arrays of the modules
+constexpr double kFastest_mm_s = 2000;
+
+std::string rapid_pose(const Pose& pose) {
+    const Eigen::Vector3d& t = pose.translation();
+    const AbbQuaternion q = abb_from_rotation(pose.linear());
+    return fmt::format("[{:.4f},{:.4f},{:.4f}],[{:.8f},{:.8f},{:.8f},{:.8f}]", t.x(), t.y(), t.z(), q.w, q.x,
+                       q.y, q.z);
+}
+
+std::string robtarget(const std::string& name, const Pose& pose) {
+    return fmt::format(
+        "    LOCAL CONST robtarget {}:=\n        [{},\n        "
+        "[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];\n",
+        name, rapid_pose(pose));
+}
+
+Expected<void> check_pose(const Pose& pose, const std::string& where) {
+    if (pose.matrix().allFinite() && pose.translation().cwiseAbs().maxCoeff() <= 1e5) return {};
+    return input_error("a pose is not finite or beyond 100 m", where);
+}
+
+std::string plain(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text.substr(0, 60);
+}
+
+std::string filled(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
+    std::string out(text);
+    for (const auto& [name, value] : values)
+        if (const std::size_t at = out.find("@" + name + "@"); at != std::string::npos)
+            out.replace(at, name.size() + 2, value);
+    return out;
+}
+
+}  // namespace
+
+Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request) {
+    if (request.moves.size() > kMostSpots)
+        return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
+                           request.project, fmt::format("measure at most {} in one program", kMostSpots));
+    if (request.frames.size() > kMostFrames)
+        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
+                           request.project, fmt::format("give at most {}", kMostFrames));
+    std::string address = "192.168.125.1";
+    int port = 1025;
+    SettingsReader f(request.settings, "settings");
+    f.text("address", address);
+    f.whole("port", port, 1, 65535);
+    if (f.failed()) return tl::unexpected(f.error());
+    if (address.empty() || address.find_first_not_of("0123456789.") != std::string::npos)
+        return input_error("\"" + address + "\" is no address", "settings.address",
+                           "give it as four numbers");
+
+    std::string targets, names, passes;
+    int n = 0;
+    for (const MeasuringMove& move : request.moves) {
+        const std::string where = "spot " + move.spot_id;
+        if (!abb::is_spot_name(move.spot_id))
+            return input_error("\"" + move.spot_id + "\" cannot be written in RAPID", where,
+                               "use at most 32 characters without blanks, quotes and backslashes");
+        if (!(move.speed_mm_s > 0 && move.speed_mm_s <= kFastest_mm_s))
+            return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s), where,
+                               "give up to 2000 mm/s");
+        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
+            if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
+        const std::string point = fmt::format("s{:02}", ++n);
+        targets += fmt::format("    ! spot {}\n", move.spot_id) + robtarget(point + "_entry", move.entry) +
+                   robtarget(point + "_spot", move.trigger) + robtarget(point + "_exit", move.exit) +
+                   fmt::format("    LOCAL CONST speeddata {}_speed:=[{:.3f},100,5000,1000];\n", point,
+                               move.speed_mm_s);
+        names += fmt::format("{}\"{}\"", n == 1 ? "" : n % 4 == 1 ? ",\n        " : ",", move.spot_id);
+        passes += fmt::format("        SW_Pass {},{}_entry,{}_spot,{}_exit,{}_speed,{};\n", n, point, point,
+                              point, point, move.stop_at_trigger ? "TRUE" : "FALSE");
+    }
+    for (std::size_t i = request.moves.size(); i < kMostSpots; ++i)
+        names += i == 0 ? "\"\"" : i % 16 == 0 ? ",\n        \"\"" : ",\"\"";
+    std::string objects;
+    std::set<std::string> known;
+    for (const ApplicationFrame& frame : request.frames) {
+        const std::string where = "frame of region " + frame.region_id;
+        if (!abb::is_rapid_identifier(frame.name))
+            return input_error("\"" + frame.name + "\" is no name of a work object", where,
+                               "use a letter, then letters, digits and _, at most 32 characters");
+        std::string folded = frame.name;  // RAPID does not tell capital letters apart
+        std::transform(folded.begin(), folded.end(), folded.begin(),
+                       [](unsigned char c) { return std::tolower(c); });
+        if (!known.insert(folded).second)
+            return input_error("two regions have the work object \"" + frame.name + "\"", where,
+                               "name one of them otherwise");
+        if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
+        objects += fmt::format(
+            "    ! region {}\n    PERS wobjdata {}:=[FALSE,TRUE,\"\",[[0,0,0],[1,0,0,0]],\n        [{}]];\n",
+            plain(frame.region_id), frame.name, rapid_pose(frame.base_from_frame));
+    }
+    const std::string spots = fmt::format(
+        "MODULE SeamwrightSpots\n    ! Measuring program of {}\n    PERS string swSignature:=\"{}\";\n    "
+        "PERS num "
+        "swCount:={};\n    PERS string swSpotName{{64}}:=[\n        {}];\n{}{}\n    ! straight from exit to "
+        "the next entry: add "
+        "points where the sensor must go round something\n    PROC SW_Spots()\n{}    ENDPROC\nENDMODULE\n",
+        plain(request.project), program_signature(request.moves), request.moves.size(), names, objects,
+        targets, passes);
+    return std::vector<ProgramFile>{
+        {"SeamwrightServer.mod",
+         filled(resources::SeamwrightServer_mod, {{"ADDRESS", address}, {"PORT", std::to_string(port)}})},
+        {"Seamwright.mod", std::string(resources::Seamwright_mod)},
+        {"SeamwrightSpots.mod", spots}};
+}
+
+}  // namespace seamwright

@@ -1,0 +1,27 @@
+// A project file from outside: refused or read, whatever its bytes; what loads is a project that can be
+// written again.
+
+#include "projects/project_file.h"
+#include "projects/project_json.h"
+#include "tests/fuzz/patched_file.h"
+#include "tests/projects/sample_project.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace seamwright;
+    static PatchedFile file("fuzz_project_file", [](const std::filesystem::path& path) {
+        auto made = ProjectFile::create(path, sample_project());
+        if (!made) std::abort();
+        if (!made->append_run(sample_run(1), sample_project())) std::abort();
+    });
+    auto opened = ProjectFile::open(file.with(data, size), FileAccess::read_only);
+    if (!opened) return 0;
+    if (const auto project = opened->load(); project && project->spots.size() > 100000) std::abort();
+    (void)opened->events();
+    if (const auto runs = opened->runs())
+        for (const RunSummary& run : *runs) {
+            (void)opened->load_run(run.number);
+            (void)opened->load_run_setup(run.number);
+        }
+    (void)opened->check();
+    return 0;
+}

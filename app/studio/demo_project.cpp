@@ -5,14 +5,13 @@
 #include "devices/simulated/door.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/measure.h"
-#include "projects/run.h"
+#include "projects/simulated_truth.h"
 
 namespace seamwright {
 namespace {
 
 constexpr const char* kSensor = "A";
 constexpr const char* kRobot = "R1";
-constexpr const char* kCalibration = "simulated-truth";
 constexpr double kTravelMm = 20;
 
 // The door's edge as a function of the sensor's travel: where the edge crosses the planes y = const.
@@ -56,7 +55,6 @@ Expected<Project> demo_project() {
     a.driver = "simulated";
     a.settings = settings;
     a.identity = sensor->identity();
-    a.calibration_id = kCalibration;
     p.sensors = {a};
     RobotSetup r;
     r.id = kRobot;
@@ -65,19 +63,11 @@ Expected<Project> demo_project() {
     r.identity = *robot_identity;
     r.required_mode = RobotMode::automatic;
     p.robots = {r};
-    Calibration c;
-    c.id = kCalibration;
-    c.method = "simulated truth";
-    c.sensor_id = kSensor;
-    c.robot_id = kRobot;
-    c.sensor_identity = a.identity;
-    c.robot_identity = r.identity;
-    c.created_utc = utc_now();
-    c.source = "the simulated cell's own optics and mounting";
-    c.model = cell->sensor_model();
-    c.flange_from_sensor = cell->flange_from_sensor();
-    c.verdict = "good";
-    p.calibrations = {c};
+    auto truth = simulated_truth(a, r);
+    if (!truth) return tl::unexpected(truth.error());
+    p.sensors[0].calibration_id = truth->id;
+    p.calibrations = {*truth};
+    const Calibration& c = p.calibrations.front();
 
     StripePeaks peaks;
     Capture capture;

@@ -13,6 +13,7 @@
 #include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
+#include <QTimer>
 #include <QToolBar>
 #include <QToolButton>
 #include <cmath>
@@ -36,6 +37,7 @@ namespace {
 
 constexpr int kPageWidth = 440;
 constexpr int kLayoutVersion = 1;
+constexpr int kNextMargin_px = 64;  // icon and padding of the next-step button
 
 // A dock's head: name, full, float. A double click makes the dock full.
 class DockTitle : public QWidget {
@@ -439,12 +441,33 @@ void MainWindow::refresh_title() {
     setWindowModified(desk_.modified());
 }
 
+void MainWindow::resizeEvent(QResizeEvent* event) {
+    QMainWindow::resizeEvent(event);
+    QTimer::singleShot(0, this, &MainWindow::refresh_next);  // when its button has the new width
+}
+
+// Broken at blanks, so that a button shows all of it.
+static QString wrapped(const QString& text, const QFontMetrics& font, int width_px) {
+    QString out, line;
+    for (const QString& word : text.split(' ')) {
+        const QString longer = line.isEmpty() ? word : line + ' ' + word;
+        if (!line.isEmpty() && font.horizontalAdvance(longer) > width_px) {
+            out += line + '\n';
+            line = word;
+        } else {
+            line = longer;
+        }
+    }
+    return out + line;
+}
+
 void MainWindow::refresh_next() {
     for (const StepState& s : desk_.steps())
         if (s.status == StepStatus::next) {
-            next_->setText(tr("Next: %1 - %2").arg(step_name(s.step), s.why));
-            next_->setAccessibleName(next_->text());
-            next_->setToolTip(next_->text());
+            const QString text = tr("Next: %1 - %2").arg(step_name(s.step), s.why);
+            next_->setText(wrapped(text, next_->fontMetrics(), next_->width() - kNextMargin_px));
+            next_->setAccessibleName(text);
+            next_->setToolTip(text);
         }
 }
 

@@ -236,33 +236,6 @@
     </message>
 </context>
 <context>
-    <name>EventList</name>
-    <message>
-        <source>note</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>refusal</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>push attempt</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>push</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>ALARM</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>device</source>
-        <translation type="unfinished"></translation>
-    </message>
-</context>
-<context>
     <name>RecoveryText</name>
     <message>
         <source>%1 %2 added</source>
@@ -325,29 +298,6 @@
     </message>
     <message>
         <source>writes a picture of the window after 3 s and ends</source>
-        <translation type="unfinished"></translation>
-    </message>
-</context>
-<context>
-    <name>seamwright</name>
-    <message>
-        <source>KUKA A B C (Z-Y&apos;-X&apos;&apos;)</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>FANUC W P R</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>ABB quaternion (w first)</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>UR rotation vector</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Matrix 4 x 4</source>
         <translation type="unfinished"></translation>
     </message>
 </context>
@@ -770,6 +720,22 @@
         <source>Measure with this calibration from now on</source>
         <translation type="unfinished"></translation>
     </message>
+    <message>
+        <source>Simulated cell</source>
+        <translation>Simulierte Zelle</translation>
+    </message>
+    <message>
+        <source>A simulated sensor knows where it is mounted: enough for learning the other steps.</source>
+        <translation>Ein simulierter Sensor weiß, wie er angebaut ist: genug, um die anderen Schritte zu lernen.</translation>
+    </message>
+    <message>
+        <source>Take the simulation&apos;s own</source>
+        <translation>Die der Simulation nehmen</translation>
+    </message>
+    <message>
+        <source>Adds the simulated cell&apos;s calibration and uses it</source>
+        <translation>Fügt die Kalibrierung der simulierten Zelle hinzu und benutzt sie</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CameraView</name>
@@ -1133,6 +1099,30 @@ This sensor sends finished profiles, or its raw image is switched off.</source>
     </message>
     <message>
         <source>Text</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>refusal</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>push attempt</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>push</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>ALARM</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>device</source>
         <translation type="unfinished"></translation>
     </message>
 </context>
@@ -1557,6 +1547,26 @@ This sensor sends finished profiles, or its raw image is switched off.</source>
     </message>
     <message>
         <source>give 6 numbers, 7 with a quaternion, 12 or 16 as a matrix</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>KUKA A B C (Z-Y&apos;-X&apos;&apos;)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>FANUC W P R</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>ABB quaternion (w first)</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>UR rotation vector</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Matrix 4 x 4</source>
         <translation type="unfinished"></translation>
     </message>
 </context>

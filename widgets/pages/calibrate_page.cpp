@@ -5,7 +5,10 @@
 #include <QFrame>
 #include <QGuiApplication>
 
+#include <algorithm>
+
 #include "projects/measure.h"
+#include "projects/simulated_truth.h"
 
 namespace seamwright {
 namespace {
@@ -43,11 +46,48 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
            "seamwright calibrate stripe-camera DIR --board 7x6 --pitch-mm 10 --json camera.json");
     method(tr("Sensor on the flange"), tr("Cuts of one sphere from 9 or more orientations of the flange."),
            "seamwright calibrate tcp-sphere DATA.json --json tcp.json");
+    simulated_ = new QWidget;
+    auto* sim = new QVBoxLayout(simulated_);
+    sim->setContentsMargins(0, 0, 0, 0);
+    sim->addWidget(make_heading(tr("Simulated cell")));
+    sim->addWidget(
+        make_text(tr("A simulated sensor knows where it is mounted: enough for learning the other steps.")));
+    sim->addLayout(make_row({make_button("simulated_truth", "check", tr("Take the simulation's own"),
+                                         tr("Adds the simulated cell's calibration and uses it"),
+                                         [this] { take_simulated(); })}));
+    box().addWidget(simulated_);
     box().addStretch(1);
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        if (isVisible()) refresh();
+    });
+}
+
+// One a sensor that is connected and has none yet, with the robot of its cell.
+void CalibratePage::take_simulated() {
+    const Project p = desk_.project();
+    for (const SensorSetup& s : p.sensors) {
+        if (s.driver != "simulated" || !s.calibration_id.empty()) continue;
+        for (const RobotSetup& r : p.robots) {
+            if (r.driver != "simulated" || r.settings != s.settings) continue;
+            auto truth = simulated_truth(s, r);
+            if (!truth) {
+                done(tl::unexpected(truth.error()));
+                return;
+            }
+            if (index_of<Calibration>(p, truth->id) >= 0) truth->id += " " + s.id;
+            const std::string id = truth->id;
+            if (done(desk_.add(std::move(*truth)))) done(desk_.use_calibration(s.id, id));
+            break;
+        }
+    }
 }
 
 void CalibratePage::refresh() {
     const Project& p = desk_.project();
+    simulated_->setVisible(desk_.station().connected &&
+                           std::any_of(p.sensors.begin(), p.sensors.end(), [](const SensorSetup& s) {
+                               return s.driver == "simulated" && s.calibration_id.empty();
+                           }));
     std::string key;
     for (const Calibration& c : p.calibrations) key += c.id + c.verdict + c.created_utc + "\n";
     for (const SensorSetup& s : p.sensors) key += s.id + s.calibration_id + s.identity.serial + "\n";

@@ -17,7 +17,10 @@ class CalibratePage : public StepPage {
     void refresh() override;
 
   private:
+    void take_simulated();
+
     QVBoxLayout* cards_;
+    QWidget* simulated_ = nullptr;
     std::string shown_;
 };
 

@@ -25,13 +25,17 @@ SpotTree::SpotTree(Desk& desk, QWidget* parent) : QTreeWidget(parent), desk_(des
     connect(this, &QTreeWidget::currentItemChanged, this, [this](QTreeWidgetItem* item) {
         if (filling_ || !item) return;
         const std::string id = item->data(0, kId).toString().toStdString();
-        if (item->data(0, kKind).toString() == "spot") desk_.selection().select_spot(id);
-        if (item->data(0, kKind).toString() == "region") desk_.selection().select_region(id);
+        const QString kind = item->data(0, kKind).toString();
+        if (kind == "spot") desk_.selection().select_spot(id);
+        if (kind == "region") desk_.selection().select_region(id);
     });
-    connect(&desk_.selection(), &Selection::changed, this, [this] {
-        if (!isVisible()) return;
-        refresh();
-    });
+    // Queued: the items are made anew, and the click that selected one is still at work on it.
+    connect(
+        &desk_.selection(), &Selection::changed, this,
+        [this] {
+            if (isVisible()) refresh();
+        },
+        Qt::QueuedConnection);
 }
 
 void SpotTree::refresh() {

@@ -1,0 +1,404 @@
+// The morning of a commissioning engineer: from an empty project to pushed frames, by mouse and keyboard
+// alone.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QMessageBox>
+#include <QMouseEvent>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QTableWidget>
+#include <QTest>
+#include <QTimer>
+#include <QTreeWidget>
+#include <filesystem>
+#include <fstream>
+
+#include "app/studio/main_window.h"
+#include "app/studio/studio.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/cell.h"
+#include "devices/simulated/door.h"
+#include "devices/simulated/mesh_file.h"
+#include "widgets/editors/parameter_editor.h"
+#include "widgets/editors/pose_editor.h"
+#include "widgets/profile/profile_plot.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kPatienceMs = 20000;
+
+// Hands and eyes: finds controls by the names they have on the screen's tree, waits as a person waits.
+class Person {
+  public:
+    explicit Person(MainWindow& window) : window_(window) {}
+
+    template <class T>
+    T* find(const QString& name) const {
+        for (T* w : window_.findChildren<T*>(name))
+            if (w->isVisible()) return w;
+        ADD_FAILURE() << "there is no visible " << name.toStdString();
+        return nullptr;
+    }
+    void look_at(QWidget* w) const {
+        for (QWidget* up = w->parentWidget(); up; up = up->parentWidget())
+            if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(w);
+        QApplication::processEvents();
+    }
+    void click(const QString& name) const {
+        auto* button = find<QAbstractButton>(name);
+        if (!button) return;
+        EXPECT_TRUE(wait([&] { return button->isEnabled(); })) << name.toStdString() << " cannot be pressed";
+        look_at(button);
+        QTest::mouseClick(button, Qt::LeftButton);
+        QApplication::processEvents();
+    }
+    void choose(const QString& name, const QString& text) const {
+        auto* box = find<QComboBox>(name);
+        if (!box) return;
+        look_at(box);
+        box->setFocus();
+        const int wanted = box->findText(text);
+        ASSERT_GE(wanted, 0) << text.toStdString();
+        while (box->currentIndex() < wanted) QTest::keyClick(box, Qt::Key_Down);
+        while (box->currentIndex() > wanted) QTest::keyClick(box, Qt::Key_Up);
+        QApplication::processEvents();
+    }
+    void write(QLineEdit* line, const QString& text) const {
+        look_at(line);
+        line->setFocus();
+        line->selectAll();
+        QTest::keyClicks(line, text);
+        QTest::keyClick(line, Qt::Key_Return);
+        QApplication::processEvents();
+    }
+    void write_pose(const QString& name, const Pose& pose) const {
+        auto* editor = find<PoseEditor>(name);
+        if (!editor) return;
+        QLineEdit* first = nullptr;
+        for (QLineEdit* line : editor->findChildren<QLineEdit*>())
+            if (!first && line->isVisible() && !line->isReadOnly()) first = line;
+        ASSERT_TRUE(first);
+        look_at(first);
+        first->setFocus();
+        first->selectAll();
+        QApplication::clipboard()->setText(text_from_pose(pose, editor->notation()));
+        QTest::keyClick(first, Qt::Key_V, Qt::ControlModifier);
+        QTest::keyClick(first, Qt::Key_Return);
+        QApplication::processEvents();
+        EXPECT_FALSE(editor->refused()) << editor->reason().toStdString();
+    }
+    // Types into the file dialog that the next action opens.
+    void answer_file_dialog(const QString& path) const {
+        QTimer::singleShot(300, &window_, [path] {
+            auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+            ASSERT_TRUE(dialog) << "no file dialog opened";
+            auto* line = dialog->findChild<QLineEdit*>("fileNameEdit");
+            line->selectAll();
+            QTest::keyClicks(line, path);
+            QTest::keyClick(line, Qt::Key_Return);
+        });
+    }
+    void step(int n) const {
+        const auto rails = window_.findChildren<QPushButton*>("rail");
+        ASSERT_EQ(rails.size(), 7);
+        QTest::mouseClick(rails[n - 1], Qt::LeftButton);
+        QApplication::processEvents();
+    }
+    void shortcut(Qt::Key key) const {
+        QApplication::setActiveWindow(
+            &window_);  // a dialog was; nobody gives it back without a window manager
+        QTest::keyClick(&window_, key, Qt::ControlModifier);
+        QApplication::processEvents();
+    }
+    static bool wait(const std::function<bool()>& ready) { return QTest::qWaitFor(ready, kPatienceMs); }
+    void picture(const QString& name) const {
+        QTest::qWait(150);
+        std::filesystem::create_directories(SEAMWRIGHT_SCREENS);
+        EXPECT_TRUE(window_.grab().save(QString(SEAMWRIGHT_SCREENS) + "/way_" + name + ".png"));
+    }
+    QString text_of(const QString& name) const {
+        auto* label = find<QLabel>(name);
+        return label ? label->text() : QString();
+    }
+    QStringList table(const QString& name) const {
+        QStringList cells;
+        if (auto* t = find<QTableWidget>(name))
+            for (int r = 0; r < t->rowCount(); ++r)
+                for (int c = 0; c < t->columnCount(); ++c)
+                    cells << (t->item(r, c) ? t->item(r, c)->text() : QString());
+        return cells;
+    }
+
+  private:
+    MainWindow& window_;
+};
+
+class WholeWay : public testing::Test {
+  protected:
+    std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("seamwright_way_" + std::to_string(::getpid()));
+    QString file = QString::fromStdString((folder / "door.seam").string());
+    void SetUp() override {
+        std::filesystem::create_directories(folder);
+        QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
+    }
+    ~WholeWay() override { std::filesystem::remove_all(folder); }
+    StudioOptions options(const QString& open) const {
+        StudioOptions o;
+        o.file = open;
+        o.language = "en";
+        o.theme = "light";
+        o.settings = QString::fromStdString((folder / "settings.ini").string());
+        o.data = QString::fromStdString(folder.string());
+        return o;
+    }
+};
+
+TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
+    const nlohmann::json settings = {
+        {"seed", 3},
+        {"robot", {{"frames", {{"BASE_Region1", pose_json(default_cell_settings().base_from_workobject)}}}}}};
+    const auto cell = SimulatedCell::open(settings).value();
+    {
+        const std::vector<std::byte> mesh = ply_bytes(cell->part_mesh());
+        std::ofstream(folder / "door.ply", std::ios::binary)
+
+            .write(reinterpret_cast<const char*>(mesh.data()), static_cast<long>(mesh.size()));
+    }
+    QStringList measured;
+    {
+        Studio studio(*qApp, options({}));
+        MainWindow& window = studio.window();
+        window.resize(1280, 800);
+        window.show();
+        Person me(window);
+        Desk& desk = studio.desk();  // looked at, never worked
+        ASSERT_TRUE(me.wait([&] { return desk.station().connected; })) << "the demo's cell is there at once";
+        me.picture("01_start");
+
+        // New project.
+        me.answer_file_dialog(file);
+        me.shortcut(Qt::Key_N);
+        ASSERT_TRUE(me.wait([&] { return desk.path() == file.toStdString(); }));
+        me.picture("02_empty");
+
+        // Part.
+        me.answer_file_dialog(QString::fromStdString((folder / "door.ply").string()));
+        me.click("import_part");
+        ASSERT_TRUE(me.wait([&] { return !desk.project().part.mesh_ply.empty(); }));
+        me.write_pose("workobject", cell->base_from_workobject());
+
+        // Cell: one sensor, one robot, the same settings.
+        for (const QString& device : {QString("add_sensor"), QString("add_robot")}) {
+            me.click(device);
+            if (device == "add_sensor") {
+                auto* text = me.find<QPlainTextEdit>("settings");
+                ASSERT_TRUE(text);
+                me.look_at(text);
+                text->setFocus();
+                text->selectAll();
+                QTest::keyClicks(text, QString::fromStdString(settings.dump()));
+            }
+            me.click("apply_device");
+        }
+        me.click("connect");
+        ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
+        me.picture("03_cell");
+
+        me.step(2);
+        me.click("simulated_truth");
+        ASSERT_EQ(desk.project().sensors.at(0).calibration_id, "simulated-truth");
+        me.picture("04_calibrated");
+
+        // Spots whose edges run in three directions, and one more for redundancy; the first by a template.
+        me.step(3);
+        const auto doors = default_door_spots();
+        for (const std::size_t i : {2UL, 6UL, 11UL, 4UL}) {
+            const std::size_t before = desk.project().spots.size();
+            me.click("add_spot");
+            ASSERT_EQ(desk.project().spots.size(), before + 1);
+            me.write_pose("spot_pose", cell->flange_for(doors[i].workobject_from_sensor));
+            me.click("go_there");
+            const std::string sensor = desk.project().spots.back().sensor_id;
+            ASSERT_TRUE(me.wait([&] {
+                const auto live = desk.live().latest(sensor);
+                return live && live->profile.size() > 100 && !desk.worker().busy();
+            })) << "the live profile of spot "
+                << i;
+            QTest::qWait(300);  // the robot has arrived, the picture is of the new place
+            auto* plot = window.views().profile;
+            const auto on_plot = [&](double x, double z) {
+                return plot->focusProxy()->mapFrom(plot, plot->to_screen({x, z})).toPoint();
+            };
+            const auto live = desk.live().latest(sensor);
+            double left = 1e9, left_z = 0, right = -1e9, low = 1e9, high = -1e9;
+            for (std::size_t p = 0; p < live->profile.size(); ++p) {
+                const double x = live->profile.x_mm[p], z = live->profile.z_mm[p];
+                if (!std::isfinite(x + z) || live->profile.segment[p] == kOutlier) continue;
+                if (x < left) left = x, left_z = z;
+                right = std::max(right, x), low = std::min(low, z), high = std::max(high, z);
+            }
+            if (before == 0) {
+                me.choose("feature_kind", "template");
+                me.click("template_window");
+                me.picture("05_template");
+                QWidget* canvas = plot->focusProxy();
+                const QPoint from = on_plot(left - 1, high + 1),
+                             to = on_plot(std::min(left + 42, right), low - 1);
+                QTest::mousePress(canvas, Qt::LeftButton, {}, from);
+                for (const QPoint on : {(from + to) / 2, to}) {  // as delivered while a button is held
+                    QMouseEvent move(QEvent::MouseMove, on, canvas->mapToGlobal(on), Qt::NoButton,
+                                     Qt::LeftButton, {});
+                    QApplication::sendEvent(canvas, &move);
+                }
+                QTest::mouseRelease(canvas, Qt::LeftButton, {}, to);
+                QApplication::processEvents();
+                ASSERT_GT(desk.project().spots.back().feature.template_profile.size(), 50U);
+            } else {
+                me.choose("feature_kind", "contour-end");
+                me.click("pick");
+                QTest::mouseClick(plot->focusProxy(), Qt::LeftButton, {}, on_plot(left, left_z));
+            }
+            me.click("measure_reference");
+            ASSERT_TRUE(me.wait([&] {
+                return !desk.worker().busy() && desk.project().spots.back().reference_profile.size() > 0;
+            })) << me.text_of("reference").toStdString();
+            me.picture(QString("05_taught_%1").arg(before + 1));
+        }
+
+        // Frozen contour on each: turned as the page says until the word is FROZEN.
+        me.step(4);
+        for (int k = 0; k < 4; ++k) {
+            auto* tree = me.find<QTreeWidget>("spot_tree");
+            ASSERT_TRUE(tree);
+            const auto items =
+                tree->findItems(QString("S%1").arg(k + 1), Qt::MatchExactly | Qt::MatchRecursive);
+            ASSERT_FALSE(items.isEmpty());
+            tree->scrollToItem(items[0]);
+            QTest::mouseClick(tree->viewport(), Qt::LeftButton, {}, tree->visualItemRect(items[0]).center());
+            for (int turn = 0; turn < 4; ++turn) {
+                me.click("start_pass");
+                ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+                ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+                QApplication::processEvents();
+                if (me.text_of("align_verdict") == "FROZEN") break;
+                ASSERT_EQ(me.text_of("align_verdict"), "DRIFTING")
+                    << me.text_of("align_numbers").toStdString();
+                me.picture(QString("06_drifting_%1_%2").arg(k + 1).arg(turn));
+                me.click("adopt_pose");
+                me.step(3);
+                me.click("go_there");
+                me.click("measure_reference");
+                ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+                ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+                me.step(4);
+            }
+            ASSERT_EQ(me.text_of("align_verdict"), "FROZEN") << me.text_of("align_numbers").toStdString();
+            me.picture(QString("06_frozen_%1").arg(k + 1));
+            me.click("accept_pass");
+            ASSERT_TRUE(desk.project().spots[static_cast<std::size_t>(k)].curve);
+        }
+
+        // One region of all spots.
+        me.step(5);
+        me.click("add_region");
+        auto* list = me.find<QListWidget>("region_spots");
+        ASSERT_TRUE(list);
+        for (int r = 0; r < 4; ++r) {
+            me.look_at(list);
+            list->setFocus();
+            list->setCurrentRow(r);
+            QTest::keyClick(list, Qt::Key_Space);
+            QApplication::processEvents();
+        }
+        ASSERT_EQ(desk.project().regions.at(0).spot_ids.size(), 4U);
+        EXPECT_TRUE(me.text_of("plan_verdict").startsWith("observable"))
+            << me.text_of("plan_verdict").toStdString();
+        // The template stands on little contour; this job allows its region twice the usual sigma.
+        for (auto* editor : window.findChildren<ParameterEditor*>())
+            if (editor->isVisible() && editor->info().name == "sigma_limit_mm")
+                me.write(editor->findChild<QLineEdit*>(), "0.2");
+        ASSERT_EQ(desk.project().regions[0].sigma_limit_mm, 0.2);
+        me.picture("07_region");
+
+        // Zero shift.
+        me.step(6);
+        for (int attempt = 0; attempt < 3 && desk.steps()[5].status != StepStatus::done; ++attempt) {
+            // "a zero-shift run was refused; see why and repeat"
+            me.click("start_zero");
+            ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+            ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 3 * kPatienceMs));
+            QTest::qWait(100);
+        }
+        me.picture("08_zero");
+        EXPECT_GE(desk.runs()->size(), 5U);
+        EXPECT_EQ(desk.steps()[5].status, StepStatus::done) << desk.steps()[5].why.toStdString();
+
+        // The next part, measured and pushed.
+        me.step(1);
+        me.click("place_part");
+        ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+        me.step(7);
+        me.write(me.find<QLineEdit>("part_id"), "CAR-0815");
+        const auto asked = [&] {
+            auto* confirm = window.findChild<QWidget*>("confirm");
+            return confirm && confirm->isVisible();
+        };
+        for (int attempt = 0; attempt < 3 && !asked(); ++attempt) {  // a refused part is measured again
+            me.click("measure_push");
+            ASSERT_TRUE(me.wait([&] { return asked() || desk.worker().busy(); }));
+            ASSERT_TRUE(me.wait([&] { return asked() || !desk.worker().busy(); }));
+        }
+        ASSERT_TRUE(asked()) << "what would be written is shown: " << me.text_of("run_verdict").toStdString()
+                             << " " << me.text_of("gate").toStdString();
+        me.picture("09_confirm");
+        me.click("push");
+        ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+        QTest::qWait(100);
+        me.picture("10_pushed");
+        const auto runs = desk.runs().value();
+        const auto newest = std::max_element(
+            runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+        EXPECT_EQ(newest->status, RunStatus::ok) << newest->message;
+        EXPECT_TRUE(newest->push);
+        measured = me.table("run_regions");
+        ASSERT_FALSE(measured.isEmpty());
+
+        me.shortcut(Qt::Key_S);
+        ASSERT_TRUE(me.wait([&] { return !desk.modified(); }));
+        window.close();
+    }
+    Studio again(*qApp, options(file));
+    again.window().resize(1280, 800);
+    again.window().show();
+    Person me(again.window());
+    ASSERT_TRUE(me.wait([&] { return again.desk().station().connected; }));
+    QTest::qWait(300);
+    me.step(7);
+    auto* history = me.find<QTableWidget>("history");
+    ASSERT_TRUE(history);
+    int row = -1;
+    for (int r = 0; r < history->rowCount(); ++r)
+        if (history->item(r, 1)->text() == "CAR-0815") row = r;
+    ASSERT_GE(row, 0);
+    me.look_at(history);
+    history->setFocus();
+    history->setCurrentCell(row, 0);
+    me.click("open_run");
+    me.picture("11_reopened");
+    EXPECT_EQ(me.table("run_regions"), measured) << "the same numbers";
+    EXPECT_EQ(again.desk().project().spots.size(), 4U);
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -5,720 +5,720 @@
     <name>Checklist</name>
     <message>
         <source>add a sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>einen Sensor hinzufügen</translation>
     </message>
     <message>
         <source>add a robot</source>
-        <translation type="unfinished"></translation>
+        <translation>einen Roboter hinzufügen</translation>
     </message>
     <message>
         <source>connect the devices</source>
-        <translation type="unfinished"></translation>
+        <translation>die Geräte verbinden</translation>
     </message>
     <message>
         <source>%1 sensors and %2 robots answer</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Sensoren und %2 Roboter antworten</translation>
     </message>
     <message>
         <source>sensor %1 has no calibration in use</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor %1 benutzt keine Kalibrierung</translation>
     </message>
     <message>
         <source>calibration %1 of sensor %2 is %3</source>
-        <translation type="unfinished"></translation>
+        <translation>Kalibrierung %1 von Sensor %2 ist %3</translation>
     </message>
     <message>
         <source>sensor %1 is another device (%2) than was calibrated (%3)</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor %1 ist ein anderes Gerät (%2) als das kalibrierte (%3)</translation>
     </message>
     <message>
         <source>there is no sensor to calibrate</source>
-        <translation type="unfinished"></translation>
+        <translation>es gibt keinen Sensor zu kalibrieren</translation>
     </message>
     <message>
         <source>every sensor has a calibration in use</source>
-        <translation type="unfinished"></translation>
+        <translation>jeder Sensor benutzt eine Kalibrierung</translation>
     </message>
     <message>
         <source>measure the reference of spot %1</source>
-        <translation type="unfinished"></translation>
+        <translation>die Referenz der Messstelle %1 messen</translation>
     </message>
     <message>
         <source>add a spot where the contour is to be measured</source>
-        <translation type="unfinished"></translation>
+        <translation>eine Messstelle hinzufügen, wo die Kontur gemessen werden soll</translation>
     </message>
     <message>
         <source>%1 spots have their reference</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Messstellen haben ihre Referenz</translation>
     </message>
     <message>
         <source>record the pass of spot %1 and accept it</source>
-        <translation type="unfinished"></translation>
+        <translation>die Durchfahrt der Messstelle %1 aufzeichnen und annehmen</translation>
     </message>
     <message>
         <source>there is no spot to align</source>
-        <translation type="unfinished"></translation>
+        <translation>es gibt keine Messstelle auszurichten</translation>
     </message>
     <message>
         <source>the contour stands still at %1 spots</source>
-        <translation type="unfinished"></translation>
+        <translation>die Kontur steht still an %1 Messstellen</translation>
     </message>
     <message>
         <source>add a region and give it spots</source>
-        <translation type="unfinished"></translation>
+        <translation>einen Korrekturbereich hinzufügen und ihm Messstellen geben</translation>
     </message>
     <message>
         <source>region %1 has no spots</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich %1 hat keine Messstellen</translation>
     </message>
     <message>
         <source>name the controller&apos;s frame of region %1</source>
-        <translation type="unfinished"></translation>
+        <translation>den Frame der Steuerung für Korrekturbereich %1 benennen</translation>
     </message>
     <message>
         <source>region %1: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich %1: %2</translation>
     </message>
     <message>
         <source>region %1 is under-determined: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich %1 ist unterbestimmt: %2</translation>
     </message>
     <message>
         <source>spot %1 belongs to no region</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle %1 gehört zu keinem Korrekturbereich</translation>
     </message>
     <message>
         <source>%1 regions are observable</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Korrekturbereiche sind beobachtbar</translation>
     </message>
     <message>
         <source>measure the unmoved part %1 times: it must read zero</source>
-        <translation type="unfinished"></translation>
+        <translation>das unbewegte Teil %1-mal messen: es muss null ergeben</translation>
     </message>
     <message>
         <source>spots, regions or calibration were changed since the zero shift of %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen, Korrekturbereiche oder Kalibrierung wurden seit der Nullverschiebung vom %1 geändert</translation>
     </message>
     <message>
         <source>a zero-shift run was refused; see why and repeat</source>
-        <translation type="unfinished"></translation>
+        <translation>ein Nullverschiebungslauf wurde abgelehnt; Grund ansehen und wiederholen</translation>
     </message>
     <message>
         <source>%1 of %2 zero-shift runs</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 von %2 Nullverschiebungsläufen</translation>
     </message>
     <message>
         <source>%1 runs of the unmoved part read zero</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Läufe am unbewegten Teil ergeben null</translation>
     </message>
     <message>
         <source>measure the next part</source>
-        <translation type="unfinished"></translation>
+        <translation>das nächste Teil messen</translation>
     </message>
     <message>
         <source>first: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>zuerst: %1</translation>
     </message>
     <message>
         <source>Cell</source>
-        <translation type="unfinished"></translation>
+        <translation>Zelle</translation>
     </message>
     <message>
         <source>Calibrate</source>
-        <translation type="unfinished"></translation>
+        <translation>Kalibrieren</translation>
     </message>
     <message>
         <source>Teach</source>
-        <translation type="unfinished"></translation>
+        <translation>Einlernen</translation>
     </message>
     <message>
         <source>Align</source>
-        <translation type="unfinished"></translation>
+        <translation>Ausrichten</translation>
     </message>
     <message>
         <source>Regions</source>
-        <translation type="unfinished"></translation>
+        <translation>Bereiche</translation>
     </message>
     <message>
         <source>Prove</source>
-        <translation type="unfinished"></translation>
+        <translation>Nachweisen</translation>
     </message>
     <message>
         <source>Run</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf</translation>
     </message>
     <message>
         <source>done</source>
-        <translation type="unfinished"></translation>
+        <translation>fertig</translation>
     </message>
     <message>
         <source>next</source>
-        <translation type="unfinished"></translation>
+        <translation>als Nächstes</translation>
     </message>
     <message>
         <source>waits</source>
-        <translation type="unfinished"></translation>
+        <translation>wartet</translation>
     </message>
     <message>
         <source>stale</source>
-        <translation type="unfinished"></translation>
+        <translation>veraltet</translation>
     </message>
 </context>
 <context>
     <name>DeskCommand</name>
     <message>
         <source>spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle</translation>
     </message>
     <message>
         <source>region</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor</translation>
     </message>
     <message>
         <source>robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter</translation>
     </message>
     <message>
         <source>calibration</source>
-        <translation type="unfinished"></translation>
+        <translation>Kalibrierung</translation>
     </message>
     <message>
         <source>Enable spot %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle %1 einschalten</translation>
     </message>
     <message>
         <source>Disable spot %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle %1 ausschalten</translation>
     </message>
     <message>
         <source>Use calibration %1 at sensor %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Kalibrierung %1 an Sensor %2 benutzen</translation>
     </message>
     <message>
         <source>Rename project to %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt in %1 umbenennen</translation>
     </message>
     <message>
         <source>Add %1 %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 hinzufügen</translation>
     </message>
     <message>
         <source>Remove %1 %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 entfernen</translation>
     </message>
     <message>
         <source>Rename %1 %2 to %3</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 in %3 umbenennen</translation>
     </message>
     <message>
         <source>Move %1 %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 verschieben</translation>
     </message>
     <message>
         <source>Change %1 %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 ändern</translation>
     </message>
     <message>
         <source>Change %3 of %1 %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%3 von %1 %2 ändern</translation>
     </message>
     <message>
         <source>Import part %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil %1 einlesen</translation>
     </message>
     <message>
         <source>Place the simulated part</source>
-        <translation type="unfinished"></translation>
+        <translation>Das simulierte Teil platzieren</translation>
     </message>
 </context>
 <context>
     <name>RecoveryText</name>
     <message>
         <source>%1 %2 added</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 hinzugefügt</translation>
     </message>
     <message>
         <source>%1 %2 changed</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 geändert</translation>
     </message>
     <message>
         <source>%1 %2 removed</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2 entfernt</translation>
     </message>
     <message>
         <source>project renamed</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt umbenannt</translation>
     </message>
     <message>
         <source>part changed</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil geändert</translation>
     </message>
     <message>
         <source>order changed</source>
-        <translation type="unfinished"></translation>
+        <translation>Reihenfolge geändert</translation>
     </message>
 </context>
 <context>
     <name>main</name>
     <message>
         <source>Teach, align, prove and run robot path correction with laser-stripe sensors.</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboterbahnkorrektur mit Laserlichtschnittsensoren einlernen, ausrichten, nachweisen und betreiben.</translation>
     </message>
     <message>
         <source>project to open; without it the demo project</source>
-        <translation type="unfinished"></translation>
+        <translation>zu öffnendes Projekt; ohne Angabe das Demoprojekt</translation>
     </message>
     <message>
         <source>en or de</source>
-        <translation type="unfinished"></translation>
+        <translation>en oder de</translation>
     </message>
     <message>
         <source>light or dark</source>
-        <translation type="unfinished"></translation>
+        <translation>light (hell) oder dark (dunkel)</translation>
     </message>
     <message>
         <source>of the window, e.g. 1280x800</source>
-        <translation type="unfinished"></translation>
+        <translation>des Fensters, z. B. 1280x800</translation>
     </message>
     <message>
         <source>settings file instead of the user&apos;s</source>
-        <translation type="unfinished"></translation>
+        <translation>Einstellungsdatei statt der des Benutzers</translation>
     </message>
     <message>
         <source>folder for the demo project</source>
-        <translation type="unfinished"></translation>
+        <translation>Ordner für das Demoprojekt</translation>
     </message>
     <message>
         <source>step to show, 1 to 7</source>
-        <translation type="unfinished"></translation>
+        <translation>anzuzeigender Schritt, 1 bis 7</translation>
     </message>
     <message>
         <source>writes a picture of the window after 3 s and ends</source>
-        <translation type="unfinished"></translation>
+        <translation>schreibt nach 3 s ein Bild des Fensters und endet</translation>
     </message>
 </context>
 <context>
     <name>seamwright::AlignPage</name>
     <message>
         <source>While the robot passes the spot along the contour, the profile should stand still. Then trigger jitter does no harm.</source>
-        <translation type="unfinished"></translation>
+        <translation>Während der Roboter die Messstelle entlang der Kontur durchfährt, soll das Profil stillstehen. Dann schadet Triggerstreuung nicht.</translation>
     </message>
     <message>
         <source>Step of the pass</source>
-        <translation type="unfinished"></translation>
+        <translation>Schrittweite der Durchfahrt</translation>
     </message>
     <message>
         <source>Travel between two profiles</source>
-        <translation type="unfinished"></translation>
+        <translation>Weg zwischen zwei Profilen</translation>
     </message>
     <message>
         <source>Tolerance</source>
-        <translation type="unfinished"></translation>
+        <translation>Toleranz</translation>
     </message>
     <message>
         <source>Error that the trigger jitter may cause at most</source>
-        <translation type="unfinished"></translation>
+        <translation>Fehler, den die Triggerstreuung höchstens bewirken darf</translation>
     </message>
     <message>
         <source>Run entry -&gt; exit</source>
-        <translation type="unfinished"></translation>
+        <translation>Fahren: Einfahrt -&gt; Ausfahrt</translation>
     </message>
     <message>
         <source>The robot goes along the contour and stops at every step; nothing is written</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Roboter fährt entlang der Kontur und hält an jedem Schritt; nichts wird geschrieben</translation>
     </message>
     <message>
         <source>Accept</source>
-        <translation type="unfinished"></translation>
+        <translation>Annehmen</translation>
     </message>
     <message>
         <source>Keeps jitter window and the contour&apos;s curve with the spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Behält Streufenster und Verlauf der Kontur bei der Messstelle</translation>
     </message>
     <message>
         <source>Adopt turned pose</source>
-        <translation type="unfinished"></translation>
+        <translation>Gedrehte Pose übernehmen</translation>
     </message>
     <message>
         <source>Turns the taught pose about the reference point by the rotation that cures it; teach again then</source>
-        <translation type="unfinished"></translation>
+        <translation>Dreht die eingelernte Pose um den Referenzpunkt um den heilenden Winkel; danach neu einlernen</translation>
     </message>
     <message>
         <source>accepted earlier</source>
-        <translation type="unfinished"></translation>
+        <translation>früher angenommen</translation>
     </message>
     <message>
         <source>no pass recorded</source>
-        <translation type="unfinished"></translation>
+        <translation>keine Durchfahrt aufgezeichnet</translation>
     </message>
     <message>
         <source>Entry %1 mm, exit %2 mm, jitter +-%3 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Einfahrt %1 mm, Ausfahrt %2 mm, Streuung +-%3 mm</translation>
     </message>
     <message>
         <source>Choose a spot.</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Messstelle wählen.</translation>
     </message>
     <message>
         <source>FROZEN</source>
-        <translation type="unfinished"></translation>
+        <translation>STEHT STILL</translation>
     </message>
     <message>
         <source>DRIFTING</source>
-        <translation type="unfinished"></translation>
+        <translation>DRIFTET</translation>
     </message>
     <message>
         <source>SHAPE CHANGES</source>
-        <translation type="unfinished"></translation>
+        <translation>FORM ÄNDERT SICH</translation>
     </message>
     <message>
         <source>NOT ENOUGH PROFILES</source>
-        <translation type="unfinished"></translation>
+        <translation>ZU WENIGE PROFILE</translation>
     </message>
     <message>
         <source>yaw %1 deg, pitch %2 deg, radius %3, expected error %4 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Gieren %1 Grad, Nicken %2 Grad, Radius %3, erwarteter Fehler %4 mm</translation>
     </message>
     <message>
         <source>straight</source>
-        <translation type="unfinished"></translation>
+        <translation>gerade</translation>
     </message>
     <message>
         <source>The feature was found in too few profiles to learn the contour&apos;s curve.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Merkmal wurde in zu wenigen Profilen gefunden, um den Verlauf der Kontur zu lernen.</translation>
     </message>
     <message>
         <source>To cure: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Abhilfe: %1</translation>
     </message>
     <message>
         <source>alignment</source>
-        <translation type="unfinished"></translation>
+        <translation>Ausrichtung</translation>
     </message>
     <message>
         <source>pose</source>
-        <translation type="unfinished"></translation>
+        <translation>Pose</translation>
     </message>
 </context>
 <context>
     <name>seamwright::AlignView</name>
     <message>
         <source>Shift and turn against travel</source>
-        <translation type="unfinished"></translation>
+        <translation>Versatz und Drehung über dem Weg</translation>
     </message>
     <message>
         <source>dx (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>dx (mm)</translation>
     </message>
     <message>
         <source>dz (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>dz (mm)</translation>
     </message>
     <message>
         <source>turn (°)</source>
-        <translation type="unfinished"></translation>
+        <translation>Drehung (°)</translation>
     </message>
     <message>
         <source>travel (mm), trigger at 0</source>
-        <translation type="unfinished"></translation>
+        <translation>Weg (mm), Trigger bei 0</translation>
     </message>
     <message>
         <source>Run the robot from entry to exit: dx, dz and the turn of every profile against the one at the trigger appear here. A contour that stands still is flat.</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Roboter von der Einfahrt zur Ausfahrt fahren: dx, dz und Drehung jedes Profils gegen das am Trigger erscheinen hier. Eine stillstehende Kontur ist flach.</translation>
     </message>
     <message>
         <source>Profiles over travel</source>
-        <translation type="unfinished"></translation>
+        <translation>Profile über dem Weg</translation>
     </message>
     <message>
         <source>x (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>x (mm)</translation>
     </message>
     <message>
         <source>z (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>z (mm)</translation>
     </message>
     <message>
         <source>travel (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>Weg (mm)</translation>
     </message>
     <message>
         <source>Frozen contour</source>
-        <translation type="unfinished"></translation>
+        <translation>Stehende Kontur</translation>
     </message>
     <message>
         <source>Does the contour stand still while the robot passes the spot?</source>
-        <translation type="unfinished"></translation>
+        <translation>Steht die Kontur still, während der Roboter die Messstelle durchfährt?</translation>
     </message>
     <message>
         <source>Drag either blue line, or press Left and Right: how far the trigger may miss</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine blaue Linie ziehen oder Links und Rechts drücken: wie weit der Trigger danebenliegen darf</translation>
     </message>
     <message>
         <source>Image</source>
-        <translation type="unfinished"></translation>
+        <translation>Bild</translation>
     </message>
     <message>
         <source>x to the right, travel upwards, height as colour: upright bands stand still</source>
-        <translation type="unfinished"></translation>
+        <translation>x nach rechts, Weg nach oben, Höhe als Farbe: senkrechte Bänder stehen still</translation>
     </message>
     <message>
         <source>Overlay</source>
-        <translation type="unfinished"></translation>
+        <translation>Überlagerung</translation>
     </message>
     <message>
         <source>All profiles over each other; the live one thin over the frozen one</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Profile übereinander; das laufende dünn über dem stehenden</translation>
     </message>
     <message>
         <source>Verdict</source>
-        <translation type="unfinished"></translation>
+        <translation>Urteil</translation>
     </message>
     <message>
         <source>Reason and cure</source>
-        <translation type="unfinished"></translation>
+        <translation>Grund und Abhilfe</translation>
     </message>
     <message>
         <source>Yaw</source>
-        <translation type="unfinished"></translation>
+        <translation>Gieren</translation>
     </message>
     <message>
         <source>atan(dx/dy), sensor frame, ± sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>atan(dx/dy), Sensorkoordinaten, ± Sigma</translation>
     </message>
     <message>
         <source>Pitch</source>
-        <translation type="unfinished"></translation>
+        <translation>Nicken</translation>
     </message>
     <message>
         <source>atan(dz/dy), sensor frame, ± sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>atan(dz/dy), Sensorkoordinaten, ± Sigma</translation>
     </message>
     <message>
         <source>Twist</source>
-        <translation type="unfinished"></translation>
+        <translation>Verdrehung</translation>
     </message>
     <message>
         <source>Turn of the profile over the jitter&apos;s half width</source>
-        <translation type="unfinished"></translation>
+        <translation>Drehung des Profils über die halbe Streubreite</translation>
     </message>
     <message>
         <source>Local radius</source>
-        <translation type="unfinished"></translation>
+        <translation>Örtlicher Radius</translation>
     </message>
     <message>
         <source>Of the contour&apos;s own curvature along the travel</source>
-        <translation type="unfinished"></translation>
+        <translation>Der eigenen Krümmung der Kontur entlang des Wegs</translation>
     </message>
     <message>
         <source>Error from jitter</source>
-        <translation type="unfinished"></translation>
+        <translation>Fehler durch Streuung</translation>
     </message>
     <message>
         <source>Largest shift within the jitter window</source>
-        <translation type="unfinished"></translation>
+        <translation>Größter Versatz im Streufenster</translation>
     </message>
     <message>
         <source>Tolerance</source>
-        <translation type="unfinished"></translation>
+        <translation>Toleranz</translation>
     </message>
     <message>
         <source>What the jitter may cause at most, and the window it was judged over</source>
-        <translation type="unfinished"></translation>
+        <translation>Was die Streuung höchstens bewirken darf, und das beurteilte Fenster</translation>
     </message>
     <message>
         <source>Shape change</source>
-        <translation type="unfinished"></translation>
+        <translation>Formänderung</translation>
     </message>
     <message>
         <source>What remains after the profiles are laid over each other</source>
-        <translation type="unfinished"></translation>
+        <translation>Was bleibt, nachdem die Profile übereinandergelegt sind</translation>
     </message>
     <message>
         <source>NOT RECORDED</source>
-        <translation type="unfinished"></translation>
+        <translation>NICHT AUFGEZEICHNET</translation>
     </message>
     <message>
         <source>Run the robot slowly from entry over the trigger to the exit.</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Roboter langsam von der Einfahrt über den Trigger zur Ausfahrt fahren.</translation>
     </message>
     <message>
         <source>RECORDING</source>
-        <translation type="unfinished"></translation>
+        <translation>ZEICHNET AUF</translation>
     </message>
     <message numerus="yes">
         <source>%n profiles so far</source>
-        <translation type="unfinished">
-            <numerusform></numerusform>
-            <numerusform></numerusform>
+        <translation>
+            <numerusform>bisher %n Profil</numerusform>
+            <numerusform>bisher %n Profile</numerusform>
         </translation>
     </message>
     <message>
         <source>not seen</source>
-        <translation type="unfinished"></translation>
+        <translation>nicht gesehen</translation>
     </message>
     <message>
         <source>straight</source>
-        <translation type="unfinished"></translation>
+        <translation>gerade</translation>
     </message>
     <message>
         <source>%1 m</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 m</translation>
     </message>
     <message>
         <source>%1 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 mm</translation>
     </message>
     <message>
         <source>%1 mm / ±%2 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 mm / ±%2 mm</translation>
     </message>
     <message>
         <source>FROZEN</source>
-        <translation type="unfinished"></translation>
+        <translation>STEHT STILL</translation>
     </message>
     <message>
         <source>The contour stands still within the tolerance.</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Kontur steht innerhalb der Toleranz still.</translation>
     </message>
     <message>
         <source>DRIFTING</source>
-        <translation type="unfinished"></translation>
+        <translation>DRIFTET</translation>
     </message>
     <message>
         <source>The jitter causes more than the tolerance.</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Streuung bewirkt mehr als die Toleranz.</translation>
     </message>
     <message>
         <source>SHAPE CHANGES</source>
-        <translation type="unfinished"></translation>
+        <translation>FORM ÄNDERT SICH</translation>
     </message>
     <message>
         <source>The profile changes its shape within the jitter: move the spot along the contour.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Profil ändert innerhalb der Streuung seine Form: die Messstelle entlang der Kontur verlegen.</translation>
     </message>
     <message>
         <source>TOO FEW PROFILES</source>
-        <translation type="unfinished"></translation>
+        <translation>ZU WENIGE PROFILE</translation>
     </message>
     <message>
         <source>Fewer than 5 usable profiles, or less than 1 mm of travel: record the pass again, slower.</source>
-        <translation type="unfinished"></translation>
+        <translation>Weniger als 5 brauchbare Profile oder weniger als 1 mm Weg: die Durchfahrt langsamer wiederholen.</translation>
     </message>
     <message>
         <source>The profile is a straight line: only the drift across it is seen.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Profil ist eine Gerade: nur die Drift quer dazu ist sichtbar.</translation>
     </message>
     <message>
         <source>Rotation that cures the drift</source>
-        <translation type="unfinished"></translation>
+        <translation>Drehung, die die Drift behebt</translation>
     </message>
     <message>
         <source>Turn the sensor this way, seen along the axis towards the eye</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Sensor in dieser Richtung drehen, entlang der Achse zum Auge gesehen</translation>
     </message>
     <message>
         <source>about %1: %2%3°</source>
-        <translation type="unfinished"></translation>
+        <translation>um %1: %2%3°</translation>
     </message>
     <message>
         <source>about %1: none</source>
-        <translation type="unfinished"></translation>
+        <translation>um %1: keine</translation>
     </message>
     <message>
         <source>Z</source>
-        <translation type="unfinished"></translation>
+        <translation>Z</translation>
     </message>
     <message>
         <source>X</source>
-        <translation type="unfinished"></translation>
+        <translation>X</translation>
     </message>
 </context>
 <context>
     <name>seamwright::CalibratePage</name>
     <message>
         <source>of unknown age</source>
-        <translation type="unfinished"></translation>
+        <translation>unbekannten Alters</translation>
     </message>
     <message>
         <source>of today</source>
-        <translation type="unfinished"></translation>
+        <translation>von heute</translation>
     </message>
     <message>
         <source>%1 days old</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Tage alt</translation>
     </message>
     <message>
         <source>From pixels to millimetres on the flange. Each sensor uses one calibration; the others stay selectable.</source>
-        <translation type="unfinished"></translation>
+        <translation>Von Pixeln zu Millimetern am Flansch. Jeder Sensor benutzt eine Kalibrierung; die anderen bleiben wählbar.</translation>
     </message>
     <message>
         <source>A new calibration</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine neue Kalibrierung</translation>
     </message>
     <message>
         <source>Copy the command</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Befehl kopieren</translation>
     </message>
     <message>
         <source>Puts the command line into the clipboard: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Legt die Befehlszeile in die Zwischenablage: %1</translation>
     </message>
     <message>
         <source>Camera and laser plane</source>
-        <translation type="unfinished"></translation>
+        <translation>Kamera und Laserebene</translation>
     </message>
     <message>
         <source>Images of a board with the stripe across it, in 8 or more orientations.</source>
-        <translation type="unfinished"></translation>
+        <translation>Bilder einer Tafel mit dem Laserstrich darüber, in mindestens 8 Lagen.</translation>
     </message>
     <message>
         <source>Sensor on the flange</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor am Flansch</translation>
     </message>
     <message>
         <source>Cuts of one sphere from 9 or more orientations of the flange.</source>
-        <translation type="unfinished"></translation>
+        <translation>Schnitte einer Kugel aus mindestens 9 Orientierungen des Flanschs.</translation>
     </message>
     <message>
         <source>The project holds no calibration yet.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Projekt enthält noch keine Kalibrierung.</translation>
     </message>
     <message>
         <source>%1: sensor %2 on robot %3</source>
-        <translation type="unfinished"></translation>
+        <translation>%1: Sensor %2 an Roboter %3</translation>
     </message>
     <message>
         <source>%1, %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1, %2</translation>
     </message>
     <message>
         <source>Method %1. From: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Verfahren %1. Aus: %2</translation>
     </message>
     <message>
         <source>flange_from_sensor  X %1  Y %2  Z %3 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>flange_from_sensor  X %1  Y %2  Z %3 mm</translation>
     </message>
     <message>
         <source>Made with device %1; connected is %2: pushes are refused.</source>
-        <translation type="unfinished"></translation>
+        <translation>Mit Gerät %1 gemacht; verbunden ist %2: Übertragungen werden abgelehnt.</translation>
     </message>
     <message>
         <source>In use</source>
-        <translation type="unfinished"></translation>
+        <translation>In Benutzung</translation>
     </message>
     <message>
         <source>Use</source>
-        <translation type="unfinished"></translation>
+        <translation>Benutzen</translation>
     </message>
     <message>
         <source>Measure with this calibration from now on</source>
-        <translation type="unfinished"></translation>
+        <translation>Ab jetzt mit dieser Kalibrierung messen</translation>
     </message>
     <message>
         <source>Simulated cell</source>
@@ -742,2076 +742,2080 @@
     <message>
         <source>No camera image yet.
 This sensor sends finished profiles, or its raw image is switched off.</source>
-        <translation type="unfinished"></translation>
+        <translation>Noch kein Kamerabild.
+Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</translation>
     </message>
     <message>
         <source>saturated %1 px (%2 %)</source>
-        <translation type="unfinished"></translation>
+        <translation>übersteuert %1 px (%2 %)</translation>
     </message>
     <message>
         <source>not saturated, max %1</source>
-        <translation type="unfinished"></translation>
+        <translation>nicht übersteuert, max. %1</translation>
     </message>
     <message>
         <source>Camera image</source>
-        <translation type="unfinished"></translation>
+        <translation>Kamerabild</translation>
     </message>
     <message>
         <source>The sensor&apos;s raw image with the peaks found. Drag moves, wheel zooms, F fits.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Rohbild des Sensors mit den gefundenen Spitzen. Ziehen verschiebt, Rad zoomt, F passt ein.</translation>
     </message>
     <message>
         <source>Camera image, pixels</source>
-        <translation type="unfinished"></translation>
+        <translation>Kamerabild, Pixel</translation>
     </message>
     <message>
         <source>Camera state</source>
-        <translation type="unfinished"></translation>
+        <translation>Zustand der Kamera</translation>
     </message>
     <message>
         <source>Fit</source>
-        <translation type="unfinished"></translation>
+        <translation>Einpassen</translation>
     </message>
     <message>
         <source>Show the whole image (F)</source>
-        <translation type="unfinished"></translation>
+        <translation>Das ganze Bild zeigen (F)</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>Drag the region of interest</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Bildausschnitt ziehen</translation>
     </message>
     <message>
         <source>Peaks</source>
-        <translation type="unfinished"></translation>
+        <translation>Spitzen</translation>
     </message>
     <message>
         <source>Peaks: strongest blue, others purple</source>
-        <translation type="unfinished"></translation>
+        <translation>Spitzen: stärkste blau, andere violett</translation>
     </message>
     <message>
         <source>Histogram</source>
-        <translation type="unfinished"></translation>
+        <translation>Histogramm</translation>
     </message>
     <message>
         <source>Grey values, logarithmic, and saturated pixels</source>
-        <translation type="unfinished"></translation>
+        <translation>Grauwerte, logarithmisch, und übersteuerte Pixel</translation>
     </message>
 </context>
 <context>
     <name>seamwright::CellPage</name>
     <message>
         <source>Which sensors and robots there are, and which part they look at. Connect them here.</source>
-        <translation type="unfinished"></translation>
+        <translation>Welche Sensoren und Roboter es gibt und welches Teil sie sehen. Hier werden sie verbunden.</translation>
     </message>
     <message>
         <source>Connect</source>
-        <translation type="unfinished"></translation>
+        <translation>Verbinden</translation>
     </message>
     <message>
         <source>Open all sensors and robots of the project</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Sensoren und Roboter des Projekts öffnen</translation>
     </message>
     <message>
         <source>Disconnect</source>
-        <translation type="unfinished"></translation>
+        <translation>Trennen</translation>
     </message>
     <message>
         <source>Let go of all sensors and robots</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Sensoren und Roboter freigeben</translation>
     </message>
     <message>
         <source>Sensors and robots</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensoren und Roboter</translation>
     </message>
     <message>
         <source>Name</source>
-        <translation type="unfinished"></translation>
+        <translation>Name</translation>
     </message>
     <message>
         <source>Kind</source>
-        <translation type="unfinished"></translation>
+        <translation>Art</translation>
     </message>
     <message>
         <source>Driver</source>
-        <translation type="unfinished"></translation>
+        <translation>Treiber</translation>
     </message>
     <message>
         <source>State</source>
-        <translation type="unfinished"></translation>
+        <translation>Zustand</translation>
     </message>
     <message>
         <source>Sensors and robots of the project</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensoren und Roboter des Projekts</translation>
     </message>
     <message>
         <source>Rename</source>
-        <translation type="unfinished"></translation>
+        <translation>Umbenennen</translation>
     </message>
     <message>
         <source>Give the device another name</source>
-        <translation type="unfinished"></translation>
+        <translation>Dem Gerät einen anderen Namen geben</translation>
     </message>
     <message>
         <source>Remove</source>
-        <translation type="unfinished"></translation>
+        <translation>Entfernen</translation>
     </message>
     <message>
         <source>Take the device out of the project</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Gerät aus dem Projekt nehmen</translation>
     </message>
     <message>
         <source>Add sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor hinzufügen</translation>
     </message>
     <message>
         <source>A further sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein weiterer Sensor</translation>
     </message>
     <message>
         <source>Add robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter hinzufügen</translation>
     </message>
     <message>
         <source>A further robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein weiterer Roboter</translation>
     </message>
     <message>
         <source>How the device is spoken to</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie mit dem Gerät gesprochen wird</translation>
     </message>
     <message>
         <source>any but stopped and fault</source>
-        <translation type="unfinished"></translation>
+        <translation>jede außer gestoppt und Störung</translation>
     </message>
     <message>
         <source>Push only in mode</source>
-        <translation type="unfinished"></translation>
+        <translation>Nur übertragen in Betriebsart</translation>
     </message>
     <message>
         <source>Pushes are refused while the robot is in another mode</source>
-        <translation type="unfinished"></translation>
+        <translation>Übertragungen werden abgelehnt, solange der Roboter in einer anderen Betriebsart ist</translation>
     </message>
     <message>
         <source>Settings (JSON)</source>
-        <translation type="unfinished"></translation>
+        <translation>Einstellungen (JSON)</translation>
     </message>
     <message>
         <source>Address, port, serial number and whatever else the driver documents</source>
-        <translation type="unfinished"></translation>
+        <translation>Adresse, Port, Seriennummer und was der Treiber sonst beschreibt</translation>
     </message>
     <message>
         <source>refused: this is no JSON</source>
-        <translation type="unfinished"></translation>
+        <translation>abgelehnt: das ist kein JSON</translation>
     </message>
     <message>
         <source>Apply</source>
-        <translation type="unfinished"></translation>
+        <translation>Übernehmen</translation>
     </message>
     <message>
         <source>Take driver and settings over; connect again afterwards</source>
-        <translation type="unfinished"></translation>
+        <translation>Treiber und Einstellungen übernehmen; danach neu verbinden</translation>
     </message>
     <message>
         <source>Part</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil</translation>
     </message>
     <message>
         <source>millimetre (checked)</source>
-        <translation type="unfinished"></translation>
+        <translation>Millimeter (geprüft)</translation>
     </message>
     <message>
         <source>millimetre</source>
-        <translation type="unfinished"></translation>
+        <translation>Millimeter</translation>
     </message>
     <message>
         <source>metre</source>
-        <translation type="unfinished"></translation>
+        <translation>Meter</translation>
     </message>
     <message>
         <source>Unit of the file</source>
-        <translation type="unfinished"></translation>
+        <translation>Einheit der Datei</translation>
     </message>
     <message>
         <source>STL, PLY and OBJ do not say their unit</source>
-        <translation type="unfinished"></translation>
+        <translation>STL, PLY und OBJ nennen ihre Einheit nicht</translation>
     </message>
     <message>
         <source>Import part...</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil einlesen...</translation>
     </message>
     <message>
         <source>Mesh of the part in the work object frame: STL, PLY or OBJ</source>
-        <translation type="unfinished"></translation>
+        <translation>Netz des Teils im Werkobjekt-Koordinatensystem: STL, PLY oder OBJ</translation>
     </message>
     <message>
         <source>Work object in the robot&apos;s base</source>
-        <translation type="unfinished"></translation>
+        <translation>Werkobjekt in der Roboterbasis</translation>
     </message>
     <message>
         <source>base_from_workobject: where the part as taught stands</source>
-        <translation type="unfinished"></translation>
+        <translation>base_from_workobject: wo das eingelernte Teil steht</translation>
     </message>
     <message>
         <source>Change the work object&apos;s frame</source>
-        <translation type="unfinished"></translation>
+        <translation>Koordinatensystem des Werkobjekts ändern</translation>
     </message>
     <message>
         <source>Simulated part</source>
-        <translation type="unfinished"></translation>
+        <translation>Simuliertes Teil</translation>
     </message>
     <message>
         <source>Puts the next part into the simulated fixture: up to 10 mm and 0.6 degrees off, a little bent. Or the taught one again.</source>
-        <translation type="unfinished"></translation>
+        <translation>Legt das nächste Teil in die simulierte Vorrichtung: bis 10 mm und 0,6 Grad versetzt, etwas verbogen. Oder wieder das eingelernte.</translation>
     </message>
     <message>
         <source>Displace</source>
-        <translation type="unfinished"></translation>
+        <translation>Versetzen</translation>
     </message>
     <message>
         <source>The next simulated part, displaced</source>
-        <translation type="unfinished"></translation>
+        <translation>Das nächste simulierte Teil, versetzt</translation>
     </message>
     <message>
         <source>As taught</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie eingelernt</translation>
     </message>
     <message>
         <source>The simulated part where it was taught</source>
-        <translation type="unfinished"></translation>
+        <translation>Das simulierte Teil, wo es eingelernt wurde</translation>
     </message>
     <message>
         <source>not connected</source>
-        <translation type="unfinished"></translation>
+        <translation>nicht verbunden</translation>
     </message>
     <message>
         <source>ok, %1 frames</source>
-        <translation type="unfinished"></translation>
+        <translation>ok, %1 Bilder</translation>
     </message>
     <message>
         <source>no frame: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>kein Bild: %1</translation>
     </message>
     <message>
         <source>sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor</translation>
     </message>
     <message>
         <source>ok, %1</source>
-        <translation type="unfinished"></translation>
+        <translation>ok, %1</translation>
     </message>
     <message>
         <source>silent: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>stumm: %1</translation>
     </message>
     <message>
         <source>robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter</translation>
     </message>
     <message>
         <source>No mesh. Everything works without one; the 3D view is empty then.</source>
-        <translation type="unfinished"></translation>
+        <translation>Kein Netz. Alles geht auch ohne; die 3D-Ansicht ist dann leer.</translation>
     </message>
     <message>
         <source>%1, from %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1, aus %2</translation>
     </message>
     <message>
         <source>never connected</source>
-        <translation type="unfinished"></translation>
+        <translation>nie verbunden</translation>
     </message>
     <message>
         <source>answers as %1, serial %2</source>
-        <translation type="unfinished"></translation>
+        <translation>antwortet als %1, Seriennummer %2</translation>
     </message>
     <message>
         <source>Exposure and trigger of sensor %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Belichtung und Trigger von Sensor %1</translation>
     </message>
     <message>
         <source>New name</source>
-        <translation type="unfinished"></translation>
+        <translation>Neuer Name</translation>
     </message>
     <message>
         <source>settings</source>
-        <translation type="unfinished"></translation>
+        <translation>Einstellungen</translation>
     </message>
     <message>
         <source>Import part</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil einlesen</translation>
     </message>
     <message>
         <source>Meshes (*.stl *.ply *.obj)</source>
-        <translation type="unfinished"></translation>
+        <translation>Netze (*.stl *.ply *.obj)</translation>
     </message>
 </context>
 <context>
     <name>seamwright::CommandPalette</name>
     <message>
         <source>All actions</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Aktionen</translation>
     </message>
     <message>
         <source>Type a few letters</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein paar Buchstaben tippen</translation>
     </message>
     <message>
         <source>Search actions</source>
-        <translation type="unfinished"></translation>
+        <translation>Aktionen suchen</translation>
     </message>
     <message>
         <source>Letters in order; Enter runs the marked action</source>
-        <translation type="unfinished"></translation>
+        <translation>Buchstaben in Reihenfolge; Enter führt die markierte Aktion aus</translation>
     </message>
     <message>
         <source>Actions found</source>
-        <translation type="unfinished"></translation>
+        <translation>Gefundene Aktionen</translation>
     </message>
     <message>
         <source>Enter or double click runs an action</source>
-        <translation type="unfinished"></translation>
+        <translation>Enter oder Doppelklick führt eine Aktion aus</translation>
     </message>
 </context>
 <context>
     <name>seamwright::EventList</name>
     <message>
         <source>Event log</source>
-        <translation type="unfinished"></translation>
+        <translation>Ereignisprotokoll</translation>
     </message>
     <message>
         <source>What happened, newest first</source>
-        <translation type="unfinished"></translation>
+        <translation>Was geschah, Neuestes zuerst</translation>
     </message>
     <message>
         <source>When</source>
-        <translation type="unfinished"></translation>
+        <translation>Wann</translation>
     </message>
     <message>
         <source>Kind</source>
-        <translation type="unfinished"></translation>
+        <translation>Art</translation>
     </message>
     <message>
         <source>Subject</source>
-        <translation type="unfinished"></translation>
+        <translation>Betreff</translation>
     </message>
     <message>
         <source>Text</source>
-        <translation type="unfinished"></translation>
+        <translation>Text</translation>
     </message>
     <message>
         <source>note</source>
-        <translation type="unfinished"></translation>
+        <translation>Hinweis</translation>
     </message>
     <message>
         <source>refusal</source>
-        <translation type="unfinished"></translation>
+        <translation>Ablehnung</translation>
     </message>
     <message>
         <source>push attempt</source>
-        <translation type="unfinished"></translation>
+        <translation>Übertragungsversuch</translation>
     </message>
     <message>
         <source>push</source>
-        <translation type="unfinished"></translation>
+        <translation>Übertragung</translation>
     </message>
     <message>
         <source>ALARM</source>
-        <translation type="unfinished"></translation>
+        <translation>ALARM</translation>
     </message>
     <message>
         <source>device</source>
-        <translation type="unfinished"></translation>
+        <translation>Gerät</translation>
     </message>
 </context>
 <context>
     <name>seamwright::Histogram</name>
     <message>
         <source>fewer than two values</source>
-        <translation type="unfinished"></translation>
+        <translation>weniger als zwei Werte</translation>
     </message>
     <message>
         <source>n %1   mean %2   s %3 %4</source>
-        <translation type="unfinished"></translation>
+        <translation>n %1   Mittel %2   s %3 %4</translation>
     </message>
     <message>
         <source>Cp %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Cp %1</translation>
     </message>
     <message>
         <source>Cpk %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Cpk %1</translation>
     </message>
     <message>
         <source>(few values)</source>
-        <translation type="unfinished"></translation>
+        <translation>(wenige Werte)</translation>
     </message>
     <message>
         <source>Distribution</source>
-        <translation type="unfinished"></translation>
+        <translation>Verteilung</translation>
     </message>
     <message>
         <source>Distribution with limits. Cp and Cpk assume independent values of one stable, normal process.</source>
-        <translation type="unfinished"></translation>
+        <translation>Verteilung mit Grenzen. Cp und Cpk setzen unabhängige Werte eines stabilen, normalverteilten Prozesses voraus.</translation>
     </message>
     <message>
         <source>Distribution in numbers</source>
-        <translation type="unfinished"></translation>
+        <translation>Verteilung in Zahlen</translation>
     </message>
     <message>
         <source>Distribution chart</source>
-        <translation type="unfinished"></translation>
+        <translation>Verteilungsdiagramm</translation>
     </message>
 </context>
 <context>
     <name>seamwright::MainWindow</name>
     <message>
         <source>autosaved %1</source>
-        <translation type="unfinished"></translation>
+        <translation>automatisch gesichert %1</translation>
     </message>
     <message>
         <source>saved</source>
-        <translation type="unfinished"></translation>
+        <translation>gespeichert</translation>
     </message>
     <message>
         <source>&amp;File</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Datei</translation>
     </message>
     <message>
         <source>&amp;New project...</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Neues Projekt...</translation>
     </message>
     <message>
         <source>&amp;Open...</source>
-        <translation type="unfinished"></translation>
+        <translation>Ö&amp;ffnen...</translation>
     </message>
     <message>
         <source>Recent</source>
-        <translation type="unfinished"></translation>
+        <translation>Zuletzt benutzt</translation>
     </message>
     <message>
         <source>&amp;Save</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Speichern</translation>
     </message>
     <message>
         <source>Save &amp;as...</source>
-        <translation type="unfinished"></translation>
+        <translation>Speichern &amp;unter...</translation>
     </message>
     <message>
         <source>Import project (JSON)...</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt einlesen (JSON)...</translation>
     </message>
     <message>
         <source>Export project (JSON)...</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt ausgeben (JSON)...</translation>
     </message>
     <message>
         <source>Open the demo project</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Demoprojekt öffnen</translation>
     </message>
     <message>
         <source>Start the demo project anew</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Demoprojekt neu beginnen</translation>
     </message>
     <message>
         <source>Demo project</source>
-        <translation type="unfinished"></translation>
+        <translation>Demoprojekt</translation>
     </message>
     <message>
         <source>Replace your demo project and its runs by a fresh one?</source>
-        <translation type="unfinished"></translation>
+        <translation>Ihr Demoprojekt samt Läufen durch ein frisches ersetzen?</translation>
     </message>
     <message>
         <source>&amp;Quit</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Beenden</translation>
     </message>
     <message>
         <source>&amp;Edit</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Bearbeiten</translation>
     </message>
     <message>
         <source>Undo</source>
-        <translation type="unfinished"></translation>
+        <translation>Rückgängig</translation>
     </message>
     <message>
         <source>Redo</source>
-        <translation type="unfinished"></translation>
+        <translation>Wiederholen</translation>
     </message>
     <message>
         <source>All actions...</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Aktionen...</translation>
     </message>
     <message>
         <source>&amp;Steps</source>
-        <translation type="unfinished"></translation>
+        <translation>S&amp;chritte</translation>
     </message>
     <message>
         <source>Step %1: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Schritt %1: %2</translation>
     </message>
     <message>
         <source>Go to the next step</source>
-        <translation type="unfinished"></translation>
+        <translation>Zum nächsten Schritt</translation>
     </message>
     <message>
         <source>&amp;Measure</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Messen</translation>
     </message>
     <message>
         <source>Connect devices</source>
-        <translation type="unfinished"></translation>
+        <translation>Geräte verbinden</translation>
     </message>
     <message>
         <source>Disconnect devices</source>
-        <translation type="unfinished"></translation>
+        <translation>Geräte trennen</translation>
     </message>
     <message>
         <source>Measure</source>
-        <translation type="unfinished"></translation>
+        <translation>Messen</translation>
     </message>
     <message>
         <source>Measure, then push...</source>
-        <translation type="unfinished"></translation>
+        <translation>Messen, dann übertragen...</translation>
     </message>
     <message>
         <source>Cancel the measuring</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Messen abbrechen</translation>
     </message>
     <message>
         <source>&amp;View</source>
-        <translation type="unfinished"></translation>
+        <translation>&amp;Ansicht</translation>
     </message>
     <message>
         <source>Show %1</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 zeigen</translation>
     </message>
     <message>
         <source>One view alone, and back</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Ansicht allein, und zurück</translation>
     </message>
     <message>
         <source>Freeze the live profile, and go on</source>
-        <translation type="unfinished"></translation>
+        <translation>Das laufende Profil anhalten, und weiter</translation>
     </message>
     <message>
         <source>Docks as at first</source>
-        <translation type="unfinished"></translation>
+        <translation>Ansichten wie am Anfang</translation>
     </message>
     <message>
         <source>Deutsch</source>
-        <translation type="unfinished"></translation>
+        <translation>English</translation>
     </message>
     <message>
         <source>Light theme</source>
-        <translation type="unfinished"></translation>
+        <translation>Helles Schema</translation>
     </message>
     <message>
         <source>Dark theme</source>
-        <translation type="unfinished"></translation>
+        <translation>Dunkles Schema</translation>
     </message>
     <message>
         <source>Tools</source>
-        <translation type="unfinished"></translation>
+        <translation>Werkzeuge</translation>
     </message>
     <message>
         <source>More</source>
-        <translation type="unfinished"></translation>
+        <translation>Mehr</translation>
     </message>
     <message>
         <source>This view alone, and back (F11)</source>
-        <translation type="unfinished"></translation>
+        <translation>Diese Ansicht allein, und zurück (F11)</translation>
     </message>
     <message>
         <source>In a window of its own, and back</source>
-        <translation type="unfinished"></translation>
+        <translation>In einem eigenen Fenster, und zurück</translation>
     </message>
     <message>
         <source>Live profile</source>
-        <translation type="unfinished"></translation>
+        <translation>Laufendes Profil</translation>
     </message>
     <message>
         <source>Camera image</source>
-        <translation type="unfinished"></translation>
+        <translation>Kamerabild</translation>
     </message>
     <message>
         <source>Part in 3D</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil in 3D</translation>
     </message>
     <message>
         <source>Frozen contour</source>
-        <translation type="unfinished"></translation>
+        <translation>Stehende Kontur</translation>
     </message>
     <message>
         <source>Residuals</source>
-        <translation type="unfinished"></translation>
+        <translation>Residuen</translation>
     </message>
     <message>
         <source>Charts</source>
-        <translation type="unfinished"></translation>
+        <translation>Diagramme</translation>
     </message>
     <message>
         <source>Events</source>
-        <translation type="unfinished"></translation>
+        <translation>Ereignisse</translation>
     </message>
     <message>
         <source>Understood</source>
-        <translation type="unfinished"></translation>
+        <translation>Verstanden</translation>
     </message>
     <message>
         <source>Puts the message away; the event log keeps it</source>
-        <translation type="unfinished"></translation>
+        <translation>Räumt die Meldung weg; das Ereignisprotokoll behält sie</translation>
     </message>
     <message>
         <source>Sensors: state, rate, dropped frames</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensoren: Zustand, Rate, verlorene Bilder</translation>
     </message>
     <message>
         <source>Robots: mode and state</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter: Betriebsart und Zustand</translation>
     </message>
     <message>
         <source>The last push</source>
-        <translation type="unfinished"></translation>
+        <translation>Die letzte Übertragung</translation>
     </message>
     <message>
         <source>Alarms and refusals in the event log</source>
-        <translation type="unfinished"></translation>
+        <translation>Alarme und Ablehnungen im Ereignisprotokoll</translation>
     </message>
     <message>
         <source>Whether edits are saved</source>
-        <translation type="unfinished"></translation>
+        <translation>Ob Änderungen gespeichert sind</translation>
     </message>
     <message>
         <source>%1[*] - Seamwright</source>
-        <translation type="unfinished"></translation>
+        <translation>%1[*] - Seamwright</translation>
     </message>
     <message>
         <source>no project</source>
-        <translation type="unfinished"></translation>
+        <translation>kein Projekt</translation>
     </message>
     <message>
         <source>Next: %1 - %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Als Nächstes: %1 - %2</translation>
     </message>
     <message>
         <source>sensor %1 ok %2 /s, %3 dropped</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor %1 ok %2 /s, %3 verloren</translation>
     </message>
     <message>
         <source>sensor %1 no frame</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor %1 kein Bild</translation>
     </message>
     <message>
         <source>robot %1 %2 ok</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter %1 %2 ok</translation>
     </message>
     <message>
         <source>robot %1 silent</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter %1 stumm</translation>
     </message>
     <message>
         <source>not connected</source>
-        <translation type="unfinished"></translation>
+        <translation>nicht verbunden</translation>
     </message>
     <message>
         <source>last push %1, run %2 verified</source>
-        <translation type="unfinished"></translation>
+        <translation>letzte Übertragung %1, Lauf %2 geprüft</translation>
     </message>
     <message>
         <source>nothing pushed</source>
-        <translation type="unfinished"></translation>
+        <translation>nichts übertragen</translation>
     </message>
     <message>
         <source>Unsaved edits</source>
-        <translation type="unfinished"></translation>
+        <translation>Nicht gespeicherte Änderungen</translation>
     </message>
     <message>
         <source>%1 has unsaved edits.</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 hat nicht gespeicherte Änderungen.</translation>
     </message>
     <message>
         <source>New project</source>
-        <translation type="unfinished"></translation>
+        <translation>Neues Projekt</translation>
     </message>
     <message>
         <source>Seamwright projects (*.seam)</source>
-        <translation type="unfinished"></translation>
+        <translation>Seamwright-Projekte (*.seam)</translation>
     </message>
     <message>
         <source>Open project</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt öffnen</translation>
     </message>
     <message>
         <source>Save as</source>
-        <translation type="unfinished"></translation>
+        <translation>Speichern unter</translation>
     </message>
     <message>
         <source>Export project</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt ausgeben</translation>
     </message>
     <message>
         <source>JSON (*.json)</source>
-        <translation type="unfinished"></translation>
+        <translation>JSON (*.json)</translation>
     </message>
     <message>
         <source>Import project</source>
-        <translation type="unfinished"></translation>
+        <translation>Projekt einlesen</translation>
     </message>
     <message>
         <source>%1 is no JSON</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 ist kein JSON</translation>
     </message>
     <message>
         <source>Save the imported project as</source>
-        <translation type="unfinished"></translation>
+        <translation>Das eingelesene Projekt speichern als</translation>
     </message>
 </context>
 <context>
     <name>seamwright::ParameterEditor</name>
     <message>
         <source>%1 to %2 %3</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 bis %2 %3</translation>
     </message>
     <message>
         <source>Why the value is refused</source>
-        <translation type="unfinished"></translation>
+        <translation>Warum der Wert abgelehnt wird</translation>
     </message>
     <message>
         <source>not a number</source>
-        <translation type="unfinished"></translation>
+        <translation>keine Zahl</translation>
     </message>
     <message>
         <source>outside %1</source>
-        <translation type="unfinished"></translation>
+        <translation>außerhalb %1</translation>
     </message>
     <message>
         <source>refused: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>abgelehnt: %1</translation>
     </message>
 </context>
 <context>
     <name>seamwright::PoseEditor</name>
     <message>
         <source>mm</source>
-        <translation type="unfinished"></translation>
+        <translation>mm</translation>
     </message>
     <message>
         <source>deg</source>
-        <translation type="unfinished"></translation>
+        <translation>Grad</translation>
     </message>
     <message>
         <source>rad</source>
-        <translation type="unfinished"></translation>
+        <translation>rad</translation>
     </message>
     <message>
         <source>%1 in %2. A whole pose can be pasted here.</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 in %2. Eine ganze Pose kann hier eingefügt werden.</translation>
     </message>
     <message>
         <source>refused: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>abgelehnt: %1</translation>
     </message>
     <message>
         <source>Pose</source>
-        <translation type="unfinished"></translation>
+        <translation>Pose</translation>
     </message>
     <message>
         <source>Position in mm and orientation in the notation chosen</source>
-        <translation type="unfinished"></translation>
+        <translation>Position in mm und Orientierung in der gewählten Schreibweise</translation>
     </message>
     <message>
         <source>Notation of the orientation</source>
-        <translation type="unfinished"></translation>
+        <translation>Schreibweise der Orientierung</translation>
     </message>
     <message>
         <source>How the orientation is written; the pose itself stays</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie die Orientierung geschrieben wird; die Pose selbst bleibt</translation>
     </message>
     <message>
         <source>Matrix, 4 rows of 4 numbers, mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Matrix, 4 Zeilen zu 4 Zahlen, mm</translation>
     </message>
     <message>
         <source>Paste or type 12 or 16 numbers, row by row; Ctrl+Enter takes them</source>
-        <translation type="unfinished"></translation>
+        <translation>12 oder 16 Zahlen zeilenweise einfügen oder tippen; Strg+Enter übernimmt sie</translation>
     </message>
     <message>
         <source>Why the pose is refused</source>
-        <translation type="unfinished"></translation>
+        <translation>Warum die Pose abgelehnt wird</translation>
     </message>
     <message>
         <source>a pose of %1 numbers</source>
-        <translation type="unfinished"></translation>
+        <translation>eine Pose aus %1 Zahlen</translation>
     </message>
     <message>
         <source>give 6 numbers, 7 with a quaternion, 12 or 16 as a matrix</source>
-        <translation type="unfinished"></translation>
+        <translation>6 Zahlen angeben, 7 mit Quaternion, 12 oder 16 als Matrix</translation>
     </message>
     <message>
         <source>KUKA A B C (Z-Y&apos;-X&apos;&apos;)</source>
-        <translation type="unfinished"></translation>
+        <translation>KUKA A B C (Z-Y&apos;-X&apos;&apos;)</translation>
     </message>
     <message>
         <source>FANUC W P R</source>
-        <translation type="unfinished"></translation>
+        <translation>FANUC W P R</translation>
     </message>
     <message>
         <source>ABB quaternion (w first)</source>
-        <translation type="unfinished"></translation>
+        <translation>ABB-Quaternion (w zuerst)</translation>
     </message>
     <message>
         <source>UR rotation vector</source>
-        <translation type="unfinished"></translation>
+        <translation>UR-Rotationsvektor</translation>
     </message>
     <message>
         <source>Matrix 4 x 4</source>
-        <translation type="unfinished"></translation>
+        <translation>Matrix 4 x 4</translation>
     </message>
 </context>
 <context>
     <name>seamwright::ProfilePlot</name>
     <message>
         <source>x (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>x (mm)</translation>
     </message>
     <message>
         <source>z (mm)</source>
-        <translation type="unfinished"></translation>
+        <translation>z (mm)</translation>
     </message>
     <message>
         <source>intensity, up to %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Helligkeit, bis %1</translation>
     </message>
     <message>
         <source>reference</source>
-        <translation type="unfinished"></translation>
+        <translation>Referenz</translation>
     </message>
     <message>
         <source>x %1 ± %2   z %3 ± %4 mm (2 sigma)</source>
-        <translation type="unfinished"></translation>
+        <translation>x %1 ± %2   z %3 ± %4 mm (2 Sigma)</translation>
     </message>
     <message>
         <source>no feature: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>kein Merkmal: %1</translation>
     </message>
     <message>
         <source>%1 mm   %2°   (dx %3, dz %4)</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 mm   %2°   (dx %3, dz %4)</translation>
     </message>
     <message>
         <source>residuals:
 no reference here</source>
-        <translation type="unfinished"></translation>
+        <translation>Residuen:
+hier keine Referenz</translation>
     </message>
     <message>
         <source>to reference %1 ± %2 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>zur Referenz %1 ± %2 mm</translation>
     </message>
     <message>
         <source>Live profile</source>
-        <translation type="unfinished"></translation>
+        <translation>Laufendes Profil</translation>
     </message>
     <message>
         <source>Profile in the sensor frame, mm. Drag moves, wheel zooms, double click or F fits, Space freezes, M measures.</source>
-        <translation type="unfinished"></translation>
+        <translation>Profil in Sensorkoordinaten, mm. Ziehen verschiebt, Rad zoomt, Doppelklick oder F passt ein, Leertaste hält an, M misst.</translation>
     </message>
     <message>
         <source>Profile, x and z in mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Profil, x und z in mm</translation>
     </message>
     <message>
         <source>Sensor state</source>
-        <translation type="unfinished"></translation>
+        <translation>Zustand des Sensors</translation>
     </message>
     <message>
         <source>Fit</source>
-        <translation type="unfinished"></translation>
+        <translation>Einpassen</translation>
     </message>
     <message>
         <source>Show all points (F)</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Punkte zeigen (F)</translation>
     </message>
     <message>
         <source>Measure</source>
-        <translation type="unfinished"></translation>
+        <translation>Messen</translation>
     </message>
     <message>
         <source>Two clicks: distance and angle (M)</source>
-        <translation type="unfinished"></translation>
+        <translation>Zwei Klicks: Abstand und Winkel (M)</translation>
     </message>
     <message>
         <source>Residuals</source>
-        <translation type="unfinished"></translation>
+        <translation>Residuen</translation>
     </message>
     <message>
         <source>Histogram of the distances to the reference profile</source>
-        <translation type="unfinished"></translation>
+        <translation>Histogramm der Abstände zum Referenzprofil</translation>
     </message>
     <message>
         <source>Intensity</source>
-        <translation type="unfinished"></translation>
+        <translation>Helligkeit</translation>
     </message>
     <message>
         <source>Brightness of the stripe along x</source>
-        <translation type="unfinished"></translation>
+        <translation>Helligkeit des Laserstrichs über x</translation>
     </message>
     <message>
         <source>Freeze</source>
-        <translation type="unfinished"></translation>
+        <translation>Anhalten</translation>
     </message>
     <message>
         <source>Hold this profile on the screen (Space)</source>
-        <translation type="unfinished"></translation>
+        <translation>Dieses Profil auf dem Schirm halten (Leertaste)</translation>
     </message>
     <message>
         <source>Frozen</source>
-        <translation type="unfinished"></translation>
+        <translation>Angehalten</translation>
     </message>
 </context>
 <context>
     <name>seamwright::ProvePage</name>
     <message>
         <source>Before anything is corrected: the part as taught, not touched, measured several times. Every number must be zero within its scatter.</source>
-        <translation type="unfinished"></translation>
+        <translation>Bevor irgendetwas korrigiert wird: das eingelernte Teil, unberührt, mehrmals gemessen. Jede Zahl muss innerhalb ihrer Streuung null sein.</translation>
     </message>
     <message>
         <source>Runs</source>
-        <translation type="unfinished"></translation>
+        <translation>Läufe</translation>
     </message>
     <message>
         <source>How often the unmoved part is measured</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie oft das unbewegte Teil gemessen wird</translation>
     </message>
     <message>
         <source>Start zero shift</source>
-        <translation type="unfinished"></translation>
+        <translation>Nullverschiebung starten</translation>
     </message>
     <message>
         <source>Measures; nothing is written to the robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Misst; zum Roboter wird nichts geschrieben</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>The region that the table and the charts show</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Korrekturbereich, den Tabelle und Diagramme zeigen</translation>
     </message>
     <message>
         <source>Direction</source>
-        <translation type="unfinished"></translation>
+        <translation>Richtung</translation>
     </message>
     <message>
         <source>Mean</source>
-        <translation type="unfinished"></translation>
+        <translation>Mittel</translation>
     </message>
     <message>
         <source>3 sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>3 Sigma</translation>
     </message>
     <message>
         <source>Stated 3 sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>Angabe 3 Sigma</translation>
     </message>
     <message>
         <source>Mean and scatter over the zero-shift runs</source>
-        <translation type="unfinished"></translation>
+        <translation>Mittel und Streuung über die Nullverschiebungsläufe</translation>
     </message>
     <message>
         <source>The mean tells bias, 3 sigma the repeatability; stated is what the correction itself claims. The charts beside show every run.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Mittel zeigt die Abweichung, 3 Sigma die Wiederholgenauigkeit; angegeben ist, was die Korrektur selbst behauptet. Die Diagramme daneben zeigen jeden Lauf.</translation>
     </message>
     <message>
         <source>X</source>
-        <translation type="unfinished"></translation>
+        <translation>X</translation>
     </message>
     <message>
         <source>Y</source>
-        <translation type="unfinished"></translation>
+        <translation>Y</translation>
     </message>
     <message>
         <source>Z</source>
-        <translation type="unfinished"></translation>
+        <translation>Z</translation>
     </message>
     <message>
         <source>A about Z</source>
-        <translation type="unfinished"></translation>
+        <translation>A um Z</translation>
     </message>
     <message>
         <source>B about Y</source>
-        <translation type="unfinished"></translation>
+        <translation>B um Y</translation>
     </message>
     <message>
         <source>C about X</source>
-        <translation type="unfinished"></translation>
+        <translation>C um X</translation>
     </message>
     <message>
         <source>not measured yet</source>
-        <translation type="unfinished"></translation>
+        <translation>noch nicht gemessen</translation>
     </message>
     <message>
         <source>%1 of %2 runs were refused</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 von %2 Läufen wurden abgelehnt</translation>
     </message>
     <message>
         <source>%1 runs: the mean is off zero by more than 3 sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Läufe: das Mittel liegt mehr als 3 Sigma neben null</translation>
     </message>
     <message>
         <source>%1 runs read zero within 3 sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Läufe ergeben null innerhalb 3 Sigma</translation>
     </message>
     <message>
         <source>Zero shift of region %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Nullverschiebung von Korrekturbereich %1</translation>
     </message>
     <message>
         <source>Zero shift, X Y Z</source>
-        <translation type="unfinished"></translation>
+        <translation>Nullverschiebung, X Y Z</translation>
     </message>
 </context>
 <context>
     <name>seamwright::RegionsPage</name>
     <message>
         <source>A region is what moves as one piece: its spots tell where it has gone, its frame is what the robot gets.</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein Korrekturbereich ist, was sich als ein Stück bewegt: seine Messstellen sagen, wohin; seinen Frame bekommt der Roboter.</translation>
     </message>
     <message>
         <source>Regions</source>
-        <translation type="unfinished"></translation>
+        <translation>Bereiche</translation>
     </message>
     <message>
         <source>The project&apos;s regions</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Korrekturbereiche des Projekts</translation>
     </message>
     <message>
         <source>Rename</source>
-        <translation type="unfinished"></translation>
+        <translation>Umbenennen</translation>
     </message>
     <message>
         <source>Another name for the region</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein anderer Name für den Korrekturbereich</translation>
     </message>
     <message>
         <source>Rename region</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich umbenennen</translation>
     </message>
     <message>
         <source>New name</source>
-        <translation type="unfinished"></translation>
+        <translation>Neuer Name</translation>
     </message>
     <message>
         <source>Remove</source>
-        <translation type="unfinished"></translation>
+        <translation>Entfernen</translation>
     </message>
     <message>
         <source>Take the region out; its spots stay</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Korrekturbereich herausnehmen; seine Messstellen bleiben</translation>
     </message>
     <message>
         <source>Add region</source>
-        <translation type="unfinished"></translation>
+        <translation>Bereich hinzufügen</translation>
     </message>
     <message>
         <source>A further region</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein weiterer Korrekturbereich</translation>
     </message>
     <message>
         <source>Direction</source>
-        <translation type="unfinished"></translation>
+        <translation>Richtung</translation>
     </message>
     <message>
         <source>Free</source>
-        <translation type="unfinished"></translation>
+        <translation>Frei</translation>
     </message>
     <message>
         <source>Predicted 3 sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>Vorhergesagtes 3 Sigma</translation>
     </message>
     <message>
         <source>What the region will be able to tell</source>
-        <translation type="unfinished"></translation>
+        <translation>Was der Korrekturbereich wird sagen können</translation>
     </message>
     <message>
         <source>Spots of the region</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen des Korrekturbereichs</translation>
     </message>
     <message>
         <source>Ticked spots belong to the region; a spot may belong to several</source>
-        <translation type="unfinished"></translation>
+        <translation>Angehakte Messstellen gehören zum Korrekturbereich; eine Messstelle darf zu mehreren gehören</translation>
     </message>
     <message>
         <source>spots</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen</translation>
     </message>
     <message>
         <source>Free degrees of freedom (work object)</source>
-        <translation type="unfinished"></translation>
+        <translation>Freie Freiheitsgrade (Werkobjekt)</translation>
     </message>
     <message>
         <source>X</source>
-        <translation type="unfinished"></translation>
+        <translation>X</translation>
     </message>
     <message>
         <source>Y</source>
-        <translation type="unfinished"></translation>
+        <translation>Y</translation>
     </message>
     <message>
         <source>Z</source>
-        <translation type="unfinished"></translation>
+        <translation>Z</translation>
     </message>
     <message>
         <source>A about Z</source>
-        <translation type="unfinished"></translation>
+        <translation>A um Z</translation>
     </message>
     <message>
         <source>B about Y</source>
-        <translation type="unfinished"></translation>
+        <translation>B um Y</translation>
     </message>
     <message>
         <source>C about X</source>
-        <translation type="unfinished"></translation>
+        <translation>C um X</translation>
     </message>
     <message>
         <source>Ticked: the correction may move this way. Not ticked: exactly 0</source>
-        <translation type="unfinished"></translation>
+        <translation>Angehakt: die Korrektur darf sich so bewegen. Nicht angehakt: genau 0</translation>
     </message>
     <message>
         <source>degrees of freedom</source>
-        <translation type="unfinished"></translation>
+        <translation>Freiheitsgrade</translation>
     </message>
     <message>
         <source>Frame on the controller</source>
-        <translation type="unfinished"></translation>
+        <translation>Frame in der Steuerung</translation>
     </message>
     <message>
         <source>Name</source>
-        <translation type="unfinished"></translation>
+        <translation>Name</translation>
     </message>
     <message>
         <source>As the controller calls the base or work object that the path runs in</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie die Steuerung die Basis oder das Werkobjekt nennt, in dem die Bahn läuft</translation>
     </message>
     <message>
         <source>frame</source>
-        <translation type="unfinished"></translation>
+        <translation>Frame</translation>
     </message>
     <message>
         <source>Frame as taught</source>
-        <translation type="unfinished"></translation>
+        <translation>Frame wie eingelernt</translation>
     </message>
     <message>
         <source>base_from_frame for the undisplaced part</source>
-        <translation type="unfinished"></translation>
+        <translation>base_from_frame für das nicht versetzte Teil</translation>
     </message>
     <message>
         <source>Limits</source>
-        <translation type="unfinished"></translation>
+        <translation>Grenzen</translation>
     </message>
     <message>
         <source>observable; weakest: %1, sigma %2 mm at the spots</source>
-        <translation type="unfinished"></translation>
+        <translation>beobachtbar; am schwächsten: %1, Sigma %2 mm an den Messstellen</translation>
     </message>
     <message>
         <source>under-determined: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>unterbestimmt: %1</translation>
     </message>
     <message>
         <source>yes</source>
-        <translation type="unfinished"></translation>
+        <translation>ja</translation>
     </message>
     <message>
         <source>no</source>
-        <translation type="unfinished"></translation>
+        <translation>nein</translation>
     </message>
     <message>
         <source>exactly 0</source>
-        <translation type="unfinished"></translation>
+        <translation>genau 0</translation>
     </message>
     <message>
         <source>not observed</source>
-        <translation type="unfinished"></translation>
+        <translation>nicht beobachtet</translation>
     </message>
     <message>
         <source>A wrong measure of %1 mm could not be found at: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Fehlmessung von %1 mm wäre nicht zu finden an: %2</translation>
     </message>
 </context>
 <context>
     <name>seamwright::ResidualBars</name>
     <message>
         <source>x</source>
-        <translation type="unfinished"></translation>
+        <translation>x</translation>
     </message>
     <message>
         <source>z</source>
-        <translation type="unfinished"></translation>
+        <translation>z</translation>
     </message>
     <message>
         <source>left out</source>
-        <translation type="unfinished"></translation>
+        <translation>ausgelassen</translation>
     </message>
     <message>
         <source>%1
 left out</source>
-        <translation type="unfinished"></translation>
+        <translation>%1
+ausgelassen</translation>
     </message>
     <message>
         <source>residual (mm), box 3 sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>Residuum (mm), Kasten 3 Sigma</translation>
     </message>
     <message>
         <source>Residuals per spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Residuen je Messstelle</translation>
     </message>
     <message>
         <source>What the correction leaves at each spot along the sensor&apos;s x and z. A click selects the spot.</source>
-        <translation type="unfinished"></translation>
+        <translation>Was die Korrektur an jeder Messstelle entlang x und z des Sensors übrig lässt. Ein Klick wählt die Messstelle.</translation>
     </message>
     <message>
         <source>Residual chart</source>
-        <translation type="unfinished"></translation>
+        <translation>Residuendiagramm</translation>
     </message>
 </context>
 <context>
     <name>seamwright::RunPage</name>
     <message>
         <source>ok</source>
-        <translation type="unfinished"></translation>
+        <translation>ok</translation>
     </message>
     <message>
         <source>refused</source>
-        <translation type="unfinished"></translation>
+        <translation>abgelehnt</translation>
     </message>
     <message>
         <source>ALARM</source>
-        <translation type="unfinished"></translation>
+        <translation>ALARM</translation>
     </message>
     <message>
         <source>device failed</source>
-        <translation type="unfinished"></translation>
+        <translation>Gerät ausgefallen</translation>
     </message>
     <message>
         <source>cancelled</source>
-        <translation type="unfinished"></translation>
+        <translation>abgebrochen</translation>
     </message>
     <message>
         <source>interrupted</source>
-        <translation type="unfinished"></translation>
+        <translation>unterbrochen</translation>
     </message>
     <message>
         <source>Measure the part, look at the result, push the corrected frames.</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Teil messen, das Ergebnis ansehen, die korrigierten Frames übertragen.</translation>
     </message>
     <message>
         <source>run number</source>
-        <translation type="unfinished"></translation>
+        <translation>Laufnummer</translation>
     </message>
     <message>
         <source>Part</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil</translation>
     </message>
     <message>
         <source>Identity of the part that stands there; empty: the run&apos;s number</source>
-        <translation type="unfinished"></translation>
+        <translation>Kennung des Teils, das dort steht; leer: die Nummer des Laufs</translation>
     </message>
     <message>
         <source>Keep raw images</source>
-        <translation type="unfinished"></translation>
+        <translation>Rohbilder behalten</translation>
     </message>
     <message>
         <source>Camera images are stored with the run, beside the profiles</source>
-        <translation type="unfinished"></translation>
+        <translation>Kamerabilder werden mit dem Lauf gespeichert, neben den Profilen</translation>
     </message>
     <message>
         <source>Measure</source>
-        <translation type="unfinished"></translation>
+        <translation>Messen</translation>
     </message>
     <message>
         <source>Measures and judges; nothing is written to the robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Misst und urteilt; zum Roboter wird nichts geschrieben</translation>
     </message>
     <message>
         <source>Measure, then push...</source>
-        <translation type="unfinished"></translation>
+        <translation>Messen, dann übertragen...</translation>
     </message>
     <message>
         <source>Measures, shows what would be written, and asks before it is pushed</source>
-        <translation type="unfinished"></translation>
+        <translation>Misst, zeigt, was geschrieben würde, und fragt vor der Übertragung</translation>
     </message>
     <message>
         <source>Frame</source>
-        <translation type="unfinished"></translation>
+        <translation>Frame</translation>
     </message>
     <message>
         <source>X Y Z mm  A B C deg</source>
-        <translation type="unfinished"></translation>
+        <translation>X Y Z mm  A B C Grad</translation>
     </message>
     <message>
         <source>What would be written, and what stands there</source>
-        <translation type="unfinished"></translation>
+        <translation>Was geschrieben würde und was jetzt dort steht</translation>
     </message>
     <message>
         <source>Push</source>
-        <translation type="unfinished"></translation>
+        <translation>Übertragen</translation>
     </message>
     <message>
         <source>Writes these frames to the robot, reads them back and compares</source>
-        <translation type="unfinished"></translation>
+        <translation>Schreibt diese Frames zum Roboter, liest sie zurück und vergleicht</translation>
     </message>
     <message>
         <source>Do not push</source>
-        <translation type="unfinished"></translation>
+        <translation>Nicht übertragen</translation>
     </message>
     <message>
         <source>Nothing is written; the run is kept</source>
-        <translation type="unfinished"></translation>
+        <translation>Nichts wird geschrieben; der Lauf bleibt erhalten</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereich</translation>
     </message>
     <message>
         <source>Verdict</source>
-        <translation type="unfinished"></translation>
+        <translation>Urteil</translation>
     </message>
     <message>
         <source>X mm</source>
-        <translation type="unfinished"></translation>
+        <translation>X mm</translation>
     </message>
     <message>
         <source>Y mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Y mm</translation>
     </message>
     <message>
         <source>Z mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Z mm</translation>
     </message>
     <message>
         <source>A deg</source>
-        <translation type="unfinished"></translation>
+        <translation>A Grad</translation>
     </message>
     <message>
         <source>B deg</source>
-        <translation type="unfinished"></translation>
+        <translation>B Grad</translation>
     </message>
     <message>
         <source>C deg</source>
-        <translation type="unfinished"></translation>
+        <translation>C Grad</translation>
     </message>
     <message>
         <source>Displacement per region with its sigma</source>
-        <translation type="unfinished"></translation>
+        <translation>Verschiebung je Korrekturbereich mit ihrem Sigma</translation>
     </message>
     <message>
         <source>Spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle</translation>
     </message>
     <message>
         <source>dx mm</source>
-        <translation type="unfinished"></translation>
+        <translation>dx mm</translation>
     </message>
     <message>
         <source>dz mm</source>
-        <translation type="unfinished"></translation>
+        <translation>dz mm</translation>
     </message>
     <message>
         <source>Why</source>
-        <translation type="unfinished"></translation>
+        <translation>Warum</translation>
     </message>
     <message>
         <source>What every spot measured against its reference</source>
-        <translation type="unfinished"></translation>
+        <translation>Was jede Messstelle gegen ihre Referenz gemessen hat</translation>
     </message>
     <message>
         <source>History</source>
-        <translation type="unfinished"></translation>
+        <translation>Verlauf</translation>
     </message>
     <message>
         <source>Run</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf</translation>
     </message>
     <message>
         <source>When</source>
-        <translation type="unfinished"></translation>
+        <translation>Wann</translation>
     </message>
     <message>
         <source>Status</source>
-        <translation type="unfinished"></translation>
+        <translation>Status</translation>
     </message>
     <message>
         <source>All runs of the project, newest first</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Läufe des Projekts, neueste zuerst</translation>
     </message>
     <message>
         <source>Show</source>
-        <translation type="unfinished"></translation>
+        <translation>Zeigen</translation>
     </message>
     <message>
         <source>Shows the chosen run above (Enter, double click)</source>
-        <translation type="unfinished"></translation>
+        <translation>Zeigt den gewählten Lauf oben (Enter, Doppelklick)</translation>
     </message>
     <message>
         <source>Compare</source>
-        <translation type="unfinished"></translation>
+        <translation>Vergleichen</translation>
     </message>
     <message>
         <source>The chosen run beside the one shown above</source>
-        <translation type="unfinished"></translation>
+        <translation>Den gewählten Lauf neben dem oben gezeigten</translation>
     </message>
     <message>
         <source>Export CSV...</source>
-        <translation type="unfinished"></translation>
+        <translation>CSV ausgeben...</translation>
     </message>
     <message>
         <source>All runs: one line a region</source>
-        <translation type="unfinished"></translation>
+        <translation>Alle Läufe: eine Zeile je Korrekturbereich</translation>
     </message>
     <message>
         <source>Delete...</source>
-        <translation type="unfinished"></translation>
+        <translation>Löschen...</translation>
     </message>
     <message>
         <source>Deletes the chosen run with its raw data</source>
-        <translation type="unfinished"></translation>
+        <translation>Löscht den gewählten Lauf mit seinen Rohdaten</translation>
     </message>
     <message>
         <source>Delete run</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf löschen</translation>
     </message>
     <message>
         <source>Delete run %1 with its raw data? This cannot be undone.</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf %1 mit seinen Rohdaten löschen? Das lässt sich nicht rückgängig machen.</translation>
     </message>
     <message>
         <source>Difference X Y Z mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Unterschied X Y Z mm</translation>
     </message>
     <message>
         <source>A B C deg</source>
-        <translation type="unfinished"></translation>
+        <translation>A B C Grad</translation>
     </message>
     <message>
         <source>Second run minus first</source>
-        <translation type="unfinished"></translation>
+        <translation>Zweiter Lauf minus erster</translation>
     </message>
     <message>
         <source>Nothing was measured yet.</source>
-        <translation type="unfinished"></translation>
+        <translation>Noch wurde nichts gemessen.</translation>
     </message>
     <message>
         <source>Run %1, part %2: %3. %4</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf %1, Teil %2: %3. %4</translation>
     </message>
     <message>
         <source>passed the gate</source>
-        <translation type="unfinished"></translation>
+        <translation>freigegeben</translation>
     </message>
     <message>
         <source>, refused</source>
-        <translation type="unfinished"></translation>
+        <translation>, abgelehnt</translation>
     </message>
     <message>
         <source>%1 ± %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 ± %2</translation>
     </message>
     <message>
         <source>not solved</source>
-        <translation type="unfinished"></translation>
+        <translation>nicht gelöst</translation>
     </message>
     <message>
         <source>%1: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1: %2</translation>
     </message>
     <message>
         <source>Safety gate: every region passes.</source>
-        <translation type="unfinished"></translation>
+        <translation>Sicherheitsprüfung: jeder Korrekturbereich besteht.</translation>
     </message>
     <message>
         <source>Safety gate refuses: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Sicherheitsprüfung lehnt ab: %1</translation>
     </message>
     <message>
         <source>%1 now</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 jetzt</translation>
     </message>
     <message>
         <source>%1 new</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 neu</translation>
     </message>
     <message>
         <source>These frames would be written. Nothing has been sent yet.</source>
-        <translation type="unfinished"></translation>
+        <translation>Diese Frames würden geschrieben. Noch ist nichts gesendet.</translation>
     </message>
     <message>
         <source>Push %1 frames to %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Frames zu %2 übertragen</translation>
     </message>
     <message>
         <source>ok, pushed</source>
-        <translation type="unfinished"></translation>
+        <translation>ok, übertragen</translation>
     </message>
     <message>
         <source>X</source>
-        <translation type="unfinished"></translation>
+        <translation>X</translation>
     </message>
     <message>
         <source>Y</source>
-        <translation type="unfinished"></translation>
+        <translation>Y</translation>
     </message>
     <message>
         <source>Z</source>
-        <translation type="unfinished"></translation>
+        <translation>Z</translation>
     </message>
     <message>
         <source>Displacement of region %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Verschiebung von Korrekturbereich %1</translation>
     </message>
     <message>
         <source>Displacement, X Y Z</source>
-        <translation type="unfinished"></translation>
+        <translation>Verschiebung, X Y Z</translation>
     </message>
     <message>
         <source>Run %1 - %2: X Y Z mm</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf %1 - %2: X Y Z mm</translation>
     </message>
     <message>
         <source>Export CSV</source>
-        <translation type="unfinished"></translation>
+        <translation>CSV ausgeben</translation>
     </message>
     <message>
         <source>CSV (*.csv)</source>
-        <translation type="unfinished"></translation>
+        <translation>CSV (*.csv)</translation>
     </message>
 </context>
 <context>
     <name>seamwright::SceneView</name>
     <message>
         <source>%1 (off)</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 (aus)</translation>
     </message>
     <message>
         <source>  %1 mm</source>
-        <translation type="unfinished"></translation>
+        <translation>  %1 mm</translation>
     </message>
     <message>
         <source>corrections drawn × %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturen × %1 gezeichnet</translation>
     </message>
     <message>
         <source>Part in 3D</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil in 3D</translation>
     </message>
     <message>
         <source>Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit.</source>
-        <translation type="unfinished"></translation>
+        <translation>Ziehen dreht, Umschalt und Ziehen verschiebt, Rad zoomt, ein Klick wählt. 1 vorn, 2 oben, 3 iso, F einpassen.</translation>
     </message>
     <message>
         <source>Part</source>
-        <translation type="unfinished"></translation>
+        <translation>Teil</translation>
     </message>
     <message>
         <source>Front</source>
-        <translation type="unfinished"></translation>
+        <translation>Vorn</translation>
     </message>
     <message>
         <source>Top</source>
-        <translation type="unfinished"></translation>
+        <translation>Oben</translation>
     </message>
     <message>
         <source>Iso</source>
-        <translation type="unfinished"></translation>
+        <translation>Iso</translation>
     </message>
     <message>
         <source>Fit</source>
-        <translation type="unfinished"></translation>
+        <translation>Einpassen</translation>
     </message>
     <message>
         <source>View: %1</source>
-        <translation type="unfinished"></translation>
+        <translation>Ansicht: %1</translation>
     </message>
     <message>
         <source>Layers</source>
-        <translation type="unfinished"></translation>
+        <translation>Ebenen</translation>
     </message>
     <message>
         <source>What is drawn</source>
-        <translation type="unfinished"></translation>
+        <translation>Was gezeichnet wird</translation>
     </message>
     <message>
         <source>Spots</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen</translation>
     </message>
     <message>
         <source>Sensors and laser planes</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensoren und Laserebenen</translation>
     </message>
     <message>
         <source>Regions</source>
-        <translation type="unfinished"></translation>
+        <translation>Bereiche</translation>
     </message>
     <message>
         <source>Corrections</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturen</translation>
     </message>
     <message>
         <source>Path before and after</source>
-        <translation type="unfinished"></translation>
+        <translation>Bahn vorher und nachher</translation>
     </message>
     <message>
         <source>Robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter</translation>
     </message>
     <message>
         <source>Labels</source>
-        <translation type="unfinished"></translation>
+        <translation>Beschriftungen</translation>
     </message>
     <message>
         <source>No 3D picture: this display offers no OpenGL 3.2. Everything else works; measuring, correcting and pushing do not need it. Cure: a graphics driver with OpenGL 3.2, or Mesa&apos;s software renderer (LIBGL_ALWAYS_SOFTWARE=1).</source>
-        <translation type="unfinished"></translation>
+        <translation>Kein 3D-Bild: dieser Bildschirm bietet kein OpenGL 3.2. Alles andere geht; Messen, Korrigieren und Übertragen brauchen es nicht. Abhilfe: ein Grafiktreiber mit OpenGL 3.2 oder Mesas Softwarezeichner (LIBGL_ALWAYS_SOFTWARE=1).</translation>
     </message>
 </context>
 <context>
     <name>seamwright::SpotTree</name>
     <message>
         <source>Spots and regions</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen und Korrekturbereiche</translation>
     </message>
     <message>
         <source>Spots in the order of measuring, and regions with their spots</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen in der Reihenfolge des Messens, und Korrekturbereiche mit ihren Messstellen</translation>
     </message>
     <message>
         <source>Spot / region</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle / Bereich</translation>
     </message>
     <message>
         <source>State</source>
-        <translation type="unfinished"></translation>
+        <translation>Zustand</translation>
     </message>
     <message>
         <source>disabled</source>
-        <translation type="unfinished"></translation>
+        <translation>ausgeschaltet</translation>
     </message>
     <message>
         <source>no reference</source>
-        <translation type="unfinished"></translation>
+        <translation>keine Referenz</translation>
     </message>
     <message>
         <source>taught</source>
-        <translation type="unfinished"></translation>
+        <translation>eingelernt</translation>
     </message>
     <message>
         <source>taught, aligned</source>
-        <translation type="unfinished"></translation>
+        <translation>eingelernt, ausgerichtet</translation>
     </message>
     <message>
         <source>Spots (%1)</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstellen (%1)</translation>
     </message>
     <message>
         <source>Regions (%1)</source>
-        <translation type="unfinished"></translation>
+        <translation>Korrekturbereiche (%1)</translation>
     </message>
     <message>
         <source>%1 spots</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 Messstellen</translation>
     </message>
 </context>
 <context>
     <name>seamwright::StationWorker</name>
     <message>
         <source>Connecting</source>
-        <translation type="unfinished"></translation>
+        <translation>Verbinden</translation>
     </message>
     <message>
         <source>Disconnecting</source>
-        <translation type="unfinished"></translation>
+        <translation>Trennen</translation>
     </message>
     <message>
         <source>Measuring</source>
-        <translation type="unfinished"></translation>
+        <translation>Messen</translation>
     </message>
     <message>
         <source>Zero shift</source>
-        <translation type="unfinished"></translation>
+        <translation>Nullverschiebung</translation>
     </message>
     <message>
         <source>run %1 of %2: %3</source>
-        <translation type="unfinished"></translation>
+        <translation>Lauf %1 von %2: %3</translation>
     </message>
     <message>
         <source>Teaching</source>
-        <translation type="unfinished"></translation>
+        <translation>Einlernen</translation>
     </message>
     <message>
         <source>Recording the pass</source>
-        <translation type="unfinished"></translation>
+        <translation>Durchfahrt aufzeichnen</translation>
     </message>
     <message>
         <source>spot %1: no profile was seen on the whole pass</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle %1: auf der ganzen Durchfahrt wurde kein Profil gesehen</translation>
     </message>
     <message>
         <source>Moving the simulated robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Den simulierten Roboter fahren</translation>
     </message>
     <message>
         <source>only a simulated robot is moved from here</source>
-        <translation type="unfinished"></translation>
+        <translation>nur ein simulierter Roboter wird von hier gefahren</translation>
     </message>
     <message>
         <source>Setting the sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Sensor einstellen</translation>
     </message>
     <message>
         <source>sensor %1 is not connected</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor %1 ist nicht verbunden</translation>
     </message>
 </context>
 <context>
     <name>seamwright::StepPage</name>
     <message>
         <source>%1: %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1: %2</translation>
     </message>
     <message>
         <source>Progress</source>
-        <translation type="unfinished"></translation>
+        <translation>Fortschritt</translation>
     </message>
     <message>
         <source>How far the measuring is</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie weit das Messen ist</translation>
     </message>
     <message>
         <source>Cancel</source>
-        <translation type="unfinished"></translation>
+        <translation>Abbrechen</translation>
     </message>
     <message>
         <source>Stop the measuring; nothing is pushed</source>
-        <translation type="unfinished"></translation>
+        <translation>Das Messen abbrechen; nichts wird übertragen</translation>
     </message>
 </context>
 <context>
     <name>seamwright::StepRail</name>
     <message>
         <source>%1 %2</source>
-        <translation type="unfinished"></translation>
+        <translation>%1 %2</translation>
     </message>
     <message>
         <source>next, stale</source>
-        <translation type="unfinished"></translation>
+        <translation>als Nächstes, veraltet</translation>
     </message>
     <message>
         <source>%1: %2. %3</source>
-        <translation type="unfinished"></translation>
+        <translation>%1: %2. %3</translation>
     </message>
 </context>
 <context>
     <name>seamwright::Studio</name>
     <message>
         <source>Restore unsaved edits?</source>
-        <translation type="unfinished"></translation>
+        <translation>Nicht gespeicherte Änderungen wiederherstellen?</translation>
     </message>
     <message>
         <source>The last session ended without saving. Its edits of %1 are still there:</source>
-        <translation type="unfinished"></translation>
+        <translation>Die letzte Sitzung endete ohne Speichern. Ihre Änderungen vom %1 sind noch da:</translation>
     </message>
     <message>
         <source>
 and %1 more</source>
-        <translation type="unfinished"></translation>
+        <translation>
+und %1 weitere</translation>
     </message>
     <message>
         <source>Restore</source>
-        <translation type="unfinished"></translation>
+        <translation>Wiederherstellen</translation>
     </message>
     <message>
         <source>Open as saved</source>
-        <translation type="unfinished"></translation>
+        <translation>Öffnen wie gespeichert</translation>
     </message>
     <message>
         <source>The edits come back; save keeps them</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Änderungen kommen zurück; Speichern behält sie</translation>
     </message>
     <message>
         <source>The edits are thrown away</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Änderungen werden verworfen</translation>
     </message>
 </context>
 <context>
     <name>seamwright::TeachPage</name>
     <message>
         <source>Jog the sensor over the contour, take the pose, point at the feature, measure its reference.</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Sensor über die Kontur fahren, die Pose nehmen, auf das Merkmal zeigen, seine Referenz messen.</translation>
     </message>
     <message>
         <source>Duplicate</source>
-        <translation type="unfinished"></translation>
+        <translation>Duplizieren</translation>
     </message>
     <message>
         <source>The same spot once more</source>
-        <translation type="unfinished"></translation>
+        <translation>Dieselbe Messstelle noch einmal</translation>
     </message>
     <message>
         <source>Rename</source>
-        <translation type="unfinished"></translation>
+        <translation>Umbenennen</translation>
     </message>
     <message>
         <source>Another name for the spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Ein anderer Name für die Messstelle</translation>
     </message>
     <message>
         <source>Up</source>
-        <translation type="unfinished"></translation>
+        <translation>Nach oben</translation>
     </message>
     <message>
         <source>Measure it one earlier</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Stelle früher messen</translation>
     </message>
     <message>
         <source>Down</source>
-        <translation type="unfinished"></translation>
+        <translation>Nach unten</translation>
     </message>
     <message>
         <source>Measure it one later</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Stelle später messen</translation>
     </message>
     <message>
         <source>Remove</source>
-        <translation type="unfinished"></translation>
+        <translation>Entfernen</translation>
     </message>
     <message>
         <source>Take the spot out; undo brings it back</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Messstelle herausnehmen; Rückgängig bringt sie zurück</translation>
     </message>
     <message>
         <source>Add spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle hinzufügen</translation>
     </message>
     <message>
         <source>A new spot at the robot&apos;s present pose</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine neue Messstelle an der jetzigen Pose des Roboters</translation>
     </message>
     <message>
         <source>Enabled</source>
-        <translation type="unfinished"></translation>
+        <translation>Eingeschaltet</translation>
     </message>
     <message>
         <source>A disabled spot is not measured</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine ausgeschaltete Messstelle wird nicht gemessen</translation>
     </message>
     <message>
         <source>Required</source>
-        <translation type="unfinished"></translation>
+        <translation>Notwendig</translation>
     </message>
     <message>
         <source>Nothing is pushed when a required spot was not measured</source>
-        <translation type="unfinished"></translation>
+        <translation>Nichts wird übertragen, wenn eine notwendige Messstelle nicht gemessen wurde</translation>
     </message>
     <message>
         <source>required</source>
-        <translation type="unfinished"></translation>
+        <translation>notwendig</translation>
     </message>
     <message>
         <source>Pose of the flange at the trigger</source>
-        <translation type="unfinished"></translation>
+        <translation>Pose des Flanschs am Trigger</translation>
     </message>
     <message>
         <source>base_from_flange, in the notation of the robot&apos;s brand; paste a whole pose into any field</source>
-        <translation type="unfinished"></translation>
+        <translation>base_from_flange, in der Schreibweise der Robotermarke; eine ganze Pose in ein beliebiges Feld einfügen</translation>
     </message>
     <message>
         <source>pose</source>
-        <translation type="unfinished"></translation>
+        <translation>Pose</translation>
     </message>
     <message>
         <source>Take from the robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Vom Roboter nehmen</translation>
     </message>
     <message>
         <source>The pose where the robot stands now</source>
-        <translation type="unfinished"></translation>
+        <translation>Die Pose, in der der Roboter jetzt steht</translation>
     </message>
     <message>
         <source>Go there</source>
-        <translation type="unfinished"></translation>
+        <translation>Dorthin fahren</translation>
     </message>
     <message>
         <source>Moves the simulated robot to the spot; a real one is jogged</source>
-        <translation type="unfinished"></translation>
+        <translation>Fährt den simulierten Roboter zur Messstelle; ein echter wird von Hand verfahren</translation>
     </message>
     <message>
         <source>Sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor</translation>
     </message>
     <message>
         <source>The sensor that looks at the spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Sensor, der die Messstelle sieht</translation>
     </message>
     <message>
         <source>Robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter</translation>
     </message>
     <message>
         <source>The robot that carries the sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Roboter, der den Sensor trägt</translation>
     </message>
     <message>
         <source>sensor</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor</translation>
     </message>
     <message>
         <source>robot</source>
-        <translation type="unfinished"></translation>
+        <translation>Roboter</translation>
     </message>
     <message>
         <source>Feature of the contour</source>
-        <translation type="unfinished"></translation>
+        <translation>Merkmal der Kontur</translation>
     </message>
     <message>
         <source>Kind</source>
-        <translation type="unfinished"></translation>
+        <translation>Art</translation>
     </message>
     <message>
         <source>Which point of the contour is measured</source>
-        <translation type="unfinished"></translation>
+        <translation>Welcher Punkt der Kontur gemessen wird</translation>
     </message>
     <message>
         <source>Point at it</source>
-        <translation type="unfinished"></translation>
+        <translation>Darauf zeigen</translation>
     </message>
     <message>
         <source>Click the contour in the live profile, where the feature is</source>
-        <translation type="unfinished"></translation>
+        <translation>Im laufenden Profil auf die Kontur klicken, wo das Merkmal ist</translation>
     </message>
     <message>
         <source>Drag template</source>
-        <translation type="unfinished"></translation>
+        <translation>Vorlage ziehen</translation>
     </message>
     <message>
         <source>Drag a window in the live profile: the contour inside becomes the template</source>
-        <translation type="unfinished"></translation>
+        <translation>Im laufenden Profil ein Fenster ziehen: die Kontur darin wird zur Vorlage</translation>
     </message>
     <message>
         <source>Reference by click</source>
-        <translation type="unfinished"></translation>
+        <translation>Referenz durch Klick</translation>
     </message>
     <message>
         <source>Click the reference point in the live profile; it need not lie on the contour</source>
-        <translation type="unfinished"></translation>
+        <translation>Den Referenzpunkt im laufenden Profil anklicken; er muss nicht auf der Kontur liegen</translation>
     </message>
     <message>
         <source>Reference</source>
-        <translation type="unfinished"></translation>
+        <translation>Referenz</translation>
     </message>
     <message>
         <source>Repeats</source>
-        <translation type="unfinished"></translation>
+        <translation>Wiederholungen</translation>
     </message>
     <message>
         <source>How often the reference is measured</source>
-        <translation type="unfinished"></translation>
+        <translation>Wie oft die Referenz gemessen wird</translation>
     </message>
     <message>
         <source>Measure reference</source>
-        <translation type="unfinished"></translation>
+        <translation>Referenz messen</translation>
     </message>
     <message>
         <source>The robot stands still at the spot and measures; mean and spread are shown</source>
-        <translation type="unfinished"></translation>
+        <translation>Der Roboter steht an der Messstelle still und misst; Mittel und Streuung werden gezeigt</translation>
     </message>
     <message>
         <source>Pass, weights and noise</source>
-        <translation type="unfinished"></translation>
+        <translation>Durchfahrt, Gewichte und Rauschen</translation>
     </message>
     <message>
         <source>reference point</source>
-        <translation type="unfinished"></translation>
+        <translation>Referenzpunkt</translation>
     </message>
     <message>
         <source>reference</source>
-        <translation type="unfinished"></translation>
+        <translation>Referenz</translation>
     </message>
     <message>
         <source>Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out</source>
-        <translation type="unfinished"></translation>
+        <translation>Streuung von %1 Messungen: x %2 mm, z %3 mm (1 Sigma); %4 ausgelassen</translation>
     </message>
     <message>
         <source>Not measured yet.</source>
-        <translation type="unfinished"></translation>
+        <translation>Noch nicht gemessen.</translation>
     </message>
     <message>
         <source>x %1   z %2 mm in the sensor; %3 points of contour kept</source>
-        <translation type="unfinished"></translation>
+        <translation>x %1   z %2 mm im Sensor; %3 Konturpunkte behalten</translation>
     </message>
     <message>
         <source>Rename spot</source>
-        <translation type="unfinished"></translation>
+        <translation>Messstelle umbenennen</translation>
     </message>
     <message>
         <source>New name</source>
-        <translation type="unfinished"></translation>
+        <translation>Neuer Name</translation>
     </message>
     <message>
         <source>feature</source>
-        <translation type="unfinished"></translation>
+        <translation>Merkmal</translation>
     </message>
     <message>
         <source>template</source>
-        <translation type="unfinished"></translation>
+        <translation>Vorlage</translation>
     </message>
 </context>
 <context>
     <name>seamwright::TrendChart</name>
     <message>
         <source>lower limit</source>
-        <translation type="unfinished"></translation>
+        <translation>untere Grenze</translation>
     </message>
     <message>
         <source>upper limit</source>
-        <translation type="unfinished"></translation>
+        <translation>obere Grenze</translation>
     </message>
     <message>
         <source>no parts yet</source>
-        <translation type="unfinished"></translation>
+        <translation>noch keine Teile</translation>
     </message>
     <message numerus="yes">
         <source>%n beyond limits</source>
-        <translation type="unfinished">
-            <numerusform></numerusform>
-            <numerusform></numerusform>
+        <translation>
+            <numerusform>%n außerhalb der Grenzen</numerusform>
+            <numerusform>%n außerhalb der Grenzen</numerusform>
         </translation>
     </message>
     <message>
         <source>all within limits</source>
-        <translation type="unfinished"></translation>
+        <translation>alle innerhalb der Grenzen</translation>
     </message>
     <message>
         <source>History over parts</source>
-        <translation type="unfinished"></translation>
+        <translation>Verlauf über Teile</translation>
     </message>
     <message>
         <source>One mark per part. A click opens the part; Left and Right move, Enter opens.</source>
-        <translation type="unfinished"></translation>
+        <translation>Eine Marke je Teil. Ein Klick öffnet das Teil; Links und Rechts bewegen, Enter öffnet.</translation>
     </message>
     <message>
         <source>Chart title</source>
-        <translation type="unfinished"></translation>
+        <translation>Titel des Diagramms</translation>
     </message>
     <message>
         <source>History chart</source>
-        <translation type="unfinished"></translation>
+        <translation>Verlaufsdiagramm</translation>
     </message>
 </context>
 <context>
     <name>seamwright::ViewFeeder</name>
     <message>
         <source>sensor %1   %2 /s   %3 dropped</source>
-        <translation type="unfinished"></translation>
+        <translation>Sensor %1   %2 /s   %3 verloren</translation>
     </message>
 </context>
 </TS>

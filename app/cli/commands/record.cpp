@@ -131,6 +131,11 @@ Expected<Answer> record(const Arguments& a) {
                    {"seconds", std::chrono::duration<double>(Clock::now() - begun).count()}};
     if (auto told = tell_recording(recorder->get(), a.out, answer); !told)
         return tl::unexpected(told.error());
+    if (!sensors->empty() && (*running)->frames() == 0) {
+        answer.exit_code = kExitVerdict;
+        answer.json["status"] = "no frames";
+        answer.text += "no frame came: a sensor that waits for software triggers wants --trigger-hz\n";
+    }
     return answer;
 }
 

@@ -59,8 +59,9 @@ class Extremum final : public FeatureFinder {
         const double sign = which_ == Which::highest || which_ == Which::rightmost ? 1 : -1;
         const std::vector<double>& t = upright ? points_.x : points_.z;
         const std::vector<double>& h = upright ? points_.z : points_.x;
-        // The median of three neighbours decides, so a single spike is no summit.
-        std::size_t top = 0;
+        // The median of three neighbours decides, so a single spike is no summit. Neighbours share medians:
+        // the middle of equal ones is taken, the same seen from left and right.
+        int top = 0, top_last = 0;
         double best = -std::numeric_limits<double>::infinity();
         const FeaturePoints::Piece* piece = nullptr;
         for (const auto& p : points_.pieces) {
@@ -71,8 +72,10 @@ class Extremum final : public FeatureFinder {
                                               std::min(std::max(sign * h[a], sign * h[i]), sign * h[b]));
                 if (value > best) {
                     best = value;
-                    top = static_cast<std::size_t>(i);
+                    top = top_last = i;
                     piece = &p;
+                } else if (value == best && piece == &p && i - top_last <= 2) {
+                    top_last = i;
                 }
             }
         }
@@ -82,8 +85,8 @@ class Extremum final : public FeatureFinder {
             return feature;
         }
         const int first = piece->first, last = first + piece->count - 1;
-        double centre = t[top];
-        const double origin_h = h[top];
+        double centre = 0.5 * (t[static_cast<std::size_t>(top)] + t[static_cast<std::size_t>(top_last)]);
+        const double origin_h = sign * best;
         Eigen::Vector3d coefficient = Eigen::Vector3d::Zero();
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         double sigma2 = 0;

@@ -36,12 +36,11 @@ struct Watch {
     }
 };
 
+// `reader` knows where it reads from; `where` is for the Error.
 template <class Reader>
-Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
+Expected<TriangleMesh> read_mesh(Reader* reader, const std::string& where) {
     Watch watch;
-    vtkNew<Reader> reader;
     watch.on(reader);
-    reader->SetFileName(path.c_str());
     vtkNew<vtkTriangleFilter> triangles;
     watch.on(triangles);
     watch.on(reader->GetExecutive());
@@ -53,14 +52,13 @@ Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
     const vtkPolyData* none = nullptr;
     vtkPolyData* data = triangles->GetOutput();
     if (watch.errors > 0 || data == none || data->GetNumberOfPolys() == 0) {
-        return file_error("holds no readable triangles", path.string());
+        return file_error("holds no readable triangles", where);
     }
     TriangleMesh mesh;
     mesh.vertices.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         data->GetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].data());
-        if (!mesh.vertices[i].allFinite())
-            return file_error("holds a vertex that is not finite", path.string());
+        if (!mesh.vertices[i].allFinite()) return file_error("holds a vertex that is not finite", where);
     }
     vtkNew<vtkIdList> cell;
     auto* polygons = data->GetPolys();
@@ -73,15 +71,22 @@ Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
             known = known && id >= 0 && id < data->GetNumberOfPoints();
             t[k] = static_cast<int>(id);
         }
-        if (!known) return file_error("names a vertex that it does not hold", path.string());
+        if (!known) return file_error("names a vertex that it does not hold", where);
         const auto& v = mesh.vertices;
         const auto& a = v[static_cast<std::size_t>(t[0])];
         const Eigen::Vector3d n =
             (v[static_cast<std::size_t>(t[1])] - a).cross(v[static_cast<std::size_t>(t[2])] - a);
         if (n.norm() > 0) mesh.triangles.push_back(t);
     }
-    if (mesh.triangles.empty()) return file_error("holds only degenerate triangles", path.string());
+    if (mesh.triangles.empty()) return file_error("holds only degenerate triangles", where);
     return mesh;
+}
+
+template <class Reader>
+Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
+    vtkNew<Reader> reader;
+    reader->SetFileName(path.c_str());
+    return read_mesh(reader.Get(), path.string());
 }
 
 }  // namespace
@@ -112,6 +117,17 @@ Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::s
                            path.string(), "say the unit: \"mm\" or \"m\"");
     }
     return mesh;
+}
+
+Expected<TriangleMesh> mesh_from_ply(std::span<const std::byte> ply, const std::string& where) {
+    vtkNew<vtkPLYReader> reader;
+    reader->SetReadFromInputString(true);
+    reader->SetInputString(std::string(reinterpret_cast<const char*>(ply.data()), ply.size()));
+    try {
+        return read_mesh(reader.Get(), where);
+    } catch (const std::exception& e) {
+        return file_error(std::string("cannot be read (") + e.what() + ")", where);
+    }
 }
 
 std::vector<std::byte> ply_bytes(const TriangleMesh& mesh) {

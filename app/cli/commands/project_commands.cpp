@@ -12,6 +12,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/exchange.h"
+#include "projects/mirror.h"
 #include "projects/project_file.h"
 
 namespace seamwright::cli {
@@ -233,6 +234,40 @@ Expected<Answer> import_command(const ImportArguments& a) {
     return answer;
 }
 
+struct MirrorArguments {
+    std::string file, plane, out;
+    double offset_mm = 0;
+    bool replace = false;
+};
+
+Expected<Answer> mirror_command(const MirrorArguments& a) {
+    auto plane = parse_mirror_plane(a.plane, a.offset_mm);
+    if (!plane) return tl::unexpected(plane.error());
+    std::error_code ignored;
+    if (fs::equivalent(a.file, a.out, ignored))
+        return usage_error("the mirrored project would replace the one it is made from", a.out,
+                           "give another file to --out");
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    auto mirrored = mirrored_project(*project, *plane);
+    if (!mirrored) return tl::unexpected(mirrored.error());
+    mirrored->name = fs::path(a.out).stem().string();
+    auto created = ProjectFile::create(a.out, *mirrored, a.replace);
+    if (!created) return tl::unexpected(created.error());
+    Answer answer;
+    answer.json = {{"status", "ok"},
+                   {"file", a.out},
+                   {"normal", vector_json(plane->normal)},
+                   {"offset_mm", plane->offset_mm},
+                   {"spots", mirrored->spots.size()},
+                   {"regions", mirrored->regions.size()}};
+    answer.text = fmt::format("{} created: {} spots and {} regions mirrored; runs and events stay with {}\n",
+                              a.out, mirrored->spots.size(), mirrored->regions.size(), a.file);
+    return answer;
+}
+
 }  // namespace
 
 void add_project_commands(CommandLine& line) {
@@ -310,6 +345,25 @@ void add_project_commands(CommandLine& line) {
         command->add_flag("--columns", a->columns, "Images: one cut per column")->excludes(rows);
         command->add_flag("--replace", a->replace, "Replace an existing project file");
         line.on(command, [a] { return import_command(*a); });
+    }
+    {
+        auto a = std::make_shared<MirrorArguments>();
+        CLI::App* command = line.add("mirror", "A project for the mirrored part (left door, right door).",
+                                     "seamwright mirror door_left.seam --plane y --out door_right.seam");
+        command->add_option("file", a->file, "The project to mirror; it is not changed")
+            ->required()
+            ->type_name("FILE.seam");
+        command
+            ->add_option(
+                "--plane", a->plane,
+                "Plane of the work object: the axis whose sign changes (x, y, z), or its normal NX,NY,NZ")
+            ->required();
+        command
+            ->add_option("--offset-mm", a->offset_mm, "Distance of the plane from the work object's origin")
+            ->capture_default_str();
+        command->add_option("--out", a->out, "The project to create")->required()->type_name("OTHER.seam");
+        command->add_flag("--replace", a->replace, "Replace an existing project file");
+        line.on(command, [a] { return mirror_command(*a); });
     }
 }
 

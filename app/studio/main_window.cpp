@@ -95,7 +95,6 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
     connect(&desk_, &Desk::checklist_changed, this, [this] {
         refresh_next();
         if (!beginning_ || !desk_.station().connected) return;
-        beginning_ = false;
         show_step(next_step(desk_.steps()));
     });
     connect(&desk_, &Desk::station_changed, this, &MainWindow::refresh_status);
@@ -352,10 +351,7 @@ void MainWindow::make_central() {
         pages_->addWidget(scroll);
     }
     columns->addWidget(pages_, 1);
-    connect(rail_, &StepRail::step_chosen, this, [this](Step step) {
-        beginning_ = false;
-        show_step(step);
-    });
+    connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);
 
     trouble_ = new QFrame;
     trouble_->setObjectName("trouble");
@@ -397,6 +393,7 @@ void MainWindow::make_status() {
 }
 
 void MainWindow::show_step(Step step) {
+    beginning_ = false;  // whoever has chosen a step stays there
     step_ = step;
     pages_->setCurrentIndex(static_cast<int>(step));
     rail_->show_step(step);

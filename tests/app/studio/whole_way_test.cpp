@@ -4,144 +4,23 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <QApplication>
-#include <QClipboard>
-#include <QComboBox>
-#include <QFileDialog>
-#include <QLineEdit>
 #include <QListWidget>
-#include <QMessageBox>
-#include <QMouseEvent>
 #include <QPlainTextEdit>
-#include <QPushButton>
-#include <QScrollArea>
-#include <QTableWidget>
-#include <QTest>
-#include <QTimer>
 #include <QTreeWidget>
 #include <filesystem>
 #include <fstream>
 
-#include "app/studio/main_window.h"
 #include "app/studio/studio.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/door.h"
 #include "devices/simulated/mesh_file.h"
+#include "tests/app/studio/person.h"
 #include "widgets/editors/parameter_editor.h"
-#include "widgets/editors/pose_editor.h"
 #include "widgets/profile/profile_plot.h"
 
 namespace seamwright {
 namespace {
-
-constexpr int kPatienceMs = 20000;
-
-// Hands and eyes: finds controls by the names they have on the screen's tree, waits as a person waits.
-class Person {
-  public:
-    explicit Person(MainWindow& window) : window_(window) {}
-
-    template <class T>
-    T* find(const QString& name) const {
-        for (T* w : window_.findChildren<T*>(name))
-            if (w->isVisible()) return w;
-        ADD_FAILURE() << "there is no visible " << name.toStdString();
-        return nullptr;
-    }
-    void look_at(QWidget* w) const {
-        for (QWidget* up = w->parentWidget(); up; up = up->parentWidget())
-            if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(w);
-        QApplication::processEvents();
-    }
-    void click(const QString& name) const {
-        auto* button = find<QAbstractButton>(name);
-        if (!button) return;
-        EXPECT_TRUE(wait([&] { return button->isEnabled(); })) << name.toStdString() << " cannot be pressed";
-        look_at(button);
-        QTest::mouseClick(button, Qt::LeftButton);
-        QApplication::processEvents();
-    }
-    void choose(const QString& name, const QString& text) const {
-        auto* box = find<QComboBox>(name);
-        if (!box) return;
-        look_at(box);
-        box->setFocus();
-        const int wanted = box->findText(text);
-        ASSERT_GE(wanted, 0) << text.toStdString();
-        while (box->currentIndex() < wanted) QTest::keyClick(box, Qt::Key_Down);
-        while (box->currentIndex() > wanted) QTest::keyClick(box, Qt::Key_Up);
-        QApplication::processEvents();
-    }
-    void write(QLineEdit* line, const QString& text) const {
-        look_at(line);
-        line->setFocus();
-        line->selectAll();
-        QTest::keyClicks(line, text);
-        QTest::keyClick(line, Qt::Key_Return);
-        QApplication::processEvents();
-    }
-    void write_pose(const QString& name, const Pose& pose) const {
-        auto* editor = find<PoseEditor>(name);
-        if (!editor) return;
-        QLineEdit* first = nullptr;
-        for (QLineEdit* line : editor->findChildren<QLineEdit*>())
-            if (!first && line->isVisible() && !line->isReadOnly()) first = line;
-        ASSERT_TRUE(first);
-        look_at(first);
-        first->setFocus();
-        first->selectAll();
-        QApplication::clipboard()->setText(text_from_pose(pose, editor->notation()));
-        QTest::keyClick(first, Qt::Key_V, Qt::ControlModifier);
-        QTest::keyClick(first, Qt::Key_Return);
-        QApplication::processEvents();
-        EXPECT_FALSE(editor->refused()) << editor->reason().toStdString();
-    }
-    // Types into the file dialog that the next action opens.
-    void answer_file_dialog(const QString& path) const {
-        QTimer::singleShot(300, &window_, [path] {
-            auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
-            ASSERT_TRUE(dialog) << "no file dialog opened";
-            auto* line = dialog->findChild<QLineEdit*>("fileNameEdit");
-            line->selectAll();
-            QTest::keyClicks(line, path);
-            QTest::keyClick(line, Qt::Key_Return);
-        });
-    }
-    void step(int n) const {
-        const auto rails = window_.findChildren<QPushButton*>("rail");
-        ASSERT_EQ(rails.size(), 7);
-        QTest::mouseClick(rails[n - 1], Qt::LeftButton);
-        QApplication::processEvents();
-    }
-    void shortcut(Qt::Key key) const {
-        QApplication::setActiveWindow(
-            &window_);  // a dialog was; nobody gives it back without a window manager
-        QTest::keyClick(&window_, key, Qt::ControlModifier);
-        QApplication::processEvents();
-    }
-    static bool wait(const std::function<bool()>& ready) { return QTest::qWaitFor(ready, kPatienceMs); }
-    void picture(const QString& name) const {
-        QTest::qWait(150);
-        std::filesystem::create_directories(SEAMWRIGHT_SCREENS);
-        EXPECT_TRUE(window_.grab().save(QString(SEAMWRIGHT_SCREENS) + "/way_" + name + ".png"));
-    }
-    QString text_of(const QString& name) const {
-        auto* label = find<QLabel>(name);
-        return label ? label->text() : QString();
-    }
-    QStringList table(const QString& name) const {
-        QStringList cells;
-        if (auto* t = find<QTableWidget>(name))
-            for (int r = 0; r < t->rowCount(); ++r)
-                for (int c = 0; c < t->columnCount(); ++c)
-                    cells << (t->item(r, c) ? t->item(r, c)->text() : QString());
-        return cells;
-    }
-
-  private:
-    MainWindow& window_;
-};
 
 class WholeWay : public testing::Test {
   protected:
@@ -255,14 +134,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
                 QWidget* canvas = plot->focusProxy();
                 const QPoint from = on_plot(left - 1, high + 1),
                              to = on_plot(std::min(left + 42, right), low - 1);
-                QTest::mousePress(canvas, Qt::LeftButton, {}, from);
-                for (const QPoint on : {(from + to) / 2, to}) {  // as delivered while a button is held
-                    QMouseEvent move(QEvent::MouseMove, on, canvas->mapToGlobal(on), Qt::NoButton,
-                                     Qt::LeftButton, {});
-                    QApplication::sendEvent(canvas, &move);
-                }
-                QTest::mouseRelease(canvas, Qt::LeftButton, {}, to);
-                QApplication::processEvents();
+                me.drag(canvas, from, to);
                 ASSERT_GT(desk.project().spots.back().feature.template_profile.size(), 50U);
             } else {
                 me.choose("feature_kind", "contour-end");

@@ -1,0 +1,142 @@
+#pragma once
+// A person at the real window: mouse and keyboard alone.
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMouseEvent>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QTableWidget>
+#include <QTest>
+#include <QTimer>
+#include <filesystem>
+
+#include "app/studio/main_window.h"
+#include "widgets/editors/pose_editor.h"
+
+namespace seamwright {
+
+inline constexpr int kPatienceMs = 20000;
+
+// Hands and eyes: finds controls by the names they have on the screen's tree, waits as a person waits.
+class Person {
+  public:
+    explicit Person(MainWindow& window) : window_(window) {}
+
+    template <class T>
+    T* find(const QString& name) const {
+        for (T* w : window_.findChildren<T*>(name))
+            if (w->isVisible()) return w;
+        ADD_FAILURE() << "there is no visible " << name.toStdString();
+        return nullptr;
+    }
+    void look_at(QWidget* w) const {
+        for (QWidget* up = w->parentWidget(); up; up = up->parentWidget())
+            if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(w);
+        QApplication::processEvents();
+    }
+    void click(const QString& name) const {
+        auto* button = find<QAbstractButton>(name);
+        if (!button) return;
+        EXPECT_TRUE(wait([&] { return button->isEnabled(); })) << name.toStdString() << " cannot be pressed";
+        look_at(button);
+        QTest::mouseClick(button, Qt::LeftButton);
+        QApplication::processEvents();
+    }
+    void choose(const QString& name, const QString& text) const {
+        auto* box = find<QComboBox>(name);
+        if (!box) return;
+        look_at(box);
+        box->setFocus();
+        const int wanted = box->findText(text);
+        ASSERT_GE(wanted, 0) << text.toStdString();
+        while (box->currentIndex() < wanted) QTest::keyClick(box, Qt::Key_Down);
+        while (box->currentIndex() > wanted) QTest::keyClick(box, Qt::Key_Up);
+        QApplication::processEvents();
+    }
+    void write(QLineEdit* line, const QString& text) const {
+        look_at(line);
+        line->setFocus();
+        line->selectAll();
+        QTest::keyClicks(line, text);
+        QTest::keyClick(line, Qt::Key_Return);
+        QApplication::processEvents();
+    }
+    void write_pose(const QString& name, const Pose& pose) const {
+        auto* editor = find<PoseEditor>(name);
+        if (!editor) return;
+        QLineEdit* first = nullptr;
+        for (QLineEdit* line : editor->findChildren<QLineEdit*>())
+            if (!first && line->isVisible() && !line->isReadOnly()) first = line;
+        ASSERT_TRUE(first);
+        look_at(first);
+        first->setFocus();
+        first->selectAll();
+        QApplication::clipboard()->setText(text_from_pose(pose, editor->notation()));
+        QTest::keyClick(first, Qt::Key_V, Qt::ControlModifier);
+        QTest::keyClick(first, Qt::Key_Return);
+        QApplication::processEvents();
+        EXPECT_FALSE(editor->refused()) << editor->reason().toStdString();
+    }
+    // Types into the file dialog that the next action opens.
+    void answer_file_dialog(const QString& path) const {
+        QTimer::singleShot(300, &window_, [path] {
+            auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+            ASSERT_TRUE(dialog) << "no file dialog opened";
+            auto* line = dialog->findChild<QLineEdit*>("fileNameEdit");
+            line->selectAll();
+            QTest::keyClicks(line, path);
+            QTest::keyClick(line, Qt::Key_Return);
+        });
+    }
+    static void drag(QWidget* on, QPoint from, QPoint to) {
+        QTest::mousePress(on, Qt::LeftButton, {}, from);
+        for (const QPoint at : {(from + to) / 2, to}) {  // as delivered while a button is held
+            QMouseEvent move(QEvent::MouseMove, at, on->mapToGlobal(at), Qt::NoButton, Qt::LeftButton, {});
+            QApplication::sendEvent(on, &move);
+        }
+        QTest::mouseRelease(on, Qt::LeftButton, {}, to);
+        QApplication::processEvents();
+    }
+    void step(int n) const {
+        const auto rails = window_.findChildren<QPushButton*>("rail");
+        ASSERT_EQ(rails.size(), 7);
+        QTest::mouseClick(rails[n - 1], Qt::LeftButton);
+        QApplication::processEvents();
+    }
+    void shortcut(Qt::Key key) const {
+        QApplication::setActiveWindow(
+            &window_);  // a dialog was; nobody gives it back without a window manager
+        QTest::keyClick(&window_, key, Qt::ControlModifier);
+        QApplication::processEvents();
+    }
+    static bool wait(const std::function<bool()>& ready) { return QTest::qWaitFor(ready, kPatienceMs); }
+    void picture(const QString& name) const {
+        QTest::qWait(150);
+        std::filesystem::create_directories(SEAMWRIGHT_SCREENS);
+        EXPECT_TRUE(window_.grab().save(QString(SEAMWRIGHT_SCREENS) + "/way_" + name + ".png"));
+    }
+    QString text_of(const QString& name) const {
+        auto* label = find<QLabel>(name);
+        return label ? label->text() : QString();
+    }
+    QStringList table(const QString& name) const {
+        QStringList cells;
+        if (auto* t = find<QTableWidget>(name))
+            for (int r = 0; r < t->rowCount(); ++r)
+                for (int c = 0; c < t->columnCount(); ++c)
+                    cells << (t->item(r, c) ? t->item(r, c)->text() : QString());
+        return cells;
+    }
+
+  private:
+    MainWindow& window_;
+};
+
+}  // namespace seamwright

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "app/cli/calibrate/commands.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 namespace {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/cli/calibrate/commands.h"
+#include "projects/calibrate/methods.h"
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/lookup_table_file.h"
 #include "tests/core/calibration/camera_scene.h"

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/cli/calibrate/commands.h"
+#include "projects/calibrate/methods.h"
 #include "devices/exchange/pose_json.h"
 #include "tests/core/calibration/hand_eye_simulation.h"
 #include "tests/core/calibration/sphere_simulation.h"

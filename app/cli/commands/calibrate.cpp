@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <functional>
 
-#include "app/cli/calibrate/calibration_report.h"
-#include "app/cli/calibrate/commands.h"
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods.h"
+#include "projects/calibrate/report_page.h"
 #include "projects/project_file.h"
 #include "projects/run.h"
 
@@ -31,8 +31,8 @@ using FromJson = Expected<CalibrateOutcome> (*)(const json&, const Exclude&);
 struct Method {
     const char* name;
     const char* help;
-    FromJson from_json;  // null: images only
-    bool images;         // DATA may be a folder of images
+    FromJson from_json;
+    bool images;  // DATA may be a folder of images
     const char* example;
 };
 
@@ -51,13 +51,14 @@ const Method kMethods[] = {
     {"static", "One-shot chain world - plate - camera - laser for several sensors", calibrate_static_json,
      false, "chain.json"},
     {"hand-eye", "Camera on the flange, or beside the robot", calibrate_hand_eye_json, false, "pairs.json"},
-    {"stripe-camera", "Intrinsics, laser plane and hand-eye from images of a board and the stripe", nullptr,
-     true, "images --board 7x6 --pitch-mm 10 --report report.html"},
+    {"stripe-camera", "Intrinsics, laser plane and hand-eye from images of a board and the stripe",
+     calibrate_stripe_camera_json, true, "images --board 7x6 --pitch-mm 10 --report report.html"},
     {"drift", "Does a stored calibration still hold", check_drift_json, false, "measured.json"},
 };
 
 Expected<CalibrateOutcome> solve(const Method& method, const Arguments& a, json& data) {
-    if (method.images && (std::filesystem::is_directory(a.data) || !method.from_json)) {
+    const bool stripe = method.from_json == calibrate_stripe_camera_json;
+    if (method.images && (std::filesystem::is_directory(a.data) || (stripe && !a.data.ends_with(".json")))) {
         if (a.board.empty() || !(a.pitch_mm > 0))
             return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm",
                                "calibrate " + std::string(method.name));
@@ -65,8 +66,8 @@ Expected<CalibrateOutcome> solve(const Method& method, const Arguments& a, json&
                 {"board", a.board},
                 {"pitch_mm", a.pitch_mm},
                 {"pattern", a.pattern}};
-        return method.from_json ? calibrate_camera_folder(a.data, a.board, a.pitch_mm, a.pattern, a.exclude)
-                                : calibrate_stripe_camera_folder(a.data, a.board, a.pitch_mm, a.exclude);
+        return stripe ? calibrate_stripe_camera_folder(a.data, a.board, a.pitch_mm, a.exclude)
+                      : calibrate_camera_folder(a.data, a.board, a.pitch_mm, a.pattern, a.exclude);
     }
     auto read = read_json_file(a.data);
     if (!read) return tl::unexpected(read.error());
@@ -189,7 +190,7 @@ void add_calibrate(CommandLine& line) {
                              "Inner corners (chessboard), dots (circles) or squares (charuco)")
                 ->type_name("7x6");
             command->add_option("--pitch-mm", a->pitch_mm, "Pitch of the board");
-            if (method.from_json)
+            if (method.from_json != calibrate_stripe_camera_json)
                 command->add_option("--pattern", a->pattern, "chessboard, circles or charuco")
                     ->check(CLI::IsMember({"chessboard", "circles", "charuco"}))
                     ->capture_default_str();

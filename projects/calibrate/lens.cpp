@@ -1,9 +1,9 @@
 #include <charconv>
 
-#include "app/cli/calibrate/camera_json.h"
-#include "app/cli/calibrate/commands.h"
 #include "core/calibration/lens.h"
 #include "devices/exchange/json_fields.h"
+#include "projects/calibrate/camera_json.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 

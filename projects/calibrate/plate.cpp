@@ -1,8 +1,8 @@
 #include "core/calibration/plate.h"
 
-#include "app/cli/calibrate/commands.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 

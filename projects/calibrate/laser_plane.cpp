@@ -1,8 +1,8 @@
-#include "app/cli/calibrate/camera_json.h"
-#include "app/cli/calibrate/commands.h"
 #include "core/calibration/laser_plane.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/camera_json.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 

@@ -1,4 +1,4 @@
-#include "app/cli/calibrate/calibration_report.h"
+#include "projects/calibrate/report_page.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 
-namespace seamwright::cli {
+namespace seamwright {
 namespace {
 
 using nlohmann::json;
@@ -172,4 +172,4 @@ std::string calibration_report(const std::string& method, const json& data, cons
     return page.html();
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "app/cli/calibrate/commands.h"
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 

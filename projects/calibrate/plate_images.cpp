@@ -1,4 +1,4 @@
-#include "app/cli/calibrate/plate_images.h"
+#include "projects/calibrate/plate_images.h"
 
 #include <algorithm>
 #include <charconv>

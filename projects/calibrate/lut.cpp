@@ -1,7 +1,7 @@
-#include "app/cli/calibrate/commands.h"
 #include "core/calibration/lookup_table_calibration.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 

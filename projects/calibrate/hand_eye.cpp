@@ -1,7 +1,7 @@
-#include "app/cli/calibrate/commands.h"
 #include "core/calibration/hand_eye.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 

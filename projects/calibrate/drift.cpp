@@ -1,10 +1,10 @@
 #include <algorithm>
 
-#include "app/cli/calibrate/commands.h"
-#include "app/cli/calibrate/sphere_profile_json.h"
 #include "core/calibration/drift_check.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods.h"
+#include "projects/calibrate/sphere_profile_json.h"
 
 namespace seamwright {
 namespace {

@@ -87,6 +87,11 @@ Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& dir
                                                           const std::string& board, double pitch_mm,
                                                           const std::vector<std::string>& exclude);
 
+// The same from frames that were looked at before (stripe_frames.h); `exclude` leaves them out of the
+// solution.
+Expected<CalibrateOutcome> calibrate_stripe_camera_json(const nlohmann::json& data,
+                                                        const std::vector<std::string>& exclude);
+
 // {"size":[w,h],"views":[{"id"?,"points":[{"object":[3],"pixel":[2]}]}]} ->
 // {"status","camera","reprojection_rms_px","sigma_px","covered_share","views":[{"id","camera_from_target","sigma"}],...}
 Expected<CalibrateOutcome> calibrate_camera_json(const nlohmann::json& data,

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace seamwright::cli {
+namespace seamwright {
 
 // `result` as in commands.h; `data` is what was solved. Pictures that the data cannot give are left out.
 std::string calibration_report(const std::string& method, const nlohmann::json& data,
                                const nlohmann::json& result);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright

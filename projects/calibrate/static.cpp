@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "app/cli/calibrate/commands.h"
 #include "core/calibration/static_chain.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods.h"
 
 namespace seamwright {
 namespace {

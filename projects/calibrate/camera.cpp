@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/cli/calibrate/camera_json.h"
-#include "app/cli/calibrate/commands.h"
-#include "app/cli/calibrate/plate_images.h"
 #include "core/calibration/camera.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/camera_json.h"
+#include "projects/calibrate/methods.h"
+#include "projects/calibrate/plate_images.h"
 
 namespace seamwright {
 

@@ -1,0 +1,32 @@
+#pragma once
+// Frames of a plate with the stripe across it: what one says is found once (observe()), kept as JSON, and
+// solved as often as poses are left out and taken in again.
+//
+// Data of `calibrate stripe-camera DATA.json`:
+//   {"board":{"columns","rows","pitch_mm"},
+//    "frames":[{"id"?,"size":[w,h],"scan":"rows"|"columns","board":{"pixel":[[u,v],..],"index":[row * columns
+//    + column],
+//               "symmetry","detector"} or null,"stripe":[[u,v],..],"base_from_flange":POSE or null}]}
+
+#include <filesystem>
+
+#include "core/calibration/stripe_camera.h"
+#include "projects/calibrate/methods.h"
+
+namespace seamwright {
+
+nlohmann::json stripe_frame_json(const StripeObservation& observation);
+Expected<StripeObservation> parse_stripe_frame(const nlohmann::json& entry, const BoardSpec& spec,
+                                               std::size_t index, const std::string& where);
+nlohmann::json board_json(const BoardSpec& spec);
+Expected<BoardSpec> parse_board_json(const nlohmann::json& value, const std::string& where);
+
+// Image and the pose file beside it (see calibrate_stripe_camera_folder), observed.
+Expected<StripeObservation> read_stripe_frame(const std::filesystem::path& image, const BoardSpec& spec);
+
+// Result as of calibrate_stripe_camera_folder().
+Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObservation>& observations,
+                                                   const BoardSpec& spec,
+                                                   const std::vector<std::string>& exclude);
+
+}  // namespace seamwright

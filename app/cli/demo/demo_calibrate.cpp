@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "app/cli/demo/demo.h"
@@ -11,41 +10,11 @@
 #include "core/profile/peaks.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/acquire.h"
+#include "projects/calibrate/stripe_line_points.h"
+#include "projects/calibrate/target_views.h"
 
 namespace seamwright::cli {
 namespace {
-
-// The engineer jogs the sensor in front of the targets; how well is no part of the answer.
-struct TargetView {
-    Eigen::Vector3d turn_deg;   // rotation vector of the sensor against the target
-    Eigen::Vector3d offset_mm;  // of the sensor's origin, target frame
-};
-
-// Plate: tilts to both sides about both axes at different heights and places, turned about the sight line.
-const std::vector<TargetView> kPlateViews = {
-    {{0, 0, 0}, {0, 0, 0}},         {{22, 0, 10}, {0, 8, 6}},     {{-20, 0, -15}, {5, -8, -6}},
-    {{0, 22, 30}, {-8, 0, 4}},      {{0, -22, 60}, {8, 4, -5}},   {{16, 16, 90}, {0, 0, 10}},
-    {{-16, 16, 120}, {-6, 6, -10}}, {{16, -16, 150}, {6, -6, 8}}, {{-16, -16, 45}, {4, 4, 0}},
-    {{25, 8, 75}, {-4, -10, -8}},   {{-25, -8, -60}, {0, 10, 8}}, {{8, 25, -30}, {10, 0, -4}},
-    {{-8, -25, 20}, {-10, 0, 0}},   {{12, -4, 180}, {0, 5, 12}},
-};
-
-// Sphere: the cut off the middle to both sides, the sensor turned about all three axes.
-const std::vector<TargetView> kSphereViews = {
-    {{0, 0, 0}, {0, 4, 22}},        {{22, 0, 0}, {0, -5, 20}},       {{-22, 0, 0}, {6, 6, 24}},
-    {{0, 20, 0}, {-6, 8, 18}},      {{0, -20, 0}, {4, -8, 22}},      {{0, 0, 45}, {0, 9, 26}},
-    {{0, 0, -50}, {-5, -9, 16}},    {{18, 14, 90}, {8, 3, 20}},      {{-18, 14, 130}, {-8, -3, 24}},
-    {{18, -14, -100}, {3, 10, 18}}, {{-18, -14, 20}, {-3, -10, 26}}, {{15, 15, 170}, {0, 6, 22}},
-};
-
-// Plate: heights over the whole field, a little tilted to both sides, so that the lines cross the image
-// everywhere.
-const std::vector<TargetView> kLineViews = {
-    {{0, 0, 5}, {0, 0, -48}},  {{0, 7, 5}, {0, 0, -38}},   {{0, -7, 5}, {0, 0, -30}},
-    {{0, 10, 5}, {0, 0, -20}}, {{0, -10, 5}, {0, 0, -10}}, {{0, 0, 5}, {0, 0, 0}},
-    {{0, 12, 5}, {0, 0, 8}},   {{0, -12, 5}, {0, 0, 16}},  {{0, 8, 5}, {0, 0, 24}},
-    {{0, -8, 5}, {0, 0, 32}},  {{0, 0, 5}, {0, 0, 40}},
-};
 
 constexpr double kPlateExposureUs = 6000;
 
@@ -56,8 +25,7 @@ Expected<FramePtr> snap(ProfileSource& sensor) {
 
 Expected<FramePtr> look(const SimulatedCell& cell, ProfileSource& sensor, RobotLink& robot,
                         const TargetView& view, Pose& base_from_flange) {
-    const Pose target_from_sensor = make_pose(rotation_exp(view.turn_deg * (kPi / 180)), view.offset_mm);
-    if (auto there = robot.move_to(cell.settings().base_from_target * target_from_sensor *
+    if (auto there = robot.move_to(cell.settings().base_from_target * target_from_sensor(view) *
                                    cell.flange_from_sensor().inverse());
         !there)
         return tl::unexpected(there.error());
@@ -65,53 +33,6 @@ Expected<FramePtr> look(const SimulatedCell& cell, ProfileSource& sensor, RobotL
     if (!at) return tl::unexpected(at.error());
     base_from_flange = *at;
     return snap(sensor);
-}
-
-// The stripe in pixels, tracked through reflections: one point a column, in order.
-Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, StripePeaks& peaks) {
-    if (auto found = find_peaks(image, {}, peaks); !found) return tl::unexpected(found.error());
-    ProfileCandidates candidates;
-    candidates.lines = peaks.lines;
-    candidates.per_line = peaks.per_line;
-    candidates.count = peaks.count;
-    candidates.intensity = peaks.intensity;
-    candidates.z_mm.assign(peaks.position_px.begin(),
-                           peaks.position_px.end());  // the model has no unit: 1 px stands for 1 mm
-    candidates.x_mm.resize(candidates.z_mm.size());
-    for (int line = 0; line < peaks.lines; ++line)
-        for (int k = 0; k < peaks.per_line; ++k)
-            candidates.x_mm[static_cast<std::size_t>(peaks.index(line, k))] = line;
-    Profile stripe;
-    if (auto tracked = track_stripe(candidates, {}, stripe); !tracked) return tl::unexpected(tracked.error());
-    std::vector<Eigen::Vector2d> points;
-    for (std::size_t i = 0; i < stripe.size(); ++i)
-        if (stripe.segment[i] != kOutlier) points.emplace_back(stripe.x_mm[i], stripe.z_mm[i]);
-    return points;
-}
-
-// The stripe of the plate alone: lines of a lens bend like a parabola, and what stands beside the plate lies
-// off it.
-std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points) {
-    for (int round = 0; round < 4 && points.size() > 20; ++round) {
-        Eigen::MatrixXd a(points.size(), 3);
-        Eigen::VectorXd v(points.size());
-        for (Eigen::Index i = 0; i < v.size(); ++i) {
-            const Eigen::Vector2d& p = points[static_cast<std::size_t>(i)];
-            const double u = p.x() / 1000;
-            a.row(i) << 1, u, u * u;
-            v(i) = p.y();
-        }
-        const Eigen::VectorXd off = (v - a * a.colPivHouseholderQr().solve(v)).cwiseAbs();
-        std::vector<double> sorted(off.begin(), off.end());
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                         sorted.end());
-        const double limit = std::max(1.0, 6 * sorted[sorted.size() / 2]);
-        std::vector<Eigen::Vector2d> kept;
-        for (Eigen::Index i = 0; i < v.size(); ++i)
-            if (off(i) <= limit) kept.push_back(points[static_cast<std::size_t>(i)]);
-        points = std::move(kept);
-    }
-    return points;
 }
 
 Expected<void> expose(SimulatedCell& cell, ProfileSource& sensor, double laser, double exposure_us) {
@@ -166,7 +87,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     board.rows = cell.settings().board.rows;
     board.pitch_mm = cell.settings().board.pitch_mm;
     std::vector<StripeObservation> observations;
-    for (std::size_t i = 0; i < kPlateViews.size(); ++i) {
+    for (std::size_t i = 0; i < plate_views().size(); ++i) {
         StripeObservation observation;
         observation.id = fmt::format("plate{:02}", i + 1);
         observation.width = cell.settings().optics.width;
@@ -174,7 +95,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
         observation.scan = ScanLines::columns;
         Pose base_from_flange;
         if (auto set = expose(cell, sensor, 0, kPlateExposureUs); !set) return tl::unexpected(set.error());
-        auto image = look(cell, sensor, robot, kPlateViews[i], base_from_flange);
+        auto image = look(cell, sensor, robot, plate_views()[i], base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.board = find_board((*image)->image, board);
         observation.base_from_flange = base_from_flange;
@@ -205,7 +126,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     LensData lens;
     lens.width = cell.settings().optics.width;
     lens.height = cell.settings().optics.height;
-    for (const TargetView& view : kLineViews) {
+    for (const TargetView& view : line_views()) {
         Pose base_from_flange;
         auto image = look(cell, sensor, robot, view, base_from_flange);
         if (!image) return tl::unexpected(image.error());
@@ -224,9 +145,9 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     cell.set_scene(Scene::sphere);
     std::vector<SphereObservation> sphere;
     ProfileCandidates candidates;
-    for (std::size_t i = 0; i < kSphereViews.size(); ++i) {
+    for (std::size_t i = 0; i < sphere_views().size(); ++i) {
         SphereObservation observation;
-        auto image = look(cell, sensor, robot, kSphereViews[i], observation.base_from_flange);
+        auto image = look(cell, sensor, robot, sphere_views()[i], observation.base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.id = fmt::format("sphere{:02}", i + 1);
         if (auto found = find_peaks((*image)->image, {}, peaks); !found) return tl::unexpected(found.error());

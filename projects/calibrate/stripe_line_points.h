@@ -1,0 +1,19 @@
+#pragma once
+// The laser stripe as pixels, for calibrations that need no millimetres.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/error.h"
+#include "core/profile/peaks.h"
+
+namespace seamwright {
+
+// The stripe, tracked through reflections: one point a column, in order. `peaks` is a buffer to reuse.
+Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, StripePeaks& peaks);
+
+// The stripe of a flat plate alone: lines of a lens bend like a parabola, and what stands beside the plate
+// lies off it.
+std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points);
+
+}  // namespace seamwright

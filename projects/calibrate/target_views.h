@@ -1,0 +1,26 @@
+#pragma once
+// Where to hold the sensor before a calibration target: the poses that a person is led through, and the
+// simulated robot goes to. How well they are met is no part of any answer.
+
+#include <vector>
+
+#include "core/geometry/pose.h"
+
+namespace seamwright {
+
+struct TargetView {
+    Eigen::Vector3d turn_deg;   // rotation vector of the sensor against the target
+    Eigen::Vector3d offset_mm;  // of the sensor's origin, target frame
+};
+Pose target_from_sensor(const TargetView& view);
+
+// Plate: tilts to both sides about both axes at different heights and places, turned about the sight line.
+const std::vector<TargetView>& plate_views();
+// Sphere (target frame at its centre): the cut off the middle to both sides, the sensor turned about all
+// three axes.
+const std::vector<TargetView>& sphere_views();
+// Plate: heights over the whole field, a little tilted to both sides, so that the lines cross the image
+// everywhere.
+const std::vector<TargetView>& line_views();
+
+}  // namespace seamwright

@@ -97,8 +97,20 @@ struct Region {
     Pose base_from_frame = Pose::Identity();  // taught, for the undisplaced part
 };
 
+// What the work has to reach before it is handed over; the checklist (checklist.h) judges by it.
+struct Requirements {
+    // 3 sigma of a point of the path after correction, predicted and proven. The default is what an ordinary
+    // robot repeats (thesis 5.1) and three times a region's sigma limit.
+    double sigma3_mm = 0.3;
+    double calibration_age_days = 365;  // an older calibration in use is stale
+    double zero_shift_runs = 3;         // measurements of the unmoved part
+    // The known shift must have been recovered up to here, at the middle of the spots.
+    double known_shift_mm = 10, known_shift_deg = 1;
+};
+
 struct Project {
     std::string name;
+    Requirements requirements;
     PartSetup part;
     std::vector<SensorSetup> sensors;
     std::vector<RobotSetup> robots;

@@ -15,13 +15,15 @@
 // Contents: one row per sensor, robot, calibration, spot, region (key columns + JSON in project_json.h's
 // form, doubles exact, profiles as blobs of profile_blob.h); a run is one row with its spots, regions, and
 // captures packed into blobs of about 1 MiB, and refers to the setup it was made with (the project as JSON,
-// stored once per content), so that it can be computed again after the project was edited.
+// stored once per content), so that it can be computed again after the project was edited. Evidence
+// (evidence.h) refers to its setup in the same way.
 
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "projects/evidence.h"
 #include "projects/project.h"
 #include "projects/run.h"
 
@@ -77,6 +79,11 @@ class ProjectFile {
     // Newest last; run 0 = all.
     Expected<std::vector<EventRecord>> events(std::int64_t run = 0) const;
     Expected<void> delete_run(std::int64_t number);
+
+    // What was proven, with the project it was proven with; kept when its runs are deleted. Returns its id.
+    Expected<std::int64_t> append_evidence(const Evidence& evidence, const Project& setup);
+    // Those with an id above `after`, oldest first.
+    Expected<std::vector<Evidence>> evidence(std::int64_t after = 0) const;
 
     // The long check: SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
     // = sound.

@@ -19,6 +19,9 @@ SEAMWRIGHT_WORDS(CorrectionStatus, "ok", "under_determined", "over_limit", "not_
 SEAMWRIGHT_WORDS(SpotStatus, "measured", "not_measured", "damaged_frame", "no_stripe", "no_calibration",
                  "no_feature");
 SEAMWRIGHT_WORDS(PushStatus, "not_pushed", "written", "failed", "restored", "not_restored");
+SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_enough_profiles");
+SEAMWRIGHT_WORDS(ShiftBy, "simulated_part", "robot_moves", "by_hand");
+SEAMWRIGHT_WORDS(ShiftKind, "translation", "rotation", "both");
 #undef SEAMWRIGHT_WORDS
 
 namespace {
@@ -280,8 +283,17 @@ void describe(A& a, Region& v) {
     a("base_from_frame", v.base_from_frame);
 }
 template <class A>
+void describe(A& a, Requirements& v) {
+    a("sigma3_mm", v.sigma3_mm);
+    a("calibration_age_days", v.calibration_age_days);
+    a("zero_shift_runs", v.zero_shift_runs);
+    a("known_shift_mm", v.known_shift_mm);
+    a("known_shift_deg", v.known_shift_deg);
+}
+template <class A>
 void describe(A& a, Project& v) {
     a("name", v.name);
+    a("requirements", v.requirements);
     a("part", v.part);
     a("sensors", v.sensors);
     a("robots", v.robots);
@@ -323,6 +335,75 @@ void describe(A& a, RegionRecord& v) {
     a("push", v.push);
 }
 
+// --- evidence
+
+template <class A>
+void describe(A& a, TravelOffset& v) {
+    a("travel_mm", v.travel_mm);
+    a("dx_mm", v.dx_mm);
+    a("dz_mm", v.dz_mm);
+    a("dphi_deg", v.dphi_deg);
+    a("rms_mm", v.rms_mm);
+    a("ok", v.ok);
+}
+template <class A>
+void describe(A& a, FrozenContour& v) {
+    a("spot_id", v.spot_id);
+    a("status", v.status);
+    a("yaw_deg", v.yaw_deg);
+    a("pitch_deg", v.pitch_deg);
+    a("radius_mm", v.radius_mm);
+    a("expected_error_mm", v.expected_error_mm);
+    a("tolerance_mm", v.tolerance_mm);
+    a("jitter_mm", v.jitter_mm);
+    a("offsets", v.offsets);
+}
+template <class A>
+void describe(A& a, ZeroShiftRegion& v) {
+    a("region_id", v.region_id);
+    a("mean", v.mean);
+    a("three_sigma", v.three_sigma);
+    a("stated_three_sigma", v.stated_three_sigma);
+    a("worst_mean_mm", v.worst_mean_mm);
+}
+template <class A>
+void describe(A& a, ZeroShift& v) {
+    a("runs", v.runs);
+    a("refused", v.refused);
+    a("regions", v.regions);
+}
+template <class A>
+void describe(A& a, ShiftOutcome& v) {
+    a("region_id", v.region_id);
+    a("ok", v.ok);
+    a("mean_abs_mm", v.mean_abs_mm);
+    a("deviations_mm", v.deviations_mm);
+    a("message", v.message);
+}
+template <class A>
+void describe(A& a, ShiftTest& v) {
+    a("kind", v.kind);
+    a("axis", v.axis);
+    a("amount", v.amount);
+    a("workobject_from_movedworkobject", v.workobject_from_movedworkobject);
+    a("run", v.run);
+    a("regions", v.regions);
+}
+template <class A>
+void describe(A& a, KnownShift& v) {
+    a("realised_by", v.realised_by);
+    a("range_mm", v.range_mm);
+    a("range_deg", v.range_deg);
+    a("tests", v.tests);
+}
+template <class A>
+void describe(A& a, HeadlessRun& v) {
+    a("run", v.run);
+    a("part_id", v.part_id);
+    a("push", v.push);
+    a("host", v.host);
+}
+
 template <class T>
 nlohmann::json to_json_document(const T& value, const ArchiveOptions& options) {
     return JsonWriter(options).document(value);
@@ -346,6 +427,11 @@ SEAMWRIGHT_DOCUMENT(Spot);
 SEAMWRIGHT_DOCUMENT(Region);
 SEAMWRIGHT_DOCUMENT(SpotMeasurement);
 SEAMWRIGHT_DOCUMENT(RegionRecord);
+SEAMWRIGHT_DOCUMENT(Requirements);
+SEAMWRIGHT_DOCUMENT(FrozenContour);
+SEAMWRIGHT_DOCUMENT(ZeroShift);
+SEAMWRIGHT_DOCUMENT(KnownShift);
+SEAMWRIGHT_DOCUMENT(HeadlessRun);
 #undef SEAMWRIGHT_DOCUMENT
 
 Expected<std::string> dump_document(const nlohmann::json& document, const std::string& where) {

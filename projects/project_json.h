@@ -2,13 +2,15 @@
 // The project's and the runs' types as JSON, see json_archive.h for the form. Used for the rows of the file,
 // for the setup kept with a run, and for export.
 
+#include "projects/evidence.h"
 #include "projects/json_archive.h"
 #include "projects/project.h"
 #include "projects/run.h"
 
 namespace seamwright {
 
-// T: Project, PartSetup, SensorSetup, RobotSetup, Calibration, Spot, Region, SpotMeasurement, RegionRecord.
+// T: Project, PartSetup, SensorSetup, RobotSetup, Calibration, Spot, Region, SpotMeasurement, RegionRecord,
+// Requirements, FrozenContour, ZeroShift, KnownShift, HeadlessRun.
 // Meshes and captures are never part of the JSON; profiles when the options say so.
 template <class T>
 nlohmann::json to_json_document(const T& value, const ArchiveOptions& options = {});

@@ -113,6 +113,15 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     name->bind(2, utc_now());
     if (auto done = name->run(); !done) return done;
 
+    auto required = db.prepare(
+        "INSERT INTO requirements (id, body) VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET body = "
+        "excluded.body WHERE body IS NOT excluded.body");
+    if (!required) return tl::unexpected(required.error());
+    auto required_text = row_text(project.requirements, "requirements", kRow);
+    if (!required_text) return tl::unexpected(required_text.error());
+    required->bind(1, *required_text);
+    if (auto done = required->run(); !done) return done;
+
     auto part = db.prepare(
         "INSERT INTO part (id, body, mesh) VALUES (1, ?, ?) ON CONFLICT (id) DO UPDATE SET body = "
         "excluded.body, "
@@ -190,6 +199,15 @@ Expected<Project> load_rows_of(Database& db) {
         return {};
     });
     if (!named) return tl::unexpected(named.error());
+    auto required = db.prepare("SELECT body FROM requirements");  // none in a file of an older version
+    if (!required) return tl::unexpected(required.error());
+    auto requiring = for_each_row(*required, [&](Statement& row) -> Expected<void> {
+        auto value = row_value<Requirements>(row.text(0), "requirements", db.path(), kRow);
+        if (!value) return tl::unexpected(value.error());
+        project.requirements = *value;
+        return {};
+    });
+    if (!requiring) return tl::unexpected(requiring.error());
     auto part = db.prepare("SELECT body, mesh FROM part");
     if (!part) return tl::unexpected(part.error());
     auto parted = for_each_row(*part, [&](Statement& row) -> Expected<void> {

@@ -220,6 +220,60 @@ Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
     return impl_->db.last_rowid();
 }
 
+Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
+    Database& db = impl_->db;
+    auto transaction = Transaction::begin(db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto setup_number = setup_id(db, setup);
+    if (!setup_number) return setup_number;
+    const std::string kind(kind_of(evidence));
+    auto text = std::visit([&](const auto& what) { return row_text(what, "evidence: " + kind, kResult); },
+                           evidence.what);
+    if (!text) return tl::unexpected(text.error());
+    auto s = db.prepare("INSERT INTO evidence (utc, kind, subject, setup, body) VALUES (?, ?, ?, ?, ?)");
+    if (!s) return tl::unexpected(s.error());
+    const auto* frozen = std::get_if<FrozenContour>(&evidence.what);
+    s->bind(1, evidence.utc.empty() ? utc_now() : utf8_text(evidence.utc));
+    s->bind(2, kind);
+    s->bind(3, frozen ? utf8_text(frozen->spot_id) : std::string());
+    s->bind(4, *setup_number);
+    s->bind(5, *text);
+    if (auto done = s->run(); !done) return tl::unexpected(done.error());
+    const std::int64_t id = db.last_rowid();
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return id;
+}
+
+Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const {
+    auto s = impl_->db.prepare("SELECT id, utc, kind, setup, body FROM evidence WHERE id > ? ORDER BY id");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, after);
+    std::vector<Evidence> list;
+    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        Evidence e;
+        e.id = row.integer(0);
+        e.utc = row.text(1);
+        e.setup = row.integer(3);
+        const std::string kind = row.text(2), body = row.text(4), where = fmt::format("evidence {}", e.id);
+        const auto read_as = [&]<class T>(T*) -> Expected<void> {
+            auto value = row_value<T>(body, where, impl_->path.string(), kResult);
+            if (!value) return tl::unexpected(value.error());
+            e.what = std::move(*value);
+            return {};
+        };
+        Expected<void> done = kind == kFrozenContour ? read_as(static_cast<FrozenContour*>(nullptr))
+                              : kind == kZeroShift   ? read_as(static_cast<ZeroShift*>(nullptr))
+                              : kind == kKnownShift  ? read_as(static_cast<KnownShift*>(nullptr))
+                              : kind == kHeadlessRun ? read_as(static_cast<HeadlessRun*>(nullptr))
+                                                     : file_error("an evidence is of unknown kind",
+                                                                  impl_->path.string() + ": " + where);
+        if (done) list.push_back(std::move(e));
+        return done;
+    });
+    if (!read) return tl::unexpected(read.error());
+    return list;
+}
+
 Expected<std::vector<RunSummary>> ProjectFile::runs() const {
     auto s = impl_->db.prepare(
         "SELECT number, part_id, started_utc, finished_utc, push, status, message, setup, "
@@ -362,16 +416,23 @@ std::vector<Error> ProjectFile::check() const {
         findings.push_back(structure.error());
     if (auto project = load(); !project) findings.push_back(project.error());
     if (auto all = events(); !all) findings.push_back(all.error());
+    std::set<std::int64_t> setups;
+    const auto check_setup = [&](std::int64_t number) {
+        if (!setups.insert(number).second) return;
+        if (auto setup = load_setup(number); !setup) findings.push_back(setup.error());
+    };
+    if (auto proven = evidence(); !proven)
+        findings.push_back(proven.error());
+    else
+        for (const Evidence& e : *proven) check_setup(e.setup);
     auto list = runs();
     if (!list) {
         findings.push_back(list.error());
         return findings;
     }
-    std::set<std::int64_t> setups;
     for (const RunSummary& run : *list) {
         if (auto record = load_run(run.number); !record) findings.push_back(record.error());
-        if (setups.insert(run.setup).second)
-            if (auto setup = load_setup(run.setup); !setup) findings.push_back(setup.error());
+        check_setup(run.setup);
     }
     return findings;
 }

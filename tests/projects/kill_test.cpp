@@ -108,8 +108,9 @@ void set_blob_checksum(std::vector<std::byte>& blob) {
     std::memcpy(blob.data() + 12, &crc, 4);
 }
 
-void make_version_one(const std::filesystem::path& path) {
-    const std::string sql = file_bytes(std::filesystem::path(SEAMWRIGHT_TEST_DATA) / "version1.sql");
+void make_old_version(const std::filesystem::path& path, int version) {
+    const std::string sql = file_bytes(std::filesystem::path(SEAMWRIGHT_TEST_DATA) /
+                                       ("version" + std::to_string(version) + ".sql"));
     ASSERT_FALSE(sql.empty());
     sqlite3* db = nullptr;
     ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);

@@ -17,7 +17,7 @@ void kill_while_appending(int kills, unsigned seed);
 // Puts the right checksum on a changed blob.
 void set_blob_checksum(std::vector<std::byte>& blob);
 
-// A project file of schema version 1 from tests/data/version1.sql.
-void make_version_one(const std::filesystem::path& path);
+// A project file of an older schema version from tests/data/version<N>.sql.
+void make_old_version(const std::filesystem::path& path, int version);
 
 }  // namespace seamwright

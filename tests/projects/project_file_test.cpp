@@ -452,11 +452,11 @@ TEST(ProfileBlob, ForgedLengthsAreRefused) {
 
 // --- migrations
 
-// The file of version 1 was written by the first schema; `tests/data/version1.sql` is its dump.
+// Files of older versions, written by their own schema; `tests/data/version<N>.sql` are their dumps.
 TEST(Migration, VersionOneBecomesCurrent) {
     TemporaryFolder folder;
     const fs::path path = folder / "old.seam";
-    make_version_one(path);
+    make_old_version(path, 1);
     const std::string before = file_bytes(path);
     {
         auto file = ProjectFile::open(path, FileAccess::read_only);
@@ -481,10 +481,90 @@ TEST(Migration, VersionOneBecomesCurrent) {
     EXPECT_EQ(files, 1u);
 }
 
+Evidence sample_evidence(int kind) {
+    Evidence e;
+    if (kind == 0) {
+        FrozenContour f;
+        f.spot_id = "S2";
+        f.status = AlignmentStatus::frozen;
+        f.yaw_deg = 1.0 / 3.0;
+        f.radius_mm = std::numeric_limits<double>::infinity();
+        f.offsets = {{-5, 0.01, -0.02, 0.003, 0.004, true}, {5, -0.01, 0.02, 0, 0, false}};
+        e.what = f;
+    } else if (kind == 1) {
+        ZeroShift z;
+        z.runs = {4, 5, 6};
+        z.regions = {{"edge", {1e-9, 2, 3, 4, 5, 6}, {0.1, 0, 0, 0, 0, 0}, {}, 0.25}};
+        e.what = z;
+    } else if (kind == 2) {
+        KnownShift k;
+        k.realised_by = ShiftBy::by_hand;
+        k.range_mm = 10;
+        k.tests = {{ShiftKind::both,
+                    2,
+                    -7.5,
+                    make_pose(rotation_exp({0, 0, 0.01}), {1, 2, 3}),
+                    9,
+                    {{"edge", false, std::nan(""), {}, "too few spots"}}}};
+        e.what = k;
+    } else {
+        e.what = HeadlessRun{12, "car", true, "line-pc"};
+    }
+    return e;
+}
+
+TEST(Migration, VersionTwoBecomesCurrentAndTakesEvidence) {
+    TemporaryFolder folder;
+    const fs::path path = folder / "old.seam";
+    make_old_version(path, 2);
+    {
+        const auto reading = ProjectFile::open(path, FileAccess::read_only);
+        ASSERT_TRUE(reading) << reading.error().sentence();
+        EXPECT_EQ(exact_text(reading->load()->requirements), exact_text(Requirements{})) << "defaults";
+        EXPECT_TRUE(reading->evidence()->empty());
+    }
+    auto file = ProjectFile::open(path);
+    ASSERT_TRUE(file) << file.error().sentence();
+    EXPECT_EQ(file->runs()->size(), 1u);
+    EXPECT_EQ(file->load_run(1)->captures.size(), 2u);
+    Project project = file->load().value();
+    project.requirements.sigma3_mm = 0.1;
+    project.requirements.calibration_age_days = 30;
+    ASSERT_TRUE(file->save(project));
+    for (int kind = 0; kind < 4; ++kind) ASSERT_TRUE(file->append_evidence(sample_evidence(kind), project));
+    EXPECT_TRUE(file->check().empty());
+    EXPECT_EQ(file->load()->requirements.sigma3_mm, 0.1);
+}
+
+TEST(ProjectFile, EvidenceComesBackToTheLastBitAndOutlivesRuns) {
+    TemporaryFolder folder;
+    const Project project = sample_project();
+    auto file = ProjectFile::create(folder / "a.seam", project).value();
+    const auto run = file.append_run(sample_run(1), project).value();
+    for (int kind = 0; kind < 4; ++kind) {
+        const Evidence put = sample_evidence(kind);
+        const auto id = file.append_evidence(put, project);
+        ASSERT_TRUE(id) << id.error().sentence();
+        const auto all = file.evidence(*id - 1).value();
+        ASSERT_EQ(all.size(), 1u) << "only what is newer";
+        EXPECT_EQ(all[0].id, *id);
+        EXPECT_FALSE(all[0].utc.empty());
+        EXPECT_EQ(all[0].what.index(), put.what.index());
+        std::visit(
+            [&]<class T>(const T& what) { EXPECT_EQ(exact_text(what), exact_text(std::get<T>(put.what))); },
+            all[0].what);
+    }
+    ASSERT_TRUE(file.delete_run(run));
+    const auto all = file.evidence().value();
+    ASSERT_EQ(all.size(), 4u);
+    EXPECT_EQ(file.load_setup(all[3].setup)->spots.size(), project.spots.size());
+    EXPECT_TRUE(file.check().empty());
+}
+
 TEST(Migration, AFailedOneLeavesTheOldFile) {
     TemporaryFolder folder;
     const fs::path path = folder / "old.seam";
-    make_version_one(path);
+    make_old_version(path, 1);
     {
         // A table that the second version wants to make stands there already.
         sqlite3* db = nullptr;

@@ -1,0 +1,97 @@
+#pragma once
+// What was proven on the cell, as it stays in the project's file: the contours that stood still, the unmoved
+// part that read zero, the known shifts that were recovered, the run without a screen. Value types; made by
+// zero_shift.h, known_shift.h and the pass of a spot, judged by checklist.h, printed by hand_over.h.
+//
+// Evidence is never edited. It refers to the project as it was proven with (Evidence::setup), so that it is
+// stale when what it rests on was changed, and it can be said what was.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/alignment/alignment.h"
+#include "core/geometry/pose.h"
+
+namespace seamwright {
+
+// The accepted pass of a spot, see core/alignment/alignment.h.
+struct FrozenContour {
+    std::string spot_id;
+    AlignmentStatus status = AlignmentStatus::not_enough_profiles;
+    double yaw_deg = 0, pitch_deg = 0;
+    double radius_mm = 0;  // infinity when straight
+    double expected_error_mm = 0, tolerance_mm = 0, jitter_mm = 0;
+    std::vector<TravelOffset> offsets;  // usable ones
+};
+
+// The unmoved part measured several times.
+struct ZeroShiftRegion {
+    std::string region_id;
+    // x, y, z (mm), a, b, c (degree) of the displacement: mean and 3 sigma over the runs, and what the
+    // correction states as its own 3 sigma.
+    std::array<double, 6> mean{}, three_sigma{}, stated_three_sigma{};
+    double worst_mean_mm = 0;  // longest mean deviation of a spot's reference point
+};
+struct ZeroShift {
+    std::vector<std::int64_t> runs;
+    int refused = 0;  // runs that did not end ok
+    std::vector<ZeroShiftRegion> regions;
+};
+
+enum class ShiftBy {
+    simulated_part,  // the simulated part moves
+    robot_moves,     // the measuring moves are shifted the other way (a base shift done from here)
+    by_hand          // a person shifts the controller's base, or the part
+};
+enum class ShiftKind { translation, rotation, both };  // the three columns of chapter 5.2
+
+struct ShiftOutcome {
+    std::string region_id;
+    bool ok = false;         // a correction was found and the gate let it pass
+    double mean_abs_mm = 0;  // mean length of the deviations at the region's spots
+    // D_found p - D_true p of each spot's reference point p, work object, three components a spot.
+    std::vector<double> deviations_mm;
+    std::string message;  // why not ok
+};
+struct ShiftTest {
+    ShiftKind kind = ShiftKind::translation;
+    int axis = 0;       // 0 X, 1 Y, 2 Z of the work object
+    double amount = 0;  // signed mm; degree for rotation; mm for both, which turns in proportion
+    Pose workobject_from_movedworkobject = Pose::Identity();
+    std::int64_t run = 0;
+    std::vector<ShiftOutcome> regions;
+};
+struct KnownShift {
+    ShiftBy realised_by = ShiftBy::simulated_part;
+    double range_mm = 0, range_deg = 0;
+    std::vector<ShiftTest> tests;
+};
+
+// A run of `seamwright run` that ended ok.
+struct HeadlessRun {
+    std::int64_t run = 0;
+    std::string part_id;
+    bool push = false;
+    std::string host;
+};
+
+struct Evidence {
+    std::int64_t id = 0;     // given by the file
+    std::string utc;         // ISO 8601; empty = when stored
+    std::int64_t setup = 0;  // ProjectFile::load_setup
+    std::variant<FrozenContour, ZeroShift, KnownShift, HeadlessRun> what;
+};
+
+// The words of the kinds on disk.
+inline constexpr std::string_view kFrozenContour = "frozen contour", kZeroShift = "zero shift",
+                                  kKnownShift = "known shift", kHeadlessRun = "headless run";
+inline std::string_view kind_of(const Evidence& evidence) {
+    constexpr std::array<std::string_view, 4> names{kFrozenContour, kZeroShift, kKnownShift, kHeadlessRun};
+    return names[evidence.what.index()];
+}
+
+}  // namespace seamwright

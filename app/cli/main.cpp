@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
     add_project_commands(line);
     add_run(line);
     add_record(line);
+    add_proof(line);
     add_replay(line);
     add_correct(line);
     add_plan(line);

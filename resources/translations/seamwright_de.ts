@@ -261,6 +261,14 @@
         <source>order changed</source>
         <translation>Reihenfolge geändert</translation>
     </message>
+    <message>
+        <source>The file that keeps unsaved edits went bad (%1). It was set aside as %2 and begun anew.</source>
+        <translation>Die Datei mit den ungespeicherten Änderungen wurde unlesbar (%1). Sie wurde als %2 beiseitegelegt und neu begonnen.</translation>
+    </message>
+    <message>
+        <source>Unsaved edits are not kept against a crash: %1</source>
+        <translation>Ungespeicherte Änderungen sind nicht gegen einen Absturz gesichert: %1</translation>
+    </message>
 </context>
 <context>
     <name>main</name>
@@ -1074,6 +1082,17 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Enter or double click runs an action</source>
         <translation>Enter oder Doppelklick führt eine Aktion aus</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::Desk</name>
+    <message>
+        <source>The unsaved edits of an earlier session cannot be read (%1). They were set aside as %2.</source>
+        <translation>Die ungespeicherten Änderungen einer früheren Sitzung sind nicht lesbar (%1). Sie wurden als %2 beiseitegelegt.</translation>
+    </message>
+    <message>
+        <source>The unsaved edits of an earlier session cannot be read (%1). They stand in the way of those of this session, which are not kept against a crash: %2</source>
+        <translation>Die ungespeicherten Änderungen einer früheren Sitzung sind nicht lesbar (%1). Sie stehen denen dieser Sitzung im Weg, die nicht gegen einen Absturz gesichert sind: %2</translation>
     </message>
 </context>
 <context>

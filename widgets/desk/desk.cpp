@@ -88,10 +88,13 @@ std::string now_utc() {
 Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
     connect(&undo_, &QUndoStack::cleanChanged, this, [this] {
         if (modified() != was_modified_) emit modified_changed(was_modified_ = modified());
+        if (!modified()) drop_kept();  // undone to what was saved
     });
     connect(&selection_, &Selection::changed, this, &Desk::set_recipes);
-    connect(&recovery_writer_, &RecoveryWriter::written, this, &Desk::recovery_written);
-    connect(&recovery_writer_, &RecoveryWriter::failed, this, &Desk::trouble);
+    connect(&recovery_writer_, &RecoveryWriter::written, this, [this] {
+        if (recovery_writer_.kept()) emit recovery_written();  // else a newer one is under way
+    });
+    connect(&recovery_writer_, &RecoveryWriter::trouble, this, &Desk::trouble);
     connect(&worker_, &StationWorker::failed, this, [this](const QString& sentence) {
         note(EventKind::device, "studio", sentence.toStdString());
         emit trouble(sentence);
@@ -117,6 +120,7 @@ Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
 }
 
 Desk::~Desk() {
+    undo_.disconnect(this);  // it clears itself at its end; what is unsaved stays kept
     worker_.close();
 }
 
@@ -133,7 +137,7 @@ Editor Desk::editor() {
 
 void Desk::changed() {
     if (file_) {
-        recovery_writer_.write(project_);
+        if (!recovery_) recovery_writer_.write(project_);  // never over what waits for an answer
         worker_.use(project_);
     }
     if (modified() != was_modified_) emit modified_changed(was_modified_ = modified());
@@ -168,11 +172,21 @@ void Desk::take_over(ProjectFile file, Project project) {
     emit events_changed();
 }
 
+void Desk::drop_kept() {
+    if (file_ && !recovery_) recovery_writer_.clear();
+}
+
+void Desk::keep_newest() {
+    if (modified() && !recovery_) recovery_writer_.write(project_);
+    recovery_writer_.flush();
+}
+
 Expected<void> Desk::create(const std::filesystem::path& path, const Project& project) {
     if (file_ && path == file_->path()) close();
     auto file = ProjectFile::create(path, project, true);
     if (!file) return tl::unexpected(file.error());
     discard_recovery(path);
+    drop_kept();
     recovery_.reset();
     take_over(std::move(*file), project);
     return {};
@@ -183,8 +197,31 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
     if (!project) return tl::unexpected(project.error());
-    recovery_ = find_recovery(path, *project);
+    // Edits that were not saved in the project that is left are given up; before the look at what a crash
+    // left, because both may be one file.
+    drop_kept();
+    recovery_writer_.flush();
+    auto found = find_recovery(path, *project);
+    recovery_.reset();
+    QString told;
+    if (found) {
+        recovery_ = std::move(*found);
+    } else if (const auto aside = set_aside_recovery(path)) {
+        told = tr("The unsaved edits of an earlier session cannot be read (%1). They were set aside as %2.")
+                   .arg(QString::fromStdString(found.error().what),
+                        QString::fromStdString(aside->filename().string()));
+    } else {
+        told = tr("The unsaved edits of an earlier session cannot be read (%1). They stand in the way of "
+                  "those of "
+                  "this session, which are not kept against a crash: %2")
+                   .arg(QString::fromStdString(found.error().what),
+                        QString::fromStdString(aside.error().sentence()));
+    }
     take_over(std::move(*file), std::move(*project));
+    if (!told.isEmpty()) {
+        note(EventKind::note, "studio", told.toStdString());
+        emit trouble(told);
+    }
     return {};
 }
 
@@ -193,21 +230,29 @@ void Desk::restore() {
     project_ = std::move(recovery_->project);
     recovery_.reset();
     restored_ = true;
+    undo_.clear();
     note(EventKind::note, "studio", "unsaved edits of an earlier session restored");
     changed();
 }
 
 void Desk::forget_recovery() {
     recovery_.reset();
-    if (file_) recovery_writer_.clear();
+    if (!file_) return;
+    if (modified())
+        recovery_writer_.write(project_);
+    else
+        recovery_writer_.clear();
 }
 
 Expected<void> Desk::save() {
     if (!file_) return usage_error("no project is open", {}, "open or make one");
+    // An older state left behind by a crash after the save would be offered as unsaved edits; one that equals
+    // what was saved is not.
+    keep_newest();
     if (auto saved = file_->save(project_); !saved) return saved;
     restored_ = false;
     undo_.setClean();
-    recovery_writer_.clear();
+    drop_kept();
     if (modified() != was_modified_) emit modified_changed(was_modified_ = modified());
     return {};
 }
@@ -217,6 +262,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (path == file_->path()) return save();
     if (worker_.busy())
         return usage_error("a measurement is running", path.string(), "wait for its end or cancel it");
+    keep_newest();
     // The old file keeps what was saved there; runs go along.
     const auto part = std::filesystem::path(path.string() + ".part");
     std::error_code failed;
@@ -228,15 +274,16 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
         if (!copy) return tl::unexpected(copy.error());
         if (auto saved = copy->save(project_); !saved) return saved;
     }
+    discard_recovery(path);  // of a file that is replaced; must not meet the one that takes its name
     std::filesystem::rename(part, path, failed);
     if (failed) return file_error("the file cannot be replaced: " + failed.message(), path.string());
-    recovery_writer_.clear();
+    drop_kept();
     recovery_writer_.flush();
     auto file = ProjectFile::open(path);
     if (!file) return tl::unexpected(file.error());
     const std::string spot = selection_.spot(), region = selection_.region();
     const bool connected = state_->connected;
-    discard_recovery(path);
+    recovery_.reset();
     take_over(std::move(*file), project_);
     selection_.select_spot(spot);
     selection_.select_region(region);
@@ -246,10 +293,8 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
 
 void Desk::close() {
     worker_.close();
-    if (file_) {
-        recovery_writer_.clear();
-        recovery_writer_.close();
-    }
+    drop_kept();
+    recovery_writer_.close();
     file_.reset();
     recovery_.reset();
     project_ = {};

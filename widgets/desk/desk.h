@@ -37,7 +37,9 @@ class Desk : public QObject {
 
     // An existing file is replaced (the caller has asked).
     Expected<void> create(const std::filesystem::path& path, const Project& project);
-    // Opens as saved. What a crash left is in recovery() until restore() or forget_recovery().
+    // Opens as saved; unsaved edits of the project that is left are dropped (the caller has asked). What a
+    // crash left is in recovery() until restore() or forget_recovery(), and stays on the disk until then.
+    // What cannot be read is set aside beside the file, and trouble() says so.
     Expected<void> open(const std::filesystem::path& path);
     const std::optional<Recovery>& recovery() const { return recovery_; }
     void restore();
@@ -92,12 +94,14 @@ class Desk : public QObject {
     void station_changed();
     void runs_changed();
     void events_changed();
-    void recovery_written();
+    void recovery_written();  // every edit so far would survive a crash
     void trouble(QString sentence);
 
   private:
     Editor editor();
     void take_over(ProjectFile file, Project project);
+    void drop_kept();    // the recovery file, unless it waits for an answer
+    void keep_newest();  // the recovery file holds the project as it is
     void changed();
     void derive();
     void set_recipes();

@@ -1,7 +1,8 @@
 #include "widgets/desk/recovery.h"
 
+#include <fmt/format.h>
+
 #include <QCoreApplication>
-#include <set>
 
 #include "projects/project_json.h"
 #include "widgets/desk/commands.h"
@@ -63,27 +64,41 @@ QStringList differences(const Project& before, const Project& after) {
     list_differences(before.spots, after.spots, lines);
     list_differences(before.regions, after.regions, lines);
     if (lines.isEmpty() &&
-        !(same_order(before.spots, after.spots) && same_order(before.regions, after.regions)))
+        !(same_order(before.sensors, after.sensors) && same_order(before.robots, after.robots) &&
+          same_order(before.calibrations, after.calibrations) && same_order(before.spots, after.spots) &&
+          same_order(before.regions, after.regions)))
         lines << RecoveryText::tr("order changed");
     return lines;
 }
 
-bool same_project(const Project& a, const Project& b) {
-    return a.part.mesh_ply == b.part.mesh_ply && to_json_document(a) == to_json_document(b);
-}
-
-std::optional<Recovery> find_recovery(const std::filesystem::path& project_file, const Project& saved) {
+Expected<std::optional<Recovery>> find_recovery(const std::filesystem::path& project_file,
+                                                const Project& saved) {
     const auto path = recovery_path(project_file);
     std::error_code none;
     if (!std::filesystem::exists(path, none)) return std::nullopt;
     auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return std::nullopt;
+    if (!file) return tl::unexpected(file.error());
     auto project = file->load();
-    if (!project) return std::nullopt;
+    if (!project) return tl::unexpected(project.error());
     Recovery recovery{std::move(*project), std::filesystem::last_write_time(path, none), {}};
     recovery.holds = differences(saved, recovery.project);
     if (recovery.holds.isEmpty()) return std::nullopt;
     return recovery;
+}
+
+Expected<std::filesystem::path> set_aside_recovery(const std::filesystem::path& project_file) {
+    const auto path = recovery_path(project_file);
+    const std::string name = path.string() + ".damaged";
+    std::filesystem::path aside = name;
+    std::error_code failed;
+    for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(aside, failed)); ++n)
+        aside = fmt::format("{}-{}", name, n);
+    std::filesystem::rename(path, aside, failed);
+    if (failed)
+        return file_error("the file cannot be renamed: " + failed.message(), path.string(), "move it away");
+    std::error_code none;  // a journal belongs to its file
+    std::filesystem::rename(path.string() + "-journal", aside.string() + "-journal", none);
+    return aside;
 }
 
 void discard_recovery(const std::filesystem::path& project_file) {
@@ -111,7 +126,7 @@ void RecoveryWriter::write(const Project& project) {
     {
         const std::lock_guard lock(mutex_);
         pending_ = std::make_unique<Project>(project);
-        clear_ = false;
+        clear_ = kept_ = false;
     }
     wake_.notify_all();
 }
@@ -121,6 +136,7 @@ void RecoveryWriter::clear() {
         const std::lock_guard lock(mutex_);
         pending_.reset();
         clear_ = true;
+        kept_ = false;
     }
     wake_.notify_all();
 }
@@ -129,6 +145,11 @@ void RecoveryWriter::flush() {
     std::unique_lock lock(mutex_);
     wake_.notify_all();
     wake_.wait(lock, [&] { return !pending_ && !clear_ && !busy_; });
+}
+
+bool RecoveryWriter::kept() const {
+    const std::lock_guard lock(mutex_);
+    return kept_;
 }
 
 void RecoveryWriter::close() {
@@ -148,35 +169,48 @@ void RecoveryWriter::work(const std::stop_token& stop) {
         const auto target = target_;
         busy_ = true;
         lock.unlock();
-        QString trouble;
+        QString told;
+        bool wrote = false;
         if (!project || target.empty()) {
             file.reset();
             if (!target.empty()) discard_recovery(target);
         } else {
             const auto path = recovery_path(target);
             // Taken away from outside, or of another project: begun anew.
-            if (file && (file->path() != path || !std::filesystem::exists(path))) file.reset();
+            std::error_code none;
+            if (file && (file->path() != path || !std::filesystem::exists(path, none))) file.reset();
             if (file) {
                 if (auto saved = file->save(*project); !saved) file.reset();
             }
             if (!file) {
                 auto made = ProjectFile::create(path, *project, true);
+                if (!made && std::filesystem::exists(path, none)) {
+                    // What stands there is no project any more; it must not end the keeping of edits.
+                    if (auto opens = ProjectFile::open(path, FileAccess::read_only); !opens)
+                        if (auto aside = set_aside_recovery(target)) {
+                            told = RecoveryText::tr(
+                                       "The file that keeps unsaved edits went bad (%1). It was set "
+                                       "aside as %2 and begun anew.")
+                                       .arg(QString::fromStdString(opens.error().what),
+                                            QString::fromStdString(aside->filename().string()));
+                            made = ProjectFile::create(path, *project, true);
+                        }
+                }
                 if (made)
                     file.emplace(std::move(*made));
                 else
-                    trouble = QString::fromStdString(made.error().sentence());
+                    told = RecoveryText::tr("Unsaved edits are not kept against a crash: %1")
+                               .arg(QString::fromStdString(made.error().sentence()));
             }
+            wrote = file.has_value();
         }
         lock.lock();
         busy_ = false;
+        kept_ = wrote && !pending_ && !clear_;
         lock.unlock();
         wake_.notify_all();
-        if (project) {
-            if (trouble.isEmpty())
-                emit written();
-            else
-                emit failed(trouble);
-        }
+        if (!told.isEmpty()) emit trouble(told);
+        if (wrote) emit written();
     }
 }
 

@@ -258,6 +258,10 @@
         <translation>Teil geändert</translation>
     </message>
     <message>
+        <source>requirements changed</source>
+        <translation>Anforderungen geändert</translation>
+    </message>
+    <message>
         <source>order changed</source>
         <translation>Reihenfolge geändert</translation>
     </message>

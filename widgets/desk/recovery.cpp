@@ -41,12 +41,6 @@ void list_differences(const std::vector<T>& before, const std::vector<T>& after,
             lines << RecoveryText::tr("%1 %2 removed").arg(thing_name<T>(), QString::fromStdString(item.id));
 }
 
-template <class T>
-bool same_order(const std::vector<T>& a, const std::vector<T>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const T& x, const T& y) { return x.id == y.id; });
-}
-
 }  // namespace
 
 std::filesystem::path recovery_path(const std::filesystem::path& project_file) {
@@ -58,16 +52,13 @@ QStringList differences(const Project& before, const Project& after) {
     if (before.name != after.name) lines << RecoveryText::tr("project renamed");
     if (!same(before.part, after.part) || before.part.mesh_ply != after.part.mesh_ply)
         lines << RecoveryText::tr("part changed");
+    if (!same(before.requirements, after.requirements)) lines << RecoveryText::tr("requirements changed");
     list_differences(before.sensors, after.sensors, lines);
     list_differences(before.robots, after.robots, lines);
     list_differences(before.calibrations, after.calibrations, lines);
     list_differences(before.spots, after.spots, lines);
     list_differences(before.regions, after.regions, lines);
-    if (lines.isEmpty() &&
-        !(same_order(before.sensors, after.sensors) && same_order(before.robots, after.robots) &&
-          same_order(before.calibrations, after.calibrations) && same_order(before.spots, after.spots) &&
-          same_order(before.regions, after.regions)))
-        lines << RecoveryText::tr("order changed");
+    if (lines.isEmpty() && !same(before, after)) lines << RecoveryText::tr("order changed");
     return lines;
 }
 

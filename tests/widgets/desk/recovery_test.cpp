@@ -360,6 +360,7 @@ TEST(Differences, NameEveryKindOfEdit) {
     EXPECT_EQ(after([](Project& p) { p.name = "x"; }), QStringList{"project renamed"});
     EXPECT_EQ(after([](Project& p) { p.part.mesh_ply.pop_back(); }), QStringList{"part changed"});
     EXPECT_EQ(after([](Project& p) { p.part.name = "x"; }), QStringList{"part changed"});
+    EXPECT_EQ(after([](Project& p) { p.requirements.sigma3_mm = 1; }), QStringList{"requirements changed"});
     EXPECT_EQ(after([](Project& p) { p.sensors[0].filter.noise_mm = 1; }), QStringList{"sensor A changed"});
     EXPECT_EQ(after([](Project& p) { p.robots.clear(); }), QStringList{"robot R1 removed"});
     EXPECT_EQ(after([](Project& p) { p.calibrations[0].id = "C2"; }),

@@ -53,6 +53,19 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
     if (!(s.sigma_mm >= 1e-9) || !(s.sigma_mm <= 1e6))
         return input_error("sigma is not a positive number of millimetres", where(n, s, "sigma_mm"),
                            "give the standard deviation of a measured coordinate, e.g. 0.05");
+    if (s.covariance_mm2) {
+        const Eigen::Matrix2d& c = *s.covariance_mm2;
+        const double scale = std::sqrt(c(0, 0) * c(1, 1));
+        // Correlation at most 1 - 1e-9: beyond it a direction would count as known exactly.
+        if (!c.allFinite() || !(c(0, 0) >= 1e-18) || !(c(1, 1) >= 1e-18) || !(scale <= 1e12) ||
+            std::abs(c(0, 1) - c(1, 0)) > 1e-9 * scale || !(std::abs(c(0, 1)) <= (1 - 1e-9) * scale))
+            return input_error("the covariance is not a symmetric, positive definite 2 x 2 matrix in mm^2",
+                               where(n, s, "covariance_mm2"),
+                               "give that of the measured x and z, or sigma_mm alone");
+        if (s.weights.x() != s.weights.z())
+            return input_error("a covariance is given, but the weights of x and z differ",
+                               where(n, s, "covariance_mm2"), "give both the same weight, or sigma_mm alone");
+    }
     if (s.curve) {
         const ContourCurve& c = *s.curve;
         if (!c.x_coefficients.allFinite() || !c.z_coefficients.allFinite() ||

@@ -94,6 +94,7 @@ struct RegionSolver::Impl {
             out.id.assign(spots[n].id);
             out.used = factor[n] > 0;
             system.residual(n, fit.state, e, rows);
+            e = system.spot(n).shape * e;
             for (int i = 0; i < 3; ++i) {
                 const double w = spots[n].weights[i];
                 out.residual_mm[i] = w > 0 ? e[i] : 0.0;

@@ -16,7 +16,10 @@
 //     C = (J^T Omega J)^-1 (J^T Omega diag(sigma^2) Omega J) (J^T Omega J)^-1
 // over the observed coordinates, which is (J^T Omega J)^-1 whenever every weight is 0 or 1. First order in
 // sigma; when the noise has no component along the travel direction (a profile point has y = 0 exactly) the
-// stated sigma is on the safe side by the cosine of D's angle.
+// stated sigma is on the safe side by the cosine of D's angle. A spot may state the covariance S of its
+// (x, z) instead: its residual then enters as S^-1/2 (e_x, e_z). A template's landmark at the end of its
+// contour is such a case: an error of the turn moves it in a direction of its own, and taking both
+// coordinates for independent gives away a sixth of the information.
 //
 // Observability. A displacement is judged by what it does to the spots, not to the origin of the work object,
 // which may lie metres away: it is written as translation of the spots' centroid (mm) and rotation (rad), the
@@ -78,6 +81,9 @@ struct SpotObservation {
     Eigen::Vector3d weights = {1, 0, 1};                     // sensor axes; Y is the travel direction
     double sigma_mm = 0.05;                                  // standard deviation of an observed coordinate
     std::optional<ContourCurve> curve;
+    // Of (x, z) as measured, against the reference; takes sigma_mm's place for these two. Their weights must
+    // be equal then.
+    std::optional<Eigen::Matrix2d> covariance_mm2;
 };
 
 struct CorrectionLimits {

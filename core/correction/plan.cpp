@@ -46,7 +46,9 @@ double findable_error_mm(const RegionSystem& system, std::size_t n, const Rows& 
     if (!spread.regular) return kInfinity;
     const PreparedSpot& s = system.spot(n);
     Eigen::Matrix3d c =
-        s.sigma * s.sigma * Eigen::Matrix3d::Identity() + rows * spread.covariance * rows.transpose();
+        s.shape *
+        (s.sigma * s.sigma * Eigen::Matrix3d::Identity() + rows * spread.covariance * rows.transpose()) *
+        s.shape.transpose();
     for (int i = 0; i < 3; ++i) {
         if (s.weights[i] > 0) continue;
         c.row(i).setZero();

@@ -109,15 +109,34 @@ void RegionSystem::load(std::span<const SpotObservation> spots, const Correction
     for (std::size_t n = 0; n < spots.size(); ++n) {
         const SpotObservation& in = spots[n];
         PreparedSpot& s = spots_[n];
-        s.sensor_from_workobject = in.workobject_from_sensor.linear().transpose();
+        s.shape.setIdentity();
+        Eigen::Matrix3d flat = Eigen::Matrix3d::Identity();
+        if (in.covariance_mm2) {
+            // Lower triangle of Cholesky, over sigma.
+            const Eigen::Matrix2d& c = *in.covariance_mm2;
+            const double xx = std::sqrt(c(0, 0)), zx = c(1, 0) / xx, zz = std::sqrt(c(1, 1) - zx * zx);
+            s.shape(0, 0) = xx / in.sigma_mm;
+            s.shape(2, 0) = zx / in.sigma_mm;
+            s.shape(2, 2) = zz / in.sigma_mm;
+            flat(0, 0) = in.sigma_mm / xx;
+            flat(2, 2) = in.sigma_mm / zz;
+            flat(2, 0) = -zx / xx * flat(2, 2);
+        }
+        s.sensor_from_workobject = flat * in.workobject_from_sensor.linear().transpose();
         s.sensor_origin = in.workobject_from_sensor.translation();
-        s.axes = in.workobject_from_sensor.linear();
-        s.offset = in.reference_mm + s.sensor_from_workobject * s.sensor_origin;
+        s.axes = s.sensor_from_workobject.transpose();
+        s.offset = flat * in.reference_mm + s.sensor_from_workobject * s.sensor_origin;
         s.measured = in.workobject_from_sensor * (from_reference ? in.reference_mm : in.measured_mm);
-        s.reference = in.reference_mm;
+        s.reference = flat * in.reference_mm;
         s.weights = in.weights;
         s.sigma = in.sigma_mm;
-        s.curve = in.curve && in.weights.y() == 0 ? &*in.curve : nullptr;
+        s.curved = in.curve && in.weights.y() == 0;
+        if (s.curved) {
+            s.curve = *in.curve;
+            s.curve.x_coefficients *= flat(0, 0);
+            s.curve.z_coefficients =
+                flat(2, 0) * in.curve->x_coefficients + flat(2, 2) * in.curve->z_coefficients;
+        }
         s.observed = 0;
         for (int i = 0; i < 3; ++i) {
             s.observed += in.weights[i] > 0;
@@ -141,12 +160,12 @@ void RegionSystem::residual(std::size_t n, const State& state, Eigen::Vector3d& 
     e = s.reference - s.sensor_from_workobject * (state.rotation.transpose() * from_origin - s.sensor_origin);
     // Rows: the sensor's axes as they stand on the displaced part.
     Eigen::Matrix3d axes = s.sensor_from_workobject * state.rotation.transpose();
-    if (s.curve) {
+    if (s.curved) {
         const double travel = -e.y();
         double value, slope_x, slope_z;
-        follow(s.curve->x_coefficients, travel, s.curve->valid_from_mm, s.curve->valid_to_mm, value, slope_x);
+        follow(s.curve.x_coefficients, travel, s.curve.valid_from_mm, s.curve.valid_to_mm, value, slope_x);
         e.x() += value;
-        follow(s.curve->z_coefficients, travel, s.curve->valid_from_mm, s.curve->valid_to_mm, value, slope_z);
+        follow(s.curve.z_coefficients, travel, s.curve.valid_from_mm, s.curve.valid_to_mm, value, slope_z);
         e.z() += value;
         axes.row(0) -= slope_x * axes.row(1);
         axes.row(2) -= slope_z * axes.row(1);
@@ -179,7 +198,7 @@ void RegionSystem::linearize(const State& state, std::span<const double> factor,
     for (std::size_t n = 0; n < spots_.size(); ++n) {
         if (!(factor[n] > 0)) continue;
         const PreparedSpot& s = spots_[n];
-        if (s.curve) residual(n, state, e, rows);
+        if (s.curved) residual(n, state, e, rows);
         const Eigen::Vector3d from_origin = s.measured - state.translation;
         const Eigen::Vector3d lever = (from_origin - centre) / spread_;
         const double scale = factor[n] / (s.sigma * s.sigma);
@@ -189,7 +208,7 @@ void RegionSystem::linearize(const State& state, std::span<const double> factor,
             const double w = weight * weight * scale;
             Vector6 row;
             double off;
-            if (s.curve) {
+            if (s.curved) {
                 row = rows.row(i).transpose();
                 off = e.coeff(i);
             } else {
@@ -209,12 +228,12 @@ void RegionSystem::linearize(const State& state, std::span<const double> factor,
 
 double RegionSystem::beyond_curve_mm(std::size_t n, const State& state) const {
     const PreparedSpot& s = spots_[n];
-    if (!s.curve) return 0;
+    if (!s.curved) return 0;
     const Eigen::Vector3d q =
         s.sensor_from_workobject *
         (state.rotation.transpose() * (s.measured - state.translation) - s.sensor_origin);
     const double travel = q.y() - s.reference.y();
-    return std::abs(travel - std::clamp(travel, s.curve->valid_from_mm, s.curve->valid_to_mm));
+    return std::abs(travel - std::clamp(travel, s.curve.valid_from_mm, s.curve.valid_to_mm));
 }
 
 Matrix6 RegionSystem::xi_from_parameters(const State& state) const {

@@ -54,14 +54,18 @@ struct Observability {
     double weakest_sigma_mm = 0;                             // at the spots; infinity when singular
 };
 
+// A stated covariance S of (x, z) is folded in: `shape` T with T T^T sigma^2 = S on x and z, 1 on y, and
+// everything below is T^-1 times the sensor's own. Residuals then have the noise sigma along all axes.
 struct PreparedSpot {
+    Eigen::Matrix3d shape;
     Eigen::Matrix3d sensor_from_workobject;   // rotation only
     Eigen::Vector3d sensor_origin, measured;  // in the work object
     Eigen::Matrix3d axes;                     // the sensor's axes in the work object, columns
     Eigen::Vector3d offset;                   // reference + sensor_from_workobject * sensor_origin
     Eigen::Vector3d reference, weights;
     double sigma = 1;
-    const ContourCurve* curve = nullptr;  // null: straight along Y
+    bool curved = false;  // else straight along Y
+    ContourCurve curve;
     int observed = 0;
 };
 
@@ -77,7 +81,8 @@ class RegionSystem {
     const Eigen::Vector3d& centroid() const { return centroid_; }
     bool weights_are_binary() const { return binary_; }
 
-    // Residual r - W^-1 D^-1 W m (all three axes, unweighted) and its derivative by xi.
+    // Residual r - W^-1 D^-1 W m (all three axes, unweighted) and its derivative by xi, both divided by the
+    // spot's shape.
     void residual(std::size_t n, const State& state, Eigen::Vector3d& e, Rows& rows) const;
     // Sum over spots with factor > 0, each term times its factor.
     void linearize(const State& state, std::span<const double> factor, Linearization& out) const;

@@ -10,7 +10,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kHalfX = 455, kHalfY = 365, kShear = 0.10, kExponent = 5;
-constexpr double kFlangeTop = 1.5, kFlangeEnd = 9.0, kLand = 0.7;
+constexpr double kFlangeTop = kDoorFlangeTop_mm, kFlangeEnd = 9.0, kLand = 0.7;
 constexpr double kFoldRadius = 1.15, kFoldHeight = 0.35;
 constexpr double kRimWidth = 60, kPanelHeight = 15;
 const Vector2d kCentre(500, 375);
@@ -124,6 +124,12 @@ constexpr Hole kHoles[] = {{330, 380, 32}, {480, 400, 22}, {250, 420, 12},
                            {540, 190, 16}, {800, 480, 14}, {400, 180, 10}};
 
 }  // namespace
+
+std::vector<DoorSectionPoint> door_rim_section() {
+    std::vector<DoorSectionPoint> points;
+    for (const Vector2d& c : cross_section()) points.push_back({c.x(), c.y()});
+    return points;
+}
 
 double door_edge_length_mm() {
     return the_outline().length();

@@ -23,6 +23,14 @@ namespace seamwright {
 
 TriangleMesh door_mesh();
 
+// The cross-section above as a polygon, from below the fold to the inner panel; height over the inner face of
+// the outer skin.
+struct DoorSectionPoint {
+    double inboard_mm = 0, height_mm = 0;
+};
+std::vector<DoorSectionPoint> door_rim_section();
+inline constexpr double kDoorFlangeTop_mm = 1.5;
+
 // A point of the outermost edge line and the directions there; all in the work object, unit length.
 struct DoorEdge {
     Eigen::Vector3d point_mm;  // on the inner face of the outer skin

@@ -1,0 +1,69 @@
+#include "core/correction/travel.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/correction/doors.h"
+
+namespace seamwright {
+namespace {
+
+using namespace testing_doors;
+
+// A point of the spot's contour at the travel y, sensor frame as taught.
+Eigen::Vector3d on_contour(const SpotObservation& s, double y) {
+    const Eigen::Vector3d powers(y, y * y, y * y * y);
+    Eigen::Vector3d p = s.reference_mm + y * Eigen::Vector3d::UnitY();
+    if (s.curve) {
+        p.x() += s.curve->x_coefficients.dot(powers);
+        p.z() += s.curve->z_coefficients.dot(powers);
+    }
+    return p;
+}
+
+// Where the displaced contour pierces the sensor's plane at `travel` along its Y: regula falsi over y.
+Eigen::Vector3d pierced(const SpotObservation& s, const Pose& d, double travel) {
+    const Pose& w = s.workobject_from_sensor;
+    const auto seen = [&](double y) -> Eigen::Vector3d {
+        return w.inverse() * (d * (w * on_contour(s, y))) - Eigen::Vector3d(0, travel, 0);
+    };
+    double low = -60, high = 60;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (low + high);
+        (seen(middle).y() < 0 ? low : high) = middle;
+    }
+    return seen(low);
+}
+
+TEST(Travel, CovarianceIsTheSlopeOfTheDisplacedContour) {
+    Rng rng(1);
+    for (int i = 0; i < 200; ++i) {
+        SpotObservation s = door(rng, 4, {900, -400, 250})[0];
+        if (i % 2 == 0) {
+            s.curve.emplace();
+            s.curve->x_coefficients = {uniform(rng, -0.05, 0.05), uniform(rng, -2e-3, 2e-3), 1e-6};
+            s.curve->z_coefficients = {uniform(rng, -0.05, 0.05), uniform(rng, -2e-3, 2e-3), -1e-6};
+            s.curve->valid_from_mm = -60, s.curve->valid_to_mm = 60;
+        }
+        const Pose d = random_displacement(rng, 10, 3, {900, -400, 250});
+        s.measured_mm = pierced(s, d, 0);
+        const double h = 1e-3;
+        const Eigen::Vector3d slope = (pierced(s, d, h) - pierced(s, d, -h)) / (2 * h);
+        const Eigen::Vector3d direction = contour_direction(s, {d});
+        EXPECT_NEAR(direction.x(), slope.x(), 1e-6);
+        EXPECT_NEAR(direction.z(), slope.z(), 1e-6);
+        EXPECT_EQ(direction.y(), 1);
+        const Eigen::Matrix2d c = travel_covariance(s, {d}, 2);
+        EXPECT_NEAR(c(0, 0), 4 * slope.x() * slope.x(), 1e-6);
+        EXPECT_NEAR(c(0, 1), 4 * slope.x() * slope.z(), 1e-6);
+        EXPECT_NEAR(c(1, 1), 4 * slope.z() * slope.z(), 1e-6);
+    }
+}
+
+TEST(Travel, FrozenContourGainsNothing) {
+    Rng rng(2);
+    const SpotObservation s = door(rng, 4)[0];
+    EXPECT_LT(travel_covariance(s, {}, 3).norm(), 1e-24);
+}
+
+}  // namespace
+}  // namespace seamwright

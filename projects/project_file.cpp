@@ -47,10 +47,16 @@ fs::path beside(const fs::path& path, const char* what) {
     return fs::path(path.string() + fmt::format(".{}-{}", what, ::getpid()));
 }
 
+// Of a file that is gone, or goes with them.
+void remove_journals(const fs::path& path) {
+    std::error_code ignored;
+    for (const char* suffix : {"-journal", "-wal", "-shm"}) fs::remove(path.string() + suffix, ignored);
+}
+
 void remove_with_journal(const fs::path& path) {
     std::error_code ignored;
     fs::remove(path, ignored);
-    fs::remove(path.string() + "-journal", ignored);
+    remove_journals(path);
 }
 
 // The file that `create` would replace: must be ours or empty, and gives up its journal, which must never
@@ -64,7 +70,27 @@ Expected<void> prepare_replacing(const fs::path& path) {
     if (!id) return tl::unexpected(id.error());
     if (*id != kApplicationId)
         return file_error("the file exists and is no project file", path.string(), "choose another name");
+    auto alone = old->set_write_ahead(false);
+    if (!alone) return tl::unexpected(alone.error());
+    if (!*alone)
+        return file_error("another program works with the file", path.string(),
+                          "close it there or choose another name");
     return old->execute("BEGIN EXCLUSIVE; ROLLBACK");
+}
+
+// Gives a finished new file its name, or clears it away when the work failed.
+Expected<void> finish_new(Expected<void> done, const fs::path& made, const fs::path& path, bool replace) {
+    std::error_code code;
+    if (done && fs::exists(path, code)) {
+        if (replace) done = prepare_replacing(path);
+    } else if (done) {
+        remove_journals(path);  // of a file that was deleted by hand
+    }
+    if (!done) {
+        remove_with_journal(made);
+        return done;
+    }
+    return put_in_place(made, path, replace);
 }
 
 // Brings an older file up to date on a copy, which takes the name of the original when it has passed.
@@ -94,7 +120,19 @@ Expected<void> migrate_file(Database& original, const fs::path& path) {
 ProjectFile::ProjectFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ProjectFile::ProjectFile(ProjectFile&&) noexcept = default;
 ProjectFile& ProjectFile::operator=(ProjectFile&&) noexcept = default;
-ProjectFile::~ProjectFile() = default;
+ProjectFile::~ProjectFile() {
+    if (impl_) keep_write_ahead(false);  // so that the last to close leaves one file
+}
+
+void ProjectFile::keep_write_ahead(bool on) {
+    const int writable = sqlite3_db_readonly(impl_->db.handle(), "main");
+    if (writable == 0) (void)impl_->db.set_write_ahead(on);
+}
+
+void ProjectFile::checkpoint() {
+    sqlite3_wal_checkpoint_v2(impl_->db.handle(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+}
+
 const fs::path& ProjectFile::path() const {
     return impl_->path;
 }
@@ -119,15 +157,21 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& path, const Project& p
         if (auto done = save_rows_of(*db, project); !done) return done;
         return transaction->commit();
     };
-    auto done = work();
-    if (done && exists) done = prepare_replacing(path);
-    if (done && !exists) fs::remove(path.string() + "-journal", code);  // of a file that was deleted by hand
-    if (!done) {
-        remove_with_journal(made);
-        return tl::unexpected(done.error());
-    }
-    if (auto placed = put_in_place(made, path, replace); !placed) return tl::unexpected(placed.error());
+    if (auto done = finish_new(work(), made, path, replace); !done) return tl::unexpected(done.error());
     return open(path);
+}
+
+Expected<void> ProjectFile::copy_to(const fs::path& path) const {
+    const fs::path made = beside(path, "new");
+    remove_with_journal(made);
+    const auto work = [&]() -> Expected<void> {
+        auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
+        if (!copy) return tl::unexpected(copy.error());
+        if (auto done = impl_->db.copy_to(*copy); !done) return done;
+        auto plain = copy->set_write_ahead(false);
+        return plain ? Expected<void>() : tl::unexpected(plain.error());
+    };
+    return finish_new(work(), made, path, true);
 }
 
 Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access) {
@@ -138,10 +182,11 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
     if (fs::file_size(path, code) == 0)
         return file_error("the file is empty", path.string(), "choose a .seam file");
     const bool writing = access == FileAccess::read_write;
-    if (!writing && fs::exists(path.string() + "-journal", code)) {
+    if (!writing &&
+        (fs::exists(path.string() + "-journal", code) || fs::exists(path.string() + "-wal", code))) {
         // A killed writer left its journal; a read-only connection may not roll it back.
         if (auto healing = Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile))
-            (void)healing->integer("PRAGMA user_version");
+            if (check_identity(*healing)) (void)healing->set_write_ahead(false);
     }
     for (int round = 0;; ++round) {
         auto db = Database::open(path.string(), writing ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY,
@@ -149,7 +194,15 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
         if (!db) return tl::unexpected(db.error());
         auto version = check_identity(*db);
         if (!version) return tl::unexpected(version.error());
-        if (auto whole = db->check_length(); !whole) return tl::unexpected(whole.error());
+        auto write_ahead = db->write_ahead();
+        if (write_ahead && *write_ahead && writing) {
+            auto ended = db->set_write_ahead(false);
+            if (!ended) return tl::unexpected(ended.error());
+            write_ahead = !*ended;
+        }
+        if (!write_ahead) return tl::unexpected(write_ahead.error());
+        if (!*write_ahead)  // else whoever keeps the log has found the file whole
+            if (auto whole = db->check_length(); !whole) return tl::unexpected(whole.error());
         if (auto sound = check_structure(*db, *version); !sound) return tl::unexpected(sound.error());
         if (*version < current_version()) {
             if (!writing) {
@@ -164,9 +217,9 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
             if (round == 0) continue;
             return file_error("the project file could not be brought up to date", path.string());
         }
-        if (writing)
-            if (auto mode = db->execute("PRAGMA journal_mode = DELETE"); !mode)
-                return tl::unexpected(mode.error());
+        // A backstop: checkpoint() comes long before.
+        if (auto rare = db->execute("PRAGMA wal_autocheckpoint = 16384"); !rare)
+            return tl::unexpected(rare.error());
         return ProjectFile(std::make_unique<Impl>(path, std::move(*db)));
     }
 }
@@ -183,7 +236,9 @@ Expected<void> ProjectFile::save(const Project& project) {
     auto transaction = Transaction::begin(impl_->db);
     if (!transaction) return tl::unexpected(transaction.error());
     if (auto done = save_rows_of(impl_->db, project); !done) return done;
-    return transaction->commit();
+    if (auto done = transaction->commit(); !done) return done;
+    checkpoint();
+    return {};
 }
 
 }  // namespace seamwright

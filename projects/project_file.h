@@ -8,9 +8,11 @@
 //
 // Crash safety: rollback journal, synchronous = FULL. Every save_*/append_* is one transaction; a process
 // killed at any instant leaves the last committed state, which the next open restores from the journal beside
-// the file (FILE.seam-journal; move both together). A write-ahead log was not chosen because then a project
-// is two files most of the time. A new file is made under another name in the same folder and renamed when
-// complete. Migrations run on a copy that replaces the file when it has passed the checks.
+// the file (FILE.seam-journal; move both together). Only while devices are connected (keep_write_ahead) is
+// the journal a write-ahead log, FILE.seam-wal: a commit then costs one sync instead of four, which is what a
+// robot waits for. All that was committed is moved from the log into the file after every run and every save.
+// A new file is made under another name in the same folder and renamed when complete. Migrations run on a
+// copy that replaces the file when it has passed the checks.
 //
 // Contents: one row per sensor, robot, calibration, spot, region (key columns + JSON in project_json.h's
 // form, doubles exact, profiles as blobs of profile_blob.h); a run is one row with its spots, regions, and
@@ -42,6 +44,18 @@ struct RunSummary {
     std::int64_t setup = 0;  // runs with equal numbers were made with the same setup
 };
 
+// The project a run is made with, as its record refers to it: made before the robot waits for it.
+class RunSetup {
+  public:
+    // Refuses what a project file cannot hold, as save() does.
+    static Expected<RunSetup> of(const Project& project);
+
+  private:
+    friend class ProjectFile;
+    std::string text_;
+    std::int64_t crc_ = 0;
+};
+
 // One thread at a time. Several processes may have a file open; a writer waits up to 5 s for another's lock.
 class ProjectFile {
   public:
@@ -58,12 +72,21 @@ class ProjectFile {
 
     const std::filesystem::path& path() const;
 
+    // From rollback journal to write-ahead log and back, see above. Without effect on a file that is open for
+    // reading, and when another process keeps it as it is: nothing depends on it but the time a commit takes.
+    void keep_write_ahead(bool on);
+    // Moves what was committed from the log into the file.
+    void checkpoint();
+    // The whole file, runs and all, as last committed, to another path; an existing file there is replaced if
+    // create() would replace it.
+    Expected<void> copy_to(const std::filesystem::path& path) const;
+
     Expected<Project> load() const;
     // Only rows that changed are written. Refuses (input) two entities of one id and empty ids.
     Expected<void> save(const Project& project);
 
-    // `setup` is the project the run was made with. Returns the run's number; events of the record get it
-    // too.
+    // Returns the run's number; events of the record get it too.
+    Expected<std::int64_t> append_run(const RunRecord& run, const RunSetup& setup);
     Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
     // Replaces the outcome of a run (times, status, message, regions); spots, captures and events stay.
     Expected<void> update_run(const RunRecord& run);
@@ -90,6 +113,7 @@ class ProjectFile {
     std::vector<Error> check() const;
 
   private:
+    Expected<std::int64_t> setup_id(const RunSetup& setup);
     struct Impl;
     explicit ProjectFile(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;

@@ -9,35 +9,6 @@
 namespace seamwright {
 namespace {
 
-Expected<std::int64_t> setup_id(Database& db, const Project& setup) {
-    Project slim = setup;
-    slim.part.mesh_ply.clear();
-    for (Calibration& c : slim.calibrations) {
-        c.raw = nlohmann::json::object();
-        c.result = nlohmann::json::object();
-    }
-    auto text = row_text(slim, "setup of the run", kSetup);
-    if (!text) return tl::unexpected(text.error());
-    const std::int64_t crc = crc_of(*text);
-    auto find = db.prepare("SELECT id FROM setups WHERE crc = ? AND body = ?");
-    if (!find) return tl::unexpected(find.error());
-    find->bind(1, crc);
-    find->bind(2, *text);
-    auto row = find->step();
-    if (!row) return tl::unexpected(row.error());
-    if (*row) {
-        const std::int64_t id = find->integer(0);
-        find->reset();
-        return id;
-    }
-    auto insert = db.prepare("INSERT INTO setups (crc, body) VALUES (?, ?)");
-    if (!insert) return tl::unexpected(insert.error());
-    insert->bind(1, crc);
-    insert->bind(2, *text);
-    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
-    return db.last_rowid();
-}
-
 Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t run) {
     auto s = db.prepare("INSERT INTO events (utc, run, kind, subject, text) VALUES (?, ?, ?, ?, ?)");
     if (!s) return tl::unexpected(s.error());
@@ -152,11 +123,54 @@ Expected<void> load_results(Database& db, const char* sql, std::int64_t number, 
 
 }  // namespace
 
+Expected<RunSetup> RunSetup::of(const Project& project) {
+    Project slim = project;
+    slim.part.mesh_ply.clear();
+    for (Calibration& c : slim.calibrations) {
+        c.raw = nlohmann::json::object();
+        c.result = nlohmann::json::object();
+    }
+    auto text = row_text(slim, "setup of the run", kSetup);
+    if (!text) return tl::unexpected(text.error());
+    RunSetup setup;
+    setup.crc_ = crc_of(*text);
+    setup.text_ = std::move(*text);
+    return setup;
+}
+
+// The row of this setup, made when there is none yet.
+Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
+    Database& db = impl_->db;
+    auto find = db.prepare("SELECT id FROM setups WHERE crc = ? AND body = ?");
+    if (!find) return tl::unexpected(find.error());
+    find->bind(1, setup.crc_);
+    find->bind(2, setup.text_);
+    auto row = find->step();
+    if (!row) return tl::unexpected(row.error());
+    if (*row) {
+        const std::int64_t id = find->integer(0);
+        find->reset();
+        return id;
+    }
+    auto insert = db.prepare("INSERT INTO setups (crc, body) VALUES (?, ?)");
+    if (!insert) return tl::unexpected(insert.error());
+    insert->bind(1, setup.crc_);
+    insert->bind(2, setup.text_);
+    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    return db.last_rowid();
+}
+
 Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Project& setup) {
+    auto text = RunSetup::of(setup);
+    if (!text) return tl::unexpected(text.error());
+    return append_run(run, *text);
+}
+
+Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const RunSetup& setup) {
     Database& db = impl_->db;
     auto transaction = Transaction::begin(db);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto setup_number = setup_id(db, setup);
+    auto setup_number = setup_id(setup);
     if (!setup_number) return setup_number;
     auto s = db.prepare(
         "INSERT INTO runs (part_id, started_utc, finished_utc, push, status, message, setup) VALUES (?, ?, "

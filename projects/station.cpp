@@ -49,6 +49,7 @@ struct Station::Impl {
         std::map<std::string, SpotMeasurer> measurers{};
         std::map<std::string, TriggeredFrames> frames{};  // by sensor
         std::vector<std::string> started_robots{};        // wait for the verdict
+        StartedSensors started_sensors{};                 // stopped when the robots have it
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
 
@@ -69,6 +70,7 @@ struct Station::Impl {
         sensors.clear();
         robots.clear();
         session = DeviceSession();
+        if (connected) file.keep_write_ahead(false);
         connected = false;
     }
 
@@ -147,9 +149,8 @@ struct Station::Impl {
             if (std::find(sensor_ids.begin(), sensor_ids.end(), spot.sensor_id) == sensor_ids.end())
                 sensor_ids.push_back(spot.sensor_id);
         }
-        StartedSensors started;
         for (const std::string& id : sensor_ids) {
-            if (auto on = started.start(*sensors.at(id)); !on) return on;
+            if (auto on = job.started_sensors.start(*sensors.at(id)); !on) return on;
             job.frames.try_emplace(id, *sensors.at(id), *find_sensor(project, id));
         }
         for (const std::string& id : robot_ids) {
@@ -434,6 +435,7 @@ Expected<void> Station::connect() {
         i.robots[setup.id] = std::move(*robot);
     }
     i.connected = true;
+    i.file.keep_write_ahead(true);
     i.take_identities();
     return {};
 }
@@ -444,6 +446,7 @@ void Station::connect(std::map<std::string, std::unique_ptr<ProfileSource>> sens
     impl_->sensors = std::move(sensors);
     impl_->robots = std::move(robots);
     impl_->connected = true;
+    impl_->file.keep_write_ahead(true);
     impl_->take_identities();
 }
 
@@ -468,6 +471,9 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     }
     if (run.spots.empty())
         return input_error("no spot is enabled", i.file.path().string(), "teach a spot first");
+
+    const auto setup = RunSetup::of(i.project);
+    if (!setup) return tl::unexpected(setup.error());
 
     run.part_id = options.part_id;
     if (run.part_id.empty()) {
@@ -513,7 +519,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (pushing) run.status = RunStatus::interrupted;
     run.message = Impl::verdict(run);
     run.finished_utc = utc_now();
-    auto number = i.file.append_run(run, i.project);
+    auto number = i.file.append_run(run, *setup);
     if (!number) {
         i.confirm_all(job, PartVerdict::failed);
         return tl::unexpected(number.error());
@@ -538,6 +544,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
                                ? PartVerdict::failed
                                : PartVerdict::refused);
     }
+    i.file.checkpoint();
     return run;
 }
 

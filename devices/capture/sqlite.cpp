@@ -185,6 +185,26 @@ Expected<void> Database::copy_to(Database& target) {
     return {};
 }
 
+Expected<bool> Database::write_ahead() {
+    auto s = prepare("PRAGMA journal_mode");
+    if (!s) return tl::unexpected(s.error());
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    return *row && s->text(0) == "wal";
+}
+
+Expected<bool> Database::set_write_ahead(bool on) {
+    sqlite3_busy_timeout(handle(), 0);  // whoever holds on to a log does so for hours
+    const int code = sqlite3_exec(handle(), on ? "PRAGMA journal_mode = WAL" : "PRAGMA journal_mode = DELETE",
+                                  nullptr, nullptr, nullptr);
+    sqlite3_busy_timeout(handle(), kBusyMs);
+    if (code != SQLITE_OK && (code & 0xff) != SQLITE_BUSY && (code & 0xff) != SQLITE_LOCKED)
+        return sqlite_error(handle(), code, path_, kind_);
+    auto is = write_ahead();
+    if (!is) return is;
+    return *is == on;
+}
+
 Expected<void> Database::check_length() {
     auto pages = integer("PRAGMA page_count");
     if (!pages) return tl::unexpected(pages.error());

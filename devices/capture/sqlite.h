@@ -67,8 +67,13 @@ class Database {
     Expected<std::int64_t> integer(const std::string& sql);  // one row, one column
     std::int64_t last_rowid() const { return sqlite3_last_insert_rowid(db_.get()); }
     Expected<void> copy_to(Database& target);
+    // Write-ahead log (on) or rollback journal (off). What a log holds is in the file when it goes. Answers
+    // whether the file is as wanted: another connection holds on to a log.
+    Expected<bool> set_write_ahead(bool on);
+    Expected<bool> write_ahead();
     // Error when the file is shorter than its header says: SQLite itself pads a last page that is cut. Call
-    // after the first read, which rolls a killed writer's journal back.
+    // after the first read, which rolls a killed writer's journal back, and with the rollback journal only:
+    // the end of the file may still be in a log.
     Expected<void> check_length();
     // Whether both hold exactly the same tables, indices, triggers and views.
     Expected<bool> same_tables(Database& other);

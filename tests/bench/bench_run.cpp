@@ -158,7 +158,8 @@ void trigger_to_released(benchmark::State& state, const char* driver) {
         std::atomic<std::int64_t> released_at = 0;
         std::jthread observer([&](const std::stop_token& stop) {
             bool was = true;
-            while (!stop.stop_requested()) {
+            for (bool last = false; !last;) {  // looks once more after the end
+                last = stop.stop_requested();
                 const bool is = served->controller().released();
                 if (is && !was) released_at = now_ns();
                 was = is;

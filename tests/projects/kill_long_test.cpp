@@ -5,7 +5,11 @@
 namespace seamwright {
 
 TEST(KillLong, TwoHundredKills) {
-    kill_while_appending(200, 2);
+    kill_while_appending(200, 2, false);
+}
+
+TEST(KillLong, TwoHundredKillsWithWriteAheadLog) {
+    kill_while_appending(200, 4, true);
 }
 
 }  // namespace seamwright

@@ -19,9 +19,10 @@ struct Commit {
     std::int64_t runs = 0, revision = 0;
 };
 
-[[noreturn]] void append_forever(const std::filesystem::path& path, int pipe, Commit at) {
+[[noreturn]] void append_forever(const std::filesystem::path& path, int pipe, Commit at, bool write_ahead) {
     auto file = ProjectFile::open(path);
     if (!file) _exit(3);
+    if (write_ahead) file->keep_write_ahead(true);
     auto project = file->load();
     if (!project) _exit(4);
     for (;;) {
@@ -39,7 +40,7 @@ struct Commit {
 
 }  // namespace
 
-void kill_while_appending(int kills, unsigned seed) {
+void kill_while_appending(int kills, unsigned seed, bool write_ahead) {
     TemporaryFolder folder;
     const std::filesystem::path path = folder / "a.seam";
     Project project = sample_project();
@@ -55,7 +56,7 @@ void kill_while_appending(int kills, unsigned seed) {
         ASSERT_GE(child, 0);
         if (child == 0) {
             close(ends[0]);
-            append_forever(path, ends[1], committed);
+            append_forever(path, ends[1], committed, write_ahead);
         }
         close(ends[1]);
         usleep(2000 + rng() % 120000);
@@ -67,10 +68,11 @@ void kill_while_appending(int kills, unsigned seed) {
         while (read(ends[0], &last, sizeof last) == sizeof last) committed = last;
         close(ends[0]);
 
-        found_journals += std::filesystem::exists(path.string() + "-journal");
+        found_journals += std::filesystem::exists(path.string() + (write_ahead ? "-wal" : "-journal"));
         // Every other time through a read-only opening, which must heal the file too.
         auto file = ProjectFile::open(path, i % 2 ? FileAccess::read_only : FileAccess::read_write);
         ASSERT_TRUE(file) << file.error().sentence();
+        EXPECT_FALSE(std::filesystem::exists(path.string() + "-wal")) << "the log was not taken in";
         const auto runs = file->runs();
         ASSERT_TRUE(runs) << runs.error().sentence();
         const auto count = static_cast<std::int64_t>(runs->size());

@@ -11,8 +11,8 @@ namespace seamwright {
 
 // `kills` times: a child appends runs and edits to one file and reports each commit through a pipe, SIGKILL
 // hits it at a random instant; then the file must open, be sound, and hold every reported run and edit (and
-// at most one more).
-void kill_while_appending(int kills, unsigned seed);
+// at most one more). `write_ahead`: with the journal of connected devices (ProjectFile::keep_write_ahead).
+void kill_while_appending(int kills, unsigned seed, bool write_ahead);
 
 // Puts the right checksum on a changed blob.
 void set_blob_checksum(std::vector<std::byte>& blob);

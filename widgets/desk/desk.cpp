@@ -266,9 +266,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     // The old file keeps what was saved there; runs go along.
     const auto part = std::filesystem::path(path.string() + ".part");
     std::error_code failed;
-    std::filesystem::copy_file(file_->path(), part, std::filesystem::copy_options::overwrite_existing,
-                               failed);
-    if (failed) return file_error("the copy cannot be written: " + failed.message(), part.string());
+    if (auto copied = file_->copy_to(part); !copied) return copied;
     {
         auto copy = ProjectFile::open(part);
         if (!copy) return tl::unexpected(copy.error());

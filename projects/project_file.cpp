@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 
 #include "projects/project_file_detail.h"
 #include "projects/schema.h"
@@ -57,6 +58,13 @@ void remove_with_journal(const fs::path& path) {
     std::error_code ignored;
     fs::remove(path, ignored);
     remove_journals(path);
+}
+
+// Whether the file's header says that it is read with a write-ahead log.
+bool asks_for_log(const fs::path& path) {
+    char header[20] = {};
+    std::ifstream(path, std::ios::binary).read(header, sizeof header);
+    return header[19] == 2;  // "read version" of SQLite's file format
 }
 
 // The file that `create` would replace: must be ours or empty, and gives up its journal, which must never
@@ -182,9 +190,8 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
     if (fs::file_size(path, code) == 0)
         return file_error("the file is empty", path.string(), "choose a .seam file");
     const bool writing = access == FileAccess::read_write;
-    if (!writing &&
-        (fs::exists(path.string() + "-journal", code) || fs::exists(path.string() + "-wal", code))) {
-        // A killed writer left its journal; a read-only connection may not roll it back.
+    if (!writing && (fs::exists(path.string() + "-journal", code) || asks_for_log(path))) {
+        // A killed writer left its journal or log; a read-only connection may not take it in.
         if (auto healing = Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile))
             if (check_identity(*healing)) (void)healing->set_write_ahead(false);
     }

@@ -22,6 +22,7 @@ class StationRun : public testing::Test {
         connect();
     }
     void connect() {
+        station.reset();
         auto file = ProjectFile::create(folder / "cell.seam", cell->project, true);
         ASSERT_TRUE(file) << file.error().sentence();
         station.emplace(std::move(*file), cell->project);

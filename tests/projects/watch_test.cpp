@@ -18,6 +18,7 @@ class Watching : public testing::Test {
   protected:
     void SetUp() override {
         cell->workobject_from_movedworkobject = make_pose(rotation_exp({0.006, -0.004, 0.009}), {3, -4, 2.5});
+        station.reset();
         auto file = ProjectFile::create(folder / "cell.seam", cell->project, true);
         ASSERT_TRUE(file) << file.error().sentence();
         station.emplace(std::move(*file), cell->project);

@@ -235,10 +235,12 @@ Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
 }
 
 Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
+    auto with = RunSetup::of(setup);
+    if (!with) return tl::unexpected(with.error());
     Database& db = impl_->db;
     auto transaction = Transaction::begin(db);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto setup_number = setup_id(db, setup);
+    auto setup_number = setup_id(*with);
     if (!setup_number) return setup_number;
     const std::string kind(kind_of(evidence));
     auto text = std::visit([&](const auto& what) { return row_text(what, "evidence: " + kind, kResult); },

@@ -1,6 +1,7 @@
 #include "devices/cell_server.h"
 
 #include "devices/genicam/served_camera.h"
+#include "devices/gocator/served_gocator.h"
 
 namespace seamwright {
 
@@ -18,6 +19,8 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
                                        const std::shared_ptr<SimulatedCell>& cell) {
     CellServer server;
     server.cell_ = cell;
+    if (!options.camera_address.empty() && !options.gocator.is_null())
+        return usage_error("the cell has one sensor: a camera or a Gocator", "cell server");
     if (!options.program.empty()) cell->store_program(options.program);
     if (!options.camera_address.empty()) {
         nlohmann::json settings = options.camera;
@@ -26,6 +29,11 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
         if (!camera) return tl::unexpected(camera.error());
         server.camera_ = std::move(*camera);
         server.camera_address_ = options.camera_address;
+    }
+    if (!options.gocator.is_null()) {
+        auto gocator = ServedGocator::open(cell, options.gocator);
+        if (!gocator) return tl::unexpected(gocator.error());
+        server.gocator_ = std::move(*gocator);
     }
     for (const ServedController& c : options.controllers) {
         auto controller = start_controller(c.name, cell, c.settings);

@@ -1,6 +1,6 @@
 #pragma once
-// The simulated cell behind real protocols: its sensor as a GigE Vision camera, its robot behind the
-// controllers of controller_drivers(), each on the loopback address. The demo, the tests and `seamwright
+// The simulated cell behind real protocols: its sensor as a GigE Vision camera or a Gocator, its robot behind
+// the controllers of controller_drivers(), each on the loopback address. The demo, the tests and `seamwright
 // sim-cell` measure over it as over a plant's cables.
 
 #include <memory>
@@ -15,6 +15,7 @@
 namespace seamwright {
 
 class ServedCamera;
+class ServedGocator;
 
 struct ServedController {
     std::string name;  // of controller_drivers()
@@ -25,6 +26,7 @@ struct CellServerOptions {
     nlohmann::json cell = nlohmann::json::object();    // as documented in cell.h
     std::string camera_address;                        // empty = no camera
     nlohmann::json camera = nlohmann::json::object();  // further settings of served_camera.h
+    nlohmann::json gocator;  // settings of served_gocator.h; null = none. Camera or Gocator, not both
     std::vector<ServedController> controllers;
     std::vector<MeasuringMove> program;  // the measuring program that the controllers hold
 };
@@ -34,13 +36,15 @@ class CellServer {
   public:
     static Expected<CellServer> start(const CellServerOptions& options);
     // The same on a cell that is there already; options.cell is not looked at.
-    static Expected<CellServer> start(const CellServerOptions& options, const std::shared_ptr<SimulatedCell>& cell);
+    static Expected<CellServer> start(const CellServerOptions& options,
+                                      const std::shared_ptr<SimulatedCell>& cell);
     CellServer(CellServer&&) noexcept;
     CellServer& operator=(CellServer&&) noexcept;
     ~CellServer();
 
     SimulatedCell& cell() { return *cell_; }
     const std::string& camera_address() const { return camera_address_; }
+    const ServedGocator* gocator() const { return gocator_.get(); }  // nullptr = none
     using NamedController = std::pair<std::string, std::unique_ptr<SimulatedController>>;
     const std::vector<NamedController>& controllers() const { return controllers_; }
 
@@ -49,6 +53,7 @@ class CellServer {
     std::shared_ptr<SimulatedCell> cell_;
     std::string camera_address_;
     std::unique_ptr<ServedCamera> camera_;
+    std::unique_ptr<ServedGocator> gocator_;
     std::vector<NamedController> controllers_;
 };
 

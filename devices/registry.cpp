@@ -7,6 +7,7 @@
 #include "devices/abb/program.h"
 #include "devices/abb/rapid.h"
 #include "devices/genicam/genicam.h"
+#include "devices/gocator/gocator.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/program.h"
@@ -25,6 +26,7 @@ const std::vector<SensorDriver>& sensor_drivers() {
          &open_replay_sensor},
         {"genicam", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)",
          &open_genicam_sensor},
+        {"gocator", "LMI Gocator, profiles or the results of its own tools over TCP", &open_gocator_sensor},
     };
     return drivers;
 }

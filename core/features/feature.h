@@ -39,7 +39,7 @@ struct Feature {
 
 // What is taught at a spot. `kind` names an entry of the registry (below).
 struct FeatureRecipe {
-    std::string kind = "contour-end";  // contour-end | corner | circle | extremum | template
+    std::string kind = "contour-end";  // contour-end | corner | circle | extremum | template | sensor-point
     ParameterValues parameters;        // as described by the kind
     Profile template_profile;          // kind template only: the taught piece of contour
     Eigen::Vector2d template_reference_mm =

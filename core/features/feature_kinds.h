@@ -9,6 +9,7 @@ FeatureKind circle_kind();
 FeatureKind contour_end_kind();
 FeatureKind corner_kind();
 FeatureKind extremum_kind();
+FeatureKind sensor_point_kind();
 FeatureKind template_kind();
 
 }  // namespace seamwright

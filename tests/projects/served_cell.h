@@ -25,6 +25,7 @@ struct ServedCellOptions {
     int width = 640, height = 512;
     int trigger_interval_ms = 40;
     double lost_packets_per_mille = 0;  // after teaching
+    bool gocator = false;               // the sensor is a Gocator, not a GigE Vision camera
 };
 
 // Calibrated with the cell's truth, taught on the undisplaced door; one region "all" of the default door's
@@ -51,6 +52,13 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     sensor.id = "A";
     sensor.driver = "genicam";
     sensor.settings = {{"address", "127.0.0.1"}, {"hardware_trigger", true}, {"buffers", 32}};
+    nlohmann::json ports;
+    if (options.gocator) {
+        for (const char* name : {"control_port", "data_port", "ascii_port"})
+            ports[name] = TcpListener::listen("127.0.0.1", 0)->port();
+        sensor.driver = "gocator";
+        sensor.settings.update({{"control_port", ports["control_port"]}, {"data_port", ports["data_port"]}});
+    }
     sensor.calibration_id = "truth";
     RobotSetup robot;
     robot.id = "R1";
@@ -89,7 +97,10 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     p.calibrations = {c};
 
     CellServerOptions serve;
-    serve.camera_address = "127.0.0.1";
+    if (options.gocator)
+        serve.gocator = ports;
+    else
+        serve.camera_address = "127.0.0.1";
     serve.controllers = {
         {options.driver, {{"port", port}, {"trigger_interval_ms", options.trigger_interval_ms}}}};
     serve.program = measuring_program(p, "R1");

@@ -13,6 +13,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/gocator/served_gocator.h"
 #include "projects/acquire.h"
 #include "projects/project_file.h"
 
@@ -22,7 +23,7 @@ namespace {
 using nlohmann::json;
 
 struct Arguments {
-    std::string settings, project, camera, fault;
+    std::string settings, project, camera, gocator, fault;
     std::vector<std::string> controllers;
 };
 
@@ -48,6 +49,7 @@ Expected<CellServer> serve(const Arguments& a, const json& cell_settings) {
     CellServerOptions options;
     options.cell = cell_settings;
     options.camera_address = a.camera;
+    if (!a.gocator.empty()) options.gocator = {{"address", a.gocator}};
     for (const std::string& text : a.controllers) {
         auto controller = controller_from(text);
         if (!controller) return tl::unexpected(controller.error());
@@ -83,6 +85,11 @@ json state_json(CellServer& server) {
         state["camera"] = nullptr;
     else
         state["camera"] = {{"address", server.camera_address()}, {"serial", server.cell().settings().serial}};
+    state["gocator"] = nullptr;
+    if (const ServedGocator* gocator = server.gocator())
+        state["gocator"] = {{"control_port", gocator->control_port()},
+                            {"data_port", gocator->data_port()},
+                            {"ascii_port", gocator->ascii_port()}};
     return state;
 }
 
@@ -169,7 +176,8 @@ void add_sim_cell(CommandLine& line) {
     CLI::App* command = line.add(
         "sim-cell",
         std::string(
-            "The simulated cell behind real protocols until stopped: a GigE Vision camera and robot "
+            "The simulated cell behind real protocols until stopped: a GigE Vision camera or a Gocator and "
+            "robot "
             "controllers "
             "on the loopback address. Writes its state as one line of JSON, then obeys lines on standard "
             "input: ") +
@@ -183,6 +191,8 @@ void add_sim_cell(CommandLine& line) {
     command->add_option("--project", a->project, "Its spots are the measuring program on the controllers")
         ->type_name("FILE.seam");
     command->add_option("--camera", a->camera, "Serve the sensor as a GigE Vision camera on this address")
+        ->type_name("ADDRESS");
+    command->add_option("--gocator", a->gocator, "Serve it as a Gocator on this address instead")
         ->type_name("ADDRESS");
     command->add_option("--controller", a->controllers, "Repeatable: " + known)->type_name("NAME[:PORT]");
     command->add_option("--fault", a->fault, "What the controllers do wrong: " + faults);

@@ -1,0 +1,460 @@
+// A Gocator: commands on the control connection, exposures from the data connection.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <mutex>
+
+#include "devices/exchange/settings.h"
+#include "devices/gocator/ascii_result.h"
+#include "devices/gocator/gdp_message.h"
+#include "devices/gocator/gocator.h"
+#include "devices/net/socket.h"
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kPingPeriod{1};
+
+struct Settings {
+    std::string address, output = "profiles", serial;
+    std::uint16_t control_port = gdp::kControlPort, data_port = 0;
+    int source = 0;
+    std::vector<std::pair<int, int>> points{{0, 1}};
+    gocator::AsciiFormat format;
+    bool hardware_trigger = false;
+    Timeout timeout{1000}, reconnect{100}, reconnect_most{5000};
+    std::size_t buffers = 8;
+    bool ascii() const { return output == "ascii"; }
+};
+
+Expected<std::vector<std::pair<int, int>>> points_from(const nlohmann::json& json, const std::string& where) {
+    std::vector<std::pair<int, int>> points;
+    const auto is_id = [](const nlohmann::json& j) {
+        return j.is_number_integer() && j.get<std::int64_t>() >= 0 && j.get<std::int64_t>() < 100000;
+    };
+    if (json.is_array())
+        for (const auto& pair : json) {
+            if (!pair.is_array() || pair.size() != 2 || !is_id(pair[0]) || !is_id(pair[1])) {
+                points.clear();
+                break;
+            }
+            points.emplace_back(pair[0].get<int>(), pair[1].get<int>());
+        }
+    if (points.empty() || points.size() > 1000)
+        return input_error("must be pairs of the ids of measurements, X and Z", where, "as in [[0, 1]]");
+    return points;
+}
+
+Expected<Settings> settings_from(const nlohmann::json& json) {
+    Settings s;
+    SettingsReader read(json, "settings");
+    read.only({"address", "control_port", "data_port", "output", "source", "points", "format", "delimiter",
+               "terminator", "invalid", "serial", "hardware_trigger", "timeout_ms", "reconnect_ms",
+               "reconnect_most_ms", "buffers"});
+    read.text("address", s.address);
+    read.text("output", s.output);
+    read.text("serial", s.serial);
+    read.whole("control_port", s.control_port, 1, 65535);
+    read.whole("data_port", s.data_port, 1, 65535);
+    read.whole("source", s.source, 0, 3);
+    read.text("format", s.format.pattern);
+    read.text("delimiter", s.format.delimiter);
+    read.text("terminator", s.format.terminator);
+    read.text("invalid", s.format.invalid);
+    read.truth("hardware_trigger", s.hardware_trigger);
+    int timeout = 1000, reconnect = 100, most = 5000;
+    read.whole("timeout_ms", timeout, 50, 60000);
+    read.whole("reconnect_ms", reconnect, 10, 60000);
+    read.whole("reconnect_most_ms", most, 10, 600000);
+    read.whole("buffers", s.buffers, 2, 1000);
+    if (read.failed()) return tl::unexpected(read.error());
+    if (s.address.empty())
+        return input_error("the address of the sensor is missing", "settings.address",
+                           "as in \"192.168.1.10\"");
+    if (s.output != "profiles" && s.output != "ascii")
+        return input_error("\"" + s.output + "\" is no output", "settings.output", "profiles or ascii");
+    if (json.contains("points")) {
+        auto points = points_from(json.at("points"), "settings.points");
+        if (!points) return tl::unexpected(points.error());
+        s.points = std::move(*points);
+    }
+    if (auto format = gocator::check_format(s.format); !format) return tl::unexpected(format.error());
+    if (s.data_port == 0) s.data_port = s.ascii() ? gocator::kAsciiPort : gdp::kDataPort;
+    s.timeout = Timeout(timeout);
+    s.reconnect = Timeout(reconnect);
+    s.reconnect_most = Timeout(std::max(reconnect, most));
+    return s;
+}
+
+class GocatorSource final : public ProfileSource {
+  public:
+    explicit GocatorSource(Settings settings) : s_(std::move(settings)), pool_(s_.buffers) {}
+    ~GocatorSource() override { stop(); }
+
+    Expected<void> connect() {
+        const std::lock_guard control(control_mutex_);
+        auto connection = TcpConnection::connect(s_.address, s_.control_port, s_.timeout);
+        if (!connection) return tl::unexpected(connection.error());
+        control_.emplace(std::move(*connection));
+        control_stream_.clear();
+        gdp::Command command = gdp::Command::system_info;
+        auto answer = ask(command);
+        if (answer && answer->status != gdp::kDone) answer = ask(command = gdp::Command::system_info_v1);
+        if (!answer) return tl::unexpected(answer.error());
+        if (answer->status != gdp::kDone) return refused("tell its serial number", answer->status);
+        auto info = gdp::parse_system_info(command, answer->answer);
+        if (!info) return tl::unexpected(info.error());
+        if (info->state < 0)
+            return device_error("the sensor misses its buddy", where(),
+                                "connect the second sensor, or remove it on the sensor's own page");
+        const std::string& wanted = identity_.serial.empty() ? s_.serial : identity_.serial;
+        if (!wanted.empty() && wanted != info->serial)
+            return device_error(
+                fmt::format("the sensor with the serial number {} answers, not {}", info->serial, wanted),
+                where(), "check address and cabling");
+        const std::lock_guard lock(mutex_);
+        identity_ = {"gocator", "LMI Technologies", info->model, info->serial};
+        return {};
+    }
+
+    SensorIdentity identity() const override {
+        const std::lock_guard lock(mutex_);
+        return identity_;
+    }
+
+    Expected<void> start() override {
+        stop();
+        const std::lock_guard stream(stream_mutex_);
+        auto started = connected() ? Expected<void>() : connect();
+        if (started) started = begin();
+        if (!started) lost();
+        running_ = started.has_value();
+        return started;
+    }
+
+    void stop() override {
+        const std::lock_guard stream(stream_mutex_);  // wait_next() comes to its end first
+        if (running_ && connected()) (void)ask(gdp::Command::stop);
+        running_ = false;
+        data_.reset();
+        ready_.clear();
+        const std::lock_guard lock(mutex_);
+        waiting_spots_.clear();
+    }
+
+    Expected<void> trigger(const std::string& spot_id) override {
+        if (!running_) return device_error("the sensor is not started", where());
+        if (s_.hardware_trigger)
+            return usage_error("the sensor is fired by its digital input", where(),
+                               "switch hardware_trigger off to fire it from here");
+        {
+            const std::lock_guard lock(mutex_);
+            waiting_spots_.push_back(spot_id);  // the frame may come before the answer
+        }
+        auto answer = ask(gdp::Command::trigger);
+        if (answer && answer->status == gdp::kDone) return {};
+        {
+            const std::lock_guard lock(mutex_);
+            if (!waiting_spots_.empty()) waiting_spots_.pop_back();
+        }
+        if (!answer) return tl::unexpected(answer.error());
+        return refused("be triggered: is its job set to software triggers?", answer->status);
+    }
+
+    Expected<FramePtr> wait_next(std::chrono::milliseconds timeout) override {
+        const std::lock_guard stream(stream_mutex_);
+        if (!running_) return device_error("the sensor is not started", where());
+        const auto until = Clock::now() + timeout;
+        if (!data_)
+            if (auto again = reconnect(); !again) return tl::unexpected(again.error());
+        for (;;) {
+            auto frame = next_in_stream();
+            if (!frame) {
+                lost();
+                return tl::unexpected(frame.error());
+            }
+            if (*frame) return *frame;
+            const auto left = std::chrono::duration_cast<Timeout>(until - Clock::now());
+            if (left.count() <= 0) break;
+            std::array<std::byte, 65536> buffer;
+            const auto got = data_->receive_some(buffer, left);
+            if (!got && is_silence(got.error())) break;
+            if (!got) {
+                lost();
+                return device_error(kDisconnected, where());
+            }
+            stream_.append(reinterpret_cast<const char*>(buffer.data()), *got);
+        }
+        if (Clock::now() >= next_ping_) {
+            next_ping_ = Clock::now() + kPingPeriod;
+            if (!ask(gdp::Command::ping, std::string(8, '\0'))) {
+                lost();
+                return device_error(fmt::format("{}: it does not answer", kDisconnected), where());
+            }
+        }
+        return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()), where(),
+                            passed_over_
+                                ? "its job sends no profile of this source: tick it on its Output page"
+                                : "let the robot measure or trigger the sensor");
+    }
+
+    FramePtr latest() const override {
+        const std::lock_guard lock(mutex_);
+        return latest_;
+    }
+    SourceCounters counters() const override {
+        const std::lock_guard lock(mutex_);
+        return counters_;
+    }
+    std::vector<ParameterInfo> parameters() const override { return {}; }
+    Expected<double> get(const std::string& parameter) const override { return no_parameter(parameter); }
+    Expected<void> set(const std::string& parameter, double) override { return no_parameter(parameter); }
+
+  private:
+    std::string where() const { return fmt::format("Gocator {}:{}", s_.address, s_.control_port); }
+    tl::unexpected<Error> no_parameter(const std::string& name) const {
+        return usage_error("there is no parameter \"" + name + "\"", where(),
+                           "set it on the sensor's own page");
+    }
+    tl::unexpected<Error> refused(const std::string& what, std::int32_t status) const {
+        return device_error(fmt::format("the sensor refuses to {} (status {})", what, status), where());
+    }
+
+    bool connected() {
+        const std::lock_guard control(control_mutex_);
+        return control_.has_value();
+    }
+
+    Expected<gdp::Reply> ask(gdp::Command command, std::string_view arguments = {}) {
+        const std::lock_guard control(control_mutex_);
+        if (!control_) return device_error(kDisconnected, where());
+        if (auto sent = control_->send(bytes_of(gdp::command_bytes(command, arguments)), s_.timeout); !sent)
+            return tl::unexpected(sent.error());
+        const auto until = Clock::now() + s_.timeout;
+        for (;;) {
+            auto reply = gdp::take_reply(control_stream_);
+            if (!reply) return tl::unexpected(reply.error());
+            if (*reply && (*reply)->command == static_cast<std::uint16_t>(command)) return **reply;
+            if (*reply) continue;  // the late answer to a command given up
+            const auto left = std::chrono::duration_cast<Timeout>(until - Clock::now());
+            if (left.count() <= 0) return device_error(kNoAnswer, where());
+            std::array<std::byte, 4096> buffer;
+            const auto got = control_->receive_some(buffer, left);
+            if (!got) return tl::unexpected(got.error());
+            control_stream_.append(reinterpret_cast<const char*>(buffer.data()), *got);
+        }
+    }
+
+    // Stopped first, so that its frames count from zero, and the data connection made in between, so that
+    // nothing of before comes.
+    Expected<void> begin() {
+        if (auto stopped = ask(gdp::Command::stop); !stopped) return tl::unexpected(stopped.error());
+        auto data = TcpConnection::connect(s_.address, s_.data_port, s_.timeout);
+        if (!data) return tl::unexpected(data.error());
+        data_.emplace(std::move(*data));
+        stream_.clear();
+        group_ = {};
+        offset_ = next_;
+        passed_over_ = false;
+        next_ping_ = Clock::now() + kPingPeriod;
+        auto started = ask(gdp::Command::start);
+        if (!started) return tl::unexpected(started.error());
+        if (started->status != gdp::kDone) return refused("start its job", started->status);
+        return {};
+    }
+
+    void lost() {
+        data_.reset();
+        {
+            const std::lock_guard control(control_mutex_);
+            control_.reset();
+        }
+        const std::lock_guard lock(mutex_);
+        waiting_spots_.clear();
+    }
+
+    Expected<void> reconnect() {
+        if (Clock::now() < retry_at_) return device_error(kDisconnected, where(), "check power and cable");
+        auto made = connect();
+        if (made) made = begin();
+        if (!made) {
+            lost();
+            backoff_ = std::min(std::max(2 * backoff_, s_.reconnect), s_.reconnect_most);
+            retry_at_ = Clock::now() + backoff_;
+            if (made.error().what.starts_with(kDisconnected) || is_silence(made.error()))
+                return device_error(kDisconnected, where(), "check power and cable");
+            return made;
+        }
+        backoff_ = Timeout(0);
+        const std::lock_guard lock(mutex_);
+        ++counters_.reconnects;
+        return {};
+    }
+
+    // One exposure in the making.
+    struct Group {
+        std::vector<gdp::Stamp> stamps;
+        std::vector<Profile> profiles;
+        std::vector<std::vector<float>> intensities;
+        bool broken = false;
+    };
+
+    // The next frame that is whole in the stream; nullptr: more bytes are needed.
+    Expected<FramePtr> next_in_stream() {
+        for (;;) {
+            if (!ready_.empty()) {
+                FramePtr frame = std::move(ready_.front());
+                ready_.pop_front();
+                return frame;
+            }
+            if (s_.ascii()) {
+                auto line = gocator::take_line(stream_, s_.format);
+                if (!line) return tl::unexpected(line.error());
+                if (!*line) return FramePtr();
+                take_line(**line);
+                continue;
+            }
+            auto message = gdp::take_message(stream_);
+            if (!message) return tl::unexpected(message.error());
+            if (!*message) return FramePtr();
+            take_message(**message);
+        }
+    }
+
+    void take_message(const gdp::Message& message) {
+        const auto type = static_cast<gdp::Type>(message.type);
+        if (type == gdp::Type::stamp) {
+            if (auto stamps = gdp::parse_stamps(message.content))
+                group_.stamps = std::move(*stamps);
+            else
+                group_.broken = true;
+        } else if (type == gdp::Type::points || type == gdp::Type::uniform) {
+            auto profiles = gdp::parse_profiles(type, message.content);
+            if (!profiles)
+                group_.broken = true;
+            else if (profiles->source == s_.source)
+                group_.profiles = std::move(profiles->profiles);
+        } else if (type == gdp::Type::intensity) {
+            auto rows = gdp::parse_intensities(message.content);
+            if (!rows)
+                group_.broken = true;
+            else if (rows->source == s_.source)
+                group_.intensities = std::move(rows->rows);
+        }
+        if (!message.last) return;
+        Group group = std::move(group_);
+        group_ = {};
+        // Each profile has the stamp of its exposure; anything else cannot be told apart.
+        if (!group.broken && !group.profiles.empty() && group.stamps.size() != group.profiles.size())
+            group.broken = true;
+        if (group.broken) {
+            const auto number = group.stamps.empty() ? next_ : offset_ + group.stamps.front().frame;
+            deliver(number, 0, FrameStatus::corrupt, nullptr);
+            return;
+        }
+        if (group.profiles.empty()) {
+            passed_over_ = true;
+            return;
+        }
+        for (std::size_t i = 0; i < group.profiles.size(); ++i) {
+            Profile& profile = group.profiles[i];
+            if (i < group.intensities.size() && group.intensities[i].size() == profile.size())
+                profile.intensity = std::move(group.intensities[i]);
+            const gdp::Stamp& stamp = group.stamps[i];
+            deliver(offset_ + stamp.frame, static_cast<std::int64_t>(stamp.timestamp_us) * 1000,
+                    FrameStatus::ok, &profile);
+        }
+    }
+
+    void take_line(const std::string& line) {
+        if (line == "OK" || line.starts_with("OK" + s_.format.delimiter) || line.starts_with("ERROR"))
+            return;  // answers to somebody's commands on the same port
+        auto result = gocator::parse_result(line, s_.format);
+        if (!result) return deliver(next_, 0, FrameStatus::corrupt, nullptr);
+        Profile profile;
+        for (const auto& [x_id, z_id] : s_.points) {
+            const auto x = result->value_mm.find(x_id), z = result->value_mm.find(z_id);
+            const bool seen = x != result->value_mm.end() && z != result->value_mm.end();
+            profile.x_mm.push_back(seen ? x->second : std::nan(""));
+            profile.z_mm.push_back(seen ? z->second : std::nan(""));
+        }
+        const auto number = result->frame && *result->frame >= 0
+                                ? offset_ + static_cast<std::uint64_t>(*result->frame)
+                                : next_;
+        deliver(number, result->time_us.value_or(0) * 1000, FrameStatus::ok, &profile);
+    }
+
+    void deliver(std::uint64_t number, std::int64_t device_ns, FrameStatus status, Profile* profile) {
+        // A number out of line is the sensor's restart by somebody else, not a million lost frames.
+        constexpr std::uint64_t kMostLost = 1000;
+        if (number < next_ || number - next_ > kMostLost) {
+            offset_ += next_ - number;  // unsigned: also backwards
+            number = next_;
+        }
+        const std::uint64_t gap = number - next_;
+        next_ = number + 1;
+        FramePtr frame = pool_.acquire();
+        const std::lock_guard lock(mutex_);
+        for (std::uint64_t i = 0; i < gap && !waiting_spots_.empty(); ++i) waiting_spots_.pop_front();
+        std::string spot;
+        if (!waiting_spots_.empty()) {
+            spot = std::move(waiting_spots_.front());
+            waiting_spots_.pop_front();
+        }
+        counters_.lost += gap;
+        if (!frame) {
+            ++counters_.underrun;
+            return;
+        }
+        ++(status == FrameStatus::ok ? counters_.completed : counters_.damaged);
+        frame->status = status;
+        frame->sequence = number;
+        frame->device_time_ns = device_ns;
+        frame->host_time_ns =
+            std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
+        frame->base_from_flange.reset();
+        frame->spot_id = std::move(spot);
+        frame->image = {};
+        frame->profile.clear();
+        if (profile) frame->profile = std::move(*profile);
+        latest_ = frame;
+        ready_.push_back(std::move(frame));
+    }
+
+    const Settings s_;
+    FramePool pool_;
+    std::mutex stream_mutex_;             // data connection and what is made of it; taken first
+    std::recursive_mutex control_mutex_;  // control connection: commands come from two threads
+    std::optional<TcpConnection> control_, data_;
+    std::string control_stream_, stream_;
+    std::atomic<bool> running_ = false;
+    bool passed_over_ = false;
+    Group group_;
+    std::deque<FramePtr> ready_;
+    std::uint64_t next_ = 0, offset_ = 0;  // sequence of the next frame; of the sensor's frame 0
+    Clock::time_point retry_at_{}, next_ping_{};
+    Timeout backoff_{0};
+    mutable std::mutex mutex_;               // what follows
+    std::deque<std::string> waiting_spots_;  // of software triggers whose frames have not come
+    SensorIdentity identity_;
+    SourceCounters counters_;
+    FramePtr latest_;
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<ProfileSource>> open_gocator_sensor(const nlohmann::json& settings, DeviceSession&) {
+    auto read = settings_from(settings);
+    if (!read) return tl::unexpected(read.error());
+    auto source = std::make_unique<GocatorSource>(std::move(*read));
+    if (auto connected = source->connect(); !connected) return tl::unexpected(connected.error());
+    return source;
+}
+
+}  // namespace seamwright

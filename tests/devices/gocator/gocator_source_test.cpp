@@ -1,0 +1,223 @@
+// The driver against the simulated cell behind the sensor's protocol.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <thread>
+
+#include "core/features/feature.h"
+#include "core/profile/peaks.h"
+#include "devices/gocator/gocator.h"
+#include "devices/gocator/served_gocator.h"
+#include "devices/net/socket.h"
+
+namespace seamwright {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Gocator : public testing::Test {
+  protected:
+    void SetUp() override {
+        auto made = SimulatedCell::open({{"optics", {{"width", 640}, {"height", 512}}}, {"buffers", 64}});
+        ASSERT_TRUE(made) << made.error().sentence();
+        cell = *made;
+        for (const DoorSpot& spot : default_door_spots()) {
+            MeasuringMove move;
+            move.spot_id = spot.id;
+            move.entry = move.trigger = move.exit = cell->flange_for(spot.workobject_from_sensor);
+            moves.push_back(move);
+        }
+        cell->move_to(moves[0].trigger);
+        serve();
+    }
+    void serve(json settings = json::object()) {
+        settings.update({{"control_port", 0}, {"data_port", 0}, {"ascii_port", 0}});
+        auto opened = ServedGocator::open(cell, settings);
+        ASSERT_TRUE(opened) << opened.error().sentence();
+        served = std::move(*opened);
+    }
+    Expected<std::unique_ptr<ProfileSource>> try_open(json settings = json::object()) {
+        json all = {{"address", "127.0.0.1"},
+                    {"control_port", served->control_port()},
+                    {"data_port",
+                     settings.value("output", "") == "ascii" ? served->ascii_port() : served->data_port()},
+                    {"timeout_ms", 500}};
+        all.update(settings);
+        return open_gocator_sensor(all, session);
+    }
+    std::unique_ptr<ProfileSource> open(const json& settings = json::object()) {
+        auto sensor = try_open(settings);
+        EXPECT_TRUE(sensor) << sensor.error().sentence();
+        EXPECT_TRUE((*sensor)->start());
+        return std::move(*sensor);
+    }
+    FramePtr next(ProfileSource& sensor) {
+        auto frame = sensor.wait_next(3s);
+        EXPECT_TRUE(frame) << frame.error().sentence();
+        return frame ? *frame : nullptr;
+    }
+
+    std::shared_ptr<SimulatedCell> cell;
+    std::vector<MeasuringMove> moves;
+    std::unique_ptr<ServedGocator> served;
+    DeviceSession session;
+};
+
+TEST_F(Gocator, TellsWhoItIs) {
+    auto sensor = open();
+    EXPECT_EQ(sensor->identity(),
+              (SensorIdentity{"gocator", "LMI Technologies", "Gocator simulated", "12345"}));
+    const auto other = try_open({{"serial", "777"}});
+    ASSERT_FALSE(other);
+    EXPECT_THAT(other.error().sentence(), HasSubstr("serial number 12345 answers, not 777"));
+}
+
+TEST_F(Gocator, SoftwareTriggerCarriesItsSpotAndTheProfileOfTheCell) {
+    auto sensor = open();
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_TRUE(sensor->trigger("S" + std::to_string(i)));
+        const FramePtr frame = next(*sensor);
+        ASSERT_TRUE(frame);
+        EXPECT_EQ(frame->status, FrameStatus::ok);
+        EXPECT_EQ(frame->spot_id, "S" + std::to_string(i));
+        EXPECT_EQ(frame->sequence, static_cast<std::uint64_t>(i));
+        EXPECT_GT(frame->device_time_ns, 0);
+        // The same exposure, measured here.
+        Frame image;
+        cell->render(*cell->true_flange(), frame->sequence, image);
+        StripePeaks peaks;
+        ASSERT_TRUE(find_peaks(image.image, {}, peaks));
+        ProfileCandidates candidates;
+        to_millimetres(peaks, cell->sensor_model(), candidates);
+        ASSERT_EQ(frame->profile.size(), static_cast<std::size_t>(candidates.lines));
+        int seen = 0;
+        for (int line = 0; line < candidates.lines; ++line) {
+            const auto at = static_cast<std::size_t>(line),
+                       c = static_cast<std::size_t>(candidates.index(line, 0));
+            if (candidates.count[at] == 0 || std::isnan(frame->profile.z_mm[at])) continue;
+            // Noise differs from exposure to exposure; the stripe does not.
+            if (std::abs(frame->profile.z_mm[at] - candidates.z_mm[c]) < 0.5) ++seen;
+        }
+        EXPECT_GT(seen, candidates.lines / 2);
+    }
+    EXPECT_EQ(sensor->counters().completed, 3u);
+    EXPECT_EQ(sensor->latest()->sequence, 2u);
+}
+
+TEST_F(Gocator, RobotFiresTheDigitalInput) {
+    auto sensor = open({{"hardware_trigger", true}});
+    EXPECT_FALSE(sensor->trigger("S1"));
+    cell->start_moves(moves);
+    std::uint64_t number = 0;
+    while (cell->next_trigger()) EXPECT_EQ(next(*sensor)->sequence, number++);
+    EXPECT_EQ(number, moves.size());
+}
+
+TEST_F(Gocator, LostFrameIsCountedAndTheOthersKeepTheirSpots) {
+    auto sensor = open();
+    served->lose_next(1);
+    for (const char* spot : {"A", "B", "C"}) ASSERT_TRUE(sensor->trigger(spot));
+    FramePtr frame = next(*sensor);
+    EXPECT_EQ(frame->spot_id, "B");
+    EXPECT_EQ(frame->sequence, 1u);
+    frame = next(*sensor);
+    EXPECT_EQ(frame->spot_id, "C");
+    EXPECT_EQ(sensor->counters().lost, 1u);
+}
+
+TEST_F(Gocator, SequenceGoesOnOverStopAndStart) {
+    auto sensor = open();
+    ASSERT_TRUE(sensor->trigger("A"));
+    EXPECT_EQ(next(*sensor)->sequence, 0u);
+    sensor->stop();
+    EXPECT_FALSE(sensor->wait_next(10ms));
+    ASSERT_TRUE(sensor->start());
+    ASSERT_TRUE(sensor->trigger("B"));
+    EXPECT_EQ(next(*sensor)->sequence, 1u);
+    EXPECT_EQ(sensor->counters().lost, 0u);
+}
+
+TEST_F(Gocator, ComesBackAfterItsConnectionsWereCut) {
+    auto sensor = open({{"reconnect_ms", 10}, {"reconnect_most_ms", 50}});
+    ASSERT_TRUE(sensor->trigger("A"));
+    ASSERT_TRUE(next(*sensor));
+    served->cut();
+    auto frame = sensor->wait_next(2s);
+    ASSERT_FALSE(frame);
+    EXPECT_TRUE(is_disconnect(frame.error())) << frame.error().sentence();
+    const auto until = std::chrono::steady_clock::now() + 5s;
+    while (sensor->counters().reconnects == 0 && std::chrono::steady_clock::now() < until)
+        (void)sensor->wait_next(20ms);
+    ASSERT_EQ(sensor->counters().reconnects, 1u);
+    ASSERT_TRUE(sensor->trigger("B"));
+    frame = sensor->wait_next(2s);
+    ASSERT_TRUE(frame) << frame.error().sentence();
+    EXPECT_EQ((*frame)->spot_id, "B");
+    EXPECT_EQ((*frame)->sequence, 1u);
+}
+
+TEST_F(Gocator, SilentSensorIsFoundOutByAPing) {
+    auto sensor = open({{"timeout_ms", 100}});
+    EXPECT_TRUE(is_silence(sensor->wait_next(1100ms).error())) << "it answers the ping";
+    served.reset();
+    const auto gone = sensor->wait_next(1100ms);
+    ASSERT_FALSE(gone);
+    EXPECT_TRUE(is_disconnect(gone.error())) << gone.error().sentence();
+}
+
+TEST_F(Gocator, AsciiResultsAreProfilesOfAPoint) {
+    for (const char* format : {"", "%frame;%time;%value[0];%value[1];%decision[0]"}) {
+        serve({{"format", format}});
+        auto sensor = open({{"output", "ascii"}, {"format", format}});
+        auto profiles = open();  // both outputs of one sensor: its start restarts the job
+        cell->move_to(moves[1].trigger);
+        ASSERT_TRUE(sensor->trigger("S2"));
+        const FramePtr frame = next(*sensor);
+        ASSERT_TRUE(frame);
+        ASSERT_EQ(frame->status, FrameStatus::ok);
+        EXPECT_EQ(frame->spot_id, "S2");
+        ASSERT_EQ(frame->profile.size(), 1u);
+        const FramePtr whole = next(*profiles);
+        ASSERT_TRUE(whole);
+        auto finder = make_feature_finder({"contour-end", {}, {}, Eigen::Vector2d::Zero()});
+        const Feature end = (*finder)->find(whole->profile);
+        auto point = make_feature_finder({"sensor-point", {{"sigma_mm", 0.05}}, {}, Eigen::Vector2d::Zero()});
+        const Feature told = (*point)->find(frame->profile);
+        EXPECT_EQ(told.status, end.status);
+        if (end.status != FeatureStatus::ok) continue;
+        EXPECT_LT((told.point_mm - end.point_mm).norm(), 0.005) << "rounded to whole um on both ways";
+        EXPECT_DOUBLE_EQ(told.covariance_mm2(0, 0), 0.0025);
+    }
+}
+
+TEST_F(Gocator, ForeignServerIsRefusedInWords) {
+    auto listener = TcpListener::listen("127.0.0.1", 0);
+    std::jthread web([&] {
+        if (auto client = listener->accept(3s)) {
+            (void)client->send(bytes_of("HTTP/1.1 400 Bad Request\r\n\r\n"), 1s);
+            std::array<std::byte, 100> rest;
+            (void)client->receive_some(rest, 1s);
+        }
+    });
+    const auto sensor = try_open({{"control_port", listener->port()}});
+    ASSERT_FALSE(sensor);
+    EXPECT_THAT(sensor.error().sentence(), HasSubstr("are those of a Gocator"));
+}
+
+TEST_F(Gocator, SettingsAreChecked) {
+    EXPECT_FALSE(open_gocator_sensor(json::object(), session));
+    for (const json& bad :
+         {json{{"output", "video"}}, json{{"points", {{0}}}}, json{{"points", json::array()}},
+          json{{"points", "0,1"}}, json{{"points", {{0, -1}}}}, json{{"source", 4}},
+          json{{"data_port", 70000}}, json{{"exposure_us", 5}}, json{{"format", "%values"}},
+          json{{"timeout_ms", "1 s"}}})
+        EXPECT_FALSE(try_open(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace seamwright

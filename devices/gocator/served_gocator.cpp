@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/features/feature.h"
+#include "core/profile/filter.h"
 #include "core/profile/peaks.h"
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/settings.h"
@@ -120,12 +121,9 @@ struct ServedGocator::Impl {
         Profile profile;
         if (find_peaks(frame.image, {}, peaks)) {
             to_millimetres(peaks, cell->sensor_model(), candidates);
-            for (int line = 0; line < candidates.lines; ++line) {
-                const bool seen = candidates.count[static_cast<std::size_t>(line)] > 0;
-                const auto i = static_cast<std::size_t>(candidates.index(line, 0));
-                profile.x_mm.push_back(seen ? candidates.x_mm[i] : std::nan(""));
-                profile.z_mm.push_back(seen ? candidates.z_mm[i] : std::nan(""));
-            }
+            if (track_stripe(candidates, {}, profile))
+                for (std::size_t i = 0; i < profile.size(); ++i)
+                    if (profile.segment[i] == kOutlier) profile.z_mm[i] = std::nan("");
         }
         const auto time_us = static_cast<std::uint64_t>(exposure.time_ns / 1000);
         send(data,

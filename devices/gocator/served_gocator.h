@@ -2,10 +2,11 @@
 // The simulated cell's sensor as a Gocator on the wire: control, data and ASCII ports on the loopback
 // address.
 //
-// What a real one computes inside is done by the same code as for images: the strongest peak of each line,
-// through the sensor's own model, as a profile of points. The ASCII port tells one point, X with id 0 and Z
-// with id 1: the end of the contour at higher x, or INVALID. The robot's triggers are the digital input; a
-// Trigger command exposes at the robot's present pose. Up to 16 clients a port.
+// What a real one computes inside is done by the same code as for images: peaks, the stripe among them,
+// through the sensor's own model, as a profile of points; what belongs to no stripe is no return. The ASCII
+// port tells one point, X with id 0 and Z with id 1: the end of the contour at higher x, or INVALID. The
+// robot's triggers are the digital input; a Trigger command exposes at the robot's present pose. Up to 16
+// clients a port.
 //
 // Settings, all optional, with defaults: {"address": "127.0.0.1", "control_port": 3190, "data_port": 3196,
 // "ascii_port": 8190 (each 0 = any free one), "serial": 12345, "format": "" (as in ascii_result.h)}

@@ -317,6 +317,7 @@ std::uint64_t SimulatedCell::lost_exposures() const {
 double SimulatedCell::parameter(const std::string& name) const {
     const std::lock_guard lock(mutex_);
     if (name == "laser") return exposure_.laser_on ? 1 : 0;
+    if (name == "scene") return static_cast<double>(scene_);
     return name == "gain_db" ? exposure_.gain_db : exposure_.exposure_us;
 }
 
@@ -324,6 +325,8 @@ void SimulatedCell::set_parameter(const std::string& name, double value) {
     const std::lock_guard lock(mutex_);
     if (name == "laser")
         exposure_.laser_on = value != 0;
+    else if (name == "scene")
+        scene_ = static_cast<Scene>(static_cast<int>(value));
     else
         (name == "gain_db" ? exposure_.gain_db : exposure_.exposure_us) = value;
 }

@@ -69,7 +69,7 @@ class SimulatedSensor final : public ProfileSource {
         return c;
     }
     std::vector<ParameterInfo> parameters() const override {
-        ParameterInfo exposure, gain, laser;
+        ParameterInfo exposure, gain, laser, scene;
         exposure.name = "exposure_us";
         exposure.unit = "us";
         exposure.minimum = 1;
@@ -89,14 +89,20 @@ class SimulatedSensor final : public ProfileSource {
         laser.decimals = 0;
         laser.help = "Laser on or off.";
         laser.choices = {"off", "on"};
-        return {exposure, gain, laser};
+        scene.name = "scene";
+        scene.maximum = 3;
+        scene.default_value = static_cast<double>(cell_->settings().scene);
+        scene.decimals = 0;
+        scene.help = "What stands before the sensor.";
+        scene.choices = {"part", "sphere", "plate", "triangle"};
+        return {exposure, gain, laser, scene};
     }
     Expected<double> get(const std::string& parameter) const override {
         for (const auto& info : parameters()) {
             if (info.name == parameter) return cell_->parameter(parameter);
         }
         return usage_error("there is no parameter \"" + parameter + "\"", "simulated sensor",
-                           "known are exposure_us, gain_db, laser");
+                           "known are exposure_us, gain_db, laser, scene");
     }
     Expected<void> set(const std::string& parameter, double value) override {
         if (auto ok = validate({{parameter, value}}, parameters(), "simulated sensor"); !ok) return ok;

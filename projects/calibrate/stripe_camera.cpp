@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "core/calibration/camera.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
@@ -83,6 +86,59 @@ Expected<FoundBoard> parse_found_board(const json& value, const BoardSpec& spec,
     if (!detector) return tl::unexpected(detector.error());
     board.detector = *detector;
     return board;
+}
+
+// Residual of a frame that took no part: board under the solved camera, place of the target, stripe and laser
+// plane.
+void judge_excluded(const StripeCameraResult& solved, const StripeObservation& o, const BoardSpec& spec,
+                    PoseResidual& pose) {
+    if (!o.board) return;
+    double least_deg = std::numeric_limits<double>::infinity();
+    std::optional<Pose> camera_from_target;
+    for (int turns = 0; turns < 4; turns += o.board->symmetry == 4 ? 1 : 2) {
+        if (turns > 0 && o.board->symmetry == 1) break;
+        const FoundBoard board = turns == 0 ? *o.board : turned(*o.board, spec, turns);
+        const auto target = locate_target(solved.camera, {o.id, board.object_mm, board.pixel});
+        if (!target) continue;
+        pose.rms_px = target->rms_px;
+        if (!camera_from_target) camera_from_target = target->camera_from_target;
+        if (!o.base_from_flange || !solved.flange_from_camera) break;
+        const Pose base_from_target =
+            *o.base_from_flange * *solved.flange_from_camera * target->camera_from_target;
+        const double deg = deg_from_rad(angle_rad(base_from_target, *solved.base_from_target));
+        if (deg >= least_deg) continue;
+        least_deg = deg;
+        camera_from_target = target->camera_from_target;
+        pose.deg = deg;
+        pose.rms_mm = distance_mm(base_from_target, *solved.base_from_target);
+    }
+    if (!camera_from_target || !solved.plane || o.stripe.empty()) return;
+    // Where the stripe's rays meet the plate, against the laser plane; the median passes over what is no
+    // plate.
+    const auto edge = outline(*o.board, spec);
+    std::vector<double> off;
+    const Eigen::Vector3d normal = camera_from_target->linear().col(2);
+    for (const auto& p : o.stripe) {
+        bool inside = edge.size() >= 3;
+        double side = 0;
+        for (std::size_t i = 0; i < edge.size() && inside; ++i) {
+            const Eigen::Vector2d a = edge[i], b = edge[(i + 1) % edge.size()];
+            const double cross = (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x();
+            if (side != 0 && cross * side < 0) inside = false;
+            if (cross != 0) side = cross;
+        }
+        if (!inside) continue;
+        const Eigen::Vector2d n = solved.camera.undistort(p);
+        const Eigen::Vector3d ray(n.x(), n.y(), 1);
+        const Eigen::Vector3d point = ray * (normal.dot(camera_from_target->translation()) / normal.dot(ray));
+        if (point.allFinite())
+            off.push_back(std::abs(solved.plane->normal.dot(point) + solved.plane->offset_mm));
+    }
+    if (off.empty()) return;
+    const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+    std::nth_element(off.begin(), middle, off.end());
+    pose.note = fmt::format("excluded; stripe {:.2f} mm off the laser plane", *middle);
+    if (std::isnan(pose.rms_mm)) pose.rms_mm = *middle;
 }
 
 }  // namespace
@@ -255,6 +311,7 @@ Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObser
             {"flange_from_camera", pose_json(*solved->flange_from_camera)},
             {"base_from_target", pose_json(*solved->base_from_target)},
             {"sigma", pose_sigma_json(*solved->flange_from_camera, solved->flange_from_camera_covariance)},
+            {"covariance_pose", matrix_json(solved->flange_from_camera_covariance)},
             {"target_spread_mm", solved->target_spread_mm},
             {"target_spread_max_mm", solved->target_spread_max_mm}};
     static constexpr const char* shapes[] = {"rigid", "in-plane", "bowed"};
@@ -277,6 +334,9 @@ Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObser
              {"note", f.note}});
     }
     result["frames"] = std::move(frames);
+    for (std::size_t i = 0; known && i < observations.size(); ++i)
+        if (std::count(exclude.begin(), exclude.end(), observations[i].id) > 0)
+            judge_excluded(*solved, observations[i], spec, solved->report.poses[i]);
     add_report(solved->report, result);
     if (!known)
         for (auto& p : result["parameters"]) p["value"] = p["sigma"] = nullptr;

@@ -1,0 +1,220 @@
+#include "projects/calibrate/answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/calibration/lookup_table_calibration.h"
+#include "devices/capture/capture.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "projects/calibrate/camera_json.h"
+#include "projects/measure.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+
+Matrix6 parse_covariance(const json& holder, const char* key) {
+    Matrix6 m = Matrix6::Zero();
+    const auto it = holder.find(key);
+    if (it == holder.end() || !it->is_array() || it->size() != 6) return m;
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t k = 0; k < 6; ++k)
+            if ((*it)[i].is_array() && (*it)[i].size() == 6 && (*it)[i][k].is_number())
+                m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = (*it)[i][k].get<double>();
+    return m;
+}
+
+Expected<Pose> pose_at(const json& result, const char* key) {
+    auto field = json_field(result, key, "result");
+    if (!field) return tl::unexpected(field.error());
+    return parse_pose(**field, key);
+}
+
+tl::unexpected<Error> needs_base(const CalibrationMethod& method, const char* what) {
+    return input_error(fmt::format("{} is not known", what), method.id,
+                       "calibrate camera and laser plane first");
+}
+
+// The table itself is not in the result (it may hold millions of nodes): the data give it again, bit for bit.
+Expected<LookupTable> table_of(const json& data, const std::vector<std::string>& exclude) {
+    std::vector<LaserPair> pairs;
+    for (const json& entry : data.at("pairs")) {
+        auto id = entry_id(entry, pairs.size(), "pairs");
+        auto pixel = json_vector2(entry, "pixel", "pairs");
+        auto laser = json_vector2(entry, "laser", "pairs");
+        if (!id) return tl::unexpected(id.error());
+        if (!pixel) return tl::unexpected(pixel.error());
+        if (!laser) return tl::unexpected(laser.error());
+        pairs.push_back({*id, *pixel, *laser});
+    }
+    LookupTableOptions options;
+    options.exclude = exclude;
+    if (data.contains("step_px")) options.step_px = data["step_px"].get<double>();
+    auto solved =
+        calibrate_lookup_table(data.at("size")[0].get<int>(), data.at("size")[1].get<int>(), pairs, options);
+    if (!solved) return tl::unexpected(solved.error());
+    return std::move(solved->table);
+}
+
+}  // namespace
+
+Expected<Calibration> calibration_of_result(const CalibrationMethod& method, const json& data,
+                                            const std::vector<std::string>& exclude, const json& result,
+                                            const Calibration* base) {
+    const std::string verdict = result.value("verdict", "undetermined");
+    if (verdict == "undetermined" && method.use == AnswerUse::sensor)
+        return input_error("the solution is undetermined: " + result.value("reason", ""), method.id,
+                           result.value("cure", ""));
+    Calibration c;
+    if (base) {
+        c.model = base->model;
+        c.flange_from_sensor = base->flange_from_sensor;
+        c.covariance = base->covariance;
+    }
+    c.method = method.id;
+    c.verdict = verdict;
+    c.raw = {{"data", data}, {"exclude", exclude}};
+    c.result = result;
+    if (method.id == "tcp-sphere") {
+        auto pose = pose_at(result, "flange_from_sensor");
+        if (!pose) return tl::unexpected(pose.error());
+        c.flange_from_sensor = *pose;
+        c.covariance = parse_covariance(result, "covariance_pose");
+    } else if (method.id == "stripe-camera") {
+        if (!result["camera_from_laser"].is_object())
+            return input_error("the frames give no laser plane", method.id, result.value("cure", ""));
+        auto camera = parse_camera(result["camera"], "camera");
+        if (!camera) return tl::unexpected(camera.error());
+        auto laser = pose_at(result, "camera_from_laser");
+        if (!laser) return tl::unexpected(laser.error());
+        c.model = SensorModel{*camera, *laser, std::nullopt};
+        if (result["hand_eye"].is_object()) {
+            auto flange = pose_at(result["hand_eye"], "flange_from_camera");
+            if (!flange) return tl::unexpected(flange.error());
+            c.flange_from_sensor = *flange * *laser;
+            c.covariance = covariance_of_product(
+                *flange, parse_covariance(result["hand_eye"], "covariance_pose"), *laser, Matrix6::Zero());
+        }
+    } else if (method.id == "laser-plane") {
+        auto camera = parse_camera(data.value("camera", json()), "camera");
+        if (!camera) return tl::unexpected(camera.error());
+        auto laser = pose_at(result, "camera_from_laser");
+        if (!laser) return tl::unexpected(laser.error());
+        // The camera stays where it sits on the flange; the laser plane is what is new.
+        if (base && base->model)
+            c.flange_from_sensor =
+                base->flange_from_sensor * base->model->camera_from_laser.inverse() * *laser;
+        c.model = SensorModel{*camera, *laser, std::nullopt};
+    } else if (method.id == "lut") {
+        auto table = table_of(data, exclude);
+        if (!table) return tl::unexpected(table.error());
+        if (!c.model) c.model.emplace();
+        c.model->table = std::move(*table);
+    } else if (method.id == "hand-eye") {
+        if (!base || !base->model) return needs_base(method, "the laser plane in the camera");
+        if (!result.contains("flange_from_camera"))
+            return input_error("the camera does not ride on the flange", method.id,
+                               "a sensor beside the robot is kept as a record");
+        auto flange = pose_at(result, "flange_from_camera");
+        if (!flange) return tl::unexpected(flange.error());
+        c.flange_from_sensor = *flange * base->model->camera_from_laser;
+        c.covariance = covariance_of_product(*flange, parse_covariance(result, "covariance_pose"),
+                                             base->model->camera_from_laser, Matrix6::Zero());
+    }
+    return c;
+}
+
+Expected<Calibration> calibration_of_session(const CalibrationSession& session, const Project& project) {
+    const json* result = session.result();
+    if (!result) return input_error("there is no solution yet", session.method().id, "solve first");
+    const SensorSetup* sensor = find_sensor(project, session.sensor_id());
+    if (!sensor) return input_error("the project has no such sensor", session.sensor_id());
+    const Calibration* base = nullptr;
+    for (const Calibration& c : project.calibrations)
+        if (c.id == sensor->calibration_id) base = &c;
+    json answer = *result;
+    if (session.method().id == "static") {
+        // One chain a sensor: this sensor's own.
+        const json* own = nullptr;
+        for (const json& s : answer.at("sensors"))
+            if (s.value("id", "") == session.sensor_id() || answer["sensors"].size() == 1) own = &s;
+        if (!own)
+            return input_error("the chain holds no sensor " + session.sensor_id(), "static",
+                               "name the sensors in the data as in the project");
+        answer = *own;
+    }
+    auto c = calibration_of_result(session.method(), session.data(), session.exclude(), answer, base);
+    if (!c) return c;
+    if (session.method().id == "static") {
+        c->result = *result;
+        if (answer.contains("reference_from_laser")) {
+            auto pose = parse_pose(answer["reference_from_laser"], "reference_from_laser");
+            if (!pose) return tl::unexpected(pose.error());
+            c->flange_from_sensor = *pose;
+            c->covariance = parse_covariance(answer, "covariance");
+        } else {
+            return input_error("the chain ends in the world, not on the flange", "static",
+                               "give reference_from_world with the flange as reference");
+        }
+    }
+    c->sensor_id = sensor->id;
+    c->sensor_identity = sensor->identity;
+    if (const RobotSetup* robot = find_robot(project, session.robot_id())) {
+        c->robot_id = robot->id;
+        c->robot_identity = robot->identity;
+    }
+    c->created_utc = utc_now();
+    for (std::size_t n = project.calibrations.size() + 1;; ++n) {
+        c->id = fmt::format("{}-{}", session.method().id, n);
+        if (std::none_of(project.calibrations.begin(), project.calibrations.end(),
+                         [&](const Calibration& other) { return other.id == c->id; }))
+            break;
+    }
+    const Verification v = session.verification();
+    c->source = fmt::format("{} captures, {} for verification", session.solving_captures(), v.poses);
+    if (v.poses > 0)
+        c->result["verification"] = {{"poses", v.poses},
+                                     {"confirmed", v.confirmed},
+                                     {"worst_mm", number_json(v.worst_mm)},
+                                     {"limit_mm", number_json(v.limit_mm)},
+                                     {"worst_deg", number_json(v.worst_deg)},
+                                     {"limit_deg", number_json(v.limit_deg)},
+                                     {"worst_px", number_json(v.worst_px)},
+                                     {"limit_px", number_json(v.limit_px)}};
+    return c;
+}
+
+CalibrationDifference difference(const Calibration& now, const Calibration& before) {
+    CalibrationDifference d;
+    d.turn_deg = deg_from_rad(angle_rad(now.flange_from_sensor, before.flange_from_sensor));
+    d.shift_mm = distance_mm(now.flange_from_sensor, before.flange_from_sensor);
+    const auto count = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+        const double apart = (now.flange_from_sensor * Eigen::Vector3d(a.x(), 0, a.y()) -
+                              before.flange_from_sensor * Eigen::Vector3d(b.x(), 0, b.y()))
+                                 .norm();
+        d.largest_mm = std::max(d.largest_mm, apart);
+        d.mean_mm += apart;
+        ++d.points;
+    };
+    if (now.model && before.model) {
+        const int width = std::max(now.model->camera.width, before.model->camera.width);
+        const int height = std::max(now.model->camera.height, before.model->camera.height);
+        for (int i = 1; i < 12; ++i)
+            for (int k = 1; k < 12; ++k) {
+                const Eigen::Vector2d pixel(width * i / 12.0, height * k / 12.0);
+                const auto a = now.model->to_laser(pixel), b = before.model->to_laser(pixel);
+                if (a && b) count(*a, *b);
+            }
+    } else {
+        for (const double x : {-50.0, 0.0, 50.0})
+            for (const double z : {-50.0, 0.0, 50.0}) count({x, z}, {x, z});
+    }
+    if (d.points > 0) d.mean_mm /= d.points;
+    return d;
+}
+
+}  // namespace seamwright

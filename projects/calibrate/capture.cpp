@@ -1,0 +1,360 @@
+#include "projects/calibrate/capture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/calibration/board.h"
+#include "core/calibration/camera.h"
+#include "core/calibration/circle_section.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "projects/acquire.h"
+#include "projects/calibrate/camera_json.h"
+#include "projects/calibrate/plate_images.h"
+#include "projects/calibrate/sphere_profile_json.h"
+#include "projects/calibrate/stripe_frames.h"
+#include "projects/calibrate/stripe_line_points.h"
+#include "projects/measure.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kLeastLinePoints = 200;
+constexpr std::size_t kDrawnPoints = 160;
+
+// A cut through the sphere is never larger than the sphere.
+CircleSectionLimits sphere_limits(double radius_mm) {
+    CircleSectionLimits limits;
+    if (radius_mm > 0) {
+        limits.largest_radius_mm = 1.05 * radius_mm;
+        limits.smallest_radius_mm = 0.15 * radius_mm;
+    }
+    return limits;
+}
+
+double radius_of(const json& settings) {
+    const auto it = settings.find("radius_mm");
+    return it != settings.end() && it->is_number() ? it->get<double>() : 0;
+}
+
+Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, const Calibration* base,
+                            const Frame& frame, const Pose& base_from_flange) {
+    StripePeaks peaks;
+    Capture capture;
+    std::string reason;
+    if (capture_frame(frame, sensor.peaks, base && base->model ? &*base->model : nullptr, peaks, capture,
+                      reason) != SpotStatus::measured)
+        return input_error(
+            reason, "sensor " + sensor.id,
+            base ? "bring the stripe onto the sphere" : "calibrate camera and laser plane first");
+    Profile profile;
+    if (auto tracked = track_capture(capture, sensor.filter, profile); !tracked)
+        return tl::unexpected(tracked.error());
+    if (!find_circle_section(profile, sphere_limits(radius_of(settings))))
+        return input_error("no circle of the sphere is seen in the profile", "sensor " + sensor.id,
+                           "bring the stripe onto the sphere, a little off its middle, and check its radius");
+    json points = json::array();
+    for (std::size_t i = 0; i < profile.size(); ++i)
+        if (!std::isnan(profile.x_mm[i]) && !std::isnan(profile.z_mm[i]))
+            points.push_back({profile.x_mm[i], profile.z_mm[i]});
+    return json{{"base_from_flange", pose_json(base_from_flange)}, {"profile", std::move(points)}};
+}
+
+Error no_board(const BoardSpec& spec, const std::string& where) {
+    return {ErrorKind::input,
+            fmt::format("no complete board of {} x {} corners is seen", spec.columns, spec.rows), where,
+            "bring the whole board into the picture, more light, less gloss, and check its counts"};
+}
+
+Expected<BoardSpec> board_of(const json& settings) {
+    auto field = json_field(settings, "board", "");
+    if (!field) return tl::unexpected(field.error());
+    return parse_board_json(**field, "board");
+}
+
+Expected<json> stripe_entry(const json& settings, const SensorSetup& sensor, const Frame& stripe,
+                            const Frame* board, const std::optional<Pose>& base_from_flange) {
+    auto spec = board_of(settings);
+    if (!spec) return tl::unexpected(spec.error());
+    StripeObservation o;
+    if (board) {
+        o.width = stripe.image.width;
+        o.height = stripe.image.height;
+        o.scan = ScanLines::columns;
+        o.board = find_board(board->image, *spec);
+        StripePeaks peaks;
+        auto points = stripe_points(stripe.image, peaks);
+        if (!points) return tl::unexpected(points.error());
+        o.stripe = std::move(*points);
+    } else {
+        o = observe({"", stripe.image, base_from_flange}, *spec);
+    }
+    o.base_from_flange = base_from_flange;
+    if (!o.board) return tl::unexpected(no_board(*spec, "sensor " + sensor.id));
+    return stripe_frame_json(o);
+}
+
+Expected<json> board_entry(const std::string& where, const Calibration* base,
+                           const std::optional<FoundBoard>& board, const BoardSpec& spec,
+                           const std::optional<Pose>& base_from_flange) {
+    if (!base || !base->model)
+        return input_error("the camera is not known", where, "calibrate camera and laser plane first");
+    if (!board) return tl::unexpected(no_board(spec, where));
+    if (!base_from_flange)
+        return input_error("the robot's pose is missing", where, "put its pose file beside the image");
+    auto target = locate_target(base->model->camera, {"", board->object_mm, board->pixel});
+    if (!target) return tl::unexpected(target.error());
+    return json{{"base_from_flange", pose_json(*base_from_flange)},
+                {"camera_from_target", pose_json(target->camera_from_target)}};
+}
+
+Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame& frame) {
+    const json size = {frame.image.width, frame.image.height};
+    if (settings.contains("size") && settings["size"] != size)
+        return input_error("the image has another size than those before", "sensor " + sensor.id,
+                           "use one camera at one resolution");
+    settings["size"] = size;
+    StripePeaks peaks;
+    auto points = stripe_points(frame.image, peaks);
+    if (!points) return tl::unexpected(points.error());
+    const auto line = on_the_plate(std::move(*points));
+    if (line.size() < kLeastLinePoints)
+        return input_error(fmt::format("only {} points of the stripe lie on one line", line.size()),
+                           "sensor " + sensor.id, "hold the sensor over a flat plate that fills the view");
+    json entry = json::array();
+    for (const auto& p : line) entry.push_back({p.x(), p.y()});
+    return entry;
+}
+
+}  // namespace
+
+Expected<json> prepared_settings(const CalibrationMethod& method, json settings, const Calibration* base) {
+    if (method.id == "tcp-sphere" && base && !base->flange_from_sensor.isApprox(Pose::Identity()))
+        settings["nominal_flange_from_sensor"] = pose_json(base->flange_from_sensor);
+    if (method.id == "laser-plane" && !settings.contains("camera") && base && base->model)
+        settings["camera"] = camera_json(base->model->camera);
+    if (method.id == "drift") {
+        if (!base)
+            return input_error("there is no calibration in use to check", method.id, "calibrate first");
+        settings["flange_from_sensor"] = pose_json(base->flange_from_sensor);
+        if (base->result.contains("centre_base_mm") && base->result["centre_base_mm"].is_array() &&
+            !settings.contains("centre_base_mm")) {
+            settings["centre_base_mm"] = base->result["centre_base_mm"];
+            if (base->result.contains("radius_mm") && base->result["radius_mm"].is_number())
+                settings["radius_mm"] = base->result["radius_mm"];
+        }
+        if (!settings.contains("centre_base_mm"))
+            return input_error("where the sphere stands is not known", method.id,
+                               "check a calibration that was made with the sphere, or load measured data");
+    }
+    return settings;
+}
+
+Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json& settings,
+                                    const SensorSetup& sensor, const Calibration* base, const Frame& stripe,
+                                    const Frame* board, const std::optional<Pose>& base_from_flange) {
+    const std::string where = "sensor " + sensor.id;
+    for (const Frame* frame : {&stripe, board})
+        if (frame && frame->status != FrameStatus::ok)
+            return input_error(fmt::format("the frame is {}", to_string(frame->status)), where,
+                               "take it again");
+    const bool image = method.capture != CaptureKind::sphere_profile;
+    if (image && stripe.image.empty())
+        return input_error("the sensor gives no image", where, "switch its raw image on");
+    if (method.robot && method.capture != CaptureKind::board_and_stripe && !base_from_flange)
+        return input_error("the robot does not tell its pose", "robot", "connect the robot");
+    TakenCapture taken;
+    taken.settings = settings;
+    Expected<json> entry = json();
+    switch (method.capture) {
+        case CaptureKind::sphere_profile:
+            entry = sphere_entry(settings, sensor, base, stripe, *base_from_flange);
+            break;
+        case CaptureKind::board_and_stripe:
+            entry = stripe_entry(settings, sensor, stripe, board, base_from_flange);
+            break;
+        case CaptureKind::board_pose: {
+            auto spec = board_of(settings);
+            if (!spec) return tl::unexpected(spec.error());
+            entry = board_entry(where, base, find_board((board ? *board : stripe).image, *spec), *spec,
+                                base_from_flange);
+            break;
+        }
+        case CaptureKind::stripe_line:
+            entry = line_entry(taken.settings, sensor, stripe);
+            break;
+        case CaptureKind::files:
+            return usage_error("the data of this method are loaded from a file", method.id);
+    }
+    if (!entry) return tl::unexpected(entry.error());
+    taken.capture.entry = std::move(*entry);
+    taken.capture.base_from_flange = base_from_flange;
+    taken.capture.origin = "live";
+    return taken;
+}
+
+namespace {
+
+Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const json& settings,
+                                          const std::filesystem::path& path) {
+    auto data = read_json_file(path);
+    if (!data) return tl::unexpected(data.error());
+    if (!data->is_object()) return input_error("the data is not a JSON object", path.string());
+    ReadCaptures read;
+    read.settings = settings;
+    json entries;
+    if (method.id == "static" && !data->contains(method.entries)) {
+        entries = json::array({*data});
+    } else {
+        auto list = json_array(*data, method.entries, path.string());
+        if (!list) return tl::unexpected(list.error());
+        entries = **list;
+        data->erase(method.entries);
+        read.settings.update(*data);
+    }
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        CalibrationCapture c;
+        const json& entry = entries[i];
+        if (entry.is_object()) {
+            auto id = entry_id(entry, i, json_path(method.entries, i));
+            if (!id) return tl::unexpected(id.error());
+            c.id = *id;
+            if (entry.contains("base_from_flange") && !entry["base_from_flange"].is_null()) {
+                auto pose = parse_pose(entry["base_from_flange"],
+                                       json_path(json_path(method.entries, i), "base_from_flange"));
+                if (!pose) return tl::unexpected(pose.error());
+                c.base_from_flange = *pose;
+            }
+        }
+        c.entry = entry;
+        c.origin = path.string();
+        read.captures.push_back(std::move(c));
+    }
+    return read;
+}
+
+}  // namespace
+
+Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json& settings,
+                                     const Calibration* base, const std::filesystem::path& path,
+                                     const ReadProgress& progress, const std::stop_token& cancel) {
+    std::error_code code;
+    if (!std::filesystem::is_directory(path, code)) return read_json_captures(method, settings, path);
+    if (method.capture != CaptureKind::board_and_stripe && method.capture != CaptureKind::board_pose)
+        return input_error("this method reads no images", path.string(), "give its JSON file");
+    auto spec = board_of(settings);
+    if (!spec) return tl::unexpected(spec.error());
+    auto images = plate_images(path, {});
+    if (!images) return tl::unexpected(images.error());
+    ReadCaptures read;
+    read.settings = settings;
+    std::optional<std::pair<int, int>> size;
+    for (std::size_t i = 0; i < images->size(); ++i) {
+        if (cancel.stop_requested()) return input_error(kCancelled, path.string());
+        const auto& image = (*images)[i];
+        auto o = read_stripe_frame(image, *spec);
+        if (!o) return tl::unexpected(o.error());
+        if (size && *size != std::pair(o->width, o->height))
+            return input_error("the images have different sizes", image.string(),
+                               "give frames of one camera at one resolution");
+        size = {o->width, o->height};
+        CalibrationCapture c;
+        c.id = image.stem().string();
+        c.origin = c.picture = std::filesystem::absolute(image, code).string();
+        c.base_from_flange = o->base_from_flange;
+        if (method.capture == CaptureKind::board_and_stripe) {
+            c.entry = stripe_frame_json(*o);
+            read.captures.push_back(std::move(c));
+        } else if (auto entry = board_entry(c.id, base, o->board, *spec, o->base_from_flange)) {
+            c.entry = std::move(*entry);
+            read.captures.push_back(std::move(c));
+        } else {
+            read.skipped.push_back(entry.error().sentence());
+        }
+        if (progress) progress(static_cast<int>(i) + 1, static_cast<int>(images->size()));
+    }
+    if (read.captures.empty())
+        return input_error(read.skipped.empty() ? "nothing was read" : read.skipped.front(), path.string());
+    return read;
+}
+
+namespace {
+
+std::vector<Eigen::Vector2d> pixels_of(const json& list) {
+    std::vector<Eigen::Vector2d> points;
+    if (!list.is_array()) return points;
+    for (const json& p : list)
+        if (p.is_array() && p.size() == 2 && p[0].is_number() && p[1].is_number())
+            points.emplace_back(p[0].get<double>(), p[1].get<double>());
+    return points;
+}
+
+std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& all) {
+    std::vector<Eigen::Vector2d> few;
+    const std::size_t step = std::max<std::size_t>(1, all.size() / kDrawnPoints);
+    for (std::size_t i = 0; i < all.size(); i += step) few.push_back(all[i]);
+    return few;
+}
+
+void image_size(const json& holder, EntryPicture& picture) {
+    const auto it = holder.find("size");
+    if (it == holder.end() || !it->is_array() || it->size() != 2 || !(*it)[0].is_number()) return;
+    picture.width = static_cast<int>((*it)[0].get<double>());
+    picture.height = static_cast<int>((*it)[1].get<double>());
+}
+
+}  // namespace
+
+EntryPicture entry_picture(const CalibrationMethod& method, const json& settings, const json& entry) {
+    EntryPicture picture;
+    if (method.capture == CaptureKind::sphere_profile) {
+        auto o = parse_sphere_observation(entry, 0, "");
+        if (!o) return picture;
+        std::vector<Eigen::Vector2d> all;
+        for (std::size_t i = 0; i < o->profile.size(); ++i)
+            if (!std::isnan(o->profile.x_mm[i]) && !std::isnan(o->profile.z_mm[i]))
+                all.emplace_back(o->profile.x_mm[i], o->profile.z_mm[i]);
+        picture.points = thinned(all);
+        if (const auto circle = find_circle_section(o->profile, sphere_limits(radius_of(settings)))) {
+            std::vector<Eigen::Vector2d> arc;
+            for (const int i : circle->inliers)
+                arc.emplace_back(o->profile.x_mm[static_cast<std::size_t>(i)],
+                                 o->profile.z_mm[static_cast<std::size_t>(i)]);
+            picture.outline = thinned(arc);
+        }
+        return picture;
+    }
+    picture.pixels = true;
+    if (method.capture == CaptureKind::board_and_stripe) {
+        image_size(entry, picture);
+        picture.points = thinned(pixels_of(entry.value("stripe", json())));
+        auto spec = board_of(settings);
+        auto o = spec ? parse_stripe_frame(entry, *spec, 0, "") : tl::unexpected(spec.error());
+        if (o && o->board) {
+            picture.outline = outline(*o->board, *spec);
+            picture.points.insert(picture.points.end(), o->board->pixel.begin(), o->board->pixel.end());
+        }
+    } else if (method.capture == CaptureKind::stripe_line) {
+        image_size(settings, picture);
+        picture.points = thinned(pixels_of(entry));
+        picture.outline = picture.points;
+    } else if (entry.is_object() && entry.contains("pixel")) {
+        image_size(settings, picture);
+        if (picture.width == 0 && settings.contains("camera")) {
+            if (auto camera = parse_camera(settings["camera"], "camera")) {
+                picture.width = camera->width;
+                picture.height = camera->height;
+            }
+        }
+        picture.points = pixels_of(json::array({entry["pixel"]}));
+    } else {
+        picture.pixels = false;
+    }
+    return picture;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,54 @@
+#pragma once
+// From what a sensor and a robot give, or from a file, to a capture of a method.
+
+#include <functional>
+#include <stop_token>
+
+#include "devices/frame.h"
+#include "projects/calibrate/session.h"
+
+namespace seamwright {
+
+// Settings that come from the calibration in use: the camera of laser-plane, the stored pose and the sphere
+// of drift, the mounting that tcp-sphere takes as nominal. `base` may be nullptr. Error (input): the method
+// cannot do without.
+Expected<nlohmann::json> prepared_settings(const CalibrationMethod& method, nlohmann::json settings,
+                                           const Calibration* base);
+
+// A capture and the settings it brings along (a lens learns the image's size from it).
+struct TakenCapture {
+    CalibrationCapture capture;  // without id
+    nlohmann::json settings;
+};
+
+// One stand of the robot. `board` is a second image with the laser off where the sensor can do that; nullptr:
+// board and stripe are on one image. Error (input): the target is not seen, in words that say what to change.
+Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const nlohmann::json& settings,
+                                    const SensorSetup& sensor, const Calibration* base, const Frame& stripe,
+                                    const Frame* board, const std::optional<Pose>& base_from_flange);
+
+struct ReadCaptures {
+    std::vector<CalibrationCapture> captures;
+    nlohmann::json settings;
+    std::vector<std::string> skipped;  // sentences: images without a board
+};
+using ReadProgress = std::function<void(int done, int total)>;
+// A JSON file as the command line takes it, or, for stripe-camera and hand-eye, a folder of images with their
+// pose files. Cancelled = Error whose `what` is kCancelled (projects/acquire.h).
+Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const nlohmann::json& settings,
+                                     const Calibration* base, const std::filesystem::path& path,
+                                     const ReadProgress& progress, const std::stop_token& cancel);
+
+// What of the target an entry shows, for thumbnails and the coverage of the field. Pixels for images, mm (x,
+// z) for profiles.
+struct EntryPicture {
+    bool pixels = false;
+    int width = 0, height = 0;            // of the image; 0 for profiles
+    std::vector<Eigen::Vector2d> points;  // all that was seen, thinned
+    std::vector<Eigen::Vector2d>
+        outline;  // of the target found in it: closed for a board, the arc for a sphere
+};
+EntryPicture entry_picture(const CalibrationMethod& method, const nlohmann::json& settings,
+                           const nlohmann::json& entry);
+
+}  // namespace seamwright

@@ -1,0 +1,116 @@
+#include "projects/calibrate/guide.h"
+
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/cell.h"
+#include "projects/calibrate/target_views.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+
+// Closer than this to a capture, a view counts as taken.
+constexpr double kNearMm = 12, kNearDeg = 8;
+
+const std::vector<TargetView>* views_of(const CalibrationMethod& method) {
+    switch (method.capture) {
+        case CaptureKind::sphere_profile:
+            return &sphere_views();
+        case CaptureKind::board_and_stripe:
+        case CaptureKind::board_pose:
+            return &plate_views();
+        case CaptureKind::stripe_line:
+            return &line_views();
+        case CaptureKind::files:
+            break;
+    }
+    return nullptr;
+}
+
+Pose mounting(const CalibrationSession& session, const Pose& known) {
+    const json* result = session.result();
+    if (!result) return known;
+    if (session.method().id == "tcp-sphere" && (*result)["flange_from_sensor"].is_object())
+        if (auto pose = parse_pose((*result)["flange_from_sensor"], "flange_from_sensor")) return *pose;
+    return known;
+}
+
+const CalibrationCapture* first_with_pose(const CalibrationSession& session) {
+    for (const SessionCapture& c : session.state().captures)
+        if (c.taken->base_from_flange && !c.left_out) return c.taken.get();
+    return nullptr;
+}
+
+bool taken(const CalibrationSession& session, const Pose& at) {
+    for (const SessionCapture& c : session.state().captures)
+        if (c.taken->base_from_flange && !c.left_out &&
+            distance_mm(*c.taken->base_from_flange, at) < kNearMm &&
+            angle_rad(*c.taken->base_from_flange, at) < rad_from_deg(kNearDeg))
+            return true;
+    return false;
+}
+
+}  // namespace
+
+std::optional<NextPose> next_pose(const CalibrationSession& session, const Pose& flange_from_sensor) {
+    const auto* views = views_of(session.method());
+    const CalibrationCapture* first = first_with_pose(session);
+    if (!views || !first) return std::nullopt;
+    const json* result = session.result();
+    if (result && result->value("status", "") != "ok" && result->contains("proposals"))
+        for (const json& p : (*result)["proposals"])
+            if (auto pose = parse_pose(p.value("base_from_flange", json()), "proposals");
+                pose && !taken(session, *pose))
+                return NextPose{*pose, true};
+    const Pose x = mounting(session, flange_from_sensor);
+    // The first capture stands for the first view; the others follow from it.
+    const Pose base_from_target = *first->base_from_flange * x * target_from_sensor(views->front()).inverse();
+    for (const TargetView& view : *views) {
+        const Pose pose = base_from_target * target_from_sensor(view) * x.inverse();
+        if (!taken(session, pose)) return NextPose{pose, false};
+    }
+    if (result && result->contains("proposals"))
+        for (const json& p : (*result)["proposals"])
+            if (auto pose = parse_pose(p.value("base_from_flange", json()), "proposals");
+                pose && !taken(session, *pose))
+                return NextPose{*pose, true};
+    return std::nullopt;
+}
+
+std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method, const json& cell_settings) {
+    const auto* views = views_of(method);
+    auto settings = parse_cell_settings(cell_settings);
+    if (!views || !settings) return std::nullopt;
+    return SimulatedStart{
+        settings->base_from_target * target_from_sensor(views->front()) *
+            settings->flange_from_sensor.inverse(),
+        std::string(to_string(method.capture == CaptureKind::sphere_profile ? Scene::sphere : Scene::plate))};
+}
+
+std::vector<ViewMark> view_marks(const CalibrationSession& session, const Pose& flange_from_sensor) {
+    std::vector<ViewMark> marks;
+    const CalibrationCapture* first = first_with_pose(session);
+    if (!first) return marks;
+    const Eigen::Matrix3d x = mounting(session, flange_from_sensor).linear();
+    const Eigen::Matrix3d zero = first->base_from_flange->linear() * x;
+    for (const SessionCapture& c : session.state().captures) {
+        if (!c.taken->base_from_flange) continue;
+        const Eigen::Matrix3d turned = zero.transpose() * c.taken->base_from_flange->linear() * x;
+        ViewMark mark;
+        mark.id = c.taken->id;
+        mark.used = !c.left_out && !c.verification;
+        const Eigen::Vector3d sight = turned.col(2);
+        const Eigen::Vector3d axis(-sight.y(), sight.x(), 0);  // z turned into the sight line
+        const double sine = axis.norm();
+        const double angle = std::atan2(sine, sight.z());
+        const Eigen::Vector3d tilt =
+            sine > 1e-12 ? Eigen::Vector3d(axis / sine * angle) : Eigen::Vector3d::Zero();
+        mark.tilt_deg = tilt.head<2>() * (180 / kPi);
+        const Eigen::Matrix3d about = rotation_exp(-tilt) * turned;
+        mark.turn_deg = deg_from_rad(std::atan2(about(1, 0), about(0, 0)));
+        marks.push_back(mark);
+    }
+    return marks;
+}
+
+}  // namespace seamwright

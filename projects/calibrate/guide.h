@@ -1,0 +1,38 @@
+#pragma once
+// Leading a person through a session: which pose to take next, and how field of view and orientations are
+// covered.
+
+#include "projects/calibrate/session.h"
+
+namespace seamwright {
+
+struct NextPose {
+    Pose base_from_flange = Pose::Identity();
+    bool by_solver = false;  // chosen for what it adds to the solution; else the next of the method's views
+};
+
+// Relative to the first capture, which the person has jogged to: `flange_from_sensor` is the mounting as far
+// as known (the solved one is taken where there is one). Before the first capture nothing is proposed.
+// nullopt also when the method takes no poses, or all its views were taken and the solver asks for nothing.
+std::optional<NextPose> next_pose(const CalibrationSession& session, const Pose& flange_from_sensor);
+
+// Where a simulated robot has its target in view: the first capture's place. nullopt: the method needs no
+// target, the settings are not those of a simulated cell.
+struct SimulatedStart {
+    Pose base_from_flange = Pose::Identity();
+    std::string scene;  // of the simulated sensor's parameter "scene"
+};
+std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method,
+                                              const nlohmann::json& cell_settings);
+
+// One capture in the picture of orientations: how far the sight line is tilted against the first capture's,
+// and the turn about it.
+struct ViewMark {
+    std::string id;
+    Eigen::Vector2d tilt_deg = Eigen::Vector2d::Zero();  // about the first sensor's X and Y
+    double turn_deg = 0;
+    bool used = true;
+};
+std::vector<ViewMark> view_marks(const CalibrationSession& session, const Pose& flange_from_sensor);
+
+}  // namespace seamwright

@@ -1,0 +1,416 @@
+#include "projects/calibrate/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "devices/capture/capture.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+
+namespace seamwright {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kFormat = "seamwright-calibration-session";
+constexpr int kVersion = 1;
+
+// Device names come from people: what a folder cannot be called becomes '_'.
+std::string file_name(const std::string& text) {
+    std::string name;
+    for (const char c : text)
+        name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
+    while (!name.empty() && name.front() == '.') name.front() = '_';
+    return name.empty() ? "_" : name;
+}
+
+fs::path session_folder(const fs::path& project_file, const std::string& method,
+                        const std::string& sensor_id) {
+    return CalibrationSession::folder_of(project_file) / (file_name(sensor_id) + "-" + method);
+}
+
+json capture_json(const CalibrationCapture& c) {
+    return {{"id", c.id},
+            {"taken_utc", c.taken_utc},
+            {"origin", c.origin},
+            {"base_from_flange", c.base_from_flange ? pose_json(*c.base_from_flange) : json(nullptr)},
+            {"picture", c.picture},
+            {"entry", c.entry}};
+}
+
+Expected<CalibrationCapture> parse_capture(const json& data, const std::string& where) {
+    CalibrationCapture c;
+    for (auto [key, target] : {std::pair{"id", &c.id}, std::pair{"taken_utc", &c.taken_utc},
+                               std::pair{"origin", &c.origin}, std::pair{"picture", &c.picture}}) {
+        auto text = json_string(data, key, where);
+        if (!text) return tl::unexpected(text.error());
+        *target = *text;
+    }
+    if (const auto it = data.find("base_from_flange"); it != data.end() && !it->is_null()) {
+        auto pose = parse_pose(*it, json_path(where, "base_from_flange"));
+        if (!pose) return tl::unexpected(pose.error());
+        c.base_from_flange = *pose;
+    }
+    auto entry = json_field(data, "entry", where);
+    if (!entry) return tl::unexpected(entry.error());
+    c.entry = **entry;
+    return c;
+}
+
+json marks_json(const SessionState& state) {
+    json list = json::array();
+    for (const SessionCapture& c : state.captures)
+        list.push_back({{"id", c.taken->id}, {"left_out", c.left_out}, {"verification", c.verification}});
+    return list;
+}
+
+int number_of(const std::string& id) {
+    int n = 0;
+    if (id.size() < 2 || id[0] != 'P') return 0;
+    const auto end = id.data() + id.size();
+    const auto parsed = std::from_chars(id.data() + 1, end, n);
+    return parsed.ec == std::errc() && parsed.ptr == end ? n : 0;
+}
+
+Expected<void> make_folder(const fs::path& folder) {
+    std::error_code code;
+    fs::create_directories(folder, code);
+    if (code) return file_error("the folder cannot be made: " + code.message(), folder.string());
+    return {};
+}
+
+double at_most(const json& entry, const char* key) {
+    const auto it = entry.find(key);
+    return it != entry.end() && it->is_number() ? it->get<double>() : kNone;
+}
+
+}  // namespace
+
+fs::path CalibrationSession::folder_of(const fs::path& project_file) {
+    return fs::path(project_file.string() + ".calibration");
+}
+
+bool CalibrationSession::exists(const fs::path& project_file, const std::string& method,
+                                const std::string& sensor_id) {
+    std::error_code code;
+    return fs::exists(session_folder(project_file, method, sensor_id) / "session.json", code);
+}
+
+Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_file, const std::string& method,
+                                                      const std::string& sensor_id,
+                                                      const std::string& robot_id) {
+    CalibrationSession s;
+    s.method_ = find_method(method);
+    if (!s.method_) return usage_error("the calibration method '" + method + "' is unknown", "method");
+    s.sensor_id_ = sensor_id;
+    s.robot_id_ = robot_id;
+    s.folder_ = session_folder(project_file, method, sensor_id);
+    s.state_.settings = default_settings(*s.method_);
+    if (exists(project_file, method, sensor_id)) {
+        if (auto ok = s.read(); !ok) return tl::unexpected(ok.error());
+    }
+    return s;
+}
+
+Expected<void> CalibrationSession::read() {
+    const fs::path list_file = folder_ / "session.json";
+    auto data = read_json_file(list_file);
+    const auto mend = "move the folder away to begin anew";
+    if (!data) return file_error(data.error().what, list_file.string(), mend);
+    if (data->value("format", "") != kFormat || data->value("method", "") != method_->id)
+        return file_error("this is no calibration session of " + method_->id, list_file.string(), mend);
+    if (data->value("version", 0) > kVersion)
+        return file_error("a newer Seamwright has written this session", list_file.string(), "use that one");
+    auto settings = json_field(*data, "settings", "");
+    auto captures = json_array(*data, "captures", "");
+    if (!settings || !captures)
+        return file_error((!settings ? settings.error() : captures.error()).sentence(), list_file.string(),
+                          mend);
+    state_.settings = **settings;
+    used_as_ = data->value("used_as", "");
+    last_number_ = data->value("last_number", 0);
+    for (const json& mark : **captures) {
+        const std::string id = mark.value("id", "");
+        const fs::path file = folder_ / "captures" / (file_name(id) + ".json");
+        auto stored = read_json_file(file);
+        auto capture = stored ? parse_capture(*stored, id) : tl::unexpected(stored.error());
+        if (!capture) {
+            notices_.push_back("capture " + id + " is lost: " + capture.error().sentence());
+            continue;
+        }
+        last_number_ = std::max(last_number_, number_of(id));
+        state_.captures.push_back({std::make_shared<const CalibrationCapture>(std::move(*capture)),
+                                   mark.value("left_out", false), mark.value("verification", false)});
+    }
+    // A solution that does not belong to exactly these captures and marks is solved again.
+    if (auto solved = read_json_file(folder_ / "result.json");
+        solved && solved->contains("result") && solved->value("settings", json()) == state_.settings &&
+        solved->value("captures", json()) == marks_json(state_)) {
+        result_ = (*solved)["result"];
+        solved_from_ = state_;
+    }
+    return {};
+}
+
+Expected<void> CalibrationSession::write_list(const SessionState& state, const std::string& used_as) const {
+    if (auto ok = make_folder(folder_ / "captures"); !ok) return ok;
+    return write_text_file(folder_ / "session.json", json{{"format", kFormat},
+                                                          {"version", kVersion},
+                                                          {"method", method_->id},
+                                                          {"sensor", sensor_id_},
+                                                          {"robot", robot_id_},
+                                                          {"settings", state.settings},
+                                                          {"captures", marks_json(state)},
+                                                          {"last_number", last_number_},
+                                                          {"used_as", used_as}}
+                                                         .dump(1));
+}
+
+Expected<void> CalibrationSession::set_state(SessionState state) {
+    if (auto ok = write_list(state, {}); !ok) return ok;
+    state_ = std::move(state);
+    used_as_.clear();
+    return {};
+}
+
+std::string CalibrationSession::free_id() const {
+    return fmt::format("P{}", last_number_ + 1);
+}
+
+fs::path CalibrationSession::picture_path(const std::string& id) const {
+    return folder_ / "captures" / (file_name(id) + ".png");
+}
+
+fs::path CalibrationSession::picture_of(const CalibrationCapture& capture) const {
+    if (capture.picture.empty()) return {};
+    const fs::path p(capture.picture);
+    return p.is_absolute() ? p : folder_ / p;
+}
+
+Expected<std::string> CalibrationSession::add(CalibrationCapture capture, bool verification) {
+    std::set<std::string> taken;
+    for (const SessionCapture& c : state_.captures) taken.insert(file_name(c.taken->id));
+    if (capture.id.empty()) capture.id = free_id();
+    const std::string wanted = capture.id;
+    std::error_code code;
+    // A capture that was removed keeps its file: undo brings it back.
+    for (int n = 2; taken.contains(file_name(capture.id)) ||
+                    fs::exists(folder_ / "captures" / (file_name(capture.id) + ".json"), code);
+         ++n)
+        capture.id = fmt::format("{}-{}", wanted, n);
+    if (capture.taken_utc.empty()) capture.taken_utc = utc_now();
+    if (capture.entry.is_object()) capture.entry["id"] = capture.id;
+    if (auto ok = make_folder(folder_ / "captures"); !ok) return tl::unexpected(ok.error());
+    if (auto ok = write_text_file(folder_ / "captures" / (file_name(capture.id) + ".json"),
+                                  capture_json(capture).dump());
+        !ok)
+        return tl::unexpected(ok.error());
+    const int before = last_number_;
+    last_number_ = std::max(last_number_, number_of(capture.id));
+    const std::string id = capture.id;
+    SessionState next = state_;
+    next.captures.push_back(
+        {std::make_shared<const CalibrationCapture>(std::move(capture)), false, verification});
+    if (auto ok = set_state(std::move(next)); !ok) {
+        last_number_ = before;
+        return tl::unexpected(ok.error());
+    }
+    return id;
+}
+
+namespace {
+SessionCapture* find(SessionState& state, const std::string& id) {
+    for (SessionCapture& c : state.captures)
+        if (c.taken->id == id) return &c;
+    return nullptr;
+}
+}  // namespace
+
+Expected<void> CalibrationSession::leave_out(const std::string& id, bool left_out) {
+    SessionState next = state_;
+    SessionCapture* c = find(next, id);
+    if (!c) return input_error("there is no capture " + id, method_->id);
+    c->left_out = left_out;
+    return set_state(std::move(next));
+}
+
+Expected<void> CalibrationSession::set_verification(const std::string& id, bool verification) {
+    SessionState next = state_;
+    SessionCapture* c = find(next, id);
+    if (!c) return input_error("there is no capture " + id, method_->id);
+    c->verification = verification;
+    return set_state(std::move(next));
+}
+
+Expected<void> CalibrationSession::remove(const std::string& id) {
+    SessionState next = state_;
+    if (std::erase_if(next.captures, [&](const SessionCapture& c) { return c.taken->id == id; }) == 0)
+        return input_error("there is no capture " + id, method_->id);
+    return set_state(std::move(next));
+}
+
+Expected<void> CalibrationSession::set(const std::string& name, double value) {
+    SessionState next = state_;
+    if (auto ok = set_setting(*method_, next.settings, name, value); !ok) return ok;
+    return set_state(std::move(next));
+}
+
+Expected<void> CalibrationSession::set_settings(json settings) {
+    SessionState next = state_;
+    next.settings = std::move(settings);
+    return next == state_ ? Expected<void>() : set_state(std::move(next));
+}
+
+json CalibrationSession::data() const {
+    json data = state_.settings;
+    json list = json::array();
+    for (const SessionCapture& c : state_.captures) list.push_back(c.taken->entry);
+    data[method_->entries] = std::move(list);
+    return data;
+}
+
+std::vector<std::string> CalibrationSession::exclude() const {
+    std::vector<std::string> ids;
+    for (std::size_t i = 0; i < state_.captures.size(); ++i) {
+        const SessionCapture& c = state_.captures[i];
+        // Entries without fields, the lines of a lens, are excluded by their number.
+        if (c.left_out || c.verification)
+            ids.push_back(c.taken->entry.is_object() ? c.taken->id : std::to_string(i));
+    }
+    return ids;
+}
+
+int CalibrationSession::solving_captures() const {
+    return static_cast<int>(
+        std::count_if(state_.captures.begin(), state_.captures.end(),
+                      [](const SessionCapture& c) { return !c.left_out && !c.verification; }));
+}
+
+int CalibrationSession::verification_captures() const {
+    return static_cast<int>(
+        std::count_if(state_.captures.begin(), state_.captures.end(),
+                      [](const SessionCapture& c) { return !c.left_out && c.verification; }));
+}
+
+Expected<CalibrateOutcome> CalibrationSession::solve() const {
+    if (solving_captures() < method_->fewest)
+        return input_error(fmt::format("{} captures are too few, at least {} are needed", solving_captures(),
+                                       method_->fewest),
+                           method_->id, "take more");
+    return method_->solve(data(), exclude());
+}
+
+Expected<void> CalibrationSession::take(const CalibrateOutcome& outcome, const SessionState& solved_from) {
+    const json stored{{"result", outcome.result},
+                      {"settings", solved_from.settings},
+                      {"captures", marks_json(solved_from)}};
+    if (auto ok = make_folder(folder_); !ok) return ok;
+    if (auto ok = write_text_file(folder_ / "result.json", stored.dump(1)); !ok) return ok;
+    result_ = outcome.result;
+    solved_from_ = solved_from;
+    return {};
+}
+
+const json* CalibrationSession::result() const {
+    return result_ && solved_from_ == state_ ? &*result_ : nullptr;
+}
+
+std::vector<PoseRow> CalibrationSession::rows() const {
+    std::vector<PoseRow> rows;
+    const json* solved = result();
+    const json per_pose = solved ? solved->value("per_pose", json::array()) : json::array();
+    for (std::size_t i = 0; i < state_.captures.size(); ++i) {
+        const SessionCapture& c = state_.captures[i];
+        PoseRow row;
+        row.id = c.taken->id;
+        row.left_out = c.left_out;
+        row.verification = c.verification;
+        const std::string key = c.taken->entry.is_object() ? row.id : std::to_string(i);
+        for (const json& p : per_pose) {
+            if (p.value("id", "") != key) continue;
+            row.rms_mm = at_most(p, "rms_mm");
+            row.deg = at_most(p, "deg");
+            row.rms_px = at_most(p, "rms_px");
+            if (c.left_out || c.verification) break;
+            row.contradicts = !p.value("used", true);
+            row.note = p.value("note", "");
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+// The limit is three times what the solution promises for a pose it has not seen: its own leave-out residual,
+// or the residual of the poses used where the method leaves none out.
+Verification CalibrationSession::verification() const {
+    Verification v;
+    const json* solved = result();
+    if (!solved) return v;
+    const json hold_out = solved->value("hold_out", json::object());
+    const auto judge = [&](double PoseRow::*part, const char* key, double floor, double& worst,
+                           double& limit) {
+        double squares = 0;
+        int used = 0;
+        for (const PoseRow& row : rows()) {
+            if (std::isnan(row.*part)) continue;
+            if (row.verification && !row.left_out)
+                worst = std::isnan(worst) ? row.*part : std::max(worst, row.*part);
+            else if (!row.left_out && !row.contradicts)
+                squares += (row.*part) * (row.*part), ++used;
+        }
+        const double promised = at_most(hold_out, key);
+        const double fitted = used > 0 ? std::sqrt(squares / used) : 0;
+        limit = std::max(3 * (std::isnan(promised) ? fitted : std::max(promised, fitted)), floor);
+    };
+    judge(&PoseRow::rms_mm, "rms_mm", 0.05, v.worst_mm, v.limit_mm);
+    judge(&PoseRow::deg, "rms_deg", 0.02, v.worst_deg, v.limit_deg);
+    judge(&PoseRow::rms_px, "rms_px", 0.3, v.worst_px, v.limit_px);
+    v.poses = verification_captures();
+    const auto holds = [](double worst, double limit) { return std::isnan(worst) || worst <= limit; };
+    v.confirmed =
+        v.poses > 0 && !(std::isnan(v.worst_mm) && std::isnan(v.worst_deg) && std::isnan(v.worst_px)) &&
+        holds(v.worst_mm, v.limit_mm) && holds(v.worst_deg, v.limit_deg) && holds(v.worst_px, v.limit_px);
+    return v;
+}
+
+SessionStage CalibrationSession::stage() const {
+    if (!used_as_.empty()) return SessionStage::used;
+    if (state_.captures.empty()) return SessionStage::prepare;
+    if (solving_captures() < method_->fewest) return SessionStage::capture;
+    const json* solved = result();
+    if (!solved) return SessionStage::solve;
+    const std::string verdict = solved->value("verdict", "");
+    if (verdict != "good" && verdict != "usable") return SessionStage::capture;
+    // A check and a chain of poses measured elsewhere have no pose that could be kept back.
+    if (method_->use == AnswerUse::check || !solved->contains("per_pose")) return SessionStage::use;
+    return verification().confirmed ? SessionStage::use : SessionStage::verify;
+}
+
+Expected<void> CalibrationSession::set_used_as(const std::string& calibration_id) {
+    if (auto ok = write_list(state_, calibration_id); !ok) return ok;
+    used_as_ = calibration_id;
+    return {};
+}
+
+Expected<void> CalibrationSession::begin_anew() {
+    std::error_code code;
+    if (fs::exists(folder_, code)) {
+        std::string time = utc_now();
+        std::replace(time.begin(), time.end(), ':', '.');
+        fs::rename(folder_, fs::path(folder_.string() + "-" + time), code);
+        if (code) return file_error("the session cannot be moved: " + code.message(), folder_.string());
+    }
+    state_.captures.clear();
+    last_number_ = 0;
+    result_.reset();
+    notices_.clear();
+    return set_state(state_);
+}
+
+}  // namespace seamwright

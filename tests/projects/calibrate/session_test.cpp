@@ -1,0 +1,310 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/cell.h"
+#include "projects/calibrate/answer.h"
+#include "projects/calibrate/capture.h"
+#include "projects/calibrate/guide.h"
+#include "projects/simulated_truth.h"
+
+namespace seamwright {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Session : public testing::Test {
+  protected:
+    fs::path folder = fs::temp_directory_path() / ("seamwright_session_" + std::to_string(::getpid()));
+    fs::path project = folder / "door.seam";
+    void SetUp() override {
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    // A sphere seen by the simulated sensor; `bump_mm` moves the sphere.
+    std::shared_ptr<SimulatedCell> cell = make(0);
+    static std::shared_ptr<SimulatedCell> make(double bump_mm) {
+        CellSettings settings = default_cell_settings();
+        settings.scene = Scene::sphere;
+        settings.base_from_target.translation().x() += bump_mm;
+        return SimulatedCell::open(settings).value();
+    }
+    SensorSetup sensor() const {
+        SensorSetup s;
+        s.id = "A";
+        s.driver = "simulated";
+        return s;
+    }
+    Calibration truth() const {
+        RobotSetup robot;
+        robot.id = "R1";
+        robot.driver = "simulated";
+        Calibration c = simulated_truth(sensor(), robot).value();
+        return c;
+    }
+    CalibrationSession open(const std::string& method = "tcp-sphere") const {
+        auto s = CalibrationSession::open(project, method, "A", "R1");
+        EXPECT_TRUE(s) << s.error().sentence();
+        return *s;
+    }
+    static CalibrationCapture shoot(SimulatedCell& where, const CalibrationSession& s,
+                                    const Calibration& base, const Pose& at, std::uint64_t seed) {
+        Frame frame;
+        where.render(at, seed, frame);
+        SensorSetup a;
+        a.id = "A";
+        auto taken = capture_shot(s.method(), s.state().settings, a, &base, frame, nullptr, at);
+        EXPECT_TRUE(taken) << taken.error().sentence();
+        return taken ? taken->capture : CalibrationCapture{};
+    }
+    // As a person is led: to the start, then to every proposed pose.
+    void capture(CalibrationSession& s, int count, const std::function<bool(int)>& bad = {}) {
+        Calibration base = truth();
+        const auto bumped = make(4);
+        for (int i = 0; i < count; ++i) {
+            Pose at = simulated_start(s.method(), json::object())->base_from_flange;
+            if (const auto next = next_pose(s, base.flange_from_sensor)) at = next->base_from_flange;
+            auto& where = bad && bad(i) ? *bumped : *cell;
+            ASSERT_TRUE(s.add(shoot(where, s, base, at, static_cast<std::uint64_t>(100 + i))));
+        }
+    }
+    void solve(CalibrationSession& s) const {
+        const SessionState of = s.state();
+        auto outcome = s.solve();
+        ASSERT_TRUE(outcome) << outcome.error().sentence();
+        ASSERT_TRUE(s.take(*outcome, of));
+    }
+};
+
+TEST_F(Session, SphereFromFirstCaptureToUse) {
+    CalibrationSession s = open();
+    EXPECT_EQ(s.stage(), SessionStage::prepare);
+    capture(s, 5);
+    EXPECT_EQ(s.stage(), SessionStage::capture);
+    EXPECT_FALSE(s.solve()) << "five are too few";
+    capture(s, 6);
+    EXPECT_EQ(s.stage(), SessionStage::solve);
+    solve(s);
+    ASSERT_TRUE(s.result());
+    EXPECT_EQ((*s.result())["status"], "ok");
+    EXPECT_EQ(s.stage(), SessionStage::verify) << "not used before a pose kept back has judged it";
+    // Two more that are never solved with.
+    capture(s, 2);
+    ASSERT_TRUE(s.set_verification("P12", true));
+    ASSERT_TRUE(s.set_verification("P13", true));
+    EXPECT_EQ(s.result(), nullptr);
+    solve(s);
+    const Verification v = s.verification();
+    EXPECT_EQ(v.poses, 2);
+    EXPECT_TRUE(v.confirmed) << v.worst_mm << " mm, limit " << v.limit_mm;
+    EXPECT_EQ(s.stage(), SessionStage::use);
+
+    Project project_now;
+    project_now.sensors = {sensor()};
+    RobotSetup robot;
+    robot.id = "R1";
+    project_now.robots = {robot};
+    project_now.calibrations = {truth()};
+    project_now.sensors[0].calibration_id = project_now.calibrations[0].id;
+    const auto c = calibration_of_session(s, project_now);
+    ASSERT_TRUE(c) << c.error().sentence();
+    EXPECT_TRUE(c->model);
+    const CalibrationDifference d = difference(*c, truth());
+    EXPECT_GT(d.points, 60);
+    EXPECT_LT(d.largest_mm, 0.15) << "against the cell's own mounting";
+    EXPECT_GT(d.largest_mm, 0);
+    ASSERT_TRUE(s.set_used_as(c->id));
+    EXPECT_EQ(open().used_as(), c->id);
+    // Kept beside when the next one begins.
+    ASSERT_TRUE(s.begin_anew());
+    EXPECT_TRUE(open().state().captures.empty());
+    int kept = 0;
+    for (const auto& entry : fs::directory_iterator(CalibrationSession::folder_of(project)))
+        kept += fs::exists(entry.path() / "result.json");
+    EXPECT_EQ(kept, 1);
+}
+
+TEST_F(Session, BadPoseIsSpottedAndLeftOut) {
+    CalibrationSession s = open();
+    capture(s, 9, [](int i) { return i == 4; });  // the sphere was bumped, and put back
+    solve(s);
+    const auto rows = s.rows();
+    ASSERT_EQ(rows.size(), 9U);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (i != 4) {
+            EXPECT_LT(rows[i].rms_mm, 0.5 * rows[4].rms_mm) << rows[i].id;
+        }
+    EXPECT_GT(rows[4].rms_mm, 0.3);
+    ASSERT_TRUE(s.leave_out("P5", true));
+    EXPECT_EQ(s.result(), nullptr) << "a solution belongs to its marks";
+    solve(s);
+    EXPECT_TRUE(s.rows()[4].left_out);
+    EXPECT_GT(s.rows()[4].rms_mm, 0.3) << "the residual of what is left out is still given";
+    EXPECT_EQ((*s.result())["status"], "ok");
+    // A bumped pose as verification refuses the use.
+    ASSERT_TRUE(s.leave_out("P5", false));
+    ASSERT_TRUE(s.set_verification("P5", true));
+    solve(s);
+    EXPECT_FALSE(s.verification().confirmed);
+    EXPECT_GT(s.verification().worst_mm, s.verification().limit_mm);
+    EXPECT_EQ(s.stage(), SessionStage::verify);
+}
+
+TEST_F(Session, UndoBringsBackWhatWasRemoved) {
+    CalibrationSession s = open();
+    capture(s, 7);
+    solve(s);
+    const SessionState before = s.state();
+    const json solved = *s.result();
+    ASSERT_TRUE(s.remove("P3"));
+    EXPECT_EQ(s.state().captures.size(), 6U);
+    EXPECT_FALSE(s.remove("P3"));
+    ASSERT_TRUE(s.set_state(before));
+    ASSERT_TRUE(s.result());
+    EXPECT_EQ(*s.result(), solved);
+    // After removal no id comes a second time.
+    ASSERT_TRUE(s.remove("P7"));
+    EXPECT_EQ(open().free_id(), "P8");
+}
+
+// Killed at a random moment while it grows: everything that was reported as done is there.
+TEST_F(Session, SurvivesAKill) {
+    capture(*std::make_unique<CalibrationSession>(open()), 3);
+    const json entry = open().state().captures.at(0).taken->entry;
+    for (int trial = 0; trial < 6; ++trial) {
+        int pipe_ends[2];
+        ASSERT_EQ(::pipe(pipe_ends), 0);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            auto s = CalibrationSession::open(project, "tcp-sphere", "A", "R1");
+            for (int i = 0; s && i < 100000; ++i) {
+                CalibrationCapture c;
+                c.entry = entry;
+                auto id = s->add(std::move(c));
+                if (!id) ::_exit(2);
+                if (i % 3 == 2 && !s->leave_out(*id, true)) ::_exit(3);
+                const int n = std::stoi(id->substr(1));
+                if (::write(pipe_ends[1], &n, sizeof n) != static_cast<ssize_t>(sizeof n)) ::_exit(4);
+            }
+            ::_exit(0);
+        }
+        ::close(pipe_ends[1]);
+        int newest = 0, n = 0;
+        for (int i = 0;
+             i < 3 + 2 * trial && ::read(pipe_ends[0], &n, sizeof n) == static_cast<ssize_t>(sizeof n); ++i)
+            newest = n;
+        ::kill(child, SIGKILL);
+        while (::read(pipe_ends[0], &n, sizeof n) == static_cast<ssize_t>(sizeof n)) newest = n;
+        ::close(pipe_ends[0]);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        ASSERT_TRUE(WIFSIGNALED(status)) << "the child must not have ended by itself";
+        const CalibrationSession s = open();
+        EXPECT_TRUE(s.notices().empty());
+        ASSERT_FALSE(s.state().captures.empty());
+        const std::string last = s.state().captures.back().taken->id;
+        EXPECT_GE(std::stoi(last.substr(1)), newest);
+        EXPECT_LE(std::stoi(last.substr(1)), newest + 1);
+    }
+}
+
+TEST_F(Session, ResumesWithItsSolution) {
+    {
+        CalibrationSession s = open();
+        capture(s, 8);
+        ASSERT_TRUE(s.leave_out("P2", true));
+        solve(s);
+    }
+    CalibrationSession s = open();
+    ASSERT_TRUE(s.result());
+    EXPECT_EQ(s.rows().size(), 8U);
+    EXPECT_TRUE(s.rows()[1].left_out);
+    // Solved again from what is on disk: the same numbers.
+    const auto again = s.solve();
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->result["flange_from_sensor"], (*s.result())["flange_from_sensor"]);
+    // A capture that a disk error damaged is named, the others stay.
+    std::ofstream(s.folder() / "captures" / "P4.json") << "{";
+    const CalibrationSession damaged = open();
+    EXPECT_EQ(damaged.state().captures.size(), 7U);
+    ASSERT_EQ(damaged.notices().size(), 1U);
+    EXPECT_THAT(damaged.notices()[0], HasSubstr("P4"));
+    EXPECT_EQ(damaged.result(), nullptr);
+    // Foreign files are refused with a sentence.
+    std::ofstream(s.folder() / "session.json") << "{\"format\":\"something\"}";
+    const auto refused = CalibrationSession::open(project, "tcp-sphere", "A", "R1");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().sentence(), HasSubstr("no calibration session"));
+}
+
+TEST_F(Session, SaysWhatIsNotSeen) {
+    CalibrationSession s = open();
+    const Calibration base = truth();
+    Frame frame;
+    Pose away = simulated_start(s.method(), json::object())->base_from_flange;
+    away.translation().x() += 400;
+    cell->render(away, 1, frame);
+    const auto missed = capture_shot(s.method(), s.state().settings, sensor(), &base, frame, nullptr, away);
+    ASSERT_FALSE(missed);
+    EXPECT_THAT(missed.error().sentence(), testing::AnyOf(HasSubstr("no circle"), HasSubstr("no stripe")));
+    const auto blind = capture_shot(s.method(), s.state().settings, sensor(), nullptr, frame, nullptr, away);
+    ASSERT_FALSE(blind);
+    EXPECT_THAT(blind.error().sentence(), HasSubstr("calibrate camera and laser plane first"));
+}
+
+// The images of a real cell, read once: the command line's numbers, and a frame left out without reading
+// again.
+TEST_F(Session, StripeCameraFilesGiveTheCommandLinesAnswer) {
+    const char* given = std::getenv("SEAMWRIGHT_DATA");
+    const fs::path images = fs::path(given ? given : SEAMWRIGHT_SHARED_DATA) / "etna" / "calib2";
+    if (!fs::exists(images)) GTEST_SKIP() << "skipped: no real data";
+    CalibrationSession s = open("stripe-camera");
+    auto read = read_captures(s.method(), s.state().settings, nullptr, images, {}, {});
+    ASSERT_TRUE(read) << read.error().sentence();
+    for (CalibrationCapture& c : read->captures) ASSERT_TRUE(s.add(std::move(c)));
+    solve(s);
+    const auto command_line = calibrate_stripe_camera_folder(images.string(), "7x6", 10, {});
+    ASSERT_TRUE(command_line);
+    const auto numbers = [](const json& r) {
+        std::vector<double> all;
+        for (const json& p : r["parameters"])
+            if (p["value"].is_number()) all.push_back(p["value"]);
+        for (const char* key : {"on_plane_share", "plane_rms_mm", "reprojection_rms_px"})
+            all.push_back(r[key]);
+        all.push_back(r["laser_plane"]["distance_mm"]);
+        all.push_back(r["hand_eye"]["target_spread_mm"]);
+        return all;
+    };
+    const auto expected = numbers(command_line->result), found = numbers(*s.result());
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i], expected[i], 1e-9 * std::max(1.0, std::abs(expected[i]))) << i;
+    EXPECT_EQ((*s.result())["verdict"], command_line->result["verdict"]);
+
+    // Resumed, with the images gone for all it knows: one left out.
+    CalibrationSession resumed = open("stripe-camera");
+    const std::string id = resumed.state().captures.at(2).taken->id;
+    ASSERT_TRUE(resumed.leave_out(id, true));
+    solve(resumed);
+    const auto without = calibrate_stripe_camera_folder(images.string(), "7x6", 10, {id});
+    ASSERT_TRUE(without);
+    EXPECT_NEAR((*resumed.result())["camera"]["fx"].get<double>(),
+                without->result["camera"]["fx"].get<double>(), 1e-6);
+    const PoseRow row = resumed.rows().at(2);
+    EXPECT_TRUE(row.left_out);
+    EXPECT_LT(row.rms_px, 2) << "a good frame fits a solution that has not seen it";
+    EXPECT_LT(row.deg, 1);
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -87,28 +87,34 @@ std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method, c
         std::string(to_string(method.capture == CaptureKind::sphere_profile ? Scene::sphere : Scene::plate))};
 }
 
+std::optional<ViewMark> view_mark(const CalibrationSession& session, const Pose& flange_from_sensor,
+                                  const Pose& base_from_flange) {
+    const CalibrationCapture* first = first_with_pose(session);
+    if (!first) return std::nullopt;
+    const Eigen::Matrix3d x = mounting(session, flange_from_sensor).linear();
+    const Eigen::Matrix3d turned =
+        (first->base_from_flange->linear() * x).transpose() * base_from_flange.linear() * x;
+    const Eigen::Vector3d sight = turned.col(2);
+    const Eigen::Vector3d axis(-sight.y(), sight.x(), 0);  // z turned into the sight line
+    const double sine = axis.norm();
+    const Eigen::Vector3d tilt =
+        sine > 1e-12 ? Eigen::Vector3d(axis / sine * std::atan2(sine, sight.z())) : Eigen::Vector3d::Zero();
+    const Eigen::Matrix3d about = rotation_exp(-tilt) * turned;
+    ViewMark mark;
+    mark.tilt_deg = tilt.head<2>() * (180 / kPi);
+    mark.turn_deg = deg_from_rad(std::atan2(about(1, 0), about(0, 0)));
+    return mark;
+}
+
 std::vector<ViewMark> view_marks(const CalibrationSession& session, const Pose& flange_from_sensor) {
     std::vector<ViewMark> marks;
-    const CalibrationCapture* first = first_with_pose(session);
-    if (!first) return marks;
-    const Eigen::Matrix3d x = mounting(session, flange_from_sensor).linear();
-    const Eigen::Matrix3d zero = first->base_from_flange->linear() * x;
     for (const SessionCapture& c : session.state().captures) {
         if (!c.taken->base_from_flange) continue;
-        const Eigen::Matrix3d turned = zero.transpose() * c.taken->base_from_flange->linear() * x;
-        ViewMark mark;
-        mark.id = c.taken->id;
-        mark.used = !c.left_out && !c.verification;
-        const Eigen::Vector3d sight = turned.col(2);
-        const Eigen::Vector3d axis(-sight.y(), sight.x(), 0);  // z turned into the sight line
-        const double sine = axis.norm();
-        const double angle = std::atan2(sine, sight.z());
-        const Eigen::Vector3d tilt =
-            sine > 1e-12 ? Eigen::Vector3d(axis / sine * angle) : Eigen::Vector3d::Zero();
-        mark.tilt_deg = tilt.head<2>() * (180 / kPi);
-        const Eigen::Matrix3d about = rotation_exp(-tilt) * turned;
-        mark.turn_deg = deg_from_rad(std::atan2(about(1, 0), about(0, 0)));
-        marks.push_back(mark);
+        auto mark = view_mark(session, flange_from_sensor, *c.taken->base_from_flange);
+        if (!mark) break;
+        mark->id = c.taken->id;
+        mark->used = !c.left_out && !c.verification;
+        marks.push_back(*mark);
     }
     return marks;
 }

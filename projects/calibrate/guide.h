@@ -34,5 +34,8 @@ struct ViewMark {
     bool used = true;
 };
 std::vector<ViewMark> view_marks(const CalibrationSession& session, const Pose& flange_from_sensor);
+// The same of a pose that is not taken yet; nullopt before the first capture.
+std::optional<ViewMark> view_mark(const CalibrationSession& session, const Pose& flange_from_sensor,
+                                  const Pose& base_from_flange);
 
 }  // namespace seamwright

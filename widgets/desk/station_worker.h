@@ -55,6 +55,14 @@ struct PassResult {
     std::optional<ContourCurve> curve;  // of the spot's feature over the travel
 };
 
+// One stand of the robot before a calibration target.
+struct CalibrationShot {
+    std::string sensor_id, robot_id;
+    FramePtr stripe;
+    FramePtr board;                        // with the laser off, where the sensor can switch it
+    std::optional<Pose> base_from_flange;  // absent: no robot was asked
+};
+
 class StationWorker : public QObject {
     Q_OBJECT
   public:
@@ -72,6 +80,9 @@ class StationWorker : public QObject {
     void zero_shift(int runs);
     void teach(const Spot& draft, int repeats);
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
+    // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
+    // for the surroundings. An empty robot_id asks no robot.
+    void take_shot(const std::string& sensor_id, const std::string& robot_id, bool board);
     void jog_simulated(const std::string& robot_id, const Pose& base_from_flange);  // other drivers refuse
     void set_sensor_parameter(const std::string& sensor_id, const std::string& name, double value);
     void answer_push(bool yes);  // to confirm_push
@@ -88,6 +99,8 @@ class StationWorker : public QObject {
     void zero_shift_done(int runs);
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
+    void shot_taken(std::shared_ptr<const seamwright::CalibrationShot> shot);
+    void shot_failed(QString sentence);  // instead of failed(): who asked for it says it
 
   private:
     struct Live;

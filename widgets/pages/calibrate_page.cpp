@@ -1,14 +1,13 @@
 #include "widgets/pages/calibrate_page.h"
 
-#include <QClipboard>
 #include <QDateTime>
 #include <QFrame>
-#include <QGuiApplication>
 
 #include <algorithm>
 
 #include "projects/measure.h"
 #include "projects/simulated_truth.h"
+#include "widgets/calibrate/method_text.h"
 
 namespace seamwright {
 namespace {
@@ -27,25 +26,30 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
           desk, views, Step::calibrate,
           tr("From pixels to millimetres on the flange. Each sensor uses one calibration; the others stay "
              "selectable.")) {
+    overview_ = new QWidget;
+    auto* all = new QVBoxLayout(overview_);
+    all->setContentsMargins(0, 0, 0, 0);
+    all->setSpacing(8);
     cards_ = new QVBoxLayout;
-    box().addLayout(cards_);
-    box().addWidget(make_heading(tr("A new calibration")));
-    const auto method = [this](const QString& name, const QString& text, const QString& command) {
-        box().addWidget(make_heading(name));
-        box().addWidget(make_text(text));
-        auto* line = make_text(command);
-        line->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-        box().addWidget(line);
-        box().addLayout(
-            make_row({make_button("copy_command", "copy", tr("Copy the command"),
-                                  tr("Puts the command line into the clipboard: %1").arg(command),
-                                  [command] { QGuiApplication::clipboard()->setText(command); })}));
-    };
-    method(tr("Camera and laser plane"),
-           tr("Images of a board with the stripe across it, in 8 or more orientations."),
-           "seamwright calibrate stripe-camera DIR --board 7x6 --pitch-mm 10 --json camera.json");
-    method(tr("Sensor on the flange"), tr("Cuts of one sphere from 9 or more orientations of the flange."),
-           "seamwright calibrate tcp-sphere DATA.json --json tcp.json");
+    all->addLayout(cards_);
+    all->addWidget(make_heading(tr("A new calibration")));
+    sensor_ = new QComboBox;
+    sensor_->setObjectName("calibration_sensor");
+    robot_ = new QComboBox;
+    robot_->setObjectName("calibration_robot");
+    add_field(*all, tr("Sensor"), sensor_, tr("The sensor to calibrate"));
+    add_field(*all, tr("Robot"), robot_, tr("The robot that carries it, or shows it the target"));
+    connect(sensor_, &QComboBox::currentIndexChanged, this, [this] { refresh(); });
+    for (const CalibrationMethod& method : calibration_methods()) {
+        const QString id = QString::fromStdString(method.id);
+        const MethodText words = method_text(id);
+        all->addWidget(make_heading(words.title));
+        all->addWidget(make_text(words.why));
+        auto* button = make_button("begin_" + id, "play", tr("Begin"), words.title,
+                                   [this, name = method.id] { begin(name); });
+        begins_[method.id] = button;
+        all->addLayout(make_row({button}));
+    }
     simulated_ = new QWidget;
     auto* sim = new QVBoxLayout(simulated_);
     sim->setContentsMargins(0, 0, 0, 0);
@@ -55,11 +59,27 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
     sim->addLayout(make_row({make_button("simulated_truth", "check", tr("Take the simulation's own"),
                                          tr("Adds the simulated cell's calibration and uses it"),
                                          [this] { take_simulated(); })}));
-    box().addWidget(simulated_);
+    all->addWidget(simulated_);
+    box().addWidget(overview_);
+    guided_ = new GuidedPage(desk_);
+    guided_->hide();
+    box().addWidget(guided_);
+    connect(guided_, &GuidedPage::left, this, [this] {
+        guided_->hide();
+        overview_->show();
+        if (isVisible()) refresh();
+    });
     box().addStretch(1);
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) refresh();
     });
+}
+
+void CalibratePage::begin(const std::string& method) {
+    if (!guided_->begin(method, sensor_->currentText().toStdString(), robot_->currentText().toStdString()))
+        return;
+    overview_->hide();
+    guided_->show();
 }
 
 // One a sensor that is connected and has none yet, with the robot of its cell.
@@ -88,6 +108,27 @@ void CalibratePage::refresh() {
                            std::any_of(p.sensors.begin(), p.sensors.end(), [](const SensorSetup& s) {
                                return s.driver == "simulated" && s.calibration_id.empty();
                            }));
+    const auto fill = [](QComboBox& list, const auto& things) {
+        QStringList names;
+        for (const auto& thing : things) names << QString::fromStdString(thing.id);
+        QStringList shown;
+        for (int i = 0; i < list.count(); ++i) shown << list.itemText(i);
+        if (names == shown) return;
+        const QSignalBlocker quiet(&list);
+        const QString kept = list.currentText();
+        list.clear();
+        list.addItems(names);
+        if (names.contains(kept)) list.setCurrentText(kept);
+    };
+    fill(*sensor_, p.sensors);
+    fill(*robot_, p.robots);
+    for (auto& [method, button] : begins_) {
+        button->setEnabled(sensor_->count() > 0);
+        button->setText(desk_.is_open() && CalibrationSession::exists(desk_.path(), method,
+                                                                      sensor_->currentText().toStdString())
+                            ? tr("Go on")
+                            : tr("Begin"));
+    }
     std::string key;
     for (const Calibration& c : p.calibrations) key += c.id + c.verdict + c.created_utc + "\n";
     for (const SensorSetup& s : p.sensors) key += s.id + s.calibration_id + s.identity.serial + "\n";
@@ -109,7 +150,8 @@ void CalibratePage::refresh() {
                                   QString::fromStdString(c.robot_id))));
         auto* verdict = make_text({});
         box->addWidget(verdict);
-        set_verdict(*verdict, tr("%1, %2").arg(QString::fromStdString(c.verdict), age_of(c.created_utc)),
+        set_verdict(*verdict,
+                    tr("%1, %2").arg(verdict_word(QString::fromStdString(c.verdict)), age_of(c.created_utc)),
                     c.verdict == "good"     ? Tone::good
                     : c.verdict == "usable" ? Tone::attention
                                             : Tone::alarm);

@@ -1,9 +1,10 @@
 #pragma once
-// The project's calibrations as cards: method, verdict, age, which one is in use, and the command that makes
-// one.
+// The project's calibrations as cards: method, verdict, age, which one is in use; and the methods that make
+// one, each opening its guided page.
 
 #include <QComboBox>
 
+#include "widgets/pages/guided_page.h"
 #include "widgets/pages/step_page.h"
 
 namespace seamwright {
@@ -18,7 +19,12 @@ class CalibratePage : public StepPage {
 
   private:
     void take_simulated();
+    void begin(const std::string& method);
 
+    GuidedPage* guided_;
+    QWidget* overview_;
+    QComboBox *sensor_, *robot_;
+    std::map<std::string, QPushButton*> begins_;
     QVBoxLayout* cards_;
     QWidget* simulated_ = nullptr;
     std::string shown_;

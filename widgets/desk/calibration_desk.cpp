@@ -1,0 +1,410 @@
+#include "widgets/desk/calibration_desk.h"
+
+#include <QUndoCommand>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "devices/exchange/image_file.h"
+#include "projects/calibrate/answer.h"
+#include "projects/measure.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kStillSeconds = 0.5, kStillMm = 0.02, kStillDeg = 0.005;
+// Nearer than this to a capture nothing is captured by itself.
+constexpr double kNewMm = 3, kNewDeg = 1;
+
+QString text_of(const Error& error) {
+    return QString::fromStdString(error.sentence());
+}
+
+// The whole state before and after: captures are shared, so that it costs a list.
+class CmdSession final : public QUndoCommand {
+  public:
+    using Apply = std::function<void(const SessionState&)>;
+    CmdSession(const QString& text, SessionState before, SessionState after, Apply apply)
+        : QUndoCommand(text),
+          before_(std::move(before)),
+          after_(std::move(after)),
+          apply_(std::move(apply)) {}
+    void undo() override { apply_(before_); }
+    void redo() override {
+        if (std::exchange(done_, true)) apply_(after_);
+    }
+
+  private:
+    SessionState before_, after_;
+    Apply apply_;
+    bool done_ = false;  // the edit is made before its command is pushed
+};
+
+}  // namespace
+
+CalibrationDesk::CalibrationDesk(Desk& desk, QObject* parent)
+    : QObject(parent), desk_(desk), thread_([this](const std::stop_token& stop) { work(stop); }) {
+    connect(&desk_, &Desk::opened, this, &CalibrationDesk::close);
+    connect(&desk_, &Desk::station_changed, this, &CalibrationDesk::watch_robot);
+    connect(&desk_.live(), &LiveFeed::arrived, this, &CalibrationDesk::look);
+    connect(&desk_.worker(), &StationWorker::shot_taken, this, &CalibrationDesk::take_shot);
+    connect(&desk_.worker(), &StationWorker::shot_failed, this, [this](const QString& sentence) {
+        if (!waiting_for_shot_) return;
+        waiting_for_shot_ = false;
+        set_doing({});
+        emit refused(sentence);
+    });
+}
+
+CalibrationDesk::~CalibrationDesk() {
+    cancel_.request_stop();
+    thread_.request_stop();
+    wake_.notify_all();
+}
+
+void CalibrationDesk::post(Job job) {
+    const std::lock_guard lock(mutex_);
+    jobs_.emplace_back(std::move(job), cancel_.get_token());
+    wake_.notify_all();
+}
+
+void CalibrationDesk::work(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        Job job;
+        std::stop_token cancelled;
+        {
+            std::unique_lock lock(mutex_);
+            if (!wake_.wait(lock, stop, [&] { return !jobs_.empty(); })) return;
+            std::tie(job, cancelled) = std::move(jobs_.front());
+            jobs_.pop_front();
+        }
+        job(cancelled);
+    }
+}
+
+void CalibrationDesk::set_doing(const QString& what) {
+    if (doing_ == what) return;
+    doing_ = what;
+    emit busy_changed();
+}
+
+Expected<void> CalibrationDesk::open(const std::string& method, const std::string& sensor_id,
+                                     const std::string& robot_id) {
+    if (!desk_.is_open()) return usage_error("no project is open", {}, "open or make one");
+    close();
+    auto session = CalibrationSession::open(desk_.path(), method, sensor_id, robot_id);
+    if (!session) return tl::unexpected(session.error());
+    session_ = std::move(*session);
+    for (const std::string& notice : session_->notices()) emit refused(QString::fromStdString(notice));
+    if (session_->state().captures.empty())
+        if (auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+            settings && *settings != session_->state().settings)
+            (void)session_->set_settings(std::move(*settings));
+    emit changed();
+    solve_when_due();
+    return {};
+}
+
+void CalibrationDesk::close() {
+    cancel();
+    ++generation_;
+    session_.reset();
+    undo_.clear();
+    live_ = {};
+    automatic_ = false;
+    emit changed();
+}
+
+const Calibration* CalibrationDesk::base() const {
+    if (!session_) return nullptr;
+    const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
+    if (!sensor) return nullptr;
+    for (const Calibration& c : desk_.project().calibrations)
+        if (c.id == sensor->calibration_id) return &c;
+    return nullptr;
+}
+
+Pose CalibrationDesk::mounting() const {
+    const Calibration* c = base();
+    return c ? c->flange_from_sensor : Pose::Identity();
+}
+
+void CalibrationDesk::push(const QString& text, const SessionState& before) {
+    undo_.push(new CmdSession(text, before, session_->state(), [this](const SessionState& state) {
+        if (!session_) return;
+        if (auto ok = session_->set_state(state); !ok) emit refused(text_of(ok.error()));
+        emit changed();
+        solve_when_due();
+    }));
+}
+
+Expected<void> CalibrationDesk::edited(Expected<void> done, const QString& text, const SessionState& before) {
+    if (!done) return done;
+    push(text, before);
+    emit changed();
+    solve_when_due();
+    return done;
+}
+
+Expected<void> CalibrationDesk::leave_out(const std::string& id, bool left_out) {
+    const SessionState before = session_->state();
+    return edited(session_->leave_out(id, left_out),
+                  (left_out ? tr("Leave out %1") : tr("Take in %1")).arg(QString::fromStdString(id)), before);
+}
+
+Expected<void> CalibrationDesk::set_verification(const std::string& id, bool verification) {
+    const SessionState before = session_->state();
+    return edited(
+        session_->set_verification(id, verification),
+        (verification ? tr("Keep %1 for verification") : tr("Solve with %1")).arg(QString::fromStdString(id)),
+        before);
+}
+
+Expected<void> CalibrationDesk::remove(const std::string& id) {
+    const SessionState before = session_->state();
+    return edited(session_->remove(id), tr("Remove capture %1").arg(QString::fromStdString(id)), before);
+}
+
+Expected<void> CalibrationDesk::set(const std::string& name, double value) {
+    const SessionState before = session_->state();
+    return edited(session_->set(name, value), tr("Change %1").arg(QString::fromStdString(name)), before);
+}
+
+void CalibrationDesk::capture(bool verification) {
+    if (!session_ || busy()) return;
+    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    if (!settings) return emit refused(text_of(settings.error()));
+    const CaptureKind kind = session_->method().capture;
+    waiting_for_shot_ = true;
+    shot_verifies_ = verification;
+    set_doing(tr("Capturing"));
+    desk_.worker().take_shot(session_->sensor_id(),
+                             session_->method().robot ? session_->robot_id() : std::string(),
+                             kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose);
+}
+
+void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
+    if (!waiting_for_shot_ || !session_) return;
+    waiting_for_shot_ = false;
+    const SensorSetup* found = find_sensor(desk_.project(), shot->sensor_id);
+    if (!found) return set_doing({});
+    std::optional<Calibration> used;
+    if (base()) used = *base();
+    const auto id = session_->free_id();
+    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    if (!settings) {
+        set_doing({});
+        return emit refused(text_of(settings.error()));
+    }
+    post([this, shot, used, id, session = *session_, settings = *settings, sensor = *found,
+          generation = generation_, verification = shot_verifies_](const std::stop_token&) {
+        auto taken = std::make_shared<Expected<TakenCapture>>(
+            capture_shot(session.method(), settings, sensor, used ? &*used : nullptr, *shot->stripe,
+                         shot->board.get(), shot->base_from_flange));
+        if (*taken) {
+            // The picture is for people: without it the capture is as good.
+            const StripeImage& image = shot->board ? shot->board->image : shot->stripe->image;
+            const auto file = session.picture_path(id);
+            std::error_code code;
+            std::filesystem::create_directories(file.parent_path(), code);
+            if (!image.empty() && write_image_file(file, image))
+                (*taken)->capture.picture = std::filesystem::relative(file, session.folder(), code).string();
+        }
+        QMetaObject::invokeMethod(this, [this, taken, generation, verification] {
+            if (generation != generation_) return;
+            set_doing({});
+            if (!*taken) return emit refused(text_of(taken->error()));
+            take_captures({std::move((*taken)->capture)}, std::move((*taken)->settings), verification,
+                          tr("Capture"));
+        });
+    });
+}
+
+void CalibrationDesk::take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings,
+                                    bool verification, const QString& text) {
+    const SessionState before = session_->state();
+    auto done = session_->set_settings(std::move(settings));
+    for (CalibrationCapture& capture : captures) {
+        if (!done) break;
+        if (auto id = session_->add(std::move(capture), verification); !id) done = tl::unexpected(id.error());
+    }
+    if (!done) emit refused(text_of(done.error()));
+    if (!(session_->state() == before)) (void)edited({}, text, before);
+}
+
+void CalibrationDesk::load(const std::filesystem::path& path) {
+    if (!session_ || busy()) return;
+    std::optional<Calibration> used;
+    if (base()) used = *base();
+    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    set_doing(tr("Reading"));
+    const auto& chosen = settings ? *settings : session_->state().settings;
+    post([this, path, used, settings = chosen, method = &session_->method(),
+          generation = generation_](const std::stop_token& cancelled) {
+        const auto progress = [&](int done, int total) {
+            QMetaObject::invokeMethod(this, [this, done, total] { emit progressed(done, total); });
+        };
+        auto read = std::make_shared<Expected<ReadCaptures>>(
+            read_captures(*method, settings, used ? &*used : nullptr, path, progress, cancelled));
+        QMetaObject::invokeMethod(this, [this, read, generation, path] {
+            if (generation != generation_) return;
+            set_doing({});
+            if (!*read) return emit refused(text_of(read->error()));
+            for (const std::string& sentence : (*read)->skipped)
+                emit refused(QString::fromStdString(sentence));
+            take_captures(std::move((*read)->captures), std::move((*read)->settings), false,
+                          tr("Load %1").arg(QString::fromStdString(path.filename().string())));
+        });
+    });
+}
+
+void CalibrationDesk::solve_when_due() {
+    if (!session_ || session_->result() || session_->solving_captures() < session_->method().fewest) return;
+    solve();
+}
+
+void CalibrationDesk::solve() {
+    if (!session_ || solving_) return;
+    solving_ = true;
+    set_doing(tr("Solving"));
+    post([this, session = *session_, generation = generation_](const std::stop_token& cancelled) {
+        auto outcome = std::make_shared<Expected<CalibrateOutcome>>(
+            cancelled.stop_requested() ? Expected<CalibrateOutcome>(CalibrateOutcome{}) : session.solve());
+        QMetaObject::invokeMethod(this, [this, outcome, generation, cancelled, of = session.state()] {
+            solving_ = false;
+            if (doing_ == tr("Solving")) set_doing({});
+            if (generation != generation_ || !session_) return;
+            if (cancelled.stop_requested()) return emit changed();
+            if (!*outcome) {
+                // Only what was asked for the captures as they are is worth a sentence.
+                if (of == session_->state()) emit refused(text_of(outcome->error()));
+            } else if (auto taken = session_->take(**outcome, of); !taken) {
+                emit refused(text_of(taken.error()));
+            }
+            emit changed();
+            if (!(of == session_->state())) solve_when_due();
+        });
+    });
+}
+
+void CalibrationDesk::cancel() {
+    {
+        const std::lock_guard lock(mutex_);
+        cancel_.request_stop();
+        cancel_ = std::stop_source();
+    }
+    if (waiting_for_shot_) {
+        waiting_for_shot_ = false;
+        desk_.worker().cancel();
+    }
+    set_doing({});
+}
+
+void CalibrationDesk::set_automatic(bool on) {
+    automatic_ = on;
+    stillness_ = 0;
+    emit still_changed();
+}
+
+void CalibrationDesk::set_looking(bool on) {
+    looking_ = on;
+    if (on) look();
+}
+
+// The newest live frame through the same function that captures, so that what is outlined is what will be
+// taken.
+void CalibrationDesk::look() {
+    if (!session_ || !looking_ || look_pending_ || session_->method().capture == CaptureKind::files) return;
+    const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
+    const auto snapshot = desk_.live().latest(session_->sensor_id());
+    if (!sensor || !snapshot || !snapshot->frame || snapshot->number == looked_number_) return;
+    looked_number_ = snapshot->number;
+    look_pending_ = true;
+    std::optional<Calibration> used;
+    if (base()) used = *base();
+    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    post([this, frame = snapshot->frame, used, sensor = *sensor, method = &session_->method(),
+          settings = settings ? *settings : session_->state().settings,
+          generation = generation_](const std::stop_token&) {
+        auto live = std::make_shared<LiveTarget>();
+        live->frame = frame;
+        auto taken = capture_shot(*method, settings, sensor, used ? &*used : nullptr, *frame, nullptr,
+                                  Pose::Identity());
+        if (taken) {
+            live->seen = true;
+            live->picture = entry_picture(*method, taken->settings, taken->capture.entry);
+        } else {
+            live->words = text_of(taken.error());
+        }
+        QMetaObject::invokeMethod(this, [this, live, generation] {
+            look_pending_ = false;
+            if (generation != generation_) return;
+            live_ = std::move(*live);
+            emit looked();
+        });
+    });
+}
+
+void CalibrationDesk::watch_robot() {
+    if (!session_ || !automatic_ || !session_->method().robot) return;
+    std::optional<Pose> at;
+    for (const RobotState& r : desk_.station().robots)
+        if (r.id == session_->robot_id()) at = r.base_from_flange;
+    if (!at) {
+        last_pose_.reset();
+        stillness_ = 0;
+        return emit still_changed();
+    }
+    const bool moved = !last_pose_ || distance_mm(*at, *last_pose_) > kStillMm ||
+                       angle_rad(*at, *last_pose_) > rad_from_deg(kStillDeg);
+    last_pose_ = at;
+    if (moved) still_since_.start();
+    const bool known = std::any_of(
+        session_->state().captures.begin(), session_->state().captures.end(), [&](const SessionCapture& c) {
+            return c.taken->base_from_flange && distance_mm(*c.taken->base_from_flange, *at) < kNewMm &&
+                   angle_rad(*c.taken->base_from_flange, *at) < rad_from_deg(kNewDeg);
+        });
+    stillness_ = known || moved
+                     ? 0
+                     : std::min(1.0, static_cast<double>(still_since_.elapsed()) / (1000 * kStillSeconds));
+    emit still_changed();
+    // A board is looked for with the laser off when it is captured; all other targets must be seen before.
+    const bool seen = live_.seen || session_->method().capture == CaptureKind::board_and_stripe ||
+                      session_->method().capture == CaptureKind::board_pose;
+    if (stillness_ >= 1 && seen && !busy() && !desk_.worker().busy()) {
+        still_since_.start();
+        capture(false);
+    }
+}
+
+Expected<void> CalibrationDesk::finish(bool use) {
+    if (!session_) return usage_error("no calibration is open", "calibrate");
+    if (session_->stage() != SessionStage::use && session_->stage() != SessionStage::used)
+        return input_error("the solution is not verified", session_->method().id,
+                           "take a pose for verification first");
+    auto made = calibration_of_session(*session_, desk_.project());
+    if (!made) return tl::unexpected(made.error());
+    const std::string id = made->id, sensor = made->sensor_id;
+    desk_.undo_stack().beginMacro(use ? tr("Use calibration %1").arg(QString::fromStdString(id))
+                                      : tr("Keep calibration %1").arg(QString::fromStdString(id)));
+    auto done = desk_.add(std::move(*made));
+    if (done && use) done = desk_.use_calibration(sensor, id);
+    desk_.undo_stack().endMacro();
+    if (!done) return done;
+    auto noted = session_->set_used_as(id);
+    emit changed();
+    return noted;
+}
+
+Expected<void> CalibrationDesk::begin_anew() {
+    if (!session_) return usage_error("no calibration is open", "calibrate");
+    cancel();
+    ++generation_;
+    auto done = session_->begin_anew();
+    undo_.clear();
+    emit changed();
+    return done;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,120 @@
+#pragma once
+// A guided calibration at the desk: the session (projects/calibrate/session.h) with the devices, undo and
+// redo, solving in the background and looking at the live picture for the target. No widget.
+//
+// Solving starts by itself with every change once there are captures enough, and again when something changed
+// meanwhile; cancel() drops what runs. Captures come by capture(), by load(), or by themselves when
+// `automatic` is on, the robot has stood still for kStillSeconds at a new place and the target is seen.
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QUndoStack>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+#include "projects/calibrate/capture.h"
+#include "projects/calibrate/guide.h"
+#include "widgets/desk/desk.h"
+
+namespace seamwright {
+
+// What the newest live frame shows of the target.
+struct LiveTarget {
+    EntryPicture picture;  // empty points: nothing was seen
+    FramePtr frame;
+    bool seen = false;
+    QString words;  // what is not seen, and what to change
+};
+
+class CalibrationDesk : public QObject {
+    Q_OBJECT
+  public:
+    explicit CalibrationDesk(Desk& desk, QObject* parent = nullptr);
+    ~CalibrationDesk() override;
+
+    // The session of this method, sensor and its robot: resumed where there is one.
+    Expected<void> open(const std::string& method, const std::string& sensor_id, const std::string& robot_id);
+    void close();
+    bool is_open() const { return session_.has_value(); }
+    const CalibrationSession& session() const { return *session_; }
+    QUndoStack& undo_stack() { return undo_; }
+    // The calibration in use at the session's sensor; nullptr: none.
+    const Calibration* base() const;
+    Pose mounting() const;  // flange_from_sensor as far as known
+
+    // --- undoable edits
+    Expected<void> leave_out(const std::string& id, bool left_out);
+    Expected<void> set_verification(const std::string& id, bool verification);
+    Expected<void> remove(const std::string& id);
+    Expected<void> set(const std::string& setting, double value);
+
+    // --- asynchronous; refused() says why not
+    void capture(bool verification);
+    void load(const std::filesystem::path& path);
+    void solve();
+    void cancel();
+    bool busy() const { return !doing_.isEmpty(); }
+    const QString& doing() const { return doing_; }
+
+    void set_automatic(bool on);
+    bool automatic() const { return automatic_; }
+    double stillness() const { return stillness_; }  // 0 moving .. 1 stood still long enough
+    void set_looking(bool on);                       // only while a page shows it
+    const LiveTarget& live() const { return live_; }
+
+    // The session's answer into the project, undoable there: kept, and with `use` put to use. Error: not
+    // verified, nothing solved.
+    Expected<void> finish(bool use);
+    Expected<void> begin_anew();
+
+  signals:
+    void changed();  // captures, marks, settings, solution
+    void busy_changed();
+    void progressed(int done, int total);
+    void looked();
+    void still_changed();
+    void refused(QString sentence);
+
+  private:
+    using Job = std::function<void(const std::stop_token&)>;
+    void post(Job job);
+    void work(const std::stop_token& stop);
+    void push(const QString& text, const SessionState& before);
+    void take_shot(std::shared_ptr<const CalibrationShot> shot);
+    void take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings, bool verification,
+                       const QString& text);
+    void solve_when_due();
+    void look();
+    void watch_robot();
+    void set_doing(const QString& what);
+    Expected<void> edited(Expected<void> done, const QString& text, const SessionState& before);
+
+    Desk& desk_;
+    std::optional<CalibrationSession> session_;
+    QUndoStack undo_;
+    QString doing_;
+    bool waiting_for_shot_ = false, shot_verifies_ = false, solving_ = false, automatic_ = false,
+         looking_ = false;
+    bool look_pending_ = false;
+    std::uint64_t generation_ = 0;  // of the session: results of an older one are dropped
+    std::uint64_t looked_number_ = 0;
+    LiveTarget live_;
+    double stillness_ = 0;
+    std::optional<Pose> last_pose_;
+    QElapsedTimer still_since_;
+    std::stop_source cancel_;
+
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    std::deque<std::pair<Job, std::stop_token>> jobs_;  // the token is that of its posting
+    std::jthread thread_;
+};
+
+}  // namespace seamwright

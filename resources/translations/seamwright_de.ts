@@ -236,6 +236,241 @@
     </message>
 </context>
 <context>
+    <name>MethodText</name>
+    <message>
+        <source>Sensor on the flange (sphere)</source>
+        <translation>Sensor am Flansch (Kugel)</translation>
+    </message>
+    <message>
+        <source>Finds where the sensor sits on the flange, from cuts through one fixed sphere.</source>
+        <translation>Findet, wo der Sensor am Flansch sitzt, aus Schnitten durch eine feste Kugel.</translation>
+    </message>
+    <message>
+        <source>A matt sphere of known radius on a stiff post that nobody touches.</source>
+        <translation>Eine matte Kugel mit bekanntem Radius auf einem steifen Pfosten, den niemand berührt.</translation>
+    </message>
+    <message>
+        <source>Camera and laser plane calibrated: the profile must be in millimetres.</source>
+        <translation>Kamera und Laserebene kalibriert: das Profil muss in Millimetern sein.</translation>
+    </message>
+    <message>
+        <source>9 or more poses: the stripe off the middle to both sides, the sensor turned about all three axes by 20 degrees and more.</source>
+        <translation>9 oder mehr Posen: die Linie zu beiden Seiten neben der Mitte, der Sensor um alle drei Achsen um 20 Grad und mehr gedreht.</translation>
+    </message>
+    <message>
+        <source>JSON with radius, robot poses and profiles</source>
+        <translation>JSON mit Radius, Roboterposen und Profilen</translation>
+    </message>
+    <message>
+        <source>Camera and laser plane (board)</source>
+        <translation>Kamera und Laserebene (Tafel)</translation>
+    </message>
+    <message>
+        <source>Finds lens, laser plane and, with robot poses, the place on the flange, from one board.</source>
+        <translation>Findet Objektiv, Laserebene und, mit Roboterposen, den Platz am Flansch, aus einer Tafel.</translation>
+    </message>
+    <message>
+        <source>A flat chessboard, its corners counted and its pitch known.</source>
+        <translation>Eine ebene Schachbretttafel mit gezählten Ecken und bekannter Teilung.</translation>
+    </message>
+    <message>
+        <source>10 or more pictures with the stripe across the board, tilted to both sides about both axes, at different heights, out to the corners of the picture.</source>
+        <translation>10 oder mehr Bilder mit der Linie quer über die Tafel, zu beiden Seiten um beide Achsen geneigt, in verschiedenen Höhen, bis in die Bildecken.</translation>
+    </message>
+    <message>
+        <source>The board stays where it is; only the robot moves.</source>
+        <translation>Die Tafel bleibt, wo sie ist; nur der Roboter bewegt sich.</translation>
+    </message>
+    <message>
+        <source>folder of images with pose files</source>
+        <translation>Ordner mit Bildern und Posendateien</translation>
+    </message>
+    <message>
+        <source>Camera on the flange (hand-eye)</source>
+        <translation>Kamera am Flansch (Hand-Auge)</translation>
+    </message>
+    <message>
+        <source>Finds where the camera sits on the flange, from views of one fixed board.</source>
+        <translation>Findet, wo die Kamera am Flansch sitzt, aus Ansichten einer festen Tafel.</translation>
+    </message>
+    <message>
+        <source>A flat chessboard that stays where it is.</source>
+        <translation>Eine ebene Schachbretttafel, die bleibt, wo sie ist.</translation>
+    </message>
+    <message>
+        <source>A calibrated camera: the board&apos;s place in the picture must be right.</source>
+        <translation>Eine kalibrierte Kamera: der Platz der Tafel im Bild muss stimmen.</translation>
+    </message>
+    <message>
+        <source>8 or more poses turned about at least two axes.</source>
+        <translation>8 oder mehr Posen, um mindestens zwei Achsen gedreht.</translation>
+    </message>
+    <message>
+        <source>JSON with pairs of poses, or a folder of images with pose files</source>
+        <translation>JSON mit Posenpaaren oder ein Ordner mit Bildern und Posendateien</translation>
+    </message>
+    <message>
+        <source>Laser plane (triangular body)</source>
+        <translation>Laserebene (Dreikantkörper)</translation>
+    </message>
+    <message>
+        <source>Finds the laser plane in a known camera, from the apex of a triangular body.</source>
+        <translation>Findet die Laserebene in einer bekannten Kamera, aus der Spitze eines Dreikantkörpers.</translation>
+    </message>
+    <message>
+        <source>A triangular body on a stage, its apex seen in the picture and in the sensor&apos;s profile.</source>
+        <translation>Ein Dreikantkörper auf einem Verstelltisch, dessen Spitze im Bild und im Profil des Sensors gesehen wird.</translation>
+    </message>
+    <message>
+        <source>10 or more positions spread over the field, not on one line.</source>
+        <translation>10 oder mehr über das Messfeld verteilte Stellungen, nicht auf einer Linie.</translation>
+    </message>
+    <message>
+        <source>JSON with pairs of pixel and laser point</source>
+        <translation>JSON mit Paaren aus Pixel und Laserpunkt</translation>
+    </message>
+    <message>
+        <source>Look-up table</source>
+        <translation>Nachschlagetabelle</translation>
+    </message>
+    <message>
+        <source>Maps pixels to millimetres directly, from a target at known places.</source>
+        <translation>Bildet Pixel direkt auf Millimeter ab, aus einem Ziel an bekannten Plätzen.</translation>
+    </message>
+    <message>
+        <source>A target on a stage whose places are known better than the wanted accuracy.</source>
+        <translation>Ein Ziel auf einem Verstelltisch, dessen Plätze genauer bekannt sind als die gewünschte Genauigkeit.</translation>
+    </message>
+    <message>
+        <source>25 or more places over the whole field; what lies outside is not measured later.</source>
+        <translation>25 oder mehr Plätze über das ganze Messfeld; was außerhalb liegt, wird später nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>JSON with pairs of pixel and known place</source>
+        <translation>JSON mit Paaren aus Pixel und bekanntem Platz</translation>
+    </message>
+    <message>
+        <source>Static one-shot for several sensors</source>
+        <translation>Statisch mit einer Aufnahme für mehrere Sensoren</translation>
+    </message>
+    <message>
+        <source>Puts all sensors of a gripper into one frame, from one picture each of a known plate.</source>
+        <translation>Bringt alle Sensoren eines Greifers in ein Koordinatensystem, aus je einem Bild einer bekannten Platte.</translation>
+    </message>
+    <message>
+        <source>A plate whose place in the world is known, seen by every camera.</source>
+        <translation>Eine Platte, deren Platz in der Welt bekannt ist und die jede Kamera sieht.</translation>
+    </message>
+    <message>
+        <source>The laser plane in each camera, and where the reference stands in the world.</source>
+        <translation>Die Laserebene in jeder Kamera und wo der Bezug in der Welt steht.</translation>
+    </message>
+    <message>
+        <source>JSON with the chain of poses of each sensor</source>
+        <translation>JSON mit der Posenkette jedes Sensors</translation>
+    </message>
+    <message>
+        <source>Lens</source>
+        <translation>Objektiv</translation>
+    </message>
+    <message>
+        <source>Checks the lens: straight laser lines on a plate must become straight.</source>
+        <translation>Prüft das Objektiv: gerade Laserlinien auf einer Platte müssen gerade werden.</translation>
+    </message>
+    <message>
+        <source>A flat plate that fills the view.</source>
+        <translation>Eine ebene Platte, die das Bild füllt.</translation>
+    </message>
+    <message>
+        <source>10 or more heights and tilts, so that the lines cross the picture everywhere.</source>
+        <translation>10 oder mehr Höhen und Neigungen, sodass die Linien überall durchs Bild laufen.</translation>
+    </message>
+    <message>
+        <source>JSON with lines of pixels</source>
+        <translation>JSON mit Linien aus Pixeln</translation>
+    </message>
+    <message>
+        <source>Plate in the world</source>
+        <translation>Platte in der Welt</translation>
+    </message>
+    <message>
+        <source>Finds where a plate stands, from points known on it and measured in the world.</source>
+        <translation>Findet, wo eine Platte steht, aus Punkten, die auf ihr bekannt und in der Welt gemessen sind.</translation>
+    </message>
+    <message>
+        <source>6 or more points of the plate, measured by robot tip, laser tracker or total station.</source>
+        <translation>6 oder mehr Punkte der Platte, gemessen mit Roboterspitze, Lasertracker oder Tachymeter.</translation>
+    </message>
+    <message>
+        <source>Points far apart and not on one line.</source>
+        <translation>Punkte weit auseinander und nicht auf einer Linie.</translation>
+    </message>
+    <message>
+        <source>JSON with points on the plate and in the world</source>
+        <translation>JSON mit Punkten auf der Platte und in der Welt</translation>
+    </message>
+    <message>
+        <source>Does the calibration still hold?</source>
+        <translation>Gilt die Kalibrierung noch?</translation>
+    </message>
+    <message>
+        <source>Measures the sphere again and says whether the sensor has moved on its flange.</source>
+        <translation>Misst die Kugel erneut und sagt, ob sich der Sensor am Flansch bewegt hat.</translation>
+    </message>
+    <message>
+        <source>The sphere where it stood when the sensor was calibrated.</source>
+        <translation>Die Kugel, wo sie bei der Kalibrierung des Sensors stand.</translation>
+    </message>
+    <message>
+        <source>3 poses from different directions.</source>
+        <translation>3 Posen aus verschiedenen Richtungen.</translation>
+    </message>
+    <message>
+        <source>JSON with stored calibration and new profiles</source>
+        <translation>JSON mit abgelegter Kalibrierung und neuen Profilen</translation>
+    </message>
+    <message>
+        <source>Radius of the sphere</source>
+        <translation>Radius der Kugel</translation>
+    </message>
+    <message>
+        <source>Corners along</source>
+        <translation>Ecken längs</translation>
+    </message>
+    <message>
+        <source>Corners across</source>
+        <translation>Ecken quer</translation>
+    </message>
+    <message>
+        <source>Edge of a square</source>
+        <translation>Kante eines Feldes</translation>
+    </message>
+    <message>
+        <source>Allowed shift</source>
+        <translation>Erlaubte Verschiebung</translation>
+    </message>
+    <message>
+        <source>Allowed turn</source>
+        <translation>Erlaubte Drehung</translation>
+    </message>
+    <message>
+        <source>good</source>
+        <translation>gut</translation>
+    </message>
+    <message>
+        <source>usable</source>
+        <translation>brauchbar</translation>
+    </message>
+    <message>
+        <source>poor</source>
+        <translation>schlecht</translation>
+    </message>
+    <message>
+        <source>undetermined</source>
+        <translation>unbestimmt</translation>
+    </message>
+</context>
+<context>
     <name>RecoveryText</name>
     <message>
         <source>%1 %2 added</source>
@@ -673,30 +908,6 @@
         <translation>Eine neue Kalibrierung</translation>
     </message>
     <message>
-        <source>Copy the command</source>
-        <translation>Den Befehl kopieren</translation>
-    </message>
-    <message>
-        <source>Puts the command line into the clipboard: %1</source>
-        <translation>Legt die Befehlszeile in die Zwischenablage: %1</translation>
-    </message>
-    <message>
-        <source>Camera and laser plane</source>
-        <translation>Kamera und Laserebene</translation>
-    </message>
-    <message>
-        <source>Images of a board with the stripe across it, in 8 or more orientations.</source>
-        <translation>Bilder einer Tafel mit dem Laserstrich darüber, in mindestens 8 Lagen.</translation>
-    </message>
-    <message>
-        <source>Sensor on the flange</source>
-        <translation>Sensor am Flansch</translation>
-    </message>
-    <message>
-        <source>Cuts of one sphere from 9 or more orientations of the flange.</source>
-        <translation>Schnitte einer Kugel aus mindestens 9 Orientierungen des Flanschs.</translation>
-    </message>
-    <message>
         <source>The project holds no calibration yet.</source>
         <translation>Das Projekt enthält noch keine Kalibrierung.</translation>
     </message>
@@ -747,6 +958,85 @@
     <message>
         <source>Adds the simulated cell&apos;s calibration and uses it</source>
         <translation>Fügt die Kalibrierung der simulierten Zelle hinzu und benutzt sie</translation>
+    </message>
+    <message>
+        <source>Sensor</source>
+        <translation>Sensor</translation>
+    </message>
+    <message>
+        <source>The sensor to calibrate</source>
+        <translation>Der zu kalibrierende Sensor</translation>
+    </message>
+    <message>
+        <source>Robot</source>
+        <translation>Roboter</translation>
+    </message>
+    <message>
+        <source>The robot that carries it, or shows it the target</source>
+        <translation>Der Roboter, der ihn trägt oder ihm das Ziel zeigt</translation>
+    </message>
+    <message>
+        <source>Begin</source>
+        <translation>Beginnen</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>Fortsetzen</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::CalibrationDesk</name>
+    <message>
+        <source>Leave out %1</source>
+        <translation>%1 weglassen</translation>
+    </message>
+    <message>
+        <source>Take in %1</source>
+        <translation>%1 aufnehmen</translation>
+    </message>
+    <message>
+        <source>Keep %1 for verification</source>
+        <translation>%1 zur Prüfung zurückhalten</translation>
+    </message>
+    <message>
+        <source>Solve with %1</source>
+        <translation>Mit %1 lösen</translation>
+    </message>
+    <message>
+        <source>Remove capture %1</source>
+        <translation>Aufnahme %1 entfernen</translation>
+    </message>
+    <message>
+        <source>Change %1</source>
+        <translation>%1 ändern</translation>
+    </message>
+    <message>
+        <source>Capturing</source>
+        <translation>Aufnehmen</translation>
+    </message>
+    <message>
+        <source>Capture</source>
+        <translation>Aufnehmen</translation>
+    </message>
+    <message>
+        <source>Reading</source>
+        <translation>Lesen</translation>
+    </message>
+    <message>
+        <source>Load %1</source>
+        <translation>%1 laden</translation>
+    </message>
+    <message>
+        <source>Solving</source>
+        <translation>Lösen</translation>
+    </message>
+    <message>
+        <source>Use calibration %1</source>
+        <translation>Kalibrierung %1 benutzen</translation>
+    </message>
+    <message>
+        <source>Keep calibration %1</source>
+        <translation>Kalibrierung %1 behalten</translation>
     </message>
 </context>
 <context>
@@ -1089,6 +1379,29 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
 </context>
 <context>
+    <name>seamwright::CoverageView</name>
+    <message>
+        <source>Coverage of field and orientations</source>
+        <translation>Abdeckung von Messfeld und Orientierungen</translation>
+    </message>
+    <message>
+        <source>Left: where in the field the target was seen. Right: tilt of the sensor against the first capture, 10 degrees a ring; the tick is the turn about the line of sight.</source>
+        <translation>Links: wo im Messfeld das Ziel gesehen wurde. Rechts: Neigung des Sensors gegen die erste Aufnahme, 10 Grad je Ring; der Strich ist die Drehung um die Blickrichtung.</translation>
+    </message>
+    <message>
+        <source>field %1 %</source>
+        <translation>Messfeld %1 %</translation>
+    </message>
+    <message>
+        <source>Field: %1 % covered</source>
+        <translation>Messfeld: %1 % abgedeckt</translation>
+    </message>
+    <message>
+        <source>Orientations, 10° a ring</source>
+        <translation>Orientierungen, 10° je Ring</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::Desk</name>
     <message>
         <source>The unsaved edits of an earlier session cannot be read (%1). They were set aside as %2.</source>
@@ -1148,6 +1461,383 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>device</source>
         <translation>Gerät</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::GuidedPage</name>
+    <message>
+        <source>Undo the last change of this calibration</source>
+        <translation>Die letzte Änderung dieser Kalibrierung rückgängig machen</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>Wiederholen</translation>
+    </message>
+    <message>
+        <source>All methods</source>
+        <translation>Alle Verfahren</translation>
+    </message>
+    <message>
+        <source>Back to the list; everything captured is kept</source>
+        <translation>Zurück zur Liste; alle Aufnahmen bleiben erhalten</translation>
+    </message>
+    <message>
+        <source>What I need</source>
+        <translation>Was ich brauche</translation>
+    </message>
+    <message>
+        <source>Shows or hides what this method is for and what it needs</source>
+        <translation>Zeigt oder verbirgt, wozu dieses Verfahren dient und was es braucht</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>Fortschritt</translation>
+    </message>
+    <message>
+        <source>How far reading and solving are</source>
+        <translation>Wie weit Lesen und Lösen sind</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Stops what runs; captures are kept</source>
+        <translation>Hält an, was läuft; Aufnahmen bleiben erhalten</translation>
+    </message>
+    <message>
+        <source>Capture</source>
+        <translation>Aufnehmen</translation>
+    </message>
+    <message>
+        <source>Takes picture and robot pose; the robot must stand still</source>
+        <translation>Nimmt Bild und Roboterpose auf; der Roboter muss stillstehen</translation>
+    </message>
+    <message>
+        <source>By itself</source>
+        <translation>Von selbst</translation>
+    </message>
+    <message>
+        <source>Captures whenever the robot has stood still for half a second at a new place</source>
+        <translation>Nimmt auf, sobald der Roboter an neuer Stelle eine halbe Sekunde stillsteht</translation>
+    </message>
+    <message>
+        <source>Set up the target</source>
+        <translation>Ziel aufstellen</translation>
+    </message>
+    <message>
+        <source>Puts this method&apos;s target before the simulated sensor</source>
+        <translation>Stellt das Ziel dieses Verfahrens vor den simulierten Sensor</translation>
+    </message>
+    <message>
+        <source>Go there</source>
+        <translation>Dorthin fahren</translation>
+    </message>
+    <message>
+        <source>Moves the simulated robot to the next pose</source>
+        <translation>Fährt den simulierten Roboter zur nächsten Pose</translation>
+    </message>
+    <message>
+        <source>Copy</source>
+        <translation>Kopieren</translation>
+    </message>
+    <message>
+        <source>Puts the next pose into the clipboard</source>
+        <translation>Legt die nächste Pose in die Zwischenablage</translation>
+    </message>
+    <message>
+        <source>Load from files</source>
+        <translation>Aus Dateien laden</translation>
+    </message>
+    <message>
+        <source>Takes captures from files instead of the live sensor</source>
+        <translation>Nimmt Aufnahmen aus Dateien statt vom Sensor</translation>
+    </message>
+    <message>
+        <source>Pose</source>
+        <translation>Pose</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>deg</source>
+        <translation>Grad</translation>
+    </message>
+    <message>
+        <source>px</source>
+        <translation>px</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Zustand</translation>
+    </message>
+    <message>
+        <source>Captures with their residual; take the tick away to leave one out and solve again</source>
+        <translation>Aufnahmen mit ihrem Restfehler; Haken wegnehmen, um eine wegzulassen und neu zu lösen</translation>
+    </message>
+    <message>
+        <source>Keep for verification</source>
+        <translation>Zur Prüfung zurückhalten</translation>
+    </message>
+    <message>
+        <source>The chosen pose judges the solution instead of taking part in it</source>
+        <translation>Die gewählte Pose beurteilt die Lösung, statt an ihr teilzunehmen</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
+        <source>Takes the chosen pose off the list</source>
+        <translation>Nimmt die gewählte Pose von der Liste</translation>
+    </message>
+    <message>
+        <source>Solution</source>
+        <translation>Lösung</translation>
+    </message>
+    <message>
+        <source>Solve</source>
+        <translation>Lösen</translation>
+    </message>
+    <message>
+        <source>Solves with the ticked poses</source>
+        <translation>Löst mit den angehakten Posen</translation>
+    </message>
+    <message>
+        <source>Parameter</source>
+        <translation>Parameter</translation>
+    </message>
+    <message>
+        <source>Value</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>1 sigma</source>
+        <translation>1 Sigma</translation>
+    </message>
+    <message>
+        <source>Unit</source>
+        <translation>Einheit</translation>
+    </message>
+    <message>
+        <source>What was found, and how sure it is</source>
+        <translation>Was gefunden wurde und wie sicher es ist</translation>
+    </message>
+    <message>
+        <source>Verification</source>
+        <translation>Prüfung</translation>
+    </message>
+    <message>
+        <source>Capture for verification</source>
+        <translation>Zur Prüfung aufnehmen</translation>
+    </message>
+    <message>
+        <source>A pose that takes no part in the solution judges it</source>
+        <translation>Eine Pose, die nicht an der Lösung teilnimmt, beurteilt sie</translation>
+    </message>
+    <message>
+        <source>Use this calibration</source>
+        <translation>Diese Kalibrierung benutzen</translation>
+    </message>
+    <message>
+        <source>Measure with it from now on; the one before stays selectable</source>
+        <translation>Ab jetzt damit messen; die vorige bleibt wählbar</translation>
+    </message>
+    <message>
+        <source>Keep beside</source>
+        <translation>Daneben behalten</translation>
+    </message>
+    <message>
+        <source>Puts it into the project without using it</source>
+        <translation>Legt sie ins Projekt, ohne sie zu benutzen</translation>
+    </message>
+    <message>
+        <source>Begin anew</source>
+        <translation>Neu beginnen</translation>
+    </message>
+    <message>
+        <source>Puts these captures aside, on disk, and begins with none</source>
+        <translation>Legt diese Aufnahmen auf der Platte beiseite und beginnt ohne</translation>
+    </message>
+    <message>
+        <source>Data (*.json)</source>
+        <translation>Daten (*.json)</translation>
+    </message>
+    <message>
+        <source>Sensor %1 on robot %2</source>
+        <translation>Sensor %1 an Roboter %2</translation>
+    </message>
+    <message>
+        <source>Sensor %1</source>
+        <translation>Sensor %1</translation>
+    </message>
+    <message>
+        <source>Waiting for the sensor</source>
+        <translation>Warten auf den Sensor</translation>
+    </message>
+    <message>
+        <source>Prepare</source>
+        <translation>Vorbereiten</translation>
+    </message>
+    <message>
+        <source>Verify</source>
+        <translation>Prüfen</translation>
+    </message>
+    <message>
+        <source>Use</source>
+        <translation>Benutzen</translation>
+    </message>
+    <message>
+        <source>Keep</source>
+        <translation>Behalten</translation>
+    </message>
+    <message>
+        <source>Built on calibration %1, in use.</source>
+        <translation>Baut auf der benutzten Kalibrierung %1 auf.</translation>
+    </message>
+    <message>
+        <source>Camera and laser plane are not calibrated yet: begin with them.</source>
+        <translation>Kamera und Laserebene sind noch nicht kalibriert: mit ihnen beginnen.</translation>
+    </message>
+    <message>
+        <source>left out</source>
+        <translation>weggelassen</translation>
+    </message>
+    <message>
+        <source>verification</source>
+        <translation>Prüfung</translation>
+    </message>
+    <message>
+        <source>contradicts the others</source>
+        <translation>widerspricht den anderen</translation>
+    </message>
+    <message>
+        <source>captured</source>
+        <translation>aufgenommen</translation>
+    </message>
+    <message>
+        <source>stands out</source>
+        <translation>fällt auf</translation>
+    </message>
+    <message>
+        <source>used</source>
+        <translation>benutzt</translation>
+    </message>
+    <message>
+        <source>%1 captures, at least %2 are needed</source>
+        <translation>%1 Aufnahmen, mindestens %2 werden gebraucht</translation>
+    </message>
+    <message>
+        <source>%1 captures, %2 are better</source>
+        <translation>%1 Aufnahmen, %2 sind besser</translation>
+    </message>
+    <message>
+        <source>%1 captures</source>
+        <translation>%1 Aufnahmen</translation>
+    </message>
+    <message>
+        <source>Jog the sensor until the target is outlined, then capture. The next poses follow from the first one.</source>
+        <translation>Den Sensor verfahren, bis das Ziel umrandet ist, dann aufnehmen. Die nächsten Posen folgen aus der ersten.</translation>
+    </message>
+    <message>
+        <source>No further pose is proposed: every view has been taken.</source>
+        <translation>Es wird keine weitere Pose vorgeschlagen: jede Ansicht ist aufgenommen.</translation>
+    </message>
+    <message>
+        <source>Next pose of the flange (%1): %2</source>
+        <translation>Nächste Pose des Flansches (%1): %2</translation>
+    </message>
+    <message>
+        <source>The robot does not tell its pose.</source>
+        <translation>Der Roboter nennt seine Pose nicht.</translation>
+    </message>
+    <message>
+        <source>about %1 %2°</source>
+        <translation>um %1 %2°</translation>
+    </message>
+    <message>
+        <source>%1 %2 mm</source>
+        <translation>%1 %2 mm</translation>
+    </message>
+    <message>
+        <source>The robot stands there.</source>
+        <translation>Der Roboter steht dort.</translation>
+    </message>
+    <message>
+        <source>From here, in the sensor&apos;s axes: turn %1; shift %2.</source>
+        <translation>Von hier, in den Achsen des Sensors: drehen %1; verschieben %2.</translation>
+    </message>
+    <message>
+        <source>nothing</source>
+        <translation>nichts</translation>
+    </message>
+    <message>
+        <source>not enough captures</source>
+        <translation>zu wenige Aufnahmen</translation>
+    </message>
+    <message>
+        <source>not solved yet</source>
+        <translation>noch nicht gelöst</translation>
+    </message>
+    <message>
+        <source>Cure: %1</source>
+        <translation>Abhilfe: %1</translation>
+    </message>
+    <message>
+        <source>%1 mm of %2 allowed</source>
+        <translation>%1 mm von %2 erlaubten</translation>
+    </message>
+    <message>
+        <source>%1° of %2 allowed</source>
+        <translation>%1° von %2 erlaubten</translation>
+    </message>
+    <message>
+        <source>%1 px of %2 allowed</source>
+        <translation>%1 px von %2 erlaubten</translation>
+    </message>
+    <message>
+        <source>Not verified: take one more pose that is not solved with, or keep one of the list back.</source>
+        <translation>Nicht geprüft: eine weitere Pose aufnehmen, mit der nicht gelöst wird, oder eine der Liste zurückhalten.</translation>
+    </message>
+    <message numerus="yes">
+        <source>confirmed by %n pose(s): %1</source>
+        <translation>
+            <numerusform>bestätigt durch %n Pose: %1</numerusform>
+            <numerusform>bestätigt durch %n Posen: %1</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>not confirmed by %n pose(s): %1</source>
+        <translation>
+            <numerusform>nicht bestätigt durch %n Pose: %1</numerusform>
+            <numerusform>nicht bestätigt durch %n Posen: %1</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>no residual</source>
+        <translation>kein Restfehler</translation>
+    </message>
+    <message>
+        <source>Stored in the project as %1.</source>
+        <translation>Im Projekt abgelegt als %1.</translation>
+    </message>
+    <message>
+        <source>It has nothing in common with calibration %1, in use.</source>
+        <translation>Sie hat mit der benutzten Kalibrierung %1 nichts gemeinsam.</translation>
+    </message>
+    <message>
+        <source>Against calibration %1, in use: the same pixel lies up to %2 mm elsewhere (mean %3 mm); sensor shifted %4 mm, turned %5°.</source>
+        <translation>Gegen die benutzte Kalibrierung %1: dasselbe Pixel liegt bis zu %2 mm anderswo (im Mittel %3 mm); Sensor um %4 mm verschoben, um %5° gedreht.</translation>
+    </message>
+    <message>
+        <source>Solve with it</source>
+        <translation>Damit lösen</translation>
+    </message>
+    <message>
+        <source>target seen</source>
+        <translation>Ziel gesehen</translation>
     </message>
 </context>
 <context>
@@ -1490,6 +2180,13 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Save the imported project as</source>
         <translation>Das eingelesene Projekt speichern als</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::MethodDrawing</name>
+    <message>
+        <source>Drawing of the set-up</source>
+        <translation>Zeichnung des Aufbaus</translation>
     </message>
 </context>
 <context>
@@ -2497,6 +3194,10 @@ ausgelassen</translation>
         <source>sensor %1 is not connected</source>
         <translation>Sensor %1 ist nicht verbunden</translation>
     </message>
+    <message>
+        <source>Capturing</source>
+        <translation>Aufnehmen</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StepPage</name>
@@ -2567,6 +3268,17 @@ und %1 weitere</translation>
     <message>
         <source>The edits are thrown away</source>
         <translation>Die Änderungen werden verworfen</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::TargetView</name>
+    <message>
+        <source>Live picture with the target</source>
+        <translation>Livebild mit dem Ziel</translation>
+    </message>
+    <message>
+        <source>What the sensor sees of the target; the outline is what would be captured</source>
+        <translation>Was der Sensor vom Ziel sieht; der Umriss ist, was aufgenommen würde</translation>
     </message>
 </context>
 <context>

@@ -56,7 +56,8 @@ CheckItem check_sensors(const Project& p, const Facts& facts) {
         evidence.push_back(Phrase("sensor {}: {} {}, serial {}", s.id, s.identity.vendor, s.identity.model,
                                   s.identity.serial));
     }
-    return done(kStep, Phrase(facts.sensors ? "{} sensors answer" : "{} sensors answered last", p.sensors.size()),
+    return done(kStep,
+                Phrase(facts.sensors ? "{} sensors answer" : "{} sensors answered last", p.sensors.size()),
                 std::move(evidence));
 }
 
@@ -102,8 +103,8 @@ CheckItem check_calibrations(const Project& p, const std::string& now_utc) {
         const auto age = days_between(c->created_utc, now_utc);
         if (!age) return stale(kStep, Phrase("calibration {} of sensor {} has no date", c->id, s.id));
         if (*age > p.requirements.calibration_age_days)
-            return stale(kStep, Phrase("calibration {} of sensor {} is {} days old, {} are allowed", c->id, s.id,
-                                       fmt::format("{:.0f}", *age),
+            return stale(kStep, Phrase("calibration {} of sensor {} is {} days old, {} are allowed", c->id,
+                                       s.id, fmt::format("{:.0f}", *age),
                                        fmt::format("{:.0f}", p.requirements.calibration_age_days)));
         evidence.push_back(Phrase("sensor {}: {} of {}, {}", s.id, c->method, date_of(c->created_utc),
                                   Phrase(c->verdict == "good" ? "good" : "usable")));
@@ -127,10 +128,14 @@ CheckItem check_taught(const Project& p) {
 
 Phrase name_of_status(AlignmentStatus status) {
     switch (status) {
-        case AlignmentStatus::frozen: return Phrase("frozen");
-        case AlignmentStatus::drifting: return Phrase("drifting");
-        case AlignmentStatus::shape_changes: return Phrase("changing its shape");
-        case AlignmentStatus::not_enough_profiles: break;
+        case AlignmentStatus::frozen:
+            return Phrase("frozen");
+        case AlignmentStatus::drifting:
+            return Phrase("drifting");
+        case AlignmentStatus::shape_changes:
+            return Phrase("changing its shape");
+        case AlignmentStatus::not_enough_profiles:
+            break;
     }
     return Phrase("seen too little");
 }
@@ -171,14 +176,14 @@ CheckItem check_observable(const Project& p) {
         const auto plan = plan_region(planned_observations(p, region), correction_options(region));
         if (!plan) return missing(kStep, Phrase("region {}: {}", region.id, plan.error().what));
         if (plan->status != CorrectionStatus::ok)
-            return missing(kStep, Phrase("region {} is under-determined: {}", region.id,
-                                         plan->unobservable.empty() ? plan->weakest
-                                                                    : plan->unobservable.front()));
+            return missing(kStep,
+                           Phrase("region {} is under-determined: {}", region.id,
+                                  plan->unobservable.empty() ? plan->weakest : plan->unobservable.front()));
         const double three_sigma = 3 * plan->sigma_at_spots_mm;
         if (three_sigma > p.requirements.sigma3_mm)
-            return missing(kStep, Phrase("region {} reaches 3 sigma {} mm, required are {} mm; weakest: {}",
-                                         region.id, mm(three_sigma), mm(p.requirements.sigma3_mm),
-                                         plan->weakest));
+            return missing(
+                kStep, Phrase("region {} reaches 3 sigma {} mm, required are {} mm; weakest: {}", region.id,
+                              mm(three_sigma), mm(p.requirements.sigma3_mm), plan->weakest));
         evidence.push_back(Phrase("region {}: predicted 3 sigma {} mm, required {} mm", region.id,
                                   mm(three_sigma), mm(p.requirements.sigma3_mm)));
     }
@@ -208,19 +213,20 @@ CheckItem check_zero_shift(const Project& p, const Facts& facts) {
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
     const auto& zero = std::get<ZeroShift>(e->what);
     if (zero.refused > 0)
-        return missing(kStep, Phrase("{} of {} zero-shift runs were refused; see why and repeat", zero.refused,
-                                     zero.runs.size()));
+        return missing(kStep, Phrase("{} of {} zero-shift runs were refused; see why and repeat",
+                                     zero.refused, zero.runs.size()));
     if (static_cast<int>(zero.runs.size()) < wanted)
         return missing(kStep, Phrase("{} of {} zero-shift runs", zero.runs.size(), wanted));
     std::vector<Phrase> evidence;
     for (const ZeroShiftRegion& r : zero.regions) {
         if (r.worst_mean_mm > p.requirements.sigma3_mm)
-            return missing(kStep, Phrase("region {} reads {} mm on the unmoved part; teach it again", r.region_id,
-                                         mm(r.worst_mean_mm)));
+            return missing(kStep, Phrase("region {} reads {} mm on the unmoved part; teach it again",
+                                         r.region_id, mm(r.worst_mean_mm)));
         evidence.push_back(Phrase("region {}: mean of {} runs within {} mm of zero, {}", r.region_id,
                                   zero.runs.size(), mm(r.worst_mean_mm), date_of(e->utc)));
     }
-    return done(kStep, Phrase("{} runs of the unmoved part read zero", zero.runs.size()), std::move(evidence));
+    return done(kStep, Phrase("{} runs of the unmoved part read zero", zero.runs.size()),
+                std::move(evidence));
 }
 
 CheckItem check_known_shift(const Project& p, const Facts& facts) {
@@ -237,16 +243,20 @@ CheckItem check_known_shift(const Project& p, const Facts& facts) {
             return missing(kStep, Phrase("region {}: {} of {} known shifts were refused", region.id,
                                          proven.refused, proven.tests));
         if (proven.three_sigma_mm > need.sigma3_mm)
-            return missing(kStep, Phrase("region {}: known shifts come back with 3 sigma {} mm, required are {} mm",
-                                         region.id, mm(proven.three_sigma_mm), mm(need.sigma3_mm)));
+            return missing(kStep,
+                           Phrase("region {}: known shifts come back with 3 sigma {} mm, required are {} mm",
+                                  region.id, mm(proven.three_sigma_mm), mm(need.sigma3_mm)));
         evidence.push_back(Phrase("region {}: {} displacements, 3 sigma {} mm about the truth, {}", region.id,
                                   proven.tests, mm(proven.three_sigma_mm), date_of(e->utc)));
     }
     // A hair of tolerance for ranges that were typed.
-    if (proof.range_mm < need.known_shift_mm * (1 - 1e-9) || proof.range_deg < need.known_shift_deg * (1 - 1e-9))
-        return missing(kStep, Phrase("proven up to {} mm and {} deg, required are {} mm and {} deg", proof.range_mm,
-                                     proof.range_deg, need.known_shift_mm, need.known_shift_deg));
-    return done(kStep, Phrase("{} known displacements were recovered", proof.tests.size()), std::move(evidence));
+    if (proof.range_mm < need.known_shift_mm * (1 - 1e-9) ||
+        proof.range_deg < need.known_shift_deg * (1 - 1e-9))
+        return missing(kStep,
+                       Phrase("proven up to {} mm and {} deg, required are {} mm and {} deg", proof.range_mm,
+                              proof.range_deg, need.known_shift_mm, need.known_shift_deg));
+    return done(kStep, Phrase("{} known displacements were recovered", proof.tests.size()),
+                std::move(evidence));
 }
 
 CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& known_shift) {
@@ -262,14 +272,16 @@ CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& kn
             !(r.limits.rotation_deg <= range.rotation_deg * kSlack))
             return missing(
                 kStep,
-                Phrase("region {} lets {} mm and {} deg through, proven are {} mm and {} deg: lower its limits "
-                       "or prove more",
-                       r.id, r.limits.translation_mm, r.limits.rotation_deg,
-                       fmt::format("{:.2f}", range.translation_mm), fmt::format("{:.2f}", range.rotation_deg)));
+                Phrase(
+                    "region {} lets {} mm and {} deg through, proven are {} mm and {} deg: lower its limits "
+                    "or prove more",
+                    r.id, r.limits.translation_mm, r.limits.rotation_deg,
+                    fmt::format("{:.2f}", range.translation_mm), fmt::format("{:.2f}", range.rotation_deg)));
         if (!(3 * r.sigma_limit_mm <= p.requirements.sigma3_mm * kSlack))
-            return missing(kStep, Phrase("region {} lets 3 sigma {} mm through, required are {} mm: lower its "
-                                         "sigma limit",
-                                         r.id, mm(3 * r.sigma_limit_mm), mm(p.requirements.sigma3_mm)));
+            return missing(kStep,
+                           Phrase("region {} lets 3 sigma {} mm through, required are {} mm: lower its "
+                                  "sigma limit",
+                                  r.id, mm(3 * r.sigma_limit_mm), mm(p.requirements.sigma3_mm)));
         evidence.push_back(Phrase("region {}: {} mm, {} deg, 3 sigma {} mm", r.id, r.limits.translation_mm,
                                   r.limits.rotation_deg, mm(3 * r.sigma_limit_mm)));
     }
@@ -325,7 +337,8 @@ template <class T>
 std::string first_change(const std::vector<T>& then, const std::vector<T>& now, const char* kind) {
     for (std::size_t i = 0; i < std::max(then.size(), now.size()); ++i) {
         if (i >= now.size()) return fmt::format("{} {}", kind, then[i].id);
-        if (i >= then.size() || essence(then[i]) != essence(now[i])) return fmt::format("{} {}", kind, now[i].id);
+        if (i >= then.size() || essence(then[i]) != essence(now[i]))
+            return fmt::format("{} {}", kind, now[i].id);
     }
     return {};
 }
@@ -339,24 +352,34 @@ const Calibration* in_use(const Project& p, const SensorSetup& sensor) {
 }  // namespace
 
 std::string_view to_string(CheckStep step) {
-    constexpr std::array<std::string_view, 10> names{"sensors",    "robots",     "calibrations", "taught",
-                                                     "frozen",     "observable", "zero-shift",   "known-shift",
-                                                     "limits",     "headless"};
+    constexpr std::array<std::string_view, 10> names{"sensors", "robots",     "calibrations", "taught",
+                                                     "frozen",  "observable", "zero-shift",   "known-shift",
+                                                     "limits",  "headless"};
     return names[static_cast<std::size_t>(step)];
 }
 
 Phrase name_of(CheckStep step) {
     switch (step) {
-        case CheckStep::sensors: return Phrase("Sensors connected and healthy");
-        case CheckStep::robots: return Phrase("Robots connected and known");
-        case CheckStep::calibrations: return Phrase("Sensors calibrated, fresh");
-        case CheckStep::taught: return Phrase("Spots taught");
-        case CheckStep::frozen: return Phrase("Contours frozen");
-        case CheckStep::observable: return Phrase("Regions observable");
-        case CheckStep::zero_shift: return Phrase("Zero shift");
-        case CheckStep::known_shift: return Phrase("Known shift recovered");
-        case CheckStep::limits: return Phrase("Limits set");
-        case CheckStep::headless: break;
+        case CheckStep::sensors:
+            return Phrase("Sensors connected and healthy");
+        case CheckStep::robots:
+            return Phrase("Robots connected and known");
+        case CheckStep::calibrations:
+            return Phrase("Sensors calibrated, fresh");
+        case CheckStep::taught:
+            return Phrase("Spots taught");
+        case CheckStep::frozen:
+            return Phrase("Contours frozen");
+        case CheckStep::observable:
+            return Phrase("Regions observable");
+        case CheckStep::zero_shift:
+            return Phrase("Zero shift");
+        case CheckStep::known_shift:
+            return Phrase("Known shift recovered");
+        case CheckStep::limits:
+            return Phrase("Limits set");
+        case CheckStep::headless:
+            break;
     }
     return Phrase("Run without the screen");
 }
@@ -375,7 +398,8 @@ std::optional<double> days_between(const std::string& from_utc, const std::strin
         int y = 0;
         unsigned m = 0, d = 0;
         if (std::sscanf(utc.c_str(), "%4d-%2u-%2u", &y, &m, &d) != 3) return std::nullopt;
-        const std::chrono::year_month_day day{std::chrono::year(y), std::chrono::month(m), std::chrono::day(d)};
+        const std::chrono::year_month_day day{std::chrono::year(y), std::chrono::month(m),
+                                              std::chrono::day(d)};
         if (!day.ok()) return std::nullopt;
         return std::chrono::sys_days(day);
     };
@@ -385,7 +409,8 @@ std::optional<double> days_between(const std::string& from_utc, const std::strin
 }
 
 std::string changed_since(const Project& then, const Project& now) {
-    if (!then.part.base_from_workobject.isApprox(now.part.base_from_workobject, 1e-12)) return "the work object";
+    if (!then.part.base_from_workobject.isApprox(now.part.base_from_workobject, 1e-12))
+        return "the work object";
     if (auto changed = first_change(then.sensors, now.sensors, "sensor"); !changed.empty()) return changed;
     if (auto changed = first_change(then.robots, now.robots, "robot"); !changed.empty()) return changed;
     for (std::size_t i = 0; i < now.sensors.size(); ++i)
@@ -428,14 +453,15 @@ Expected<void> gather(const ProjectFile& file, Facts& facts) {
 }
 
 std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
-    std::vector<CheckItem> items{check_sensors(project, facts),
-                                 check_robots(project, facts),
-                                 check_calibrations(project, facts.now_utc.empty() ? utc_now() : facts.now_utc),
-                                 check_taught(project),
-                                 check_frozen(project, facts),
-                                 check_observable(project),
-                                 check_zero_shift(project, facts),
-                                 check_known_shift(project, facts)};
+    std::vector<CheckItem> items{
+        check_sensors(project, facts),
+        check_robots(project, facts),
+        check_calibrations(project, facts.now_utc.empty() ? utc_now() : facts.now_utc),
+        check_taught(project),
+        check_frozen(project, facts),
+        check_observable(project),
+        check_zero_shift(project, facts),
+        check_known_shift(project, facts)};
     items.push_back(check_limits(project, facts, items.back()));
     items.push_back(check_headless(project, facts));
     return items;

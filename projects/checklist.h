@@ -31,9 +31,9 @@ enum class CheckStep {
     headless       // a run without a screen ended ok
 };
 inline constexpr std::array<CheckStep, 10> kCheckSteps{
-    CheckStep::sensors,    CheckStep::robots,     CheckStep::calibrations, CheckStep::taught,
-    CheckStep::frozen,     CheckStep::observable, CheckStep::zero_shift,   CheckStep::known_shift,
-    CheckStep::limits,     CheckStep::headless};
+    CheckStep::sensors, CheckStep::robots,     CheckStep::calibrations, CheckStep::taught,
+    CheckStep::frozen,  CheckStep::observable, CheckStep::zero_shift,   CheckStep::known_shift,
+    CheckStep::limits,  CheckStep::headless};
 std::string_view to_string(CheckStep step);  // "zero-shift"
 Phrase name_of(CheckStep step);              // "Zero shift"
 
@@ -63,7 +63,7 @@ struct Facts {
     // Absent: nobody asked the devices; then those count that answered last (their identity is in the
     // project).
     std::optional<std::vector<DeviceFact>> sensors, robots;
-    std::string now_utc;  // ISO 8601; empty = the clock's
+    std::string now_utc;             // ISO 8601; empty = the clock's
     std::vector<Evidence> evidence;  // oldest first
     std::map<std::int64_t, std::shared_ptr<const Project>> setups;
     std::string file;  // for the command that is to be run

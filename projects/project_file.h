@@ -22,6 +22,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -85,9 +86,14 @@ class ProjectFile {
     // Only rows that changed are written. Refuses (input) two entities of one id and empty ids.
     Expected<void> save(const Project& project);
 
-    // Returns the run's number; events of the record get it too.
-    Expected<std::int64_t> append_run(const RunRecord& run, const RunSetup& setup);
+    // A whole run. Returns its number; events of the record get it too.
     Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
+    // A run as it comes, so that little is left to store when the robot waits for the verdict: its row first
+    // (number, part, times, status, message), captures as they arrive (`stored`: how many there are of it
+    // already), then all the rest with the captures that are still missing.
+    Expected<std::int64_t> begin_run(const RunRecord& run, const RunSetup& setup);
+    Expected<void> append_captures(std::int64_t run, std::span<const Capture> captures, std::size_t stored);
+    Expected<void> finish_run(const RunRecord& run, std::size_t stored);
     // Replaces the outcome of a run (times, status, message, regions); spots, captures and events stay.
     Expected<void> update_run(const RunRecord& run);
     // Returns the event's id.
@@ -114,6 +120,7 @@ class ProjectFile {
 
   private:
     Expected<std::int64_t> setup_id(const RunSetup& setup);
+    Expected<std::int64_t> insert_run(const RunRecord& run, const RunSetup& setup);
     struct Impl;
     explicit ProjectFile(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;

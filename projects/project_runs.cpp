@@ -38,14 +38,22 @@ Expected<void> insert_regions(Database& db, const RunRecord& run, std::int64_t n
     return {};
 }
 
-Expected<void> insert_captures(Database& db, const RunRecord& run, std::int64_t number) {
-    auto blobs = pack_captures(run.captures);
+// Behind the `stored` captures that the run has already.
+Expected<void> insert_captures(Database& db, std::span<const Capture> captures, std::size_t stored,
+                               std::int64_t number) {
+    auto blobs = pack_captures(captures);
     if (!blobs) return tl::unexpected(blobs.error());
+    auto chunks = db.prepare("SELECT ifnull(max(chunk) + 1, 0) FROM captures WHERE run = ?");
+    if (!chunks) return tl::unexpected(chunks.error());
+    chunks->bind(1, number);
+    if (auto row = chunks->step(); !row) return tl::unexpected(row.error());
+    const std::int64_t first_chunk = chunks->integer(0);
+    chunks->reset();
     auto s = db.prepare("INSERT INTO captures (run, chunk, captures, data) VALUES (?, ?, ?, ?)");
     if (!s) return tl::unexpected(s.error());
     for (std::size_t i = 0; i < blobs->size(); ++i) {
         s->bind(1, number);
-        s->bind(2, static_cast<std::int64_t>(i));
+        s->bind(2, first_chunk + static_cast<std::int64_t>(i));
         s->bind(3, std::int64_t{(*blobs)[i].captures});
         s->bind(4, std::span<const std::byte>((*blobs)[i].bytes));
         if (auto done = s->run(); !done) return done;
@@ -54,22 +62,45 @@ Expected<void> insert_captures(Database& db, const RunRecord& run, std::int64_t 
         "INSERT INTO images (run, capture, width, height, bit_depth, crc, data) VALUES (?, ?, ?, ?, ?, ?, "
         "?)");
     if (!image) return tl::unexpected(image.error());
-    for (std::size_t i = 0; i < run.captures.size(); ++i) {
-        if (!run.captures[i].image) continue;
-        const StoredImage& stored = *run.captures[i].image;
-        const StripeImage view = stored.view();
-        if (view.empty() || stored.pixels.size() != view.row_bytes * static_cast<std::size_t>(view.height))
+    for (std::size_t i = 0; i < captures.size(); ++i) {
+        if (!captures[i].image) continue;
+        const StoredImage& raw = *captures[i].image;
+        const StripeImage view = raw.view();
+        if (view.empty() || raw.pixels.size() != view.row_bytes * static_cast<std::size_t>(view.height))
             return input_error("the image's pixels do not fill its size",
-                               "capture of spot " + run.captures[i].spot_id);
+                               "capture of spot " + captures[i].spot_id);
         image->bind(1, number);
-        image->bind(2, static_cast<std::int64_t>(i));
-        image->bind(3, std::int64_t{stored.width});
-        image->bind(4, std::int64_t{stored.height});
-        image->bind(5, std::int64_t{stored.bit_depth});
-        image->bind(6, std::int64_t{crc_of(std::span<const std::byte>(stored.pixels))});
-        image->bind(7, std::span<const std::byte>(stored.pixels));
+        image->bind(2, static_cast<std::int64_t>(stored + i));
+        image->bind(3, std::int64_t{raw.width});
+        image->bind(4, std::int64_t{raw.height});
+        image->bind(5, std::int64_t{raw.bit_depth});
+        image->bind(6, std::int64_t{crc_of(std::span<const std::byte>(raw.pixels))});
+        image->bind(7, std::span<const std::byte>(raw.pixels));
         if (auto done = image->run(); !done) return done;
     }
+    return {};
+}
+
+// What a run's row refers to, but for the first `stored` captures.
+Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t number, std::size_t stored) {
+    auto spot =
+        db.prepare("INSERT INTO run_spots (run, position, spot_id, status, body) VALUES (?, ?, ?, ?, ?)");
+    if (!spot) return tl::unexpected(spot.error());
+    for (std::size_t i = 0; i < run.spots.size(); ++i) {
+        auto text = row_text(run.spots[i], "spot " + run.spots[i].spot_id, kResult);
+        if (!text) return tl::unexpected(text.error());
+        spot->bind(1, number);
+        spot->bind(2, static_cast<std::int64_t>(i));
+        spot->bind(3, run.spots[i].spot_id);
+        spot->bind(4, to_string(run.spots[i].status));
+        spot->bind(5, *text);
+        if (auto done = spot->run(); !done) return done;
+    }
+    if (auto done = insert_regions(db, run, number); !done) return done;
+    if (auto done = insert_captures(db, std::span(run.captures).subspan(stored), stored, number); !done)
+        return done;
+    for (const EventRecord& event : run.events)
+        if (auto done = insert_event(db, event, number); !done) return done;
     return {};
 }
 
@@ -160,19 +191,11 @@ Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
     return db.last_rowid();
 }
 
-Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Project& setup) {
-    auto text = RunSetup::of(setup);
-    if (!text) return tl::unexpected(text.error());
-    return append_run(run, *text);
-}
-
-Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const RunSetup& setup) {
-    Database& db = impl_->db;
-    auto transaction = Transaction::begin(db);
-    if (!transaction) return tl::unexpected(transaction.error());
+// Within the caller's transaction.
+Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSetup& setup) {
     auto setup_number = setup_id(setup);
     if (!setup_number) return setup_number;
-    auto s = db.prepare(
+    auto s = impl_->db.prepare(
         "INSERT INTO runs (part_id, started_utc, finished_utc, push, status, message, setup) VALUES (?, ?, "
         "?, ?, ?, ?, ?)");
     if (!s) return tl::unexpected(s.error());
@@ -184,26 +207,56 @@ Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const RunSe
     s->bind(6, utf8_text(run.message));
     s->bind(7, *setup_number);
     if (auto done = s->run(); !done) return tl::unexpected(done.error());
-    const std::int64_t number = db.last_rowid();
-    auto spot =
-        db.prepare("INSERT INTO run_spots (run, position, spot_id, status, body) VALUES (?, ?, ?, ?, ?)");
-    if (!spot) return tl::unexpected(spot.error());
-    for (std::size_t i = 0; i < run.spots.size(); ++i) {
-        auto text = row_text(run.spots[i], "spot " + run.spots[i].spot_id, kResult);
-        if (!text) return tl::unexpected(text.error());
-        spot->bind(1, number);
-        spot->bind(2, static_cast<std::int64_t>(i));
-        spot->bind(3, run.spots[i].spot_id);
-        spot->bind(4, to_string(run.spots[i].status));
-        spot->bind(5, *text);
-        if (auto done = spot->run(); !done) return tl::unexpected(done.error());
-    }
-    if (auto done = insert_regions(db, run, number); !done) return tl::unexpected(done.error());
-    if (auto done = insert_captures(db, run, number); !done) return tl::unexpected(done.error());
-    for (const EventRecord& event : run.events)
-        if (auto done = insert_event(db, event, number); !done) return tl::unexpected(done.error());
+    return impl_->db.last_rowid();
+}
+
+Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Project& setup) {
+    const auto text = RunSetup::of(setup);
+    if (!text) return tl::unexpected(text.error());
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto number = insert_run(run, *text);
+    if (!number) return number;
+    if (auto done = insert_rest(impl_->db, run, *number, 0); !done) return tl::unexpected(done.error());
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return number;
+}
+
+Expected<std::int64_t> ProjectFile::begin_run(const RunRecord& run, const RunSetup& setup) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto number = insert_run(run, setup);
+    if (!number) return number;
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return number;
+}
+
+Expected<void> ProjectFile::append_captures(std::int64_t run, std::span<const Capture> captures,
+                                            std::size_t stored) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    if (auto done = insert_captures(impl_->db, captures, stored, run); !done) return done;
+    return transaction->commit();
+}
+
+Expected<void> ProjectFile::finish_run(const RunRecord& run, std::size_t stored) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto s = impl_->db.prepare(
+        "UPDATE runs SET part_id = ?, finished_utc = ?, status = ?, message = ? WHERE number = ? RETURNING "
+        "number");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, utf8_text(run.part_id));
+    s->bind(2, utf8_text(run.finished_utc));
+    s->bind(3, to_string(run.status));
+    s->bind(4, utf8_text(run.message));
+    s->bind(5, run.number);
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
+    if (auto done = s->run(); !done) return done;
+    if (auto done = insert_rest(impl_->db, run, run.number, stored); !done) return done;
+    return transaction->commit();
 }
 
 Expected<void> ProjectFile::update_run(const RunRecord& run) {

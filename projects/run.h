@@ -82,12 +82,13 @@ struct EventRecord {
 };
 
 enum class RunStatus {
-    interrupted,  // the program ended between judging and the last push; the events tell how far it came
-    ok,           // every region solved and passed the gate (and, in a push run, written and read back)
-    refused,      // at least one region refused by the gate or not solvable
-    alarm,        // a push went wrong
-    device,       // a sensor or robot failed; nothing was pushed
-    cancelled     // by the user; nothing was pushed
+    interrupted,  // the program ended while measuring (no spots and regions; the captures until then), or
+                  // between judging and the last push; the events tell how far it came
+    ok,        // every region solved and passed the gate (and, in a push run, written and read back)
+    refused,   // at least one region refused by the gate or not solvable
+    alarm,     // a push went wrong
+    device,    // a sensor or robot failed; nothing was pushed
+    cancelled  // by the user; nothing was pushed
 };
 std::string_view to_string(RunStatus status);
 std::optional<RunStatus> run_status_from(std::string_view name);

@@ -52,6 +52,7 @@ struct Station::Impl {
         StartedSensors started_sensors{};                 // stopped when the robots have it
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
+        std::size_t stored = 0;  // captures that are in the file
 
         void event(EventKind kind, const std::string& subject, const std::string& text) {
             run.events.push_back({0, utc_now(), 0, kind, subject, text});
@@ -110,6 +111,13 @@ struct Station::Impl {
         return {};
     }
 
+    Expected<void> store_captures(Job& job) {
+        auto done =
+            file.append_captures(job.run.number, std::span(job.run.captures).subspan(job.stored), job.stored);
+        if (done) job.stored = job.run.captures.size();
+        return done;
+    }
+
     // All spots of one robot, in the project's order.
     Expected<void> measure_robot(Job& job, const std::string& robot_id) {
         std::vector<const Spot*> spots;
@@ -136,6 +144,8 @@ struct Station::Impl {
             open.erase(trigger->spot_id);
             ++job.done;
             job.progress(fmt::format("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
+            if (!open.empty())  // while the robot travels; the last ones go with the judged run
+                if (auto stored = store_captures(job); !stored) return stored;
         }
         return {};
     }
@@ -476,13 +486,16 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (!setup) return tl::unexpected(setup.error());
 
     run.part_id = options.part_id;
-    if (run.part_id.empty()) {
-        auto before = i.file.runs();
-        if (!before) return tl::unexpected(before.error());
-        run.part_id = fmt::format("run {}", before->empty() ? 1 : before->back().number + 1);
-    }
     run.push = options.push;
-    run.started_utc = utc_now();
+    run.started_utc = run.finished_utc = utc_now();
+    run.status = RunStatus::interrupted;
+    run.message = "the program ended while the part was measured";
+    // Begun before the robot moves: a file that cannot be written stops the run here.
+    auto number = i.file.begin_run(run, *setup);
+    if (!number) return tl::unexpected(number.error());
+    run.number = *number;
+    if (run.part_id.empty()) run.part_id = fmt::format("run {}", run.number);
+    run.status = RunStatus::ok;
     job.part_since_ns = steady_now_ns();
     job.total = static_cast<int>(run.spots.size());
 
@@ -519,12 +532,10 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (pushing) run.status = RunStatus::interrupted;
     run.message = Impl::verdict(run);
     run.finished_utc = utc_now();
-    auto number = i.file.append_run(run, *setup);
-    if (!number) {
+    if (auto judged = i.file.finish_run(run, job.stored); !judged) {
         i.confirm_all(job, PartVerdict::failed);
-        return tl::unexpected(number.error());
+        return tl::unexpected(judged.error());
     }
-    run.number = *number;
     for (EventRecord& event : run.events) event.run = run.number;
     if (pushing && options.confirm_push && !i.confirmed(job, passes)) {
         pushing = false;

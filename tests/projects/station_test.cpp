@@ -238,6 +238,34 @@ TEST_F(StationRun, SecondPushGoingWrongTakesTheFirstBack) {
     }
 }
 
+TEST_F(StationRun, CapturesAreInTheFileWhileTheRobotTravels) {
+    int seen = 0;
+    options.progress = [&](const RunProgress& progress) {
+        if (progress.done == 0 || progress.text.starts_with("region")) return;
+        ++seen;
+        auto reader = ProjectFile::open(folder / "cell.seam", FileAccess::read_only);
+        ASSERT_TRUE(reader) << reader.error().sentence();
+        const RunSummary now = reader->runs()->back();
+        EXPECT_EQ(now.status, RunStatus::interrupted);
+        EXPECT_EQ(now.captures, progress.done - 1) << "all but the one that just came";
+        EXPECT_EQ(now.spots, 0);
+        EXPECT_TRUE(reader->check().empty());
+        const auto stored = reader->load_run(now.number);
+        ASSERT_TRUE(stored) << stored.error().sentence();
+        auto again = recompute(*stored, cell->project);
+        ASSERT_TRUE(again) << again.error().sentence();
+    };
+    const RunRecord record = run();
+    EXPECT_EQ(seen, static_cast<int>(record.spots.size()));
+    const auto stored = station->file().load_run(record.number);
+    ASSERT_TRUE(stored);
+    EXPECT_EQ(stored->status, RunStatus::ok);
+    ASSERT_EQ(stored->captures.size(), record.captures.size());
+    for (std::size_t i = 0; i < record.captures.size(); ++i)
+        EXPECT_TRUE(same_bits(stored->captures[i], record.captures[i])) << i;
+    EXPECT_TRUE(compare(*stored, *recompute(*stored, cell->project)).empty());
+}
+
 TEST_F(StationRun, MeasuredBeforeThePartCameIsStale) {
     // The frame's time lies before the run began: a frame from a buffer.
     class Late : public FakeSensor {

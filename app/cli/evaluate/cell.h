@@ -1,0 +1,108 @@
+#pragma once
+// The simulated cell of the evaluation: spots on a part, taught and measured by the functions of a run
+// (filter_profile, the feature's finder, fit_contour_curve, solve_region) on profiles cut from the part's
+// mesh with noise per point (devices/simulated/profile_cut.h). Read-only once made; any number of threads.
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/correction/correction.h"
+#include "core/error.h"
+#include "core/features/feature.h"
+#include "devices/simulated/mesh.h"
+#include "devices/simulated/random.h"
+#include "devices/simulated/renderer.h"
+
+namespace seamwright::cli {
+
+struct EvaluationSettings {
+    int experiment = 0;  // 1..5, 0 = all
+    int trials = 2000;   // of the efficiency and NEES trials
+    std::uint64_t seed = 1;
+    int jobs = 0;                    // threads; 0 = all cores
+    double noise_mm = 0.03;          // of a point, in x and in z
+    double repeatability_mm = 0.01;  // of the robot, one sigma per axis
+    double jitter_mm = 3;            // half width, uniform, along the sensor's Y, not reported
+    double misalignment_deg = 5;
+    double bend_mm = 0;  // of the measured door against the taught one
+    // Of every sensor's believed pose, one sigma per axis, the same when teaching and when measuring.
+    double calibration_mm = 0, calibration_deg = 0;
+};
+
+// How a spot is measured.
+struct Method {
+    int number = 3;  // of the thesis's experiment
+    const char* name = "filter and template matching, in motion";
+    bool matched = true;  // filter, template and learnt contour curve; else contour end on the raw profile
+    bool in_motion = true;
+    bool misaligned = false;
+};
+
+struct CellSpot {
+    std::string id;
+    Pose workobject_from_sensor = Pose::Identity();
+};
+
+struct Cell {
+    EvaluationSettings settings;
+    OpticsSettings optics;
+    std::vector<CellSpot> spots;
+    std::shared_ptr<MeshTree> taught, measured;
+    std::vector<Pose> sensor_from_believed;  // calibration error, one a spot
+    double stated_jitter_mm = 0;  // what correct() reckons with: the settings' unless said otherwise
+    std::atomic<std::size_t>* profiles = nullptr;  // counts
+};
+
+// The procedural door, its 12 suggested spots, and the measured one bent by `bend_mm`.
+Cell door_cell(const EvaluationSettings& settings, std::atomic<std::size_t>& profiles);
+// The same 12 spots, each before a straight piece of the door's rim: the model of a straight, rigid contour
+// holds here.
+Cell straight_cell(const EvaluationSettings& settings, std::atomic<std::size_t>& profiles);
+// Three spots on each side of a rectangle of 900 x 700 mm with its sides along X and Y, every contour a
+// circle of `radius_mm`. Opposite sides bend the same way, so that their errors add up.
+Cell curved_cell(const EvaluationSettings& settings, double radius_mm, std::atomic<std::size_t>& profiles);
+
+struct TaughtSpot {
+    // Without measured_mm. sigma_mm: of a measure, from the spread when teaching.
+    SpotObservation observation;
+    // Matching methods: of a measure against the reference. The finder's own, mean over the teaching, the
+    // robot's repeatability and the reference's share.
+    Eigen::Matrix2d covariance_mm2 = Eigen::Matrix2d::Zero();
+    FeatureRecipe recipe;
+    Eigen::Vector3d landmark = Eigen::Vector3d::Zero();  // work object
+    Profile clean;                                       // of the undisplaced part, without noise
+    bool flagged = false;                                // the frozen-contour check says "drifting"
+    double yaw_deg = 0;                                  // as it found
+};
+using Finders = std::vector<std::unique_ptr<FeatureFinder>>;
+
+// Error: a spot's feature is not found.
+Expected<std::vector<TaughtSpot>> teach_all(const Cell& cell, const Method& method);
+Finders make_finders(const std::vector<TaughtSpot>& spots);
+
+// One measure of spot `n` on the measured part displaced by `truth`; none when the feature is not found.
+// `profile` is a buffer.
+std::optional<SpotObservation> measure_spot(const Cell& cell, const Method& method, const TaughtSpot& spot,
+                                            std::size_t n, const FeatureFinder& finder, const Pose& truth,
+                                            Random& random, Profile& profile);
+// What a feature found at the spot says.
+SpotObservation observation_of(const Method& method, const TaughtSpot& spot, const Feature& feature);
+// Marks the segments: filter_profile with a matching method, else every point counts.
+void make_ready(Profile& profile, bool matched);
+
+// One region of all observed spots. With a matching method in motion a second solution follows, in which
+// every spot's covariance holds what the unreported jitter does to the displaced contour
+// (core/correction/travel.h). None when refused.
+std::optional<RegionCorrection> correct(const Cell& cell, const Method& method,
+                                        std::vector<SpotObservation> observed);
+
+// Runs `work(i)` for all i < count on the cell's threads, each with a worker of its own; results lie where
+// the index says, so that they do not depend on the number of threads.
+void spread_out(int jobs, std::size_t count, const std::function<std::function<void(std::size_t)>()>& worker);
+
+}  // namespace seamwright::cli

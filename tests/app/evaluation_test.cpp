@@ -60,8 +60,8 @@ TEST(Evaluation, LearntCurveTakesTheBiasOfTheStraightLineAway) {
         for (const CurveStep& s : r->steps) {
             const double e = s.displacement_mm;
             EXPECT_NEAR(s.expected_mm, radius - std::sqrt(radius * radius - e * e), 1e-12);
-            EXPECT_NEAR(s.straight_mm, s.expected_mm, 0.006) << radius << " " << e;
-            EXPECT_LT(std::abs(s.learnt_mm), 0.006) << radius << " " << e;
+            EXPECT_NEAR(s.straight_mm, s.expected_mm, 0.01) << radius << " " << e;
+            EXPECT_LT(std::abs(s.learnt_mm), 0.01) << radius << " " << e;
             // The region of contours that all bend the same way is carried off as a whole.
             EXPECT_NEAR(s.region_straight_mm, s.expected_mm, 0.012) << radius << " " << e;
             EXPECT_LT(s.region_learnt_mm, 0.012);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/project.h"
 
@@ -192,6 +193,7 @@ std::vector<Error> check(const Project& project) {
     check_ids(project.spots, "spot", findings);
     check_ids(project.regions, "region", findings);
     findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
+    if (auto valid = validate_fields(project.requirements); !valid) findings.list.push_back(valid.error());
     for (const SensorSetup& sensor : project.sensors) check_sensor(project, sensor, findings);
     for (const RobotSetup& robot : project.robots)
         findings.unless(!robot.driver.empty(), "robot " + robot.id, "it has no driver",

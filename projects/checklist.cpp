@@ -123,7 +123,8 @@ CheckItem check_taught(const Project& p) {
                                   mm(spot.reference_mm.x()), mm(spot.reference_mm.z())));
     }
     if (evidence.empty()) return missing(kStep, Phrase("add a spot where the contour is to be measured"));
-    return done(kStep, Phrase("{} spots have their reference", evidence.size()), std::move(evidence));
+    const std::size_t taught = evidence.size();
+    return done(kStep, Phrase("{} spots have their reference", taught), std::move(evidence));
 }
 
 Phrase name_of_status(AlignmentStatus status) {
@@ -162,7 +163,8 @@ CheckItem check_frozen(const Project& p, const Facts& facts) {
                                   mm(f.expected_error_mm), mm(f.jitter_mm), date_of(e->utc)));
     }
     if (evidence.empty()) return missing(kStep, Phrase("there is no spot to align"));
-    return done(kStep, Phrase("the contour stands still at {} spots", evidence.size()), std::move(evidence));
+    const std::size_t frozen = evidence.size();
+    return done(kStep, Phrase("the contour stands still at {} spots", frozen), std::move(evidence));
 }
 
 CheckItem check_observable(const Project& p) {
@@ -200,7 +202,8 @@ CheckItem check_observable(const Project& p) {
 // Whether evidence still holds for the project; else the stale item.
 std::optional<CheckItem> outdated(CheckStep step, const Evidence& e, const Project& p, const Facts& facts) {
     const auto then = facts.setups.find(e.setup);
-    const std::string changed = then == facts.setups.end() ? "?" : changed_since(*then->second, p);
+    const Phrase changed =
+        then == facts.setups.end() ? Phrase("the project") : changed_since(*then->second, p);
     if (changed.empty()) return std::nullopt;
     return stale(step, Phrase("{} was changed since the proof of {}", changed, date_of(e.utc)));
 }
@@ -334,11 +337,10 @@ nlohmann::json essence(const Calibration* calibration) {
 }
 
 template <class T>
-std::string first_change(const std::vector<T>& then, const std::vector<T>& now, const char* kind) {
+Phrase first_change(const std::vector<T>& then, const std::vector<T>& now, const char* name) {
     for (std::size_t i = 0; i < std::max(then.size(), now.size()); ++i) {
-        if (i >= now.size()) return fmt::format("{} {}", kind, then[i].id);
-        if (i >= then.size() || essence(then[i]) != essence(now[i]))
-            return fmt::format("{} {}", kind, now[i].id);
+        if (i >= now.size()) return Phrase(name, then[i].id);
+        if (i >= then.size() || essence(then[i]) != essence(now[i])) return Phrase(name, now[i].id);
     }
     return {};
 }
@@ -408,16 +410,16 @@ std::optional<double> days_between(const std::string& from_utc, const std::strin
     return static_cast<double>((*to - *from).count());
 }
 
-std::string changed_since(const Project& then, const Project& now) {
+Phrase changed_since(const Project& then, const Project& now) {
     if (!then.part.base_from_workobject.isApprox(now.part.base_from_workobject, 1e-12))
-        return "the work object";
-    if (auto changed = first_change(then.sensors, now.sensors, "sensor"); !changed.empty()) return changed;
-    if (auto changed = first_change(then.robots, now.robots, "robot"); !changed.empty()) return changed;
+        return Phrase("the work object");
+    if (auto changed = first_change(then.sensors, now.sensors, "sensor {}"); !changed.empty()) return changed;
+    if (auto changed = first_change(then.robots, now.robots, "robot {}"); !changed.empty()) return changed;
     for (std::size_t i = 0; i < now.sensors.size(); ++i)
         if (essence(in_use(then, then.sensors[i])) != essence(in_use(now, now.sensors[i])))
-            return "calibration " + now.sensors[i].calibration_id;
-    if (auto changed = first_change(then.spots, now.spots, "spot"); !changed.empty()) return changed;
-    return first_change(then.regions, now.regions, "region");
+            return Phrase("calibration {}", now.sensors[i].calibration_id);
+    if (auto changed = first_change(then.spots, now.spots, "spot {}"); !changed.empty()) return changed;
+    return first_change(then.regions, now.regions, "region {}");
 }
 
 bool pass_changed(const Project& then, const Project& now, const std::string& spot_id) {

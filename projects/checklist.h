@@ -90,7 +90,7 @@ const Evidence* newest(const Facts& facts, const std::string& spot_id = {}) {
 
 // What differs in what a measurement rests on: "spot S3", "sensor A", ...; empty when nothing does. Limits,
 // names of frames and settings of the simulation do not count.
-std::string changed_since(const Project& then, const Project& now);
+Phrase changed_since(const Project& then, const Project& now);
 // The same of one spot's pass.
 bool pass_changed(const Project& then, const Project& now, const std::string& spot_id);
 

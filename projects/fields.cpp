@@ -79,11 +79,37 @@ const std::vector<Field<Region>>& region_fields() {
     return fields;
 }
 
+const std::vector<Field<Requirements>>& requirement_fields() {
+    static const std::vector<Field<Requirements>> fields = {
+        {{"sigma3_mm", "mm", 0.001, 10, 0.3, 3,
+          "3 sigma of a point of the corrected path, predicted and proven, at most."},
+         [](const Requirements& r) { return r.sigma3_mm; },
+         [](Requirements& r, double v) { r.sigma3_mm = v; }},
+        {{"calibration_age_days", "days", 1, 3650, 365, 0, "An older calibration in use is stale."},
+         [](const Requirements& r) { return r.calibration_age_days; },
+         [](Requirements& r, double v) { r.calibration_age_days = v; }},
+        {{"zero_shift_runs", "", 2, 1000, 3, 0, "Measurements of the unmoved part, at least."},
+         [](const Requirements& r) { return r.zero_shift_runs; },
+         [](Requirements& r, double v) { r.zero_shift_runs = v; }},
+        {{"known_shift_mm", "mm", 0.1, 100, 10, 1, "Known translations must be recovered up to here."},
+         [](const Requirements& r) { return r.known_shift_mm; },
+         [](Requirements& r, double v) { r.known_shift_mm = v; }},
+        {{"known_shift_deg", "deg", 0.01, 10, 1, 2, "Known rotations must be recovered up to here."},
+         [](const Requirements& r) { return r.known_shift_deg; },
+         [](Requirements& r, double v) { r.known_shift_deg = v; }},
+    };
+    return fields;
+}
+
 Expected<void> set_field(Spot& spot, std::string_view name, double value) {
     return set_in(spot_fields(), spot, name, value, "spot " + spot.id);
 }
 Expected<void> set_field(Region& region, std::string_view name, double value) {
     return set_in(region_fields(), region, name, value, "region " + region.id);
+}
+
+Expected<void> set_field(Requirements& requirements, std::string_view name, double value) {
+    return set_in(requirement_fields(), requirements, name, value, "requirements");
 }
 
 Expected<void> validate_fields(const Spot& spot) {
@@ -95,6 +121,10 @@ Expected<void> validate_fields(const Spot& spot) {
 }
 Expected<void> validate_fields(const Region& region) {
     return validate_in(region_fields(), region, "region " + region.id);
+}
+
+Expected<void> validate_fields(const Requirements& requirements) {
+    return validate_in(requirement_fields(), requirements, "requirements");
 }
 
 }  // namespace seamwright

@@ -1,6 +1,6 @@
 #pragma once
-// One description of every number that is set at a spot and at a region: range, unit, decimals, default. What
-// edits or imports one reads it here.
+// One description of every number that is set at a spot, at a region and as requirement: range, unit,
+// decimals, default. What edits or imports one reads it here.
 
 #include <string>
 #include <string_view>
@@ -18,8 +18,9 @@ struct Field {
     void (*set)(T&, double);
 };
 
-const std::vector<Field<Spot>>& spot_fields();      // entry_mm, exit_mm, speed_mm_s, sigma_mm, jitter_mm,
-                                                    // weight_x, weight_y, weight_z
+const std::vector<Field<Spot>>& spot_fields();  // entry_mm, exit_mm, speed_mm_s, sigma_mm, jitter_mm,
+                                                // weight_x, weight_y, weight_z
+const std::vector<Field<Requirements>>& requirement_fields();
 const std::vector<Field<Region>>& region_fields();  // limit_translation_mm, limit_rotation_deg,
                                                     // sigma_limit_mm, sigma_limit_deg
 
@@ -27,9 +28,11 @@ const std::vector<Field<Region>>& region_fields();  // limit_translation_mm, lim
 // described.
 Expected<void> set_field(Spot& spot, std::string_view name, double value);
 Expected<void> set_field(Region& region, std::string_view name, double value);
+Expected<void> set_field(Requirements& requirements, std::string_view name, double value);
 
 // Every field of a spot or region, and of a spot its recipe against its kind.
 Expected<void> validate_fields(const Spot& spot);
 Expected<void> validate_fields(const Region& region);
+Expected<void> validate_fields(const Requirements& requirements);
 
 }  // namespace seamwright

@@ -30,8 +30,8 @@ namespace seamwright {
 inline constexpr const char* kKnownShiftPrefix = "known shift ";  // parts of its runs: "known shift X +5 mm"
 
 struct ShiftGrid {
-    double range_mm = 10, step_mm = 5;     // -range .. range; 0 itself is the zero shift
-    double range_deg = 1, step_deg = 0.5;  // steps of `both` follow the translation
+    double range_mm = 10, step_mm = 2.5;    // -range .. range; 0 itself is the zero shift
+    double range_deg = 1, step_deg = 0.25;  // steps of `both` follow the translation
 };
 // Error (usage): a range or step that is not positive and finite, a step above its range, more than 2000
 // tests.

@@ -290,6 +290,15 @@ const StripePeaks& SpotMeasurer::peaks() const {
     return impl_->peaks;
 }
 
+CorrectionOptions correction_options(const Region& region) {
+    CorrectionOptions options;
+    options.free = region.free;
+    options.limits = region.limits;
+    options.sigma_limit_mm = std::max(options.sigma_limit_mm, region.sigma_limit_mm);
+    options.sigma_limit_deg = std::max(options.sigma_limit_deg, region.sigma_limit_deg);
+    return options;
+}
+
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements) {
     std::vector<RegionRecord> records;
@@ -320,13 +329,7 @@ std::vector<RegionRecord> correct_regions(const Project& project,
                                                    : "no spot of the region was measured");
             continue;
         }
-        CorrectionOptions options;
-        options.free = region.free;
-        options.limits = region.limits;
-        // A direction that the region's limits would refuse anyway by far is not observed at all.
-        options.sigma_limit_mm = std::max(options.sigma_limit_mm, region.sigma_limit_mm);
-        options.sigma_limit_deg = std::max(options.sigma_limit_deg, region.sigma_limit_deg);
-        auto solved = solve_region(observations, options);
+        auto solved = solve_region(observations, correction_options(region));
         if (!solved) {
             record.refusals.push_back("the correction refuses its input: " + solved.error().sentence());
             continue;

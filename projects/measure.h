@@ -82,6 +82,10 @@ class SpotMeasurer {
     std::unique_ptr<Impl> impl_;
 };
 
+// What correction and plan of a region are asked for: its free degrees and limits; a direction that the
+// region's sigma limits would refuse anyway by far is not observed at all.
+CorrectionOptions correction_options(const Region& region);
+
 // Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
 // correction and says why in `refusals`.

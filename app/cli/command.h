@@ -57,6 +57,7 @@ void add_project_commands(CommandLine& line);  // new, info, check, export, impo
 void add_run(CommandLine& line);
 void add_record(CommandLine& line);
 void add_proof(CommandLine& line);  // zero-shift, known-shift
+void add_hand_over(CommandLine& line);  // report, reteach
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);
 void add_sim_cell(CommandLine& line);

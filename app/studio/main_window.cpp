@@ -20,9 +20,11 @@
 
 #include "app/studio/command_palette.h"
 #include "app/studio/event_list.h"
+#include "app/studio/reuse_dialogs.h"
 #include "app/studio/studio.h"
 #include "devices/exchange/files.h"
 #include "projects/exchange.h"
+#include "projects/hand_over.h"
 #include "widgets/pages/align_page.h"
 #include "widgets/pages/calibrate_page.h"
 #include "widgets/pages/cell_page.h"
@@ -30,6 +32,7 @@
 #include "widgets/pages/regions_page.h"
 #include "widgets/pages/run_page.h"
 #include "widgets/pages/teach_page.h"
+#include "widgets/print/pdf.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -161,6 +164,13 @@ void MainWindow::make_actions() {
         action("import_json", "import", tr("Import project (JSON)..."), {}, [this] { import_project(); }));
     file->addAction(
         action("export_json", "export", tr("Export project (JSON)..."), {}, [this] { export_project(); }));
+    file->addSeparator();
+    file->addAction(action("report", "export", tr("Hand-over report..."), QKeySequence("Ctrl+R"),
+                           [this] { make_report(); }));
+    file->addAction(
+        action("mirror", "regions", tr("Clone for the mirrored part..."), {}, [this] { mirror_project(); }));
+    file->addAction(action("reteach", "calibrate", tr("After an exchange of sensor or robot..."), {},
+                           [this] { reteach(); }));
     file->addSeparator();
     file->addAction(action("demo", "home", tr("Open the demo project"), {}, [this] {
         if (may_leave()) studio_.open_demo(false);
@@ -334,12 +344,15 @@ void MainWindow::make_central() {
     pages_ = new QStackedWidget;
     pages_->setMinimumWidth(kPageWidth);
     run_page_ = new RunPage(desk_, views_);
+    auto* prove = new ProvePage(desk_, views_);
+    connect(prove, &ProvePage::step_wanted, this, &MainWindow::show_step);
+    connect(prove, &ProvePage::report_wanted, this, &MainWindow::make_report);
     const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
                                                  new CalibratePage(desk_, views_),
                                                  new TeachPage(desk_, views_),
                                                  new AlignPage(desk_, views_),
                                                  new RegionsPage(desk_, views_),
-                                                 new ProvePage(desk_, views_),
+                                                 prove,
                                                  run_page_};
     for (StepPage* page : pages) {
         auto* scroll = new QScrollArea;
@@ -572,6 +585,57 @@ void MainWindow::import_project() {
     if (file.isEmpty()) return;
     if (auto made = desk_.create(file.toStdString(), *project); !made)
         tell(QString::fromStdString(made.error().sentence()));
+}
+
+void MainWindow::make_report() {
+    if (!desk_.is_open()) return tell(tr("No project is open."));
+    const QFileInfo project(QString::fromStdString(desk_.path().string()));
+    const QString file = QFileDialog::getSaveFileName(
+        this, tr("Hand-over report"), project.path() + "/" + project.completeBaseName() + ".pdf",
+        tr("PDF (*.pdf);;HTML (*.html)"));
+    if (file.isEmpty()) return;
+    HandOverOptions options;
+    options.language = desk_.language();
+    auto page = hand_over_report(desk_.file(), desk_.project(), desk_.facts(), options);
+    if (!page) return tell(QString::fromStdString(page.error().sentence()));
+    const auto written = file.endsWith(".html", Qt::CaseInsensitive)
+                             ? write_text_file(file.toStdString(), page->html())
+                             : write_pdf(*page, file.toStdString());
+    if (!written) return tell(QString::fromStdString(written.error().sentence()));
+    desk_.note(EventKind::note, "report", "hand-over report written to " + file.toStdString());
+    tell(tr("The report is in %1").arg(file));
+}
+
+void MainWindow::mirror_project() {
+    if (!desk_.is_open()) return tell(tr("No project is open."));
+    if (!may_leave()) return;
+    MirrorDialog dialog(this);
+    if (dialog.exec() != QDialog::Accepted) return;
+    auto mirrored = mirrored_project(desk_.project(), dialog.plane());
+    if (!mirrored) return tell(QString::fromStdString(mirrored.error().sentence()));
+    const QFileInfo project(QString::fromStdString(desk_.path().string()));
+    QString file =
+        QFileDialog::getSaveFileName(this, tr("Save the mirrored project as"),
+                                     project.path() + "/" + project.completeBaseName() + "_mirrored.seam",
+                                     tr("Seamwright projects (*.seam)"));
+    if (file.isEmpty()) return;
+    if (!file.endsWith(".seam")) file += ".seam";
+    if (file == project.filePath()) return tell(tr("Choose another name: the original stays."));
+    mirrored->name = QFileInfo(file).completeBaseName().toStdString();
+    if (auto made = desk_.create(file.toStdString(), *mirrored); !made)
+        return tell(QString::fromStdString(made.error().sentence()));
+    tell(tr("This is the mirrored clone. Drive its spots slowly once, and teach their references again."));
+}
+
+void MainWindow::reteach() {
+    if (!desk_.is_open()) return tell(tr("No project is open."));
+    ExchangeDialog dialog(desk_.project(), this);
+    if (dialog.exec() != QDialog::Accepted) return;
+    const auto moved = desk_.reteach(dialog.exchange());
+    if (!moved) return tell(QString::fromStdString(moved.error().sentence()));
+    show_step(Step::prove);
+    tell(tr("%1 spots were led along. Drive each slowly once, then repeat the zero shift.")
+             .arg(moved->size()));
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

@@ -57,6 +57,9 @@ class MainWindow : public QMainWindow {
     void save_as();
     void export_project();
     void import_project();
+    void make_report();
+    void mirror_project();
+    void reteach();
     bool save();
 
     Studio& studio_;

@@ -78,7 +78,7 @@ void Studio::set_language(const QString& language) {
             application_.installTranslator(&qt_texts_);
     }
     QLocale::setDefault(QLocale(language == "de" ? QLocale::German : QLocale::English));
-    desk_.retranslate();
+    desk_.set_language(language_ == "de" ? Language::german : Language::english);
     build_window();
 }
 

@@ -28,6 +28,7 @@ figcaption { color: #4b5563; font-size: 14px; }
 svg { background: #fff; border: 1px solid #e2e5e9; max-width: 100%; height: auto; }
 svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: #1e2226; } svg .title { font-weight: 600; }
 svg .grid { stroke: #e8eaed; } svg .axes { fill: none; stroke: #6b7280; } svg .band { fill: #009E73; opacity: 0.12; }
+.sign { display: flex; gap: 24px; margin-top: 56px; } .sign span { flex: 1; border-top: 1px solid #1e2226; color: #4b5563; font-size: 14px; }
 @media print { body { background: #fff; } h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
 )";
 
@@ -50,63 +51,145 @@ std::string escape(std::string_view text) {
     out.reserve(text.size());
     for (char c : text) {
         switch (c) {
-            case '&': out += "&amp;"; break;
-            case '<': out += "&lt;"; break;
-            case '>': out += "&gt;"; break;
-            case '"': out += "&quot;"; break;
-            case '\'': out += "&#39;"; break;
-            default: out += c;
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+                out += "&#39;";
+                break;
+            default:
+                out += c;
         }
     }
     return out;
 }
 
-Page::Page(std::string title, std::string language) : title_(std::move(title)), language_(std::move(language)) {}
-
-void Page::heading(std::string_view text, int level) { body_ += fmt::format("<h{0}>{1}</h{0}>\n", level, escape(text)); }
-
-void Page::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", escape(text)); }
-
-void Page::verdict(std::string_view word, Tone tone, std::string_view explanation) {
-    const char* name = tone == Tone::good        ? "good"
-                       : tone == Tone::attention ? "attention"
-                       : tone == Tone::alarm     ? "alarm"
-                                                 : "neutral";
-    body_ += fmt::format("<p><span class=\"verdict {}\">{}</span> {}</p>\n", name, escape(word), escape(explanation));
-}
-
-void Page::table(const std::vector<std::vector<std::string>>& rows, std::string_view caption) {
-    if (rows.empty()) return;
+std::vector<bool> numeric_columns(const Rows& rows) {
+    if (rows.empty()) return {};
     std::vector<bool> numeric(rows[0].size(), rows.size() > 1);
     for (std::size_t r = 1; r < rows.size(); ++r)
         for (std::size_t c = 0; c < numeric.size(); ++c)
             if (c >= rows[r].size() || !is_number(rows[r][c])) numeric[c] = false;
-    body_ += "<table>";
-    if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escape(caption));
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        body_ += r == 0 ? "<thead><tr>" : "<tr>";
-        for (std::size_t c = 0; c < rows[r].size(); ++c)
-            body_ += fmt::format("<{0}{1}>{2}</{0}>", r == 0 ? "th" : "td",
-                                 c < numeric.size() && numeric[c] ? " class=\"n\"" : "", escape(rows[r][c]));
-        body_ += r == 0 ? "</tr></thead><tbody>" : "</tr>";
-    }
-    body_ += "</tbody></table>\n";
+    return numeric;
 }
 
-void Page::figure(const std::string& svg, std::string_view caption) { figures({svg}, caption); }
+Page::Page(std::string title, std::string language)
+    : title_(std::move(title)), language_(std::move(language)) {}
+
+void Page::heading(std::string_view text, int level) {
+    Block& b = blocks_.emplace_back();
+    b.kind = Block::Kind::heading;
+    b.level = level;
+    b.text = text;
+}
+
+void Page::paragraph(std::string_view text) {
+    blocks_.emplace_back().text = text;
+}
+
+void Page::verdict(std::string_view word, Tone tone, std::string_view explanation) {
+    Block& b = blocks_.emplace_back();
+    b.kind = Block::Kind::verdict;
+    b.word = word;
+    b.tone = tone;
+    b.text = explanation;
+}
+
+void Page::table(const Rows& rows, std::string_view caption) {
+    if (rows.empty()) return;
+    Block& b = blocks_.emplace_back();
+    b.kind = Block::Kind::table;
+    b.rows = rows;
+    b.text = caption;
+}
+
+void Page::figure(const std::string& svg, std::string_view caption) {
+    figures({svg}, caption);
+}
 
 void Page::figures(const std::vector<std::string>& svgs, std::string_view caption) {
-    body_ += "<figure><div class=\"row\">";
-    for (const std::string& s : svgs) body_ += s;
-    body_ += fmt::format("</div><figcaption>{}</figcaption></figure>\n", escape(caption));
+    Block& b = blocks_.emplace_back();
+    b.kind = Block::Kind::figures;
+    b.svgs = svgs;
+    b.text = caption;
 }
 
+void Page::signatures(const Rows& lines) {
+    Block& b = blocks_.emplace_back();
+    b.kind = Block::Kind::signatures;
+    b.rows = lines;
+}
+
+namespace {
+
+std::string table_html(const Block& b) {
+    const std::vector<bool> numeric = numeric_columns(b.rows);
+    std::string out = "<table>";
+    if (!b.text.empty()) out += fmt::format("<caption>{}</caption>", escape(b.text));
+    for (std::size_t r = 0; r < b.rows.size(); ++r) {
+        out += r == 0 ? "<thead><tr>" : "<tr>";
+        for (std::size_t c = 0; c < b.rows[r].size(); ++c)
+            out += fmt::format("<{0}{1}>{2}</{0}>", r == 0 ? "th" : "td",
+                               c < numeric.size() && numeric[c] ? " class=\"n\"" : "", escape(b.rows[r][c]));
+        out += r == 0 ? "</tr></thead><tbody>" : "</tr>";
+    }
+    return out + "</tbody></table>\n";
+}
+
+std::string block_html(const Block& b) {
+    switch (b.kind) {
+        case Block::Kind::heading:
+            return fmt::format("<h{0}>{1}</h{0}>\n", b.level, escape(b.text));
+        case Block::Kind::paragraph:
+            return fmt::format("<p>{}</p>\n", escape(b.text));
+        case Block::Kind::verdict: {
+            const char* name = b.tone == Tone::good        ? "good"
+                               : b.tone == Tone::attention ? "attention"
+                               : b.tone == Tone::alarm     ? "alarm"
+                                                           : "neutral";
+            return fmt::format("<p><span class=\"verdict {}\">{}</span> {}</p>\n", name, escape(b.word),
+                               escape(b.text));
+        }
+        case Block::Kind::table:
+            return table_html(b);
+        case Block::Kind::figures: {
+            std::string out = "<figure><div class=\"row\">";
+            for (const std::string& s : b.svgs) out += s;
+            return out + fmt::format("</div><figcaption>{}</figcaption></figure>\n", escape(b.text));
+        }
+        case Block::Kind::signatures: {
+            std::string out;
+            for (const auto& line : b.rows) {
+                out += "<div class=\"sign\">";
+                for (const std::string& field : line) out += fmt::format("<span>{}</span>", escape(field));
+                out += "</div>\n";
+            }
+            return out;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
 std::string Page::html() const {
+    std::string body;
+    for (const Block& b : blocks_) body += block_html(b);
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-        "content=\"width=device-width, initial-scale=1\"><title>{}</title><style>{}</style></head>\n<body><main>\n<h1>{}</h1>\n{}"
+        "content=\"width=device-width, "
+        "initial-scale=1\"><title>{}</title><style>{}</style></head>\n<body><main>\n<h1>{}</h1>\n{}"
         "</main></body></html>\n",
-        language_, escape(title_), kStyle, escape(title_), body_);
+        language_, escape(title_), kStyle, escape(title_), body);
 }
 
 }  // namespace seamwright::report

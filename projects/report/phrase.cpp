@@ -20,8 +20,8 @@ std::string_view code_of(Language language) {
 }
 
 std::optional<std::string_view> german_of(std::string_view english) {
-    static const auto texts =
-        nlohmann::json::parse(resources::hand_over_de_json).get<std::map<std::string, std::string, std::less<>>>();
+    static const auto texts = nlohmann::json::parse(resources::hand_over_de_json)
+                                  .get<std::map<std::string, std::string, std::less<>>>();
     const auto it = texts.find(english);
     if (it == texts.end()) return std::nullopt;
     return it->second;

@@ -4,114 +4,6 @@
 <context>
     <name>Checklist</name>
     <message>
-        <source>add a sensor</source>
-        <translation>einen Sensor hinzufügen</translation>
-    </message>
-    <message>
-        <source>add a robot</source>
-        <translation>einen Roboter hinzufügen</translation>
-    </message>
-    <message>
-        <source>connect the devices</source>
-        <translation>die Geräte verbinden</translation>
-    </message>
-    <message>
-        <source>%1 sensors and %2 robots answer</source>
-        <translation>%1 Sensoren und %2 Roboter antworten</translation>
-    </message>
-    <message>
-        <source>sensor %1 has no calibration in use</source>
-        <translation>Sensor %1 benutzt keine Kalibrierung</translation>
-    </message>
-    <message>
-        <source>calibration %1 of sensor %2 is %3</source>
-        <translation>Kalibrierung %1 von Sensor %2 ist %3</translation>
-    </message>
-    <message>
-        <source>sensor %1 is another device (%2) than was calibrated (%3)</source>
-        <translation>Sensor %1 ist ein anderes Gerät (%2) als das kalibrierte (%3)</translation>
-    </message>
-    <message>
-        <source>there is no sensor to calibrate</source>
-        <translation>es gibt keinen Sensor zu kalibrieren</translation>
-    </message>
-    <message>
-        <source>every sensor has a calibration in use</source>
-        <translation>jeder Sensor benutzt eine Kalibrierung</translation>
-    </message>
-    <message>
-        <source>measure the reference of spot %1</source>
-        <translation>die Referenz der Messstelle %1 messen</translation>
-    </message>
-    <message>
-        <source>add a spot where the contour is to be measured</source>
-        <translation>eine Messstelle hinzufügen, wo die Kontur gemessen werden soll</translation>
-    </message>
-    <message>
-        <source>%1 spots have their reference</source>
-        <translation>%1 Messstellen haben ihre Referenz</translation>
-    </message>
-    <message>
-        <source>record the pass of spot %1 and accept it</source>
-        <translation>die Durchfahrt der Messstelle %1 aufzeichnen und annehmen</translation>
-    </message>
-    <message>
-        <source>there is no spot to align</source>
-        <translation>es gibt keine Messstelle auszurichten</translation>
-    </message>
-    <message>
-        <source>the contour stands still at %1 spots</source>
-        <translation>die Kontur steht still an %1 Messstellen</translation>
-    </message>
-    <message>
-        <source>add a region and give it spots</source>
-        <translation>einen Korrekturbereich hinzufügen und ihm Messstellen geben</translation>
-    </message>
-    <message>
-        <source>region %1 has no spots</source>
-        <translation>Korrekturbereich %1 hat keine Messstellen</translation>
-    </message>
-    <message>
-        <source>name the controller&apos;s frame of region %1</source>
-        <translation>den Frame der Steuerung für Korrekturbereich %1 benennen</translation>
-    </message>
-    <message>
-        <source>region %1: %2</source>
-        <translation>Korrekturbereich %1: %2</translation>
-    </message>
-    <message>
-        <source>region %1 is under-determined: %2</source>
-        <translation>Korrekturbereich %1 ist unterbestimmt: %2</translation>
-    </message>
-    <message>
-        <source>spot %1 belongs to no region</source>
-        <translation>Messstelle %1 gehört zu keinem Korrekturbereich</translation>
-    </message>
-    <message>
-        <source>%1 regions are observable</source>
-        <translation>%1 Korrekturbereiche sind beobachtbar</translation>
-    </message>
-    <message>
-        <source>measure the unmoved part %1 times: it must read zero</source>
-        <translation>das unbewegte Teil %1-mal messen: es muss null ergeben</translation>
-    </message>
-    <message>
-        <source>spots, regions or calibration were changed since the zero shift of %1</source>
-        <translation>Messstellen, Korrekturbereiche oder Kalibrierung wurden seit der Nullverschiebung vom %1 geändert</translation>
-    </message>
-    <message>
-        <source>a zero-shift run was refused; see why and repeat</source>
-        <translation>ein Nullverschiebungslauf wurde abgelehnt; Grund ansehen und wiederholen</translation>
-    </message>
-    <message>
-        <source>%1 of %2 zero-shift runs</source>
-        <translation>%1 von %2 Nullverschiebungsläufen</translation>
-    </message>
-    <message>
-        <source>%1 runs of the unmoved part read zero</source>
-        <translation>%1 Läufe am unbewegten Teil ergeben null</translation>
-    </message>
-    <message>
         <source>measure the next part</source>
         <translation>das nächste Teil messen</translation>
     </message>
@@ -233,6 +125,14 @@
     <message>
         <source>Place the simulated part</source>
         <translation>Das simulierte Teil platzieren</translation>
+    </message>
+    <message>
+        <source>Change the requirements</source>
+        <translation>Forderungen ändern</translation>
+    </message>
+    <message>
+        <source>Take up again after an exchange</source>
+        <translation>Nach einem Austausch wieder aufnehmen</translation>
     </message>
 </context>
 <context>
@@ -1350,6 +1250,34 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Meshes (*.stl *.ply *.obj)</source>
         <translation>Netze (*.stl *.ply *.obj)</translation>
     </message>
+    <message>
+        <source>Requirements</source>
+        <translation>Forderungen</translation>
+    </message>
+    <message>
+        <source>What has to be reached before the cell is handed over.</source>
+        <translation>Was erreicht sein muss, bevor die Zelle übergeben wird.</translation>
+    </message>
+    <message>
+        <source>3 sigma, at most</source>
+        <translation>3 Sigma, höchstens</translation>
+    </message>
+    <message>
+        <source>Age of calibrations</source>
+        <translation>Alter der Kalibrierungen</translation>
+    </message>
+    <message>
+        <source>Zero-shift runs</source>
+        <translation>Nullverschiebungsläufe</translation>
+    </message>
+    <message>
+        <source>Known translation</source>
+        <translation>Bekannte Verschiebung</translation>
+    </message>
+    <message>
+        <source>Known rotation</source>
+        <translation>Bekannte Drehung</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CommandPalette</name>
@@ -1461,6 +1389,69 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>device</source>
         <translation>Gerät</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::ExchangeDialog</name>
+    <message>
+        <source>After an exchange of sensor or robot</source>
+        <translation>Nach Austausch von Sensor oder Roboter</translation>
+    </message>
+    <message>
+        <source>Only the calibration was repeated. Every spot&apos;s flange pose is led so that the sensor stands at the part where it stood before; references, features and regions stay as taught.</source>
+        <translation>Nur die Kalibrierung wurde wiederholt. Die Flanschlage jeder Messstelle wird so nachgeführt, dass der Sensor am Teil steht wie vorher; Referenzen, Merkmale und Korrekturbereiche bleiben wie eingelernt.</translation>
+    </message>
+    <message>
+        <source>Sensor</source>
+        <translation>Sensor</translation>
+    </message>
+    <message>
+        <source>Whose spots are led along</source>
+        <translation>Dessen Messstellen nachgeführt werden</translation>
+    </message>
+    <message>
+        <source>New calibration</source>
+        <translation>Neue Kalibrierung</translation>
+    </message>
+    <message>
+        <source>Made after the exchange; it comes into use</source>
+        <translation>Nach dem Austausch gemacht; sie wird ab jetzt benutzt</translation>
+    </message>
+    <message>
+        <source>The robot was exchanged or moved; the part stands in its base at:</source>
+        <translation>Der Roboter wurde getauscht oder versetzt; das Teil steht in seiner Basis bei:</translation>
+    </message>
+    <message>
+        <source>Give the work object as measured with the new robot</source>
+        <translation>Das Werkstückkoordinatensystem, mit dem neuen Roboter gemessen</translation>
+    </message>
+    <message>
+        <source>Work object in the new robot&apos;s base</source>
+        <translation>Werkstückkoordinaten in der Basis des neuen Roboters</translation>
+    </message>
+    <message>
+        <source>base_from_workobject, measured with the new robot</source>
+        <translation>base_from_workobject, mit dem neuen Roboter gemessen</translation>
+    </message>
+    <message>
+        <source>Lead the spots along</source>
+        <translation>Messstellen nachführen</translation>
+    </message>
+    <message>
+        <source>One step; can be undone</source>
+        <translation>Ein Schritt; kann rückgängig gemacht werden</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Nothing is changed</source>
+        <translation>Nichts wird geändert</translation>
+    </message>
+    <message>
+        <source>%1 spots; a flange pose moves by %2 mm and %3 deg at most</source>
+        <translation>%1 Messstellen; eine Flanschlage ändert sich um höchstens %2 mm und %3 Grad</translation>
     </message>
 </context>
 <context>
@@ -2181,12 +2172,115 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Save the imported project as</source>
         <translation>Das eingelesene Projekt speichern als</translation>
     </message>
+    <message>
+        <source>Hand-over report...</source>
+        <translation>Übergabebericht...</translation>
+    </message>
+    <message>
+        <source>Clone for the mirrored part...</source>
+        <translation>Kopie für das gespiegelte Teil...</translation>
+    </message>
+    <message>
+        <source>After an exchange of sensor or robot...</source>
+        <translation>Nach Austausch von Sensor oder Roboter...</translation>
+    </message>
+    <message>
+        <source>No project is open.</source>
+        <translation>Es ist kein Projekt offen.</translation>
+    </message>
+    <message>
+        <source>Hand-over report</source>
+        <translation>Übergabebericht</translation>
+    </message>
+    <message>
+        <source>PDF (*.pdf);;HTML (*.html)</source>
+        <translation>PDF (*.pdf);;HTML (*.html)</translation>
+    </message>
+    <message>
+        <source>The report is in %1</source>
+        <translation>Der Bericht steht in %1</translation>
+    </message>
+    <message>
+        <source>Save the mirrored project as</source>
+        <translation>Gespiegeltes Projekt speichern unter</translation>
+    </message>
+    <message>
+        <source>Choose another name: the original stays.</source>
+        <translation>Einen anderen Namen wählen: das Original bleibt.</translation>
+    </message>
+    <message>
+        <source>This is the mirrored clone. Drive its spots slowly once, and teach their references again.</source>
+        <translation>Dies ist die gespiegelte Kopie. Ihre Messstellen einmal langsam anfahren und die Referenzen neu einlernen.</translation>
+    </message>
+    <message>
+        <source>%1 spots were led along. Drive each slowly once, then repeat the zero shift.</source>
+        <translation>%1 Messstellen wurden nachgeführt. Jede einmal langsam anfahren, dann die Nullverschiebung wiederholen.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::MethodDrawing</name>
     <message>
         <source>Drawing of the set-up</source>
         <translation>Zeichnung des Aufbaus</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::MirrorDialog</name>
+    <message>
+        <source>Clone for the mirrored part</source>
+        <translation>Kopie für das gespiegelte Teil</translation>
+    </message>
+    <message>
+        <source>Makes a second project, as the left door becomes the right one: spots, features, regions and frames are reflected in a plane of the work object. Sensors, robots and calibrations stay. Runs and proofs stay with this project.</source>
+        <translation>Macht ein zweites Projekt, wie aus der linken Tür die rechte wird: Messstellen, Merkmale, Korrekturbereiche und Frames werden an einer Ebene des Werkstückkoordinatensystems gespiegelt. Sensoren, Roboter und Kalibrierungen bleiben. Läufe und Nachweise bleiben bei diesem Projekt.</translation>
+    </message>
+    <message>
+        <source>X changes its sign</source>
+        <translation>X wechselt das Vorzeichen</translation>
+    </message>
+    <message>
+        <source>Y changes its sign</source>
+        <translation>Y wechselt das Vorzeichen</translation>
+    </message>
+    <message>
+        <source>Z changes its sign</source>
+        <translation>Z wechselt das Vorzeichen</translation>
+    </message>
+    <message>
+        <source>Plane</source>
+        <translation>Ebene</translation>
+    </message>
+    <message>
+        <source>The axis of the work object that the plane stands across</source>
+        <translation>Die Achse des Werkstückkoordinatensystems, zu der die Ebene quer steht</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>Its distance</source>
+        <translation>Ihr Abstand</translation>
+    </message>
+    <message>
+        <source>From the work object&apos;s origin, along that axis</source>
+        <translation>Vom Ursprung der Werkstückkoordinaten, entlang dieser Achse</translation>
+    </message>
+    <message>
+        <source>Make the clone</source>
+        <translation>Kopie machen</translation>
+    </message>
+    <message>
+        <source>Asks for its file</source>
+        <translation>Fragt nach ihrer Datei</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Nothing is made</source>
+        <translation>Nichts wird gemacht</translation>
     </message>
 </context>
 <context>
@@ -2395,10 +2489,6 @@ hier keine Referenz</translation>
 <context>
     <name>seamwright::ProvePage</name>
     <message>
-        <source>Before anything is corrected: the part as taught, not touched, measured several times. Every number must be zero within its scatter.</source>
-        <translation>Bevor irgendetwas korrigiert wird: das eingelernte Teil, unberührt, mehrmals gemessen. Jede Zahl muss innerhalb ihrer Streuung null sein.</translation>
-    </message>
-    <message>
         <source>Runs</source>
         <translation>Läufe</translation>
     </message>
@@ -2417,10 +2507,6 @@ hier keine Referenz</translation>
     <message>
         <source>Region</source>
         <translation>Korrekturbereich</translation>
-    </message>
-    <message>
-        <source>The region that the table and the charts show</source>
-        <translation>Der Korrekturbereich, den Tabelle und Diagramme zeigen</translation>
     </message>
     <message>
         <source>Direction</source>
@@ -2479,20 +2565,230 @@ hier keine Referenz</translation>
         <translation>%1 von %2 Läufen wurden abgelehnt</translation>
     </message>
     <message>
-        <source>%1 runs: the mean is off zero by more than 3 sigma</source>
-        <translation>%1 Läufe: das Mittel liegt mehr als 3 Sigma neben null</translation>
-    </message>
-    <message>
-        <source>%1 runs read zero within 3 sigma</source>
-        <translation>%1 Läufe ergeben null innerhalb 3 Sigma</translation>
-    </message>
-    <message>
         <source>Zero shift of region %1</source>
         <translation>Nullverschiebung von Korrekturbereich %1</translation>
     </message>
     <message>
         <source>Zero shift, X Y Z</source>
         <translation>Nullverschiebung, X Y Z</translation>
+    </message>
+    <message>
+        <source>Before anything is corrected: the part as taught reads zero, known shifts are found again, and the run works without this screen.</source>
+        <translation>Bevor etwas korrigiert wird: das Teil wie eingelernt ergibt null, bekannte Verschiebungen werden wiedergefunden, und der Lauf geht ohne diesen Bildschirm.</translation>
+    </message>
+    <message>
+        <source>Zero shift</source>
+        <translation>Nullverschiebung</translation>
+    </message>
+    <message>
+        <source>The region that the tables and the charts show</source>
+        <translation>Der Korrekturbereich, den Tabellen und Diagramme zeigen</translation>
+    </message>
+    <message>
+        <source>Known shift</source>
+        <translation>Bekannte Verschiebung</translation>
+    </message>
+    <message>
+        <source>The part is displaced by known amounts along and about X, Y and Z, measured each time, and what is found is compared with what was done.</source>
+        <translation>Das Teil wird um bekannte Beträge entlang und um X, Y und Z verschoben, jedes Mal gemessen, und das Gefundene mit dem Getanen verglichen.</translation>
+    </message>
+    <message>
+        <source>the simulated part moves</source>
+        <translation>das simulierte Teil bewegt sich</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s base is shifted from here</source>
+        <translation>die Basis des Roboters wird von hier verschoben</translation>
+    </message>
+    <message>
+        <source>I shift the base or the part</source>
+        <translation>ich verschiebe die Basis oder das Teil</translation>
+    </message>
+    <message>
+        <source>How</source>
+        <translation>Wie</translation>
+    </message>
+    <message>
+        <source>A base shift looks to the sensor as if the part had moved. Controllers that hold their own program are shifted by hand.</source>
+        <translation>Eine Basisverschiebung sieht für den Sensor aus, als hätte sich das Teil bewegt. Steuerungen mit eigenem Programm werden von Hand verschoben.</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source> deg</source>
+        <translation> Grad</translation>
+    </message>
+    <message>
+        <source>Translation up to</source>
+        <translation>Verschiebung bis</translation>
+    </message>
+    <message>
+        <source>Both ways, each axis</source>
+        <translation>In beide Richtungen, jede Achse</translation>
+    </message>
+    <message>
+        <source>in steps of</source>
+        <translation>in Schritten von</translation>
+    </message>
+    <message>
+        <source>Smaller steps measure more often</source>
+        <translation>Kleinere Schritte messen öfter</translation>
+    </message>
+    <message>
+        <source>Rotation up to</source>
+        <translation>Drehung bis</translation>
+    </message>
+    <message>
+        <source>Both ways, about each axis through the middle of the spots</source>
+        <translation>In beide Richtungen, um jede Achse durch die Mitte der Messstellen</translation>
+    </message>
+    <message>
+        <source>Start known shift</source>
+        <translation>Bekannte Verschiebung starten</translation>
+    </message>
+    <message>
+        <source>Measures every displacement; nothing is written to the robot</source>
+        <translation>Misst jede Verschiebung; nichts wird an den Roboter geschrieben</translation>
+    </message>
+    <message>
+        <source>In the charts</source>
+        <translation>In den Diagrammen</translation>
+    </message>
+    <message>
+        <source>Deviation against displacement in the charts beside</source>
+        <translation>Abweichung über der Verschiebung in den Diagrammen daneben</translation>
+    </message>
+    <message>
+        <source>It stands</source>
+        <translation>Es steht</translation>
+    </message>
+    <message>
+        <source>Measure this displacement</source>
+        <translation>Diese Verschiebung messen</translation>
+    </message>
+    <message>
+        <source>End</source>
+        <translation>Beenden</translation>
+    </message>
+    <message>
+        <source>Measure no further displacement</source>
+        <translation>Keine weitere Verschiebung messen</translation>
+    </message>
+    <message>
+        <source>Displacement</source>
+        <translation>Verschiebung</translation>
+    </message>
+    <message>
+        <source>Tests</source>
+        <translation>Versuche</translation>
+    </message>
+    <message>
+        <source>Min</source>
+        <translation>Min</translation>
+    </message>
+    <message>
+        <source>Max</source>
+        <translation>Max</translation>
+    </message>
+    <message>
+        <source>3 rms</source>
+        <translation>3 rms</translation>
+    </message>
+    <message>
+        <source>Deviation of the spots&apos; reference points, found minus true, mm; 3 rms counts the mean as error too</source>
+        <translation>Abweichung der Referenzpunkte der Messstellen, gefunden minus wahr, mm; 3 rms zählt auch das Mittel als Fehler</translation>
+    </message>
+    <message>
+        <source>Commissioning</source>
+        <translation>Inbetriebnahme</translation>
+    </message>
+    <message>
+        <source>Step</source>
+        <translation>Schritt</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Stand</translation>
+    </message>
+    <message>
+        <source>Every step of commissioning, derived</source>
+        <translation>Jeder Schritt der Inbetriebnahme, abgeleitet</translation>
+    </message>
+    <message>
+        <source>Open its page</source>
+        <translation>Seine Seite öffnen</translation>
+    </message>
+    <message>
+        <source>Where this step is worked on</source>
+        <translation>Wo an diesem Schritt gearbeitet wird</translation>
+    </message>
+    <message>
+        <source>Hand-over report...</source>
+        <translation>Übergabebericht...</translation>
+    </message>
+    <message>
+        <source>PDF or HTML: devices, calibrations, spots, proofs, limits, events</source>
+        <translation>PDF oder HTML: Geräte, Kalibrierungen, Messstellen, Nachweise, Grenzen, Ereignisse</translation>
+    </message>
+    <message>
+        <source>%1 runs: the mean moves a spot by %2 mm, more than required</source>
+        <translation>%1 Läufe: das Mittel verschiebt eine Messstelle um %2 mm, mehr als gefordert</translation>
+    </message>
+    <message>
+        <source>%1 runs read zero: the mean moves no spot by more than %2 mm</source>
+        <translation>%1 Läufe ergeben null: das Mittel verschiebt keine Messstelle um mehr als %2 mm</translation>
+    </message>
+    <message>
+        <source>translation</source>
+        <translation>Verschiebung</translation>
+    </message>
+    <message>
+        <source>rotation</source>
+        <translation>Drehung</translation>
+    </message>
+    <message>
+        <source>both</source>
+        <translation>beides</translation>
+    </message>
+    <message>
+        <source>%1, %2 refused</source>
+        <translation>%1, %2 abgelehnt</translation>
+    </message>
+    <message>
+        <source>Region %1: %2 of %3 displacements were refused</source>
+        <translation>Korrekturbereich %1: %2 von %3 Verschiebungen wurden abgelehnt</translation>
+    </message>
+    <message>
+        <source>Region %1: recovered, 3 rms %2 mm of %3 mm</source>
+        <translation>Korrekturbereich %1: wiedergefunden, 3 rms %2 mm von %3 mm</translation>
+    </message>
+    <message>
+        <source>Region %1: not recovered, 3 rms %2 mm of %3 mm</source>
+        <translation>Korrekturbereich %1: nicht wiedergefunden, 3 rms %2 mm von %3 mm</translation>
+    </message>
+    <message>
+        <source>mean deviation</source>
+        <translation>mittlere Abweichung</translation>
+    </message>
+    <message>
+        <source>Known shift of region %1</source>
+        <translation>Bekannte Verschiebung von Korrekturbereich %1</translation>
+    </message>
+    <message>
+        <source>Deviations X Y Z at the spots</source>
+        <translation>Abweichungen X Y Z an den Messstellen</translation>
+    </message>
+    <message>
+        <source>%1
+Set the controller&apos;s base shift to
+X %2  Y %3  Z %4 mm
+A %5  B %6  C %7 deg</source>
+        <translation>%1
+Die Basisverschiebung der Steuerung setzen auf
+X %2  Y %3  Z %4 mm
+A %5  B %6  C %7 Grad</translation>
     </message>
 </context>
 <context>
@@ -3163,10 +3459,6 @@ ausgelassen</translation>
         <translation>Nullverschiebung</translation>
     </message>
     <message>
-        <source>run %1 of %2: %3</source>
-        <translation>Lauf %1 von %2: %3</translation>
-    </message>
-    <message>
         <source>Teaching</source>
         <translation>Einlernen</translation>
     </message>
@@ -3197,6 +3489,10 @@ ausgelassen</translation>
     <message>
         <source>Capturing</source>
         <translation>Aufnehmen</translation>
+    </message>
+    <message>
+        <source>Known shift</source>
+        <translation>Bekannte Verschiebung</translation>
     </message>
 </context>
 <context>

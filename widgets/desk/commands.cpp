@@ -86,6 +86,11 @@ CmdPartEdit::CmdPartEdit(Editor editor, PartSetup before, PartSetup after, const
     setText(text);
 }
 
+CmdRequirementsEdit::CmdRequirementsEdit(Editor editor, const Requirements& before, const Requirements& after)
+    : DeskCommand(std::move(editor)), before_(before), after_(after) {
+    setText(DeskCommand::tr("Change the requirements"));
+}
+
 CmdProjectRename::CmdProjectRename(Editor editor, std::string before, std::string after)
     : DeskCommand(std::move(editor)), before_(std::move(before)), after_(std::move(after)) {
     setText(DeskCommand::tr("Rename project to %1").arg(QString::fromStdString(after_)));

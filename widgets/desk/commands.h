@@ -219,6 +219,34 @@ class CmdPartEdit final : public DeskCommand {
     PartSetup before_, after_;
 };
 
+class CmdRequirementsEdit final : public DeskCommand {
+  public:
+    CmdRequirementsEdit(Editor editor, const Requirements& before, const Requirements& after);
+
+  protected:
+    void apply(Project& p) override { p.requirements = after_; }
+    void revert(Project& p) override { p.requirements = before_; }
+
+  private:
+    Requirements before_, after_;
+};
+
+// Many things at once, with one reason: the project as a whole.
+class CmdProjectReplace final : public DeskCommand {
+  public:
+    CmdProjectReplace(Editor editor, Project before, Project after, const QString& text)
+        : DeskCommand(std::move(editor)), before_(std::move(before)), after_(std::move(after)) {
+        setText(text);
+    }
+
+  protected:
+    void apply(Project& p) override { p = after_; }
+    void revert(Project& p) override { p = before_; }
+
+  private:
+    Project before_, after_;
+};
+
 class CmdProjectRename final : public DeskCommand {
   public:
     CmdProjectRename(Editor editor, std::string before, std::string after);

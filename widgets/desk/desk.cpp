@@ -1,5 +1,6 @@
 #include "widgets/desk/desk.h"
 
+#include <QTimer>
 #include <algorithm>
 
 #include "devices/exchange/pose_json.h"
@@ -83,6 +84,18 @@ std::string now_utc() {
     return utc_now();
 }
 
+// Who is in trouble, by name.
+std::vector<std::string> troubles(const StationState& state) {
+    std::vector<std::string> names;
+    for (const SensorState& s : state.sensors)
+        if (!s.trouble.empty()) names.push_back("sensor " + s.id);
+    for (const RobotState& r : state.robots)
+        if (!r.trouble.empty()) names.push_back("robot " + r.id);
+    return names;
+}
+
+constexpr int kLookAgainMs = 2000;
+
 }  // namespace
 
 Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
@@ -101,7 +114,9 @@ Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
     });
     connect(&worker_, &StationWorker::state_changed, this, [this](std::shared_ptr<const StationState> state) {
         const bool changes = state->connected != state_->connected;
+        const bool healthier = troubles(*state) != troubles(*state_);
         state_ = std::move(state);
+        if (healthier && !changes) derive();
         if (changes) {
             if (state_->connected) take_identities(*state_);
             note(EventKind::device, "studio",
@@ -116,7 +131,14 @@ Desk::Desk(QObject* parent) : QObject(parent), worker_(live_) {
         emit runs_changed();
         emit events_changed();
     });
-    steps_ = checklist(project_, facts_);
+    connect(&worker_, &StationWorker::proven, this, [this] {
+        derive();
+        emit events_changed();
+    });
+    auto* look = new QTimer(this);
+    connect(look, &QTimer::timeout, this, &Desk::look_again);
+    look->start(kLookAgainMs);
+    derive();
 }
 
 Desk::~Desk() {
@@ -154,6 +176,7 @@ void Desk::changed() {
 void Desk::take_over(ProjectFile file, Project project) {
     file_.emplace(std::move(file));
     project_ = std::move(project);
+    facts_ = {};
     undo_.clear();
     restored_ = false;
     state_ = std::make_shared<const StationState>();
@@ -296,6 +319,7 @@ void Desk::close() {
     file_.reset();
     recovery_.reset();
     project_ = {};
+    facts_ = {};
     undo_.clear();
     restored_ = false;
     derive();
@@ -455,6 +479,22 @@ Expected<void> Desk::rename_project(const std::string& name) {
     return {};
 }
 
+Expected<void> Desk::set_requirement(const std::string& field, double value) {
+    Requirements after = project_.requirements;
+    if (auto set = set_field(after, field, value); !set) return set;
+    if (to_json_document(after) == to_json_document(project_.requirements)) return {};
+    undo_.push(new CmdRequirementsEdit(editor(), project_.requirements, after));
+    return {};
+}
+
+Expected<std::vector<MovedSpot>> Desk::reteach(const Exchange& exchange) {
+    auto retaught = after_exchange(project_, exchange);
+    if (!retaught) return tl::unexpected(retaught.error());
+    undo_.push(new CmdProjectReplace(editor(), project_, std::move(retaught->project),
+                                     DeskCommand::tr("Take up again after an exchange")));
+    return std::move(retaught->spots);
+}
+
 Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm) {
     const nlohmann::json part = {
         {"displacement", pose_json(displacement)}, {"bend_mm", bend_mm}, {"twist_mm", twist_mm}};
@@ -506,53 +546,39 @@ void Desk::set_recipes() {
 }
 
 void Desk::derive() {
-    facts_ = {};
-    facts_.connected = state_->connected;
-    for (const SensorSetup& setup : project_.sensors) {
-        SensorIdentity identity;
-        for (const SensorState& s : state_->sensors)
-            if (s.id == setup.id) identity = s.identity;
-        facts_.sensors.push_back(identity);
-    }
+    facts_.sensors.emplace();
+    facts_.robots.emplace();
+    for (const SensorState& s : state_->sensors)
+        facts_.sensors->push_back({s.id, state_->connected, s.trouble});
+    for (const RobotState& r : state_->robots) facts_.robots->push_back({r.id, state_->connected, r.trouble});
     if (file_)
-        if (auto all = file_->runs()) {
-            std::int64_t setup = -1;
-            bool counting = true;
-            for (auto it = all->rbegin(); it != all->rend(); ++it) {
-                const bool zero = it->part_id.starts_with(kZeroShiftPrefix);
-                if (!zero) ++facts_.runs;
-                if (!zero || !counting) continue;
-                if (setup < 0) {
-                    setup = it->setup;
-                    facts_.zero_shift_ok = true;
-                    facts_.zero_shift_utc = QString::fromStdString(it->finished_utc);
-                }
-                if (it->setup != setup) {
-                    counting = false;
-                    continue;
-                }
-                ++facts_.zero_shift_runs;
-                facts_.zero_shift_ok = facts_.zero_shift_ok && it->status == RunStatus::ok;
-                if (it->part_id == std::string(kZeroShiftPrefix) + "1") counting = false;  // the row's first
-            }
-            if (setup >= 0)
-                if (auto with = file_->load_setup(setup)) {
-                    const auto same = [](const auto& a, const auto& b) {
-                        if (a.size() != b.size()) return false;
-                        for (std::size_t i = 0; i < a.size(); ++i)
-                            if (to_json_document(a[i]) != to_json_document(b[i])) return false;
-                        return true;
-                    };
-                    bool current = same(with->spots, project_.spots) &&
-                                   same(with->regions, project_.regions) &&
-                                   with->sensors.size() == project_.sensors.size();
-                    for (std::size_t i = 0; current && i < project_.sensors.size(); ++i)
-                        current = with->sensors[i].calibration_id == project_.sensors[i].calibration_id;
-                    facts_.zero_shift_current = current;
-                }
-        }
-    steps_ = checklist(project_, facts_);
+        if (auto known = gather(*file_, facts_); !known)
+            emit trouble(QString::fromStdString(known.error().sentence()));
+    checks_ = checklist(project_, facts_);
+    steps_ = steps_of(checks_, language_);
     emit checklist_changed();
+}
+
+// What another program, the headless runner, has put into the file.
+void Desk::look_again() {
+    if (!file_ || worker_.busy()) return;
+    const auto newer = file_->evidence(facts_.evidence.empty() ? 0 : facts_.evidence.back().id);
+    if (!newer || newer->empty()) return;
+    derive();
+    emit runs_changed();
+    emit events_changed();
+}
+
+void Desk::set_language(Language language) {
+    language_ = language;
+    derive();
+}
+
+Expected<void> Desk::record(const Evidence& evidence) {
+    if (!file_) return usage_error("no project is open", {}, "open or make one");
+    if (auto kept = file_->append_evidence(evidence, project_); !kept) return tl::unexpected(kept.error());
+    derive();
+    return {};
 }
 
 Expected<std::vector<RunSummary>> Desk::runs() const {

@@ -11,11 +11,12 @@
 #include <memory>
 #include <optional>
 
-#include "widgets/desk/checklist.h"
+#include "projects/reteach.h"
 #include "widgets/desk/commands.h"
 #include "widgets/desk/recovery.h"
 #include "widgets/desk/selection.h"
 #include "widgets/desk/station_worker.h"
+#include "widgets/desk/steps.h"
 
 namespace seamwright {
 
@@ -69,6 +70,10 @@ class Desk : public QObject {
     // STL, PLY, OBJ; `unit` "mm", "m", or "" (refused when metres are suspected).
     Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);
     Expected<void> rename_project(const std::string& name);
+    Expected<void> set_requirement(const std::string& field, double value);
+    // After an exchange of sensor or robot, see projects/reteach.h; one step of undo. Returns how far spots
+    // moved.
+    Expected<std::vector<MovedSpot>> reteach(const Exchange& exchange);
     // Where the simulated part truly stands, in the settings of all simulated devices; connect again.
     Expected<void> place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm);
     // A free id: "S1", "S2", ...
@@ -77,13 +82,18 @@ class Desk : public QObject {
 
     // --- what else is known
     const StationState& station() const { return *state_; }
+    const std::vector<CheckItem>& checks() const { return checks_; }
     const std::array<StepState, 7>& steps() const { return steps_; }
+    const Facts& facts() const { return facts_; }
+    Language language() const { return language_; }
+    // Keeps what was proven with the project as it stands on the screen.
+    Expected<void> record(const Evidence& evidence);
     Expected<std::vector<RunSummary>> runs() const;
     Expected<RunRecord> run(std::int64_t number) const;  // without captures
     Expected<std::vector<EventRecord>> events() const;
     Expected<void> delete_run(std::int64_t number);
     const ProjectFile& file() const { return *file_; }
-    void retranslate() { derive(); }  // texts in the new language
+    void set_language(Language language);  // of the checklist
     void note(EventKind kind, const std::string& subject, const std::string& text);
 
   signals:
@@ -104,6 +114,7 @@ class Desk : public QObject {
     void keep_newest();  // the recovery file holds the project as it is
     void changed();
     void derive();
+    void look_again();
     void set_recipes();
     void take_identities(const StationState& state);
 
@@ -116,8 +127,10 @@ class Desk : public QObject {
     Project project_;
     std::optional<Recovery> recovery_;
     std::shared_ptr<const StationState> state_ = std::make_shared<const StationState>();
-    DeskFacts facts_;
+    Facts facts_;  // evidence: of this file
+    std::vector<CheckItem> checks_;
     std::array<StepState, 7> steps_;
+    Language language_ = Language::english;
     bool restored_ = false, was_modified_ = false;
 };
 

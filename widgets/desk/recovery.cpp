@@ -50,6 +50,7 @@ std::filesystem::path recovery_path(const std::filesystem::path& project_file) {
 QStringList differences(const Project& before, const Project& after) {
     QStringList lines;
     if (before.name != after.name) lines << RecoveryText::tr("project renamed");
+    if (!same(before.requirements, after.requirements)) lines << RecoveryText::tr("requirements changed");
     if (!same(before.part, after.part) || before.part.mesh_ply != after.part.mesh_ply)
         lines << RecoveryText::tr("part changed");
     if (!same(before.requirements, after.requirements)) lines << RecoveryText::tr("requirements changed");

@@ -103,6 +103,13 @@ std::function<void(const RunProgress&)> StationWorker::progress_sink() {
     return [this](const RunProgress& p) { emit progressed(p.done, p.total, QString::fromStdString(p.text)); };
 }
 
+void StationWorker::attach_feed(Station& station) {
+    if (!station.connected()) return;
+    std::map<std::string, ProfileSource*> sources;
+    for (const SensorSetup& setup : station.project().sensors) sources[setup.id] = station.sensor(setup.id);
+    feed_.attach(std::move(sources));
+}
+
 void StationWorker::connect_devices() {
     post(tr("Connecting"), [this](Station& station, const std::stop_token&) {
         feed_.detach();
@@ -112,9 +119,6 @@ void StationWorker::connect_devices() {
             connect_trouble_ = connected.error().sentence();
             emit failed(QString::fromStdString(connect_trouble_));
         } else {
-            std::map<std::string, ProfileSource*> sources;
-            for (const SensorSetup& setup : station.project().sensors)
-                sources[setup.id] = station.sensor(setup.id);
             // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
             // see; a real one is never moved from here.
             for (const RobotSetup& setup : station.project().robots) {
@@ -126,7 +130,7 @@ void StationWorker::connect_devices() {
                         break;
                     }
             }
-            feed_.attach(std::move(sources));
+            attach_feed(station);
         }
         publish(station);
     });
@@ -176,27 +180,45 @@ void StationWorker::measure(const std::string& part_id, bool push, bool keep_ima
 
 void StationWorker::zero_shift(int runs) {
     post(tr("Zero shift"), [=, this](Station& station, const std::stop_token& cancelled) {
-        int done = 0;
-        for (; done < runs && !cancelled.stop_requested(); ++done) {
-            RunOptions options;
-            options.part_id = fmt::format("zero shift {}", done + 1);
-            options.cancel = cancelled;
-            options.progress = [&](const RunProgress& p) {
-                emit progressed(
-                    done * p.total + p.done, runs * p.total,
-                    tr("run %1 of %2: %3").arg(done + 1).arg(runs).arg(QString::fromStdString(p.text)));
-            };
-            auto run = station.run(options);
-            if (!run) {
-                emit failed(text_of(run.error()));
-                break;
+        ZeroShiftOptions options;
+        options.runs = runs;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        options.measured = [this](const RunRecord& run) {
+            emit measured(std::make_shared<const RunRecord>(run));
+        };
+        if (auto zero = measure_zero_shift(station, options); !zero)
+            return emit failed(text_of(zero.error()));
+        emit proven();
+    });
+}
+
+void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid) {
+    post(tr("Known shift"), [=, this](Station& station, const std::stop_token& cancelled) {
+        feed_.detach();  // the proof opens the devices for itself
+        KnownShift naming;
+        naming.range_mm = grid.range_mm;
+        naming.range_deg = grid.range_deg;
+        KnownShiftOptions options;
+        options.by = by;
+        options.grid = grid;
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        options.place = [&](const ShiftTest& test, const Pose& shift) {
+            {
+                const std::lock_guard lock(mutex_);
+                if (cancelled.stop_requested()) return false;
+                push_answer_.reset();
             }
-            const bool broken = run->status == RunStatus::device;
-            if (broken) emit failed(QString::fromStdString(run->message));
-            emit measured(std::make_shared<const RunRecord>(std::move(*run)));
-            if (broken) break;
-        }
-        emit zero_shift_done(done);
+            emit place_part(QString::fromStdString(shift_name(test, naming)), shift);
+            std::unique_lock lock(mutex_);
+            wake_.wait(lock, [&] { return push_answer_.has_value(); });
+            return *push_answer_;
+        };
+        auto proof = prove_known_shift(station, options);
+        attach_feed(station);
+        if (!proof) return emit failed(text_of(proof.error()));
+        emit proven();
     });
 }
 

@@ -17,8 +17,10 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
+#include "projects/known_shift.h"
 #include "projects/station.h"
 #include "projects/teach.h"
+#include "projects/zero_shift.h"
 #include "widgets/desk/live_feed.h"
 
 namespace seamwright {
@@ -78,6 +80,8 @@ class StationWorker : public QObject {
     void disconnect_devices();
     void measure(const std::string& part_id, bool push, bool keep_images);
     void zero_shift(int runs);
+    // by_hand: place_part() asks before each displacement, answer_push() answers.
+    void known_shift(ShiftBy by, const ShiftGrid& grid);
     void teach(const Spot& draft, int repeats);
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
@@ -96,7 +100,8 @@ class StationWorker : public QObject {
     void failed(QString sentence);
     void measured(std::shared_ptr<const seamwright::RunRecord> run);
     void confirm_push(std::shared_ptr<const seamwright::RunRecord> judged);
-    void zero_shift_done(int runs);
+    void place_part(QString name, seamwright::Pose base_from_shiftedbase);
+    void proven();  // an evidence has come into the file
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
     void shot_taken(std::shared_ptr<const seamwright::CalibrationShot> shot);
@@ -110,6 +115,7 @@ class StationWorker : public QObject {
     void idle(Station& station);
     void stop_live();
     void publish(Station& station);
+    void attach_feed(Station& station);
     void run_one(Station& station, const RunOptions& options);
     std::function<void(const RunProgress&)> progress_sink();
 

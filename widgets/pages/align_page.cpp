@@ -51,10 +51,11 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     box().addLayout(make_row({accept_, adopt_}));
     box().addStretch(1);
 
-    connect(&desk_.worker(), &StationWorker::passed, this, [this](const std::shared_ptr<const PassResult>& pass) {
-        pass_ = std::make_shared<PassResult>(*pass);
-        show_result();
-    });
+    connect(&desk_.worker(), &StationWorker::passed, this,
+            [this](const std::shared_ptr<const PassResult>& pass) {
+                pass_ = std::make_shared<PassResult>(*pass);
+                show_result();
+            });
     connect(views_.align, &AlignView::jitter_dragged, this, &AlignPage::judge);
     connect(tolerance_, &QDoubleSpinBox::editingFinished, this, [this] {
         if (pass_) judge(pass_->options.jitter_mm);
@@ -148,7 +149,20 @@ void AlignPage::accept() {
     Spot s = *spot();
     s.curve = pass_->curve;
     s.jitter_mm = pass_->options.jitter_mm;
-    done(desk_.edit(s, tr("alignment")));
+    if (!done(desk_.edit(s, tr("alignment")))) return;
+    const AlignmentResult& r = pass_->result;
+    FrozenContour frozen{s.id,
+                         r.status,
+                         r.yaw_deg,
+                         r.pitch_deg,
+                         r.radius_mm,
+                         r.expected_error_mm,
+                         pass_->options.tolerance_mm,
+                         s.jitter_mm,
+                         {}};
+    for (const TravelOffset& offset : r.offsets)
+        if (offset.ok) frozen.offsets.push_back(offset);
+    done(desk_.record({0, {}, 0, std::move(frozen)}));
 }
 
 void AlignPage::adopt() {

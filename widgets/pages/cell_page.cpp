@@ -6,6 +6,7 @@
 #include <QInputDialog>
 
 #include "devices/simulated/random.h"
+#include "projects/fields.h"
 #include "projects/measure.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/style.h"
@@ -115,6 +116,19 @@ CellPage::CellPage(Desk& desk, const Views& views)
         done(desk_.edit_part(part, tr("Change the work object's frame")));
     });
 
+    box().addWidget(make_heading(tr("Requirements")));
+    box().addWidget(make_text(tr("What has to be reached before the cell is handed over.")));
+    const QStringList names{tr("3 sigma, at most"), tr("Age of calibrations"), tr("Zero-shift runs"),
+                            tr("Known translation"), tr("Known rotation")};
+    for (const Field<Requirements>& f : requirement_fields()) {
+        auto* editor = new ParameterEditor(f.info);
+        connect(editor, &ParameterEditor::committed, this,
+                [this, name = f.info.name](double value) { done(desk_.set_requirement(name, value)); });
+        add_field(box(), names.value(static_cast<qsizetype>(requirements_.size())), editor,
+                  QString::fromStdString(f.info.help));
+        requirements_.push_back(editor);
+    }
+
     simulated_ = new QWidget;
     auto* sim = new QVBoxLayout(simulated_);
     sim->setContentsMargins(0, 0, 0, 0);
@@ -149,6 +163,8 @@ std::string CellPage::chosen() const {
 
 void CellPage::refresh() {
     const Project& p = desk_.project();
+    for (std::size_t i = 0; i < requirements_.size(); ++i)
+        requirements_[i]->set_value(requirement_fields()[i].get(p.requirements));
     const StationState& s = desk_.station();
     QVector<QStringList> rows;
     for (const SensorSetup& sensor : p.sensors) {

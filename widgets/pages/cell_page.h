@@ -5,6 +5,7 @@
 #include <QLineEdit>
 #include <QPlainTextEdit>
 
+#include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/pages/step_page.h"
 
@@ -38,6 +39,7 @@ class CellPage : public StepPage {
     QWidget *mode_row_, *parameters_, *simulated_;
     QVBoxLayout* parameters_box_;
     PoseEditor* workobject_;
+    std::vector<ParameterEditor*> requirements_;
     std::string shown_parameters_;
     std::uint64_t placed_ = 0;
 };

@@ -1,7 +1,10 @@
 #pragma once
-// Zero shift: the unmoved part measured N times must read zero.
+// What is proven before the first part: the unmoved part reads zero, known shifts are recovered, a run
+// without the screen ends ok; and the whole checklist of commissioning with its evidence.
 
 #include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFrame>
 #include <QSpinBox>
 
 #include "widgets/pages/step_page.h"
@@ -13,17 +16,41 @@ class ProvePage : public StepPage {
   public:
     ProvePage(Desk& desk, const Views& views);
 
+  signals:
+    void step_wanted(seamwright::Step step);
+    void report_wanted();
+
   protected:
     void refresh() override;
     void entered() override;
 
   private:
-    QSpinBox* count_;
-    QComboBox* region_;
-    QPushButton* start_;
-    QLabel* verdict_;
-    QTableWidget* table_;
-    QString shown_;
+    void make_checklist();
+    void make_zero_shift();
+    void make_known_shift();
+    void refresh_checklist();
+    void refresh_zero_shift();
+    void refresh_known_shift();
+    void show_item();
+    void ask_to_place(const QString& name, const Pose& base_from_shiftedbase);
+    void draw_zero_shift(const ZeroShift& zero);
+    void draw_known_shift(const KnownShift& proof);
+    QDoubleSpinBox* spin(const QString& name, double value, double maximum, int decimals,
+                         const QString& unit);
+
+    QTableWidget* checklist_ = nullptr;
+    QLabel* finding_ = nullptr;
+    QPushButton* open_ = nullptr;
+    QSpinBox* count_ = nullptr;
+    QComboBox* region_ = nullptr;
+    QPushButton *start_zero_ = nullptr, *start_known_ = nullptr;
+    QLabel *zero_verdict_ = nullptr, *known_verdict_ = nullptr;
+    QTableWidget *zero_table_ = nullptr, *known_table_ = nullptr;
+    QComboBox* by_ = nullptr;
+    QDoubleSpinBox *range_mm_ = nullptr, *step_mm_ = nullptr, *range_deg_ = nullptr, *step_deg_ = nullptr;
+    QFrame* place_ = nullptr;
+    QLabel* place_text_ = nullptr;
+    bool show_known_ = false;  // in the charts, instead of the zero shift
 };
 
 }  // namespace seamwright

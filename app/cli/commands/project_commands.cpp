@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "app/cli/command.h"
@@ -11,9 +13,11 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/checklist.h"
 #include "projects/exchange.h"
 #include "projects/mirror.h"
 #include "projects/project_file.h"
+#include "projects/station.h"
 
 namespace seamwright::cli {
 namespace {
@@ -90,8 +94,45 @@ Expected<Answer> info(const std::string& path) {
     return answer;
 }
 
-// 0 sound; 1 findings of plausibility; 3 the file itself is damaged.
-Expected<Answer> check_project(const std::string& path) {
+struct CheckArguments {
+    std::string file, language = "en";
+    bool commissioned = false, connect = false;
+};
+
+// Who answers now, for the checklist.
+Expected<void> ask_devices(const std::string& path, Facts& facts) {
+    auto station = Station::open(path, FileAccess::read_only);
+    if (!station) return tl::unexpected(station.error());
+    facts.sensors.emplace();
+    facts.robots.emplace();
+    if (auto connected = station->connect(); !connected) {
+        fmt::print(stderr, "{}\n", connected.error().sentence());
+        return {};  // nobody answers: the checklist says so
+    }
+    for (const SensorSetup& s : station->project().sensors) facts.sensors->push_back({s.id, true, {}});
+    for (const RobotSetup& r : station->project().robots) {
+        auto mode = station->robot(r.id)->mode();
+        facts.robots->push_back({r.id, true, mode ? std::string() : mode.error().sentence()});
+    }
+    return {};
+}
+
+json checklist_json(const std::vector<CheckItem>& items) {
+    json list = json::array();
+    for (const CheckItem& item : items) {
+        json evidence = json::array();
+        for (const Phrase& line : item.evidence) evidence.push_back(line.in(Language::english));
+        list.push_back({{"step", to_string(item.step)},
+                        {"status", to_string(item.status)},
+                        {"finding", item.why.in(Language::english)},
+                        {"evidence", evidence}});
+    }
+    return list;
+}
+
+// 0 sound; 1 findings of plausibility (with --commissioned: an open step); 3 the file itself is damaged.
+Expected<Answer> check_project(const CheckArguments& a) {
+    const std::string& path = a.file;
     if (seam_file_kind(path) == SeamFile::capture) return capture_check(path);
     auto file = ProjectFile::open(path, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
@@ -101,16 +142,34 @@ Expected<Answer> check_project(const std::string& path) {
     auto project = file->load();
     if (!project) return tl::unexpected(project.error());
     for (const Error& e : check(*project)) plausibility.push_back(e.sentence());
-    answer.exit_code = !integrity.empty() ? kExitDevice : !plausibility.empty() ? kExitVerdict : kExitOk;
+    Facts facts;
+    if (auto known = gather(*file, facts); !known) return tl::unexpected(known.error());
+    if (a.connect)
+        if (auto asked = ask_devices(path, facts); !asked) return tl::unexpected(asked.error());
+    const std::vector<CheckItem> items = checklist(*project, facts);
+    const bool commissioned =
+        std::all_of(items.begin(), items.end(), [](const CheckItem& item) { return item.done(); });
+    const bool findings = !plausibility.empty() || (a.commissioned && !commissioned);
+    answer.exit_code = !integrity.empty() ? kExitDevice : findings ? kExitVerdict : kExitOk;
     answer.json = {{"status", answer.exit_code == kExitOk ? "ok"
                               : integrity.empty()         ? "findings"
                                                           : "damaged"},
                    {"integrity", integrity},
-                   {"plausibility", plausibility}};
+                   {"plausibility", plausibility},
+                   {"commissioned", commissioned},
+                   {"checklist", checklist_json(items)}};
     answer.text = integrity.empty() ? "integrity ok\n" : "the file is damaged\n";
     for (const auto& s : integrity) answer.text += "  " + s.get<std::string>() + "\n";
     answer.text += plausibility.empty() ? "plausible\n" : "findings\n";
     for (const auto& s : plausibility) answer.text += "  " + s.get<std::string>() + "\n";
+    const Language language = *language_from(a.language);
+    answer.text += Phrase("Commissioning").in(language) + "\n";
+    for (const CheckItem& item : items) {
+        answer.text +=
+            fmt::format("  {} {}: {}. {}\n", item.done() ? "[x]" : "[ ]", name_of(item.step).in(language),
+                        name_of(item.status).in(language), item.why.in(language));
+        for (const Phrase& line : item.evidence) answer.text += "        " + line.in(language) + "\n";
+    }
     return answer;
 }
 
@@ -287,11 +346,19 @@ void add_project_commands(CommandLine& line) {
         line.on(command, [path] { return info(*path); });
     }
     {
-        auto path = std::make_shared<std::string>();
-        CLI::App* command = line.add("check", "Integrity of the file and plausibility of the project.",
-                                     "seamwright check door_left.seam      (exit 1: findings, 3: damaged)");
-        command->add_option("file", *path, "The project")->required()->type_name("FILE.seam");
-        line.on(command, [path] { return check_project(*path); });
+        auto a = std::make_shared<CheckArguments>();
+        CLI::App* command = line.add(
+            "check", "Integrity of the file, plausibility of the project, and what is open in commissioning.",
+            "seamwright check door_left.seam      (exit 1: findings, 3: damaged)\n"
+            "  seamwright check door_left.seam --commissioned --connect");
+        command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+        command->add_flag("--commissioned", a->commissioned,
+                          "An open step of commissioning is a finding too");
+        command->add_flag("--connect", a->connect, "Ask the devices; else those count that answered last");
+        command->add_option("--language", a->language, "Of the checklist, en or de")
+            ->check(CLI::IsMember({"en", "de"}))
+            ->capture_default_str();
+        line.on(command, [a] { return check_project(*a); });
     }
     {
         auto a = std::make_shared<ExportArguments>();

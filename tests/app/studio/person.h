@@ -18,6 +18,7 @@
 #include <filesystem>
 
 #include "app/studio/main_window.h"
+#include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 
 namespace seamwright {
@@ -67,6 +68,13 @@ class Person {
         QTest::keyClicks(line, text);
         QTest::keyClick(line, Qt::Key_Return);
         QApplication::processEvents();
+    }
+    // Into the visible editor of a described setting.
+    void write_parameter(const std::string& name, const QString& text) const {
+        for (auto* editor : window_.findChildren<ParameterEditor*>())
+            if (editor->isVisible() && editor->info().name == name)
+                return write(editor->findChild<QLineEdit*>(), text);
+        ADD_FAILURE() << "there is no visible setting " << name;
     }
     void write_pose(const QString& name, const Pose& pose) const {
         auto* editor = find<PoseEditor>(name);

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <QDir>
+#include <QDoubleSpinBox>
+#include <QFileInfo>
 #include <QListWidget>
 #include <QPlainTextEdit>
+#include <QProcess>
 #include <QTreeWidget>
 #include <filesystem>
 #include <fstream>
@@ -92,6 +96,8 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         }
         me.click("connect");
         ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
+        me.write_parameter("sigma3_mm", "0.6");
+        ASSERT_EQ(desk.project().requirements.sigma3_mm, 0.6);
         me.picture("03_cell");
 
         me.step(2);
@@ -197,15 +203,14 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         EXPECT_TRUE(me.text_of("plan_verdict").startsWith("observable"))
             << me.text_of("plan_verdict").toStdString();
         // The template stands on little contour; this job allows its region twice the usual sigma.
-        for (auto* editor : window.findChildren<ParameterEditor*>())
-            if (editor->isVisible() && editor->info().name == "sigma_limit_mm")
-                me.write(editor->findChild<QLineEdit*>(), "0.2");
+        me.write_parameter("sigma_limit_mm", "0.2");
         ASSERT_EQ(desk.project().regions[0].sigma_limit_mm, 0.2);
         me.picture("07_region");
 
         // Zero shift.
         me.step(6);
-        for (int attempt = 0; attempt < 3 && desk.steps()[5].status != StepStatus::done; ++attempt) {
+        const auto item = [&](CheckStep step) { return desk.checks().at(static_cast<std::size_t>(step)); };
+        for (int attempt = 0; attempt < 3 && !item(CheckStep::zero_shift).done(); ++attempt) {
             // "a zero-shift run was refused; see why and repeat"
             me.click("start_zero");
             ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
@@ -214,7 +219,40 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         }
         me.picture("08_zero");
         EXPECT_GE(desk.runs()->size(), 5U);
-        EXPECT_EQ(desk.steps()[5].status, StepStatus::done) << desk.steps()[5].why.toStdString();
+        EXPECT_TRUE(item(CheckStep::zero_shift).done())
+            << item(CheckStep::zero_shift).why.in(Language::english);
+
+        // Known shift: the largest displacements each way.
+        me.write(me.find<QDoubleSpinBox>("shift_step_mm")->findChild<QLineEdit*>(), "10");
+        me.write(me.find<QDoubleSpinBox>("shift_step_deg")->findChild<QLineEdit*>(), "1");
+        for (int attempt = 0; attempt < 2 && !item(CheckStep::known_shift).done(); ++attempt) {
+            me.click("start_known");
+            ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+            ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 6 * kPatienceMs));
+            QTest::qWait(100);
+        }
+        EXPECT_TRUE(item(CheckStep::known_shift).done())
+            << item(CheckStep::known_shift).why.in(Language::english);
+        me.picture("08_known");
+
+        // Limits: the checklist says which are too wide, and leads to their page.
+        ASSERT_FALSE(item(CheckStep::limits).done());
+        auto* checklist = me.find<QTableWidget>("checklist");
+        ASSERT_TRUE(checklist);
+        me.look_at(checklist);
+        checklist->setFocus();
+        checklist->setCurrentCell(static_cast<int>(CheckStep::limits), 0);
+        me.picture("08_checklist");
+        EXPECT_TRUE(me.text_of("finding").contains("lower its limits"))
+            << me.text_of("finding").toStdString();
+        me.click("open_step");
+        ASSERT_EQ(window.step(), Step::regions);
+        me.write_parameter("limit_translation_mm", "15");
+        me.write_parameter("limit_rotation_deg", "1");
+        EXPECT_TRUE(item(CheckStep::limits).done()) << item(CheckStep::limits).why.in(Language::english);
+        for (const CheckItem& check : desk.checks())
+            EXPECT_EQ(check.done(), check.step != CheckStep::headless)
+                << to_string(check.step) << ": " << check.why.in(Language::english);
 
         // The next part, measured and pushed.
         me.step(1);
@@ -250,6 +288,13 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         ASSERT_TRUE(me.wait([&] { return !desk.modified(); }));
         window.close();
     }
+    // The runner without a screen.
+    QProcess runner;
+    runner.start(SEAMWRIGHT_PROGRAM, {"run", file, "--part", "CAR-0816"});
+    ASSERT_TRUE(runner.waitForFinished(60000));
+    EXPECT_EQ(runner.exitCode(), 0) << runner.readAllStandardError().toStdString()
+                                    << runner.readAllStandardOutput().toStdString();
+
     Studio again(*qApp, options(file));
     again.window().resize(1280, 800);
     again.window().show();
@@ -270,6 +315,26 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
     me.picture("11_reopened");
     EXPECT_EQ(me.table("run_regions"), measured) << "the same numbers";
     EXPECT_EQ(again.desk().project().spots.size(), 4U);
+
+    // Everything is green: the way ends at measuring, and the report is one click.
+    for (const CheckItem& check : again.desk().checks())
+        EXPECT_TRUE(check.done()) << to_string(check.step) << ": " << check.why.in(Language::english);
+    EXPECT_EQ(next_step(again.desk().steps()), Step::run);
+    me.step(6);
+    me.picture("12_green");
+    const QString pdf = QString::fromStdString((folder / "door.pdf").string());
+    me.answer_file_dialog(pdf);
+    me.shortcut(Qt::Key_R);
+    ASSERT_TRUE(me.wait([&] { return QFileInfo(pdf).size() > 10000; }));
+    QProcess raster, text;
+    raster.start("pdftoppm", {"-r", "60", "-png", pdf, QString(SEAMWRIGHT_SCREENS) + "/way_report"});
+    ASSERT_TRUE(raster.waitForFinished(60000) && raster.exitCode() == 0) << "poppler-utils draws the pages";
+    EXPECT_FALSE(QDir(SEAMWRIGHT_SCREENS).entryList({"way_report-*.png"}).isEmpty());
+    text.start("pdftotext", {"-layout", pdf, "-"});
+    ASSERT_TRUE(text.waitForFinished(60000));
+    const QString words = QString::fromUtf8(text.readAllStandardOutput());
+    for (const char* word : {"all 10 steps are done", "SIM-1", "BASE_Region1", "Known shift", "Signature"})
+        EXPECT_TRUE(words.contains(word)) << word;
 }
 
 }  // namespace

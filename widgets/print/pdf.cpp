@@ -1,0 +1,341 @@
+#include "widgets/print/pdf.h"
+
+#include <QAbstractTextDocumentLayout>
+#include <QBuffer>
+#include <QGuiApplication>
+#include <QPainter>
+#include <QPdfWriter>
+#include <QSvgRenderer>
+#include <QTextCursor>
+#include <QTextDocument>
+#include <QTextObjectInterface>
+#include <QTextOption>
+#include <QTextTable>
+#include <memory>
+
+#include "devices/exchange/files.h"
+
+namespace seamwright {
+namespace {
+
+using report::Block;
+using report::Tone;
+
+constexpr int kPlotObject = QTextFormat::UserObject + 1;
+constexpr int kSvgProperty = QTextFormat::UserProperty + 1;
+constexpr int kWidthProperty = QTextFormat::UserProperty + 2;
+constexpr int kResolution = 300;
+constexpr double kMarginMm = 18, kFooterMm = 8;
+constexpr double kTextPt = 9, kTablePt = 8, kWideTablePt = 6.5;
+constexpr double kNoHeightPt = 1;
+constexpr int kWideColumns = 8;
+constexpr double kWidePlotPx = 600;  // wider drawings get a line of their own
+
+// What html.cpp's style sheet says about a plot, in what Qt's SVG reads.
+constexpr const char* kPlotStyle =
+    "<style type='text/css'>text { font-family: 'DejaVu Sans'; font-size: 11px; fill: #1e2226; } "
+    ".title { font-weight: bold; } .grid { stroke: #e0e3e7; } .axes { fill: none; stroke: #6b7280; } "
+    ".band { fill: #009E73; fill-opacity: 0.12; }</style>";
+
+class PlotObject : public QObject, public QTextObjectInterface {
+    Q_OBJECT
+    Q_INTERFACES(QTextObjectInterface)
+
+  public:
+    QSizeF intrinsicSize(QTextDocument*, int, const QTextFormat& format) override {
+        const double width = format.property(kWidthProperty).toDouble();
+        const QSizeF size = renderer(format)->defaultSize();
+        return {width, size.width() > 0 ? width * size.height() / size.width() : width};
+    }
+    void drawObject(QPainter* painter, const QRectF& where, QTextDocument*, int,
+                    const QTextFormat& format) override {
+        renderer(format)->render(painter, where);
+    }
+
+  private:
+    static std::unique_ptr<QSvgRenderer> renderer(const QTextFormat& format) {
+        return std::make_unique<QSvgRenderer>(format.property(kSvgProperty).toByteArray());
+    }
+};
+
+QString q(const std::string& text) {
+    return QString::fromStdString(text);
+}
+
+QByteArray styled(const std::string& svg) {
+    QByteArray bytes = QByteArray::fromStdString(svg);
+    const qsizetype head = bytes.indexOf('>');
+    return head < 0 ? bytes : bytes.insert(head + 1, kPlotStyle);
+}
+
+QColor colour_of(Tone tone) {
+    switch (tone) {
+        case Tone::good:
+            return QColor("#00664b");
+        case Tone::attention:
+            return QColor("#7a5200");
+        case Tone::alarm:
+            return QColor("#a33f00");
+        case Tone::neutral:
+            break;
+    }
+    return QColor("#1e2226");
+}
+
+// Lays the blocks into a document; lengths are in device pixels.
+class Builder {
+  public:
+    Builder(QTextDocument& document, double width_px)
+        : document_(document), cursor_(&document), width_px_(width_px) {
+        cursor_.beginEditBlock();
+    }
+    ~Builder() { cursor_.endEditBlock(); }
+
+    void heading(const QString& text, int level) {
+        const double pt = level <= 1 ? 17 : level == 2 ? 13 : 10.5;
+        QTextBlockFormat format;
+        format.setHeadingLevel(level);
+        format.setTopMargin(points(level <= 1 ? 0 : level == 2 ? 16 : 9));
+        format.setBottomMargin(points(4));
+        begin(format);
+        cursor_.insertText(text, characters(pt, QFont::DemiBold));
+    }
+    void add(const Block& b) {
+        switch (b.kind) {
+            case Block::Kind::heading:
+                return heading(q(b.text), b.level);
+            case Block::Kind::paragraph:
+                begin(plain());
+                cursor_.insertText(q(b.text), characters(kTextPt));
+                return;
+            case Block::Kind::verdict: {
+                begin(plain());
+                QTextCharFormat word = characters(kTextPt + 1, QFont::Bold);
+                word.setForeground(colour_of(b.tone));
+                cursor_.insertText(q(b.word), word);
+                if (!b.text.empty()) cursor_.insertText("   " + q(b.text), characters(kTextPt));
+                return;
+            }
+            case Block::Kind::table:
+                return table(b);
+            case Block::Kind::figures:
+                return figures(b);
+            case Block::Kind::signatures:
+                for (const auto& line : b.rows) signature(line);
+                return;
+        }
+    }
+
+  private:
+    static double points(double pt) { return pt * kResolution / 72; }
+    static QTextCharFormat characters(double pt, int weight = QFont::Normal) {
+        QTextCharFormat format;
+        format.setFontFamilies({"DejaVu Sans"});
+        format.setFontPointSize(pt);
+        format.setFontWeight(weight);
+        format.setForeground(QColor("#1e2226"));
+        return format;
+    }
+    static QTextBlockFormat plain() {
+        QTextBlockFormat format;
+        format.setTopMargin(points(3));
+        format.setBottomMargin(points(3));
+        return format;
+    }
+    void begin(const QTextBlockFormat& format) {
+        cursor_.movePosition(QTextCursor::End);
+        if (empty_) {
+            cursor_.setBlockFormat(format);
+            cursor_.setBlockCharFormat(characters(kTextPt));
+        } else {
+            cursor_.insertBlock(format, characters(kTextPt));
+        }
+        empty_ = false;
+    }
+    // Qt keeps an empty block before and behind a table: the one before is made as low as it can be, the one
+    // behind is where the next block goes.
+    QTextTable* insert_table(int rows, int columns, const QTextTableFormat& format) {
+        begin(QTextBlockFormat());
+        cursor_.setBlockCharFormat(characters(kNoHeightPt));
+        QTextTable* table = cursor_.insertTable(rows, columns, format);
+        cursor_.movePosition(QTextCursor::End);
+        cursor_.setBlockFormat(QTextBlockFormat());
+        cursor_.setBlockCharFormat(characters(kNoHeightPt));
+        empty_ = true;
+        return table;
+    }
+    void table(const Block& b) {
+        if (!b.text.empty()) {
+            begin(plain());
+            QTextCharFormat caption = characters(kTablePt);
+            caption.setForeground(QColor("#4b5563"));
+            cursor_.insertText(q(b.text), caption);
+        }
+        const int rows = static_cast<int>(b.rows.size()), columns = static_cast<int>(b.rows[0].size());
+        const double pt = columns >= kWideColumns ? kWideTablePt : kTablePt;
+        QTextTableFormat format;
+        format.setHeaderRowCount(1);
+        format.setBorder(0);
+        format.setCellPadding(points(2));
+        format.setCellSpacing(0);
+        format.setTopMargin(points(3));
+        format.setBottomMargin(0);  // at the foot of a page it would repeat the table's head on the next
+        format.setBorderCollapse(true);
+        QTextTable* t = insert_table(rows, columns, format);
+        const std::vector<bool> numeric = report::numeric_columns(b.rows);
+        for (int r = 0; r < rows; ++r)
+            for (int c = 0; c < columns; ++c) {
+                QTextTableCell cell = t->cellAt(r, c);
+                QTextTableCellFormat look = cell.format().toTableCellFormat();
+                look.setBottomBorderStyle(QTextFrameFormat::BorderStyle_Solid);
+                look.setBottomBorder(points(r == 0 ? 0.9 : 0.3));
+                look.setBottomBorderBrush(QColor(r == 0 ? "#6b7280" : "#c3c8ce"));
+                cell.setFormat(look);
+                QTextCursor in = cell.firstCursorPosition();
+                QTextBlockFormat block;
+                block.setAlignment(numeric[static_cast<std::size_t>(c)] ? Qt::AlignRight : Qt::AlignLeft);
+                in.setBlockFormat(block);
+                const auto& row = b.rows[static_cast<std::size_t>(r)];
+                if (c < static_cast<int>(row.size()))
+                    in.insertText(q(row[static_cast<std::size_t>(c)]),
+                                  characters(pt, r == 0 ? QFont::DemiBold : QFont::Normal));
+            }
+    }
+    void figures(const Block& b) {
+        QTextBlockFormat format = plain();
+        format.setNonBreakableLines(false);
+        begin(format);
+        for (const std::string& svg : b.svgs) {
+            const double share =
+                QSvgRenderer(QByteArray::fromStdString(svg)).defaultSize().width() > kWidePlotPx ? 0.98
+                                                                                                 : 0.49;
+            QTextCharFormat plot;
+            plot.setObjectType(kPlotObject);
+            plot.setProperty(kSvgProperty, styled(svg));
+            plot.setProperty(kWidthProperty, width_px_ * share);
+            cursor_.insertText(QString(QChar::ObjectReplacementCharacter), plot);
+        }
+        if (b.text.empty()) return;
+        begin(plain());
+        QTextCharFormat caption = characters(kTablePt);
+        caption.setForeground(QColor("#4b5563"));
+        cursor_.insertText(q(b.text), caption);
+    }
+    void signature(const std::vector<std::string>& fields) {
+        QTextTableFormat format;
+        format.setBorder(0);
+        format.setCellSpacing(points(8));
+        format.setWidth(QTextLength(QTextLength::PercentageLength, 100));
+        format.setColumnWidthConstraints(QList<QTextLength>(
+            static_cast<qsizetype>(fields.size()),
+            QTextLength(QTextLength::PercentageLength, 100.0 / static_cast<double>(fields.size()))));
+        format.setTopMargin(points(36));
+        QTextTable* t = insert_table(1, static_cast<int>(fields.size()), format);
+        for (int c = 0; c < t->columns(); ++c) {
+            QTextTableCell cell = t->cellAt(0, c);
+            QTextTableCellFormat look = cell.format().toTableCellFormat();
+            look.setTopBorderStyle(QTextFrameFormat::BorderStyle_Solid);
+            look.setTopBorder(points(0.6));
+            look.setTopBorderBrush(QColor("#1e2226"));
+            look.setTopPadding(points(3));
+            cell.setFormat(look);
+            cell.firstCursorPosition().insertText(q(fields[static_cast<std::size_t>(c)]),
+                                                  characters(kTablePt));
+        }
+    }
+
+    QTextDocument& document_;
+    QTextCursor cursor_;
+    double width_px_;
+    bool empty_ = true;  // the last block waits for its content
+};
+
+// A heading never stands alone at the foot of a page: it goes to the next one.
+void keep_headings(QTextDocument& document, double page_px) {
+    const auto* layout = document.documentLayout();
+    const auto page_of = [&](const QTextBlock& b) {
+        return static_cast<int>(layout->blockBoundingRect(b).top() / page_px);
+    };
+    for (QTextBlock b = document.begin(); b.isValid(); b = b.next()) {
+        if (b.blockFormat().headingLevel() == 0) continue;
+        // What stands below it: the next block that has something to show.
+        QTextBlock next = b.next();
+        while (next.isValid() && (next.length() <= 1 || next.blockFormat().headingLevel() > 0))
+            next = next.next();
+        if (!next.isValid() || page_of(next) == page_of(b)) continue;
+        QTextCursor cursor(b);
+        QTextBlockFormat format = b.blockFormat();
+        format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+        cursor.setBlockFormat(format);
+    }
+}
+
+void ensure_application() {
+    if (QCoreApplication::instance()) return;
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+    static int argc = 1;
+    static char name[] = "seamwright";
+    static char* argv[] = {name, nullptr};
+    // Offscreen, Qt has something to say about a desktop session that nobody needs here.
+    const QtMessageHandler before =
+        qInstallMessageHandler([](QtMsgType, const QMessageLogContext&, const QString&) {});
+    static QGuiApplication application(argc, argv);
+    qInstallMessageHandler(before);
+}
+
+}  // namespace
+
+Expected<void> write_pdf(const report::Page& page, const std::filesystem::path& path) {
+    ensure_application();
+    QBuffer buffer;
+    buffer.open(QIODevice::WriteOnly);
+    {
+        QPdfWriter writer(&buffer);
+        writer.setPageSize(QPageSize(QPageSize::A4));
+        writer.setPageMargins(QMarginsF(kMarginMm, kMarginMm, kMarginMm, kMarginMm), QPageLayout::Millimeter);
+        writer.setResolution(kResolution);
+        writer.setTitle(q(page.title()));
+        writer.setCreator("Seamwright");
+        const double width = writer.width();
+        const double footer = kFooterMm * kResolution / 25.4, height = writer.height() - footer;
+
+        QTextDocument document;
+        document.setDocumentMargin(0);
+        QTextOption wrapping;
+        wrapping.setWrapMode(QTextOption::WordWrap);
+        document.setDefaultTextOption(wrapping);
+        document.setDefaultFont(QFont("DejaVu Sans", static_cast<int>(kTextPt)));
+        document.documentLayout()->setPaintDevice(&writer);
+        PlotObject plots;
+        document.documentLayout()->registerHandler(kPlotObject, &plots);
+        document.setPageSize(QSizeF(width, height));
+        {
+            Builder builder(document, width);
+            builder.heading(q(page.title()), 1);
+            for (const Block& b : page.blocks()) builder.add(b);
+        }
+        keep_headings(document, height);
+
+        QPainter painter(&writer);
+        const int pages = document.pageCount();
+        for (int n = 0; n < pages; ++n) {
+            if (n) writer.newPage();
+            painter.save();
+            painter.translate(0, -n * height);
+            document.drawContents(&painter, QRectF(0, n * height, width, height));
+            painter.restore();
+            painter.setFont(QFont("DejaVu Sans", 7));
+            painter.setPen(QColor("#6b7280"));
+            const QRectF foot(0, height, width, footer);
+            painter.drawText(foot, Qt::AlignLeft | Qt::AlignBottom, q(page.title()));
+            painter.drawText(foot, Qt::AlignRight | Qt::AlignBottom,
+                             QString("%1 / %2").arg(n + 1).arg(pages));
+        }
+    }
+    const QByteArray& bytes = buffer.data();
+    return write_text_file(path, std::string_view(bytes.constData(), static_cast<std::size_t>(bytes.size())));
+}
+
+}  // namespace seamwright
+
+#include "pdf.moc"

@@ -93,8 +93,10 @@ TEST_F(Door, ABiasIsFoundAndNotHidden) {
     EXPECT_GT(proven.three_sigma_mm, 0.5) << "3 rms counts the mean";
     Facts facts;
     ASSERT_TRUE(gather(station->file(), facts));
-    for (const CheckItem& item : checklist(project, facts))
-        if (item.step == CheckStep::known_shift) EXPECT_FALSE(item.done());
+    for (const CheckItem& item : checklist(project, facts)) {
+        if (item.step != CheckStep::known_shift) continue;
+        EXPECT_FALSE(item.done());
+    }
 }
 
 TEST_F(Door, CancelledLeavesNoEvidence) {
@@ -197,8 +199,8 @@ TEST(KnownShift, GridCoversEveryAxisBothWaysAndTurnsAboutTheMiddle) {
     for (const ShiftTest& t : *tests) {
         const Pose& d = t.workobject_from_movedworkobject;
         const Eigen::Vector3d moved = d * middle - middle;
-        if (t.kind == ShiftKind::rotation) EXPECT_LT(moved.norm(), 1e-9);
-        if (t.kind != ShiftKind::rotation) EXPECT_NEAR(moved[t.axis], t.amount, 1e-9);
+        EXPECT_NEAR(moved[t.axis], t.kind == ShiftKind::rotation ? 0 : t.amount, 1e-9);
+        EXPECT_NEAR(moved.norm(), std::abs(moved[t.axis]), 1e-9);
         largest_mm = std::max(largest_mm, moved.norm());
         largest_deg = std::max(largest_deg, deg_from_rad(angle_rad(d, Pose::Identity())));
     }

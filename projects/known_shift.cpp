@@ -49,6 +49,7 @@ class ShiftedRobot final : public RobotLink {
         return robot_->confirm(verdict, text);
     }
     Expected<void> move_to(const Pose& pose) override { return robot_->move_to(*shift_ * pose); }
+    std::vector<std::string> take_notices() override { return robot_->take_notices(); }
 
   private:
     Expected<Pose> back(Expected<Pose> pose) const {

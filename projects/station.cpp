@@ -532,6 +532,8 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (pushing) run.status = RunStatus::interrupted;
     run.message = Impl::verdict(run);
     run.finished_utc = utc_now();
+    for (auto& [id, robot] : i.robots)
+        for (const std::string& notice : robot->take_notices()) job.event(EventKind::device, id, notice);
     if (auto judged = i.file.finish_run(run, job.stored); !judged) {
         i.confirm_all(job, PartVerdict::failed);
         return tl::unexpected(judged.error());

@@ -115,6 +115,8 @@ class Watch {
             RobotLink* robot = station_.robot(setup.id);
             if (!robot) return usage_error("it is not connected", "robot " + setup.id, "connect it");
             auto start = robot->wait_start(slice);
+            for (const std::string& notice : robot->take_notices())
+                tell("warning", "robot", "robot " + setup.id + ": " + notice);
             if (start) {
                 ready();
                 return std::optional(*start);

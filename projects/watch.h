@@ -28,7 +28,7 @@ std::string_view to_string(WatchState state);
 struct WatchEvent {
     std::string utc;    // ISO 8601
     std::string level;  // info | warning | alarm
-    std::string event;  // connected | lost | back | start | spot | run | stopped
+    std::string event;  // connected | lost | back | robot | start | spot | run | stopped
     std::string text;   // one sentence
     nlohmann::json data = nlohmann::json::object();
     WatchState state = WatchState::connecting;

@@ -120,6 +120,11 @@ class RecordedRobot final : public RobotLink {
     Expected<void> move_to(const Pose& base_from_flange) override {
         return robot_->move_to(base_from_flange);
     }
+    std::vector<std::string> take_notices() override {
+        auto notices = robot_->take_notices();
+        for (const std::string& text : notices) note(text);
+        return notices;
+    }
 
   private:
     void note(std::string text) { note_text(*recorder_, source_, CaptureEventKind::note, std::move(text)); }

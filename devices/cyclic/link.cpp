@@ -68,6 +68,7 @@ Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& setting
     };
     if (auto ok = text("listen", s.listen); !ok) return tl::unexpected(ok.error());
     if (auto ok = text("robot_address", s.robot_address); !ok) return tl::unexpected(ok.error());
+    if (auto ok = check_robot_address(s.listen, s.robot_address); !ok) return tl::unexpected(ok.error());
     struct Number {
         const char* key;
         double otherwise, low, high;
@@ -345,6 +346,17 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
 Expected<void> CyclicLink::move_to(const Pose& base_from_flange) {
     if (auto ok = no_alarm(); !ok) return ok;
     return measuring_ ? measuring_->move_to(base_from_flange) : RobotLink::move_to(base_from_flange);
+}
+
+std::vector<std::string> CyclicLink::take_notices() {
+    std::vector<std::string> notices;
+    if (measuring_) notices = measuring_->take_notices();
+    const std::uint64_t strangers = server_->counters().strangers;
+    if (strangers > strangers_told_)
+        notices.push_back(fmt::format("{} datagrams of an unknown peer were refused, the last of {}",
+                                      strangers - strangers_told_, server_->last_stranger()));
+    strangers_told_ = strangers;
+    return notices;
 }
 
 }  // namespace seamwright

@@ -9,7 +9,7 @@
 //
 // Common settings (defaults):
 //   {"listen": "127.0.0.1", "port": the brand's, "robot_address": "" (whoever comes first, until it is
-//   silent),
+//   silent; must be named unless "listen" is loopback. Others are refused and told),
 //    "cycle_ms": 4, "timeout_ms": 1000 (for a packet), "confirm_timeout_ms": 20000 (for a whole ramp),
 //    "frames": {"NAME": {"base_from_frame": POSE as taught}},
 //    "base_from_reference": POSE identity (frame in which the controller tells poses: KUKA $BASE, ABB work
@@ -72,6 +72,7 @@ class CyclicLink : public RobotLink {
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override;
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override;
     Expected<void> move_to(const Pose& base_from_flange) override;
+    std::vector<std::string> take_notices() override;
 
     const CyclicServer& server() const { return *server_; }
 
@@ -87,6 +88,7 @@ class CyclicLink : public RobotLink {
     std::unique_ptr<CyclicServer> server_;
     std::unique_ptr<RobotLink> measuring_;  // may be null
     std::map<std::string, Pose> written_;
+    std::uint64_t strangers_told_ = 0;
 };
 
 }  // namespace seamwright

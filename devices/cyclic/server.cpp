@@ -1,5 +1,6 @@
 #include "devices/cyclic/server.h"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
 
@@ -82,6 +83,7 @@ void CyclicServer::handle(std::span<const std::byte> datagram, const Endpoint& f
          received - last_ < std::chrono::milliseconds(settings_.session_gap_ms)) ||
         (!settings_.robot_address.empty() && from.address != settings_.robot_address)) {
         ++counters_.strangers;
+        stranger_ = from;
         return;
     }
     const auto parsed = protocol_->parse(datagram);
@@ -206,6 +208,11 @@ CyclicServer::State CyclicServer::state() const {
     state.arrived = ramp_.arrived();
     state.zero = ramp_.zero();
     return state;
+}
+
+std::string CyclicServer::last_stranger() const {
+    const std::lock_guard lock(mutex_);
+    return stranger_ ? fmt::format("{}:{}", stranger_->address, stranger_->port) : std::string();
 }
 
 CyclicCounters CyclicServer::counters() const {

@@ -60,7 +60,7 @@ class CyclicProtocol {
 struct CyclicSettings {
     std::string listen = "127.0.0.1";
     std::uint16_t port = 0;
-    std::string robot_address;  // empty: who comes first, until it is silent
+    std::string robot_address;  // empty: who comes first, until it is silent; not unless `listen` is loopback
     int cycle_ms = 4;
     RampLimits ramp;
     double max_translation_mm = 10, max_rotation_deg = 2;
@@ -91,6 +91,7 @@ class CyclicServer {
     };
     State state() const;
     CyclicCounters counters() const;
+    std::string last_stranger() const;  // "192.168.1.7:4711"; empty when there was none
     std::optional<std::string> alarm() const;
     std::optional<std::string> take_alarm();
 
@@ -109,6 +110,7 @@ class CyclicServer {
     CorrectionRamp ramp_;
     State state_;
     CyclicCounters counters_;
+    std::optional<Endpoint> stranger_;
     std::optional<Endpoint> robot_;
     std::chrono::steady_clock::time_point last_;
     std::uint64_t last_late_ = 0, trouble_ = 0;

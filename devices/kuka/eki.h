@@ -3,8 +3,8 @@
 // kuka`) and connects to Seamwright, which listens. Telegrams: eki_telegram.h.
 //
 // Settings, defaults: {"listen": "127.0.0.1" (this computer's address in the robot's network), "port": 54600,
-// "timeout_ms": 1000 (connection, and every answer)},
-// and those of the generated program (program.h).
+// "robot_address": "" (the controller's: must be named unless "listen" is loopback; others are refused and
+// told), "timeout_ms": 1000 (connection, and every answer)}, and those of the generated program (program.h).
 //
 // A new connection replaces the one before (a controller that was switched off leaves a dead one behind); who
 // it is says its hello. Commands are numbered and answers carry the number, so a late answer is dropped. The

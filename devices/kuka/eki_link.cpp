@@ -22,8 +22,11 @@ std::int64_t now_ns() {
 
 class EkiLink final : public RobotLink {
   public:
-    EkiLink(TcpListener listener, std::string where, Timeout timeout)
-        : listener_(std::move(listener)), where_(std::move(where)), timeout_(timeout) {}
+    EkiLink(TcpListener listener, std::string where, std::string robot_address, Timeout timeout)
+        : listener_(std::move(listener)),
+          where_(std::move(where)),
+          robot_address_(std::move(robot_address)),
+          timeout_(timeout) {}
 
     Expected<RobotIdentity> identity() override {
         if (auto ready = connected(Clock::now() + timeout_); !ready) return tl::unexpected(ready.error());
@@ -92,6 +95,12 @@ class EkiLink final : public RobotLink {
         return only_error(ask({.kind = "move", .pose = base_from_flange}));
     }
 
+    std::vector<std::string> take_notices() override {
+        if (strangers_ == 0) return {};
+        return {fmt::format("{} connections of an unknown peer were refused, the last of {}",
+                            std::exchange(strangers_, 0), stranger_)};
+    }
+
   private:
     struct Event {
         EkiTelegram telegram;
@@ -118,16 +127,28 @@ class EkiLink final : public RobotLink {
         return {};
     }
 
+    // The controller's connection; others are closed and told.
+    Expected<TcpConnection> accept(Clock::time_point until) {
+        for (;;) {
+            auto connection = listener_.accept(left(until));
+            if (!connection || robot_address_.empty()) return connection;
+            const std::string peer = connection->peer();
+            if (peer.substr(0, peer.rfind(':')) == robot_address_) return connection;
+            ++strangers_;
+            stranger_ = peer;
+        }
+    }
+
     // A connection whose hello has come.
     Expected<void> connected(Clock::time_point until) {
-        if (auto newer = listener_.accept(Timeout(0))) {
+        if (auto newer = accept(Clock::now())) {
             drop();
             connection_.emplace(std::move(*newer));
         }
         if (connection_ && greeted_ && connection_->is_open()) return {};
         if (!connection_ || !connection_->is_open()) {
             drop();
-            auto accepted = listener_.accept(left(until));
+            auto accepted = accept(until);
             if (!accepted)
                 return device_error(std::string(kNoAnswer) + ": no robot has connected", where_,
                                     "start SEAMWRIGHT_SERVE on the controller");
@@ -219,7 +240,10 @@ class EkiLink final : public RobotLink {
 
     TcpListener listener_;
     const std::string where_;
+    const std::string robot_address_;
     const Timeout timeout_;
+    std::uint64_t strangers_ = 0;  // since they were told
+    std::string stranger_;
     std::optional<TcpConnection> connection_;
     EkiSplitter splitter_{"Robot"};
     EkiTelegram hello_;
@@ -231,18 +255,20 @@ class EkiLink final : public RobotLink {
 }  // namespace
 
 Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& settings, DeviceSession&) {
-    std::string listen = "127.0.0.1";
+    std::string listen = "127.0.0.1", robot_address;
     int port = 54600, timeout_ms = 1000;
     SettingsReader f(settings, "settings");
-    f.only({"listen", "port", "timeout_ms", "trigger_output", "flag_alive", "flag_command"});
+    f.only({"listen", "port", "robot_address", "timeout_ms", "trigger_output", "flag_alive", "flag_command"});
     f.text("listen", listen);
+    f.text("robot_address", robot_address);
     f.whole("port", port, 0, 65535);
     f.whole("timeout_ms", timeout_ms, 10, 60000);
     if (f.failed()) return tl::unexpected(f.error());
+    if (auto known = check_robot_address(listen, robot_address); !known) return tl::unexpected(known.error());
     auto listener = TcpListener::listen(listen, static_cast<std::uint16_t>(port));
     if (!listener) return tl::unexpected(listener.error());
     const std::string where = fmt::format("{}:{}", listen, listener->port());
-    return std::make_unique<EkiLink>(std::move(*listener), where, Timeout(timeout_ms));
+    return std::make_unique<EkiLink>(std::move(*listener), where, robot_address, Timeout(timeout_ms));
 }
 
 }  // namespace seamwright

@@ -142,6 +142,18 @@ void TcpConnection::close() {
 bool TcpConnection::is_open() const {
     return impl_ && !impl_->closed && impl_->socket.is_open();
 }
+bool is_loopback(const std::string& address) {
+    error_code none;
+    const auto parsed = boost::asio::ip::make_address(address, none);
+    return !none && parsed.is_loopback();
+}
+
+Expected<void> check_robot_address(const std::string& listen, const std::string& robot_address) {
+    if (!robot_address.empty() || is_loopback(listen)) return {};
+    return input_error("it would be open to every computer of the network", "settings.listen " + listen,
+                       "name the controller's address in \"robot_address\"");
+}
+
 std::string TcpConnection::peer() const {
     return impl_->peer;
 }

@@ -25,6 +25,12 @@ inline std::span<const std::byte> bytes_of(std::string_view text) {
     return std::as_bytes(std::span(text.data(), text.size()));
 }
 
+bool is_loopback(const std::string& address);  // 127.0.0.0/8
+
+// A server of ours that the whole network reaches must know whom it serves. Error: `listen` is not loopback
+// and `robot_address` is empty.
+Expected<void> check_robot_address(const std::string& listen, const std::string& robot_address);
+
 class TcpConnection {
   public:
     static Expected<TcpConnection> connect(const std::string& host, std::uint16_t port, Timeout timeout);

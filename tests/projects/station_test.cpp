@@ -266,6 +266,17 @@ TEST_F(StationRun, CapturesAreInTheFileWhileTheRobotTravels) {
     EXPECT_TRUE(compare(*stored, *recompute(*stored, cell->project)).empty());
 }
 
+TEST_F(StationRun, WhatALinkTellsIsInTheRunsEvents) {
+    cell->notices = {"1 connections of an unknown peer were refused"};
+    const RunRecord record = run();
+    const auto events = station->file().events(record.number);
+    ASSERT_TRUE(events);
+    EXPECT_TRUE(std::any_of(events->begin(), events->end(), [](const EventRecord& e) {
+        return e.kind == EventKind::device && e.subject == "R1" &&
+               e.text == "1 connections of an unknown peer were refused";
+    }));
+}
+
 TEST_F(StationRun, MeasuredBeforeThePartCameIsStale) {
     // The frame's time lies before the run began: a frame from a buffer.
     class Late : public FakeSensor {

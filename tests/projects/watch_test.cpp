@@ -60,6 +60,16 @@ TEST_F(Watching, PartAfterPart) {
     EXPECT_EQ(runs->at(2).part_id, "run 3");
 }
 
+TEST_F(Watching, RefusedPeersAreToldWhileWaiting) {
+    cell->notices = {"1 connections of an unknown peer were refused, the last of 10.0.0.9:4711"};
+    part("CAR-1");
+    options.parts = 1;
+    ASSERT_TRUE(watch(*station, options));
+    EXPECT_THAT(told, ElementsAre("warning robot", "info start", "info run", "info stopped"));
+    EXPECT_THAT(texts,
+                HasSubstr("robot R1: 1 connections of an unknown peer were refused, the last of 10.0.0.9"));
+}
+
 TEST_F(Watching, SurvivesALostRobotAndTellsItOnce) {
     for (int i = 0; i < 4; ++i) cell->starts.push_back(device_error(kDisconnected, "127.0.0.1:7000"));
     part("CAR-1");

@@ -118,6 +118,25 @@ TEST_F(Cli, CorrectNamesTheWrongSpotAmongEight) {
     EXPECT_NEAR(a["displacement"]["xyz"][0].get<double>(), 6, 1e-6);
 }
 
+TEST_F(Cli, CorrectTakesTheCovarianceOfAMeasureInPlaceOfItsSigma) {
+    json job = door_job(8, displacement());
+    const auto sigma_of = [&] {
+        return answer({"correct", write("job.json", job.dump())}, 0)["sigma"]["xyz_mm"][0].get<double>();
+    };
+    const double by_sigma = sigma_of();
+    const auto state = [&](const json& covariance) {
+        for (json& spot : job["spots"]) spot["covariance_mm2"] = covariance;
+    };
+    state({{0.0025, 0.0}, {0.0, 0.0025}});
+    EXPECT_NEAR(sigma_of(), by_sigma, 1e-9);
+    state({{0.0025, 0.0015}, {0.0015, 0.0025}});
+    EXPECT_GT(std::abs(sigma_of() - by_sigma), 0.01 * by_sigma);
+    state({{0.0025, 0.003}, {0.003, 0.0025}});
+    expect_refused({"correct", write("job.json", job.dump())}, "spots[0].covariance_mm2");
+    state(json::array({0.0025, 0.0}));
+    expect_refused({"correct", write("job.json", job.dump())}, "spots[0].covariance_mm2");
+}
+
 TEST_F(Cli, CorrectOverItsLimitsIsNotOk) {
     json job = door_job(8, displacement());
     job["limits"] = {{"translation_mm", 5}, {"rotation_deg", 3}};

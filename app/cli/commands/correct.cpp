@@ -21,9 +21,24 @@ struct Job {
     CorrectionOptions options;
 };
 
+// [[xx, xz], [xz, zz]], as `feature` writes it.
+Expected<Eigen::Matrix2d> read_covariance(const json& rows, const std::string& path) {
+    Eigen::Matrix2d c;
+    for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (!rows.is_array() || rows.size() != 2 || !rows[i].is_array() || rows[i].size() != 2 ||
+                !rows[i][k].is_number())
+                return input_error("not two rows of two numbers", path, "give [[xx, xz], [xz, zz]] in mm^2");
+            c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = rows[i][k].get<double>();
+        }
+    return c;
+}
+
 Expected<SpotObservation> read_spot(const json& spot, const std::string& path, bool needs_measured) {
-    if (auto known = only_fields(
-            spot, {"id", "workobject_from_sensor", "reference", "measured", "weights", "sigma_mm"}, path);
+    if (auto known = only_fields(spot,
+                                 {"id", "workobject_from_sensor", "reference", "measured", "weights",
+                                  "sigma_mm", "covariance_mm2"},
+                                 path);
         !known)
         return tl::unexpected(known.error());
     SpotObservation s;
@@ -51,6 +66,11 @@ Expected<SpotObservation> read_spot(const json& spot, const std::string& path, b
     auto sigma = json_number_or(spot, "sigma_mm", s.sigma_mm, path);
     if (!sigma) return tl::unexpected(sigma.error());
     s.sigma_mm = *sigma;
+    if (spot.contains("covariance_mm2") && !spot["covariance_mm2"].is_null()) {
+        auto covariance = read_covariance(spot["covariance_mm2"], json_path(path, "covariance_mm2"));
+        if (!covariance) return tl::unexpected(covariance.error());
+        s.covariance_mm2 = *covariance;
+    }
     return s;
 }
 

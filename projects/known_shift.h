@@ -51,7 +51,8 @@ struct KnownShiftOptions {
     std::function<bool(const ShiftTest& test, const Pose& base_from_shiftedbase)> place;
 };
 
-// Opens the project's devices for itself and connects the station anew afterwards where it was connected.
+// The regions' limits of displacement do not count here: they are set by what is proven. Opens the project's
+// devices for itself and connects the station anew afterwards where it was connected.
 // Nothing is written to the robot. Runs are in the file as always, the outcome as evidence when this returns.
 // Error: devices that do not go with `by`, a device failure, cancelled (the runs made until then stay, the
 // evidence does not come about), no region.

@@ -61,7 +61,11 @@ TEST_F(Door, SimulatedPartAndShiftedMovesFindTheSameShifts) {
         EXPECT_EQ(told, 18);
         const ProvenAccuracy proven = proven_accuracy(*proof, "all");
         EXPECT_EQ(proven.tests, 18);
-        EXPECT_EQ(proven.refused, 0);
+        std::string refusals;
+        for (const ShiftTest& test : proof->tests)
+            if (!test.regions[0].ok)
+                refusals += shift_name(test, *proof) + ": " + test.regions[0].message + "\n";
+        EXPECT_EQ(proven.refused, 0) << refusals;
         EXPECT_LT(proven.three_sigma_mm, 0.4);
         EXPECT_GT(proven.three_sigma_mm, 0.005) << "the simulation has noise";
         proofs.push_back(*proof);
@@ -97,6 +101,19 @@ TEST_F(Door, ABiasIsFoundAndNotHidden) {
         if (item.step != CheckStep::known_shift) continue;
         EXPECT_FALSE(item.done());
     }
+}
+
+TEST_F(Door, LimitsOfTheDayDoNotCount) {
+    project.regions[0].limits = {0.5, 0.05};
+    auto station = Station::open(path);
+    ASSERT_TRUE(station->edit(project));
+    KnownShiftOptions options;
+    options.grid = small();
+    const auto proof = prove_known_shift(*station, options);
+    ASSERT_TRUE(proof) << proof.error().sentence();
+    EXPECT_GT(proven_range(*proof).translation_mm, 3.9) << "the limits may be raised to what was proven";
+    EXPECT_EQ(station->project().regions[0].limits.translation_mm, 0.5);
+    EXPECT_EQ(station->file().load()->regions[0].limits.translation_mm, 0.5);
 }
 
 TEST_F(Door, CancelledLeavesNoEvidence) {

@@ -86,6 +86,8 @@ TEST(Reteach, AnotherMountingOnTheSimulatedCellStillReadsZero) {
     project.calibrations.push_back(another(project, offset));
     DeviceSession session;
     project.calibrations[1].sensor_identity = open_sensor("simulated", settings, session).value()->identity();
+    project.calibrations[1].robot_identity =
+        open_robot("simulated", settings, session).value()->identity().value();
     const auto exchanged = after_exchange(project, {"A", "C2", std::nullopt});
     ASSERT_TRUE(exchanged) << exchanged.error().sentence();
     const RunRecord run = taught(exchanged->project, "after.seam");

@@ -152,8 +152,7 @@ class Builder {
         }
         empty_ = false;
     }
-    // Qt keeps an empty block before and behind a table: the one before is made as low as it can be, the one
-    // behind is where the next block goes.
+    // Qt keeps an empty block before and behind a table: both are made as low as they can be.
     QTextTable* insert_table(int rows, int columns, const QTextTableFormat& format) {
         begin(QTextBlockFormat());
         cursor_.setBlockCharFormat(characters(kNoHeightPt));
@@ -161,7 +160,6 @@ class Builder {
         cursor_.movePosition(QTextCursor::End);
         cursor_.setBlockFormat(QTextBlockFormat());
         cursor_.setBlockCharFormat(characters(kNoHeightPt));
-        empty_ = true;
         return table;
     }
     void table(const Block& b) {
@@ -229,7 +227,7 @@ class Builder {
         format.setColumnWidthConstraints(QList<QTextLength>(
             static_cast<qsizetype>(fields.size()),
             QTextLength(QTextLength::PercentageLength, 100.0 / static_cast<double>(fields.size()))));
-        format.setTopMargin(points(36));
+        format.setTopMargin(points(26));
         QTextTable* t = insert_table(1, static_cast<int>(fields.size()), format);
         for (int c = 0; c < t->columns(); ++c) {
             QTextTableCell cell = t->cellAt(0, c);

@@ -2,12 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 
 #include "projects/project_file_detail.h"
 #include "projects/schema.h"
@@ -17,10 +22,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
 // Makes a rename durable.
 void sync_folder(const fs::path& file) {
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    if (const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); fd >= 0) {
+    if (const int fd = ::open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); fd >= 0) {
         ::fsync(fd);
         ::close(fd);
     }
@@ -44,14 +52,12 @@ Expected<void> put_in_place(const fs::path& made, const fs::path& path, bool rep
     return {};
 }
 
-fs::path beside(const fs::path& path, const char* what) {
-    return fs::path(path.string() + fmt::format(".{}-{}", what, ::getpid()));
-}
+constexpr std::string_view kJournals[] = {"-journal", "-wal", "-shm"};
 
 // Of a file that is gone, or goes with them.
 void remove_journals(const fs::path& path) {
     std::error_code ignored;
-    for (const char* suffix : {"-journal", "-wal", "-shm"}) fs::remove(path.string() + suffix, ignored);
+    for (const std::string_view suffix : kJournals) fs::remove(path.string() + std::string(suffix), ignored);
 }
 
 void remove_with_journal(const fs::path& path) {
@@ -65,6 +71,35 @@ bool asks_for_log(const fs::path& path) {
     char header[20] = {};
     std::ifstream(path, std::ios::binary).read(header, sizeof header);
     return header[19] == 2;  // "read version" of SQLite's file format
+}
+
+// Unfinished files of a process that was killed. One of the last minute is let be: a folder may be another
+// computer's, whose processes are not seen here.
+void remove_abandoned(const fs::path& path, const std::string& what) {
+    const std::string start = path.filename().string() + "." + what + "-";
+    std::error_code code;
+    std::vector<fs::path> abandoned;
+    for (fs::directory_iterator it(folder_of(path), code), end; !code && it != end; it.increment(code)) {
+        const std::string name = it->path().filename().string();
+        if (!name.starts_with(start)) continue;
+        pid_t maker = 0;
+        const char* const last = name.data() + name.size();
+        const std::string_view rest(std::from_chars(name.data() + start.size(), last, maker).ptr, last);
+        if (!rest.empty() && std::ranges::find(kJournals, rest) == std::end(kJournals)) continue;
+        std::error_code gone;
+        const auto age = fs::file_time_type::clock::now() - it->last_write_time(gone);
+        if (!gone && maker > 0 && age > std::chrono::minutes(1) && ::kill(maker, 0) != 0 && errno == ESRCH)
+            abandoned.push_back(it->path());
+    }
+    for (const fs::path& file : abandoned) fs::remove(file, code);
+}
+
+// The name under which a file is made before it takes the place of `path`.
+fs::path beside(const fs::path& path, const char* what) {
+    remove_abandoned(path, what);
+    const fs::path made = path.string() + fmt::format(".{}-{}", what, ::getpid());
+    remove_with_journal(made);
+    return made;
 }
 
 // The file that `create` would replace: must be ours or empty, and gives up its journal, which must never
@@ -104,7 +139,6 @@ Expected<void> finish_new(Expected<void> done, const fs::path& made, const fs::p
 // Brings an older file up to date on a copy, which takes the name of the original when it has passed.
 Expected<void> migrate_file(Database& original, const fs::path& path) {
     const fs::path made = beside(path, "migrating");
-    remove_with_journal(made);
     // Holds off other writers; the copy is read through a second connection, which this lock lets pass.
     if (auto locked = original.execute("BEGIN IMMEDIATE"); !locked) return locked;
     const auto work = [&]() -> Expected<void> {
@@ -151,11 +185,10 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& path, const Project& p
     if (fs::is_directory(path, code)) return file_error("this is a folder", path.string(), "name a file");
     if (exists && !replace)
         return file_error("the file exists already", path.string(), "choose another name");
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    const fs::path folder = folder_of(path);
     if (!fs::is_directory(folder, code))
         return file_error("the folder does not exist", folder.string(), "make it first");
     const fs::path made = beside(path, "new");
-    remove_with_journal(made);
     const auto work = [&]() -> Expected<void> {
         auto db = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
         if (!db) return tl::unexpected(db.error());
@@ -171,7 +204,6 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& path, const Project& p
 
 Expected<void> ProjectFile::copy_to(const fs::path& path) const {
     const fs::path made = beside(path, "new");
-    remove_with_journal(made);
     const auto work = [&]() -> Expected<void> {
         auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
         if (!copy) return tl::unexpected(copy.error());

@@ -230,6 +230,35 @@ TEST(ProjectFile, AStaleJournalOfADeletedFileIsNeverApplied) {
     EXPECT_TRUE(file->check().empty());
 }
 
+// A killed maker leaves its unfinished file; the next who makes one clears it away, and nothing else.
+TEST(ProjectFile, AbandonedUnfinishedFilesAreClearedAway) {
+    TemporaryFolder folder;
+    const pid_t dead = ::fork();
+    if (dead == 0) ::_exit(0);
+    ::waitpid(dead, nullptr, 0);
+    const std::string of_dead = std::to_string(dead), of_living = std::to_string(::getppid());
+    const auto leave = [&](const std::string& name, std::chrono::minutes age) {
+        write_bytes(folder / name, "half");
+        std::filesystem::last_write_time(folder / name, std::filesystem::file_time_type::clock::now() - age);
+    };
+    using std::chrono::minutes;
+    leave("a.seam.new-" + of_dead, minutes(5));
+    leave("a.seam.new-" + of_dead + "-journal", minutes(5));
+    leave("b.seam.new-" + of_dead, minutes(5));
+    leave("a.seam.new-parts.seam", minutes(5));
+    leave("a.seam.new-" + of_dead + " copy.seam", minutes(5));
+    leave("a.seam.new-" + of_living, minutes(5));
+    leave("a.seam.new-" + of_dead + "-wal", minutes(0));
+    ASSERT_TRUE(ProjectFile::create(folder / "a.seam", sample_project()));
+    EXPECT_FALSE(std::filesystem::exists(folder / ("a.seam.new-" + of_dead)));
+    EXPECT_FALSE(std::filesystem::exists(folder / ("a.seam.new-" + of_dead + "-journal")));
+    EXPECT_TRUE(std::filesystem::exists(folder / ("b.seam.new-" + of_dead))) << "another file's";
+    EXPECT_TRUE(std::filesystem::exists(folder / "a.seam.new-parts.seam")) << "a person's";
+    EXPECT_TRUE(std::filesystem::exists(folder / ("a.seam.new-" + of_dead + " copy.seam"))) << "a person's";
+    EXPECT_TRUE(std::filesystem::exists(folder / ("a.seam.new-" + of_living))) << "still being made";
+    EXPECT_TRUE(std::filesystem::exists(folder / ("a.seam.new-" + of_dead + "-wal"))) << "too young";
+}
+
 TEST(ProjectFile, ReadOnlyDoesNotWrite) {
     TemporaryFolder folder;
     ASSERT_TRUE(ProjectFile::create(folder / "a.seam", sample_project()));

@@ -1,7 +1,5 @@
 #include "widgets/desk/commands.h"
 
-#include <algorithm>
-
 namespace seamwright {
 
 template <>
@@ -46,22 +44,26 @@ QString thing_name<Calibration>() {
     return QCoreApplication::translate("DeskCommand", "calibration");
 }
 
-void rename_references(Project& project, const Spot*, const std::string& from, const std::string& to) {
+std::vector<std::string*> references(Project& project, const Spot*) {
+    std::vector<std::string*> all;
     for (Region& region : project.regions)
-        std::replace(region.spot_ids.begin(), region.spot_ids.end(), from, to);
+        for (std::string& id : region.spot_ids) all.push_back(&id);
+    return all;
 }
-void rename_references(Project&, const Region*, const std::string&, const std::string&) {}
-void rename_references(Project& project, const SensorSetup*, const std::string& from, const std::string& to) {
-    for (Spot& spot : project.spots)
-        if (spot.sensor_id == from) spot.sensor_id = to;
-    for (Calibration& calibration : project.calibrations)
-        if (calibration.sensor_id == from) calibration.sensor_id = to;
+std::vector<std::string*> references(Project&, const Region*) {
+    return {};
 }
-void rename_references(Project& project, const RobotSetup*, const std::string& from, const std::string& to) {
-    for (Spot& spot : project.spots)
-        if (spot.robot_id == from) spot.robot_id = to;
-    for (Calibration& calibration : project.calibrations)
-        if (calibration.robot_id == from) calibration.robot_id = to;
+std::vector<std::string*> references(Project& project, const SensorSetup*) {
+    std::vector<std::string*> all;
+    for (Spot& spot : project.spots) all.push_back(&spot.sensor_id);
+    for (Calibration& calibration : project.calibrations) all.push_back(&calibration.sensor_id);
+    return all;
+}
+std::vector<std::string*> references(Project& project, const RobotSetup*) {
+    std::vector<std::string*> all;
+    for (Spot& spot : project.spots) all.push_back(&spot.robot_id);
+    for (Calibration& calibration : project.calibrations) all.push_back(&calibration.robot_id);
+    return all;
 }
 
 CmdSpotEnable::CmdSpotEnable(Editor editor, const std::string& id, std::size_t at, bool enabled)

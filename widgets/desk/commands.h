@@ -42,11 +42,11 @@ const std::vector<T>& list_of(const Project& project) {
 template <class T>
 QString thing_name();
 
-// Renames what other things hold of it.
-void rename_references(Project& project, const Spot*, const std::string& from, const std::string& to);
-void rename_references(Project& project, const Region*, const std::string& from, const std::string& to);
-void rename_references(Project& project, const SensorSetup*, const std::string& from, const std::string& to);
-void rename_references(Project& project, const RobotSetup*, const std::string& from, const std::string& to);
+// Where other things may name a thing of that kind, always in the same order.
+std::vector<std::string*> references(Project& project, const Spot*);
+std::vector<std::string*> references(Project& project, const Region*);
+std::vector<std::string*> references(Project& project, const SensorSetup*);
+std::vector<std::string*> references(Project& project, const RobotSetup*);
 
 template <class T>
 class CmdAdd final : public DeskCommand {
@@ -98,6 +98,8 @@ class CmdRemove final : public DeskCommand {
     std::size_t at_;
 };
 
+// With all that names it. What names a thing of the new id already (a calibration of a sensor that was
+// removed) keeps that name when this is undone.
 template <class T>
 class CmdRename final : public DeskCommand {
   public:
@@ -108,16 +110,26 @@ class CmdRename final : public DeskCommand {
     }
 
   protected:
-    void apply(Project& p) override { rename(p, from_, to_); }
-    void revert(Project& p) override { rename(p, to_, from_); }
+    void apply(Project& p) override {
+        const auto all = references(p, static_cast<const T*>(nullptr));
+        renamed_.clear();
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (*all[i] == from_) {
+                *all[i] = to_;
+                renamed_.push_back(i);
+            }
+        list_of<T>(p)[at_].id = to_;
+    }
+    void revert(Project& p) override {
+        const auto all = references(p, static_cast<const T*>(nullptr));
+        for (const std::size_t i : renamed_) *all[i] = from_;
+        list_of<T>(p)[at_].id = from_;
+    }
 
   private:
-    void rename(Project& p, const std::string& from, const std::string& to) {
-        list_of<T>(p)[at_].id = to;
-        rename_references(p, static_cast<const T*>(nullptr), from, to);
-    }
     std::size_t at_;
     std::string from_, to_;
+    std::vector<std::size_t> renamed_;  // of references()
 };
 
 template <class T>

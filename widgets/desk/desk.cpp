@@ -498,20 +498,29 @@ Expected<std::vector<MovedSpot>> Desk::reteach(const Exchange& exchange) {
 Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm) {
     const nlohmann::json part = {
         {"displacement", pose_json(displacement)}, {"bend_mm", bend_mm}, {"twist_mm", twist_mm}};
+    // All or nothing, and no step of the undo list for a part that stands there already.
+    std::vector<SensorSetup> sensors;
+    std::vector<RobotSetup> robots;
+    const auto place = [&](const auto& all, auto& changed) -> Expected<void> {
+        for (auto after : all) {
+            if (after.driver != "simulated" ||
+                (after.settings.contains("part") && after.settings["part"] == part))
+                continue;
+            after.settings["part"] = part;
+            if (auto ok = valid(project_, after); !ok) return ok;
+            changed.push_back(std::move(after));
+        }
+        return {};
+    };
+    if (auto ok = place(project_.sensors, sensors); !ok) return ok;
+    if (auto ok = place(project_.robots, robots); !ok) return ok;
+    if (sensors.empty() && robots.empty()) return {};
     undo_.beginMacro(DeskCommand::tr("Place the simulated part"));
     Expected<void> result{};
-    for (const SensorSetup& sensor : std::vector(project_.sensors))
-        if (sensor.driver == "simulated" && result) {
-            SensorSetup after = sensor;
-            after.settings["part"] = part;
-            result = edit(after);
-        }
-    for (const RobotSetup& robot : std::vector(project_.robots))
-        if (robot.driver == "simulated" && result) {
-            RobotSetup after = robot;
-            after.settings["part"] = part;
-            result = edit(after);
-        }
+    for (const SensorSetup& sensor : sensors)
+        if (result) result = edit(sensor);
+    for (const RobotSetup& robot : robots)
+        if (result) result = edit(robot);
     undo_.endMacro();
     return result;
 }

@@ -83,6 +83,7 @@ bool StationWorker::busy() const {
 void StationWorker::cancel() {
     const std::lock_guard lock(mutex_);
     cancel_.request_stop();
+    for (Request& waiting : queue_) waiting.cancel.request_stop();
     push_answer_ = false;
     wake_.notify_all();
 }
@@ -95,7 +96,7 @@ void StationWorker::answer_push(bool yes) {
 
 void StationWorker::post(const QString& what, Task task) {
     const std::lock_guard lock(mutex_);
-    queue_.push_back({what, std::move(task)});
+    queue_.push_back({what, std::move(task), {}});
     wake_.notify_all();
 }
 
@@ -496,14 +497,14 @@ void StationWorker::work(const std::stop_token& stop) {
                 wake_.notify_all();
                 continue;
             }
-            if (newest_project_ && station_) {
-                station_->use(*newest_project_);
+            if (newest_project_) {
+                if (station_) station_->use(*newest_project_);
                 newest_project_.reset();
             }
             if (!queue_.empty()) {
                 request = std::move(queue_.front());
                 queue_.pop_front();
-                cancel_ = std::stop_source();
+                cancel_ = request.cancel;
                 busy_ = true;
             }
         }
@@ -518,7 +519,7 @@ void StationWorker::work(const std::stop_token& stop) {
         if (request.task) {
             emit busy_changed(true, request.what);
             stop_live();
-            request.task(*station_, cancel_.get_token());
+            request.task(*station_, request.cancel.get_token());
             {
                 const std::lock_guard lock(mutex_);
                 busy_ = false;

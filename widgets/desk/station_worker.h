@@ -90,7 +90,7 @@ class StationWorker : public QObject {
     void jog_simulated(const std::string& robot_id, const Pose& base_from_flange);  // other drivers refuse
     void set_sensor_parameter(const std::string& sensor_id, const std::string& name, double value);
     void answer_push(bool yes);  // to confirm_push
-    void cancel();
+    void cancel();               // what runs and what waits; connecting and setting are done nevertheless
     bool busy() const;
 
   signals:
@@ -125,6 +125,7 @@ class StationWorker : public QObject {
     struct Request {
         QString what;
         Task task;
+        std::stop_source cancel;
     };
     std::deque<Request> queue_;
     std::unique_ptr<Project> newest_project_;

@@ -1,1 +1,235 @@
+#include "widgets/desk/station_worker.h"
 
+#include <gmock/gmock.h>
+
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/cell.h"
+#include "devices/simulated/door.h"
+#include "projects/simulated_truth.h"
+#include "tests/widgets/desk/desk_fixture.h"
+
+namespace seamwright {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kFrame = "BASE_top";
+
+// One side of the simulated door; the spots have their features, and no references yet.
+Project side_of_a_door() {
+    const nlohmann::json settings = {
+        {"seed", 4},
+        {"robot", {{"frames", {{kFrame, pose_json(default_cell_settings().base_from_workobject)}}}}}};
+    const auto cell = SimulatedCell::open(settings).value();
+    Project p;
+    p.part.base_from_workobject = cell->base_from_workobject();
+    SensorSetup sensor;
+    sensor.id = "A";
+    sensor.driver = "simulated";
+    sensor.settings = settings;
+    DeviceSession session;
+    sensor.identity = (*open_sensor("simulated", settings, session))->identity();
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = "simulated";
+    robot.settings = settings;
+    robot.identity = (*open_robot("simulated", settings, session))->identity().value();
+    p.calibrations = {simulated_truth(sensor, robot).value()};
+    sensor.calibration_id = p.calibrations[0].id;
+    p.sensors = {sensor};
+    p.robots = {robot};
+    const DoorRegion side = default_door_regions().front();
+    for (const DoorSpot& door : default_door_spots()) {
+        if (std::find(side.spot_ids.begin(), side.spot_ids.end(), door.id) == side.spot_ids.end()) continue;
+        Spot s;
+        s.id = door.id;
+        s.sensor_id = "A";
+        s.robot_id = "R1";
+        s.base_from_flange = cell->flange_for(door.workobject_from_sensor);
+        s.feature.kind = "contour-end";
+        s.feature.parameters = {{"side", 0}};
+        p.spots.push_back(s);
+    }
+    Region region;
+    region.id = side.id;
+    region.spot_ids = side.spot_ids;
+    region.frame_name = kFrame;
+    region.base_from_frame = p.part.base_from_workobject;
+    region.sigma_limit_mm = 5;
+    region.sigma_limit_deg = 5;
+    p.regions = {region};
+    return p;
+}
+
+class Cancelling : public testing::Test {
+  protected:
+    TemporaryFolder folder;
+    WatchedDesk me;
+    Desk& desk = me.desk;
+    StationWorker& worker = desk.worker();
+    std::vector<std::shared_ptr<const RunRecord>> runs;
+    int asked = 0, progress = 0, ended = 0;
+    QStringList failures;
+
+    void SetUp() override {
+        QObject::connect(&worker, &StationWorker::measured, &desk,
+                         [this](const auto& r) { runs.push_back(r); });
+        QObject::connect(&worker, &StationWorker::confirm_push, &desk, [this] { ++asked; });
+        QObject::connect(&worker, &StationWorker::progressed, &desk, [this] { ++progress; });
+        QObject::connect(&worker, &StationWorker::failed, &desk, [this](const QString& s) { failures << s; });
+        QObject::connect(&worker, &StationWorker::busy_changed, &desk, [this](bool busy) { ended += !busy; });
+        ASSERT_TRUE(desk.create(folder / "a.seam", side_of_a_door()));
+        worker.connect_devices();
+        ASSERT_TRUE(wait_until([&] { return desk.station().connected; }))
+            << me.troubles.join("; ").toStdString();
+    }
+    // The references, measured as a person has them measured.
+    void teach_all() {
+        int taught = 0;
+        QObject::connect(&worker, &StationWorker::taught, &desk, [&](const auto& t) {
+            ++taught;
+            EXPECT_TRUE(desk.edit(t->spot));
+        });
+        for (const Spot& spot : Project(desk.project()).spots) worker.teach(spot, 1);
+        ASSERT_TRUE(wait_until([&] { return taught == static_cast<int>(desk.project().spots.size()); }))
+            << failures.join("; ").toStdString();
+        ASSERT_TRUE(wait_until([&] { return !worker.busy(); }));
+        progress = 0;
+    }
+    bool over() {
+        return wait_until([&] { return !worker.busy() && ended > 0; });
+    }
+    std::vector<RunSummary> stored() const { return desk.runs().value(); }
+    static std::size_t measured(const RunRecord& run) {
+        return static_cast<std::size_t>(std::count_if(run.spots.begin(), run.spots.end(), [](const auto& s) {
+            return s.status == SpotStatus::measured;
+        }));
+    }
+    // Nothing sticks: the next run is a whole one.
+    void expect_the_next_run_is_whole() {
+        runs.clear();
+        worker.measure("next", false, false);
+        ASSERT_TRUE(wait_until([&] { return runs.size() == 1; }));
+        EXPECT_NE(runs[0]->status, RunStatus::cancelled);
+        EXPECT_EQ(measured(*runs[0]), desk.project().spots.size());
+    }
+};
+
+TEST_F(Cancelling, ARunStopsAtOnceAndIsKeptAsCancelled) {
+    teach_all();
+    bool cancelled = false;
+    QObject::connect(
+        &worker, &StationWorker::progressed, &desk,
+        [&](int done, int total) {
+            if (done < total && !std::exchange(cancelled, true)) worker.cancel();
+        },
+        Qt::DirectConnection);  // in the midst, not when it is over
+    worker.measure("x", true, false);
+    ASSERT_TRUE(wait_until([&] { return runs.size() == 1; }));
+    EXPECT_EQ(runs[0]->status, RunStatus::cancelled);
+    EXPECT_LT(measured(*runs[0]), desk.project().spots.size());
+    EXPECT_EQ(asked, 0);
+    for (const RegionRecord& region : runs[0]->regions) EXPECT_FALSE(region.refusals.empty());
+    ASSERT_EQ(stored().size(), 1U);
+    EXPECT_EQ(stored()[0].status, RunStatus::cancelled);
+    EXPECT_EQ(stored()[0].part_id, "x");
+    expect_the_next_run_is_whole();
+}
+
+TEST_F(Cancelling, WhatStillWaitsIsCancelledToo) {
+    teach_all();
+    for (int i = 0; i < 3; ++i) worker.measure("waits", true, false);
+    worker.cancel();
+    EXPECT_TRUE(worker.busy());
+    ASSERT_TRUE(wait_until([&] { return runs.size() == 3; }));
+    for (const auto& run : runs) EXPECT_EQ(run->status, RunStatus::cancelled);
+    EXPECT_LT(measured(*runs[1]) + measured(*runs[2]), 1U) << "the robot is not sent anywhere for them";
+    EXPECT_EQ(asked, 0);
+    expect_the_next_run_is_whole();
+}
+
+TEST_F(Cancelling, APushThatWaitsForItsAnswerIsNotPushed) {
+    teach_all();
+    for (const bool pushes : {false, true}) {
+        runs.clear();
+        asked = 0;
+        worker.measure("x", true, false);
+        ASSERT_TRUE(wait_until([&] { return asked == 1 || !runs.empty(); }));
+        ASSERT_EQ(asked, 1) << runs[0]->message;
+        if (pushes)
+            worker.answer_push(true);
+        else
+            worker.cancel();
+        ASSERT_TRUE(wait_until([&] { return runs.size() == 1; }));
+        EXPECT_EQ(runs[0]->status, pushes ? RunStatus::ok : RunStatus::cancelled) << runs[0]->message;
+        ASSERT_EQ(runs[0]->regions.size(), 1U);
+        EXPECT_EQ(runs[0]->regions[0].push.before.has_value(), pushes) << "the robot was written to";
+    }
+}
+
+TEST_F(Cancelling, AnOldAnswerDoesNotPushTheNextPart) {
+    teach_all();
+    worker.answer_push(true);
+    worker.measure("x", true, false);
+    ASSERT_TRUE(wait_until([&] { return asked == 1 || !runs.empty(); }));
+    ASSERT_EQ(asked, 1);
+    EXPECT_FALSE(wait_until([&] { return !runs.empty(); }, 300)) << "it waits for its own answer";
+    worker.answer_push(false);
+    ASSERT_TRUE(wait_until([&] { return runs.size() == 1; }));
+    EXPECT_EQ(runs[0]->status, RunStatus::cancelled);
+    EXPECT_FALSE(runs[0]->regions[0].push.before) << "the robot was written to";
+}
+
+TEST_F(Cancelling, TeachingGivesNoSpot) {
+    int taught = 0;
+    QObject::connect(&worker, &StationWorker::taught, &desk, [&] { ++taught; });
+    QObject::connect(
+        &worker, &StationWorker::progressed, &desk, [&] { worker.cancel(); }, Qt::DirectConnection);
+    ended = 0;
+    worker.teach(desk.project().spots[0], 200);
+    ASSERT_TRUE(over());
+    ASSERT_TRUE(wait_until([&] { return !failures.isEmpty(); }));
+    EXPECT_THAT(failures[0].toStdString(), HasSubstr("cancelled"));
+    EXPECT_EQ(taught, 0);
+}
+
+TEST_F(Cancelling, APassGivesNoContour) {
+    int passed = 0;
+    QObject::connect(&worker, &StationWorker::passed, &desk, [&] { ++passed; });
+    QObject::connect(
+        &worker, &StationWorker::progressed, &desk, [&] { worker.cancel(); }, Qt::DirectConnection);
+    ended = 0;
+    worker.record_pass(desk.project().spots[0], 0.05, {});
+    ASSERT_TRUE(over());
+    ASSERT_TRUE(wait_until([&] { return !failures.isEmpty(); }));
+    EXPECT_THAT(failures[0].toStdString(), HasSubstr("cancelled"));
+    EXPECT_EQ(passed, 0);
+}
+
+TEST_F(Cancelling, AZeroShiftEndsWithTheRunThatRuns) {
+    teach_all();
+    QObject::connect(
+        &worker, &StationWorker::measured, &desk, [&] { worker.cancel(); }, Qt::DirectConnection);
+    ended = 0;
+    worker.zero_shift(50);
+    ASSERT_TRUE(over());
+    EXPECT_GE(stored().size(), 1U);
+    EXPECT_LE(stored().size(), 2U);
+}
+
+TEST_F(Cancelling, LeavingTheProjectEndsWhatRuns) {
+    teach_all();
+    for (int i = 0; i < 5; ++i) worker.measure("left", true, false);
+    ASSERT_TRUE(wait_until([&] { return progress > 0; }));
+    ASSERT_TRUE(desk.create(folder / "b.seam", Project{}));
+    ASSERT_TRUE(wait_until([&] { return !worker.busy(); }));
+    EXPECT_TRUE(stored().empty()) << "the run is no run of the new project";
+    EXPECT_FALSE(desk.station().connected);
+    desk.close();
+    const auto old = ProjectFile::open(folder / "a.seam").value().runs().value();
+    ASSERT_EQ(old.size(), 1U) << "those that waited are gone";
+    EXPECT_EQ(old[0].status, RunStatus::cancelled);
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -130,6 +130,14 @@ std::vector<Edit> edits() {
                                 "another mesh");
          }},
         {"ProjectRename", "Rename project to x", [](Desk& d) { return d.rename_project("x"); }},
+        {"RequirementsEdit", "Change the requirements",
+         [](Desk& d) { return d.set_requirement("sigma3_mm", 1.0 / 3.0); }},
+        {"Reteach", "Take up again after an exchange",
+         [](Desk& d) -> Expected<void> {
+             Exchange exchange{"A", "C2", {}};
+             if (auto moved = d.reteach(exchange); !moved) return tl::unexpected(moved.error());
+             return {};
+         }},
         {"PlacePart", "Place the simulated part",
          [](Desk& d) {
              return d.place_simulated_part(make_pose(Eigen::Matrix3d::Identity(), {1, 2, 3}), 0.1, 0.2);

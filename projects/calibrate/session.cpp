@@ -96,6 +96,34 @@ fs::path CalibrationSession::folder_of(const fs::path& project_file) {
     return fs::path(project_file.string() + ".calibration");
 }
 
+namespace {
+
+Expected<void> rename_aside(const fs::path& folder) {
+    std::error_code code;
+    if (!fs::exists(folder, code)) return {};
+    std::string time = utc_now();
+    std::replace(time.begin(), time.end(), ':', '.');
+    fs::rename(folder, fs::path(folder.string() + "-" + time), code);
+    if (code) return file_error("the folder cannot be moved: " + code.message(), folder.string());
+    return {};
+}
+
+}  // namespace
+
+Expected<void> CalibrationSession::put_aside(const fs::path& project_file) {
+    return rename_aside(folder_of(project_file));
+}
+
+Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const fs::path& to_project) {
+    if (auto aside = put_aside(to_project); !aside) return aside;
+    std::error_code code;
+    const fs::path from = folder_of(from_project), to = folder_of(to_project);
+    if (!fs::exists(from, code)) return {};
+    fs::copy(from, to, fs::copy_options::recursive, code);
+    if (code) return file_error("the calibration sessions cannot be copied: " + code.message(), to.string());
+    return {};
+}
+
 bool CalibrationSession::exists(const fs::path& project_file, const std::string& method,
                                 const std::string& sensor_id) {
     std::error_code code;
@@ -399,13 +427,7 @@ Expected<void> CalibrationSession::set_used_as(const std::string& calibration_id
 }
 
 Expected<void> CalibrationSession::begin_anew() {
-    std::error_code code;
-    if (fs::exists(folder_, code)) {
-        std::string time = utc_now();
-        std::replace(time.begin(), time.end(), ':', '.');
-        fs::rename(folder_, fs::path(folder_.string() + "-" + time), code);
-        if (code) return file_error("the session cannot be moved: " + code.message(), folder_.string());
-    }
+    if (auto aside = rename_aside(folder_); !aside) return aside;
     state_.captures.clear();
     last_number_ = 0;
     result_.reset();

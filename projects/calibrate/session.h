@@ -77,6 +77,11 @@ class CalibrationSession {
                                              const std::string& method, const std::string& sensor_id,
                                              const std::string& robot_id);
     static std::filesystem::path folder_of(const std::filesystem::path& project_file);
+    // Sessions go with their project: copied when it is saved under another name, put aside under their time
+    // when another project takes the file's place. Nothing to do is no Error.
+    static Expected<void> copy_all(const std::filesystem::path& from_project,
+                                   const std::filesystem::path& to_project);
+    static Expected<void> put_aside(const std::filesystem::path& project_file);
     // True when open() would find captures.
     static bool exists(const std::filesystem::path& project_file, const std::string& method,
                        const std::string& sensor_id);

@@ -1830,6 +1830,18 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>target seen</source>
         <translation>Ziel gesehen</translation>
     </message>
+    <message>
+        <source>Load images</source>
+        <translation>Bilder laden</translation>
+    </message>
+    <message>
+        <source>Takes captures from a folder of images with their pose files</source>
+        <translation>Nimmt Aufnahmen aus einem Ordner von Bildern mit ihren Posendateien</translation>
+    </message>
+    <message>
+        <source>The board is looked for with the laser off, at the capture.</source>
+        <translation>Die Tafel wird bei ausgeschaltetem Laser gesucht, beim Aufnehmen.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::Histogram</name>

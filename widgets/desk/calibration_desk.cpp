@@ -265,17 +265,23 @@ void CalibrationDesk::solve_when_due() {
 }
 
 void CalibrationDesk::solve() {
-    if (!session_ || solving_) return;
-    solving_ = true;
+    if (!session_) return;
     set_doing(tr("Solving"));
+    if (std::exchange(solving_, true)) {
+        solve_again_ = true;  // what runs was cancelled, or is of a session before
+        return;
+    }
     post([this, session = *session_, generation = generation_](const std::stop_token& cancelled) {
         auto outcome = std::make_shared<Expected<CalibrateOutcome>>(
             cancelled.stop_requested() ? Expected<CalibrateOutcome>(CalibrateOutcome{}) : session.solve());
         QMetaObject::invokeMethod(this, [this, outcome, generation, cancelled, of = session.state()] {
             solving_ = false;
             if (doing_ == tr("Solving")) set_doing({});
-            if (generation != generation_ || !session_) return;
-            if (cancelled.stop_requested()) return emit changed();
+            const bool again = std::exchange(solve_again_, false);
+            if (generation != generation_ || !session_ || cancelled.stop_requested()) {
+                if (again || generation != generation_) return solve_when_due();
+                return emit changed();
+            }
             if (!*outcome) {
                 // Only what was asked for the captures as they are is worth a sentence.
                 if (of == session_->state()) emit refused(text_of(outcome->error()));

@@ -100,8 +100,8 @@ class CalibrationDesk : public QObject {
     std::optional<CalibrationSession> session_;
     QUndoStack undo_;
     QString doing_;
-    bool waiting_for_shot_ = false, shot_verifies_ = false, solving_ = false, automatic_ = false,
-         looking_ = false;
+    bool waiting_for_shot_ = false, shot_verifies_ = false, solving_ = false, solve_again_ = false,
+         automatic_ = false, looking_ = false;
     bool look_pending_ = false;
     std::uint64_t generation_ = 0;  // of the session: results of an older one are dropped
     std::uint64_t looked_number_ = 0;

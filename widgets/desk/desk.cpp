@@ -5,6 +5,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/mesh_file.h"
+#include "projects/calibrate/session.h"
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/project_json.h"
@@ -208,6 +209,8 @@ Expected<void> Desk::create(const std::filesystem::path& path, const Project& pr
     if (file_ && path == file_->path()) close();
     auto file = ProjectFile::create(path, project, true);
     if (!file) return tl::unexpected(file.error());
+    if (auto aside = CalibrationSession::put_aside(path); !aside)
+        emit trouble(QString::fromStdString(aside.error().sentence()));
     discard_recovery(path);
     drop_kept();
     recovery_.reset();
@@ -300,6 +303,8 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (failed) return file_error("the file cannot be replaced: " + failed.message(), path.string());
     drop_kept();
     recovery_writer_.flush();
+    if (auto copied = CalibrationSession::copy_all(file_->path(), path); !copied)
+        emit trouble(QString::fromStdString(copied.error().sentence()));
     auto file = ProjectFile::open(path);
     if (!file) return tl::unexpected(file.error());
     const std::string spot = selection_.spot(), region = selection_.region();

@@ -119,8 +119,11 @@ void GuidedPage::make_capture(QVBoxLayout& box) {
     inside->addWidget(next_words_);
     inside->addLayout(make_row({copy_next_, set_target_, go_there_}));
     load_ = make_button("calibration_load", "import", tr("Load from files"),
-                        tr("Takes captures from files instead of the live sensor"), [this] { load(); });
-    box.addLayout(make_row({load_}));
+                        tr("Takes captures from files instead of the live sensor"), [this] { load(false); });
+    load_folder_ = make_button("calibration_load_folder", "open", tr("Load images"),
+                               tr("Takes captures from a folder of images with their pose files"),
+                               [this] { load(true); });
+    box.addLayout(make_row({load_, load_folder_}));
 }
 
 void GuidedPage::make_list(QVBoxLayout& box) {

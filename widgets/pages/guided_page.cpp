@@ -155,9 +155,7 @@ void GuidedPage::go_there() {
         desk_.worker().jog_simulated(calibration_.session().robot_id(), *pose);
 }
 
-void GuidedPage::load() {
-    const CaptureKind kind = calibration_.session().method().capture;
-    const bool folder = kind == CaptureKind::board_and_stripe;
+void GuidedPage::load(bool folder) {
     const QString text = method_text(QString::fromStdString(calibration_.session().method().id)).file;
     const QString chosen = folder ? QFileDialog::getExistingDirectory(this, text)
                                   : QFileDialog::getOpenFileName(this, text, {}, tr("Data (*.json)"));

@@ -54,13 +54,14 @@ class GuidedPage : public QWidget {
     std::string selected() const;
     const EntryPicture& picture(const SessionCapture& capture);
     QIcon thumbnail(const SessionCapture& capture);
-    void load();
+    void load(bool folder);
     void set_target();
     void go_there();
     void leave();
     bool simulated_sensor() const;
     bool simulated_robot() const;
     bool stored() const;
+    bool switches_laser() const;
     std::optional<Pose> target_pose() const;  // the next pose, or a simulated robot's first
     std::optional<Pose> flange() const;
     bool done(const Expected<void>& result);
@@ -72,8 +73,8 @@ class GuidedPage : public QWidget {
     QWidget *prepare_, *settings_holder_, *capture_box_, *solve_box_, *verify_box_;
     QVBoxLayout* settings_box_;
     TargetView* target_;
-    QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *set_target_, *go_there_,
-        *copy_next_;
+    QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *load_folder_, *set_target_,
+        *go_there_, *copy_next_;
     QPushButton *verification_, *remove_, *solve_, *cancel_, *verify_, *use_, *keep_, *anew_;
     QLabel *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *compared_, *used_;
     QTableWidget *table_, *parameters_;

@@ -82,6 +82,8 @@ void GuidedPage::refresh() {
     }
     const bool live = s.method().capture != CaptureKind::files;
     capture_box_->setVisible(live);
+    load_folder_->setVisible(s.method().capture == CaptureKind::board_and_stripe ||
+                             s.method().capture == CaptureKind::board_pose);
     refresh_stage();
     refresh_settings();
     refresh_table();
@@ -384,7 +386,7 @@ void GuidedPage::refresh_busy() {
     const bool connected = desk_.station().connected;
     for (QPushButton* b : {capture_, verify_}) b->setEnabled(!busy && connected);
     for (QPushButton* b : {automatic_, set_target_, go_there_}) b->setEnabled(connected);
-    load_->setEnabled(!busy);
+    for (QPushButton* b : {load_, load_folder_}) b->setEnabled(!busy);
     solve_->setEnabled(!busy && s.solving_captures() >= s.method().fewest);
     const bool chosen = !selected().empty();
     verification_->setEnabled(chosen);
@@ -398,13 +400,26 @@ void GuidedPage::refresh_busy() {
     keep_->setEnabled(ready);
 }
 
+bool GuidedPage::switches_laser() const {
+    for (const SensorState& s : desk_.station().sensors)
+        if (s.id == calibration_.session().sensor_id())
+            return std::any_of(s.parameters.begin(), s.parameters.end(),
+                               [](const ParameterInfo& p) { return p.name == "laser"; });
+    return false;
+}
+
 void GuidedPage::refresh_live() {
     if (!isVisible() || !calibration_.is_open()) return;
     const LiveTarget& live = calibration_.live();
     const bool image = live.frame && !live.frame->image.empty() &&
                        calibration_.session().method().capture != CaptureKind::sphere_profile;
+    const CaptureKind kind = calibration_.session().method().capture;
+    const bool board = kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose;
+    QString words = live.seen ? tr("target seen") : live.words;
+    if (!live.seen && board && switches_laser())
+        words = tr("The board is looked for with the laser off, at the capture.");
     target_->set_live(live.picture, image ? small_picture(live.frame->image, kLivePicture) : QImage(),
-                      live.seen, live.seen ? tr("target seen") : live.words);
+                      live.seen, words);
 }
 
 }  // namespace seamwright

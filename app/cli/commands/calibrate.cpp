@@ -8,7 +8,7 @@
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
-#include "devices/exchange/pose_json.h"
+#include "projects/calibrate/answer.h"
 #include "projects/calibrate/methods.h"
 #include "projects/calibrate/report_page.h"
 #include "projects/project_file.h"
@@ -87,7 +87,13 @@ Expected<std::string> store(const Arguments& a, const Method& method, const json
                                      [&](const SensorSetup& s) { return s.id == a.sensor; });
     if (sensor == project->sensors.end())
         return usage_error(fmt::format("the project has no sensor \"{}\"", a.sensor), "--sensor");
+    const Calibration* base = nullptr;
+    for (const Calibration& other : project->calibrations)
+        if (other.id == sensor->calibration_id) base = &other;
     Calibration c;
+    // What gives no model and no place on the flange is kept as a record.
+    if (const CalibrationMethod* guided = find_method(method.name))
+        if (auto made = calibration_of_result(*guided, data, a.exclude, result, base)) c = std::move(*made);
     c.id = fmt::format("{}-{}", method.name, project->calibrations.size() + 1);
     c.method = method.name;
     c.sensor_id = a.sensor;
@@ -99,11 +105,6 @@ Expected<std::string> store(const Arguments& a, const Method& method, const json
     c.created_utc = utc_now();
     c.source = std::filesystem::absolute(a.data).string();
     c.verdict = result.value("verdict", "undetermined");
-    if (result.contains("flange_from_sensor") && result["flange_from_sensor"].is_object()) {
-        auto pose = parse_pose(result["flange_from_sensor"], "flange_from_sensor");
-        if (!pose) return tl::unexpected(pose.error());
-        c.flange_from_sensor = *pose;
-    }
     c.raw = {{"data", data}, {"exclude", a.exclude}};
     c.result = result;
     project->calibrations.push_back(c);

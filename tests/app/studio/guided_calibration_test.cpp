@@ -8,6 +8,8 @@
 #include <QProcess>
 #include <cstdlib>
 #include <fstream>
+#include <random>
+#include <tuple>
 
 #include "app/studio/studio.h"
 #include "devices/exchange/pose_json.h"
@@ -224,7 +226,8 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     const Calibration& made = desk.project().calibrations.back();
     EXPECT_EQ(desk.project().sensors.at(0).calibration_id, made.id);
     EXPECT_EQ(made.method, "tcp-sphere");
-    EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 0.5) << "over the whole field; three sigma in its middle are 0.2";
+    EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 0.5)
+        << "over the whole field; three sigma in its middle are 0.2";
     EXPECT_TRUE(made.result.contains("verification"));
     me.picture("guided_5_used");
     // One step back in the project's own undo list: the calibration before is in use again.
@@ -232,6 +235,201 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     EXPECT_EQ(desk.project().sensors.at(0).calibration_id, "simulated-truth");
     EXPECT_EQ(desk.project().calibrations.size(), 1U);
     EXPECT_TRUE(me.wait([&] { return me.find<QPushButton>("calibration_use")->isEnabled(); }));
+}
+
+// Every method that captures live, from the first capture to the stored calibration.
+class GuidedLive : public Guided, public testing::WithParamInterface<std::tuple<const char*, int, bool>> {};
+
+TEST_P(GuidedLive, OnTheSimulatedCell) {
+    const auto [method, poses, used] = GetParam();
+    make_project();
+    Studio studio(*qApp, options());
+    MainWindow& window = studio.window();
+    window.resize(1280, 800);
+    window.show();
+    Person me(window);
+    Desk& desk = studio.desk();
+    go_to_page(me, desk, method);
+    me.click("calibration_set_target");
+    for (int i = 0; i < poses; ++i) {
+        capture(me, desk);
+        ASSERT_FALSE(HasFailure());
+    }
+    ASSERT_TRUE(solved(me, window));
+    capture(me, desk, "calibration_verify");
+    ASSERT_TRUE(solved(me, window));
+    me.picture(QString("guided_%1").arg(method));
+    const QString verdict = me.text_of("calibration_verdict");
+    EXPECT_TRUE(verdict == "good" || verdict == "usable") << me.text_of("calibration_reason").toStdString();
+    EXPECT_TRUE(me.text_of("calibration_verified").startsWith("confirmed"))
+        << me.text_of("calibration_verified").toStdString();
+    me.click(used ? "calibration_use" : "calibration_keep");
+    ASSERT_EQ(desk.project().calibrations.size(), 2U) << me.text_of("calibration_said").toStdString();
+    const Calibration& made = desk.project().calibrations.back();
+    EXPECT_EQ(made.method, method);
+    EXPECT_EQ(desk.project().sensors.at(0).calibration_id == made.id, used);
+    if (used) {
+        EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 1.0)
+            << "over the whole field";
+    }
+    me.click("calibration_back");
+}
+INSTANTIATE_TEST_SUITE_P(Methods, GuidedLive,
+                         testing::Values(std::tuple{"stripe-camera", 10, true},
+                                         std::tuple{"hand-eye", 8, true}, std::tuple{"lens", 9, false}),
+                         [](const auto& info) {
+                             std::string name = std::get<0>(info.param);
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+// Every method whose data are measured elsewhere, from its file to the stored calibration; one entry of each
+// is wrong, is seen in the list and left out.
+class GuidedFile : public Guided, public testing::WithParamInterface<const char*> {
+  protected:
+    json data(const std::string& method) const {
+        const auto cell = SimulatedCell::open(settings).value();
+        std::mt19937 random(11);
+        std::normal_distribution<double> px(0, 0.05), mm(0, 0.02);
+        json pairs = json::array(), points = json::array();
+        for (int i = 0; i < 6; ++i)
+            for (int k = 0; k < 6; ++k) {
+                const Eigen::Vector2d xz(-40 + 16 * i, -25 + 10 * k);
+                const auto pixel = cell->sensor_model().to_pixel(xz);
+                if (!pixel) continue;
+                const double off = pairs.size() == 14 ? 9 : 0;
+                pairs.push_back({{"pixel", {pixel->x() + px(random) + off, pixel->y() + px(random)}},
+                                 {"laser", {xz.x(), xz.y()}}});
+            }
+        const Pose world_from_plate = make_pose(rotation_exp({0.1, -0.2, 0.4}), {800, -300, 650});
+        for (int i = 0; i < 8; ++i) {
+            const Eigen::Vector3d on_plate(i % 4 * 90.0, i / 4 * 120.0, i % 2 * 15.0);
+            const Eigen::Vector3d world =
+                world_from_plate * on_plate +
+                Eigen::Vector3d(mm(random) + (i == 5 ? 4 : 0), mm(random), mm(random));
+            points.push_back({{"plate", {on_plate.x(), on_plate.y(), on_plate.z()}},
+                              {"world", {world.x(), world.y(), world.z()}}});
+        }
+        if (method == "laser-plane") return {{"pairs", pairs}};
+        if (method == "lut")
+            return {{"size", {cell->settings().optics.width, cell->settings().optics.height}},
+                    {"pairs", pairs}};
+        if (method == "plate") return {{"points", points}};
+        const auto link = [](const Pose& pose) {
+            return json{{"pose", pose_json(pose)}, {"sigma_mm", 0.01}, {"sigma_deg", 0.002}};
+        };
+        const Pose plate_from_camera = make_pose(rotation_exp({3.0, 0.2, 0.1}), {30, 20, 310});
+        const Pose camera_from_laser = cell->sensor_model().camera_from_laser;
+        // The reference is the flange: the chain ends where the cell has its sensor.
+        const Pose world_from_laser = world_from_plate * plate_from_camera * camera_from_laser;
+        return {{"reference_from_world", link(cell->flange_from_sensor() * world_from_laser.inverse())},
+                {"sensors",
+                 {{{"id", "A"},
+                   {"world_from_plate", link(world_from_plate)},
+                   {"plate_from_camera", link(plate_from_camera)},
+                   {"camera_from_laser", link(camera_from_laser)}}}}};
+    }
+};
+
+TEST_P(GuidedFile, FromItsFile) {
+    const std::string method = GetParam();
+    make_project();
+    const fs::path path = folder / (method + ".json");
+    std::ofstream(path) << data(method);
+    Studio studio(*qApp, options());
+    MainWindow& window = studio.window();
+    window.resize(1280, 800);
+    window.show();
+    Person me(window);
+    Desk& desk = studio.desk();
+    me.step(2);
+    me.click("begin_" + QString::fromStdString(method));
+    me.answer_file_dialog(QString::fromStdString(path.string()));
+    me.click("calibration_load");
+    ASSERT_TRUE(me.wait([&] { return captures(me) > 0; })) << me.text_of("calibration_said").toStdString();
+    ASSERT_TRUE(solved(me, window));
+    auto* table = me.find<QTableWidget>("captures");
+    const auto press_space = [&](int row) {
+        me.look_at(table);
+        table->scrollToItem(table->item(row, 0));
+        table->setCurrentCell(row, 0);
+        table->setFocus();
+        QTest::keyClick(table, Qt::Key_Space);
+    };
+    if (method != "static") {
+        const QString wrong = method == "plate" ? "5" : "14";
+        int row = -1;
+        for (int r = 0; r < table->rowCount(); ++r)
+            if (table->item(r, 0)->text() == wrong) row = r;
+        ASSERT_GE(row, 0);
+        EXPECT_EQ(table->item(row, 4)->text(), "contradicts the others");
+        press_space(row);
+        ASSERT_TRUE(me.wait([&] { return table->item(row, 4)->text() == "left out"; }));
+        ASSERT_TRUE(solved(me, window));
+        EXPECT_FALSE(me.find<QPushButton>("calibration_keep")->isEnabled()) << "not verified yet";
+        table->setCurrentCell(row == 0 ? 1 : row - 1, 0);
+        me.click("calibration_mark");
+        ASSERT_TRUE(solved(me, window));
+        EXPECT_TRUE(me.text_of("calibration_verified").startsWith("confirmed"))
+            << me.text_of("calibration_verified").toStdString();
+    }
+    me.picture("guided_" + QString::fromStdString(method));
+    const bool use = find_method(method)->use == AnswerUse::sensor;
+    me.click(use ? "calibration_use" : "calibration_keep");
+    ASSERT_EQ(desk.project().calibrations.size(), 2U) << me.text_of("calibration_said").toStdString();
+    const Calibration& made = desk.project().calibrations.back();
+    EXPECT_EQ(made.method, method);
+    if (use) {
+        EXPECT_EQ(desk.project().sensors.at(0).calibration_id, made.id);
+        const CalibrationDifference d = difference(made, desk.project().calibrations.front());
+        EXPECT_GT(d.points, 20);
+        EXPECT_LT(d.largest_mm, 0.5);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Methods, GuidedFile, testing::Values("laser-plane", "lut", "plate", "static"),
+                         [](const auto& info) {
+                             std::string name = info.param;
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+// The folder of a real cell through the page: the command line's answer.
+TEST_F(Guided, BoardFromAFolderOfImages) {
+    const char* given = std::getenv("SEAMWRIGHT_DATA");
+    const fs::path images = fs::path(given ? given : SEAMWRIGHT_SHARED_DATA) / "etna" / "calib2";
+    if (!fs::exists(images)) GTEST_SKIP() << "skipped: no real data";
+    make_project();
+    {
+        Studio studio(*qApp, options());
+        MainWindow& window = studio.window();
+        window.resize(1280, 800);
+        window.show();
+        Person me(window);
+        me.step(2);
+        me.click("begin_stripe-camera");
+        me.answer_file_dialog(QString::fromStdString(images.string()));
+        me.click("calibration_load_folder");
+        ASSERT_TRUE(QTest::qWaitFor([&] { return captures(me) > 0; }, 120000))
+            << me.text_of("calibration_said").toStdString();
+        for (int patience = 0; patience < 6 && me.text_of("calibration_verdict") == "not solved yet";
+             ++patience)
+            (void)solved(me, window);
+        me.picture("guided_folder");
+    }
+    const auto command_line = calibrate_stripe_camera_folder(images.string(), "7x6", 10, {});
+    ASSERT_TRUE(command_line);
+    const auto session = CalibrationSession::open(file, "stripe-camera", "A", "R1").value();
+    ASSERT_TRUE(session.result());
+    const json &found = *session.result(), &expected = command_line->result;
+    EXPECT_EQ(session.state().captures.size(), expected["images"].get<std::size_t>());
+    EXPECT_EQ(found["verdict"], expected["verdict"]);
+    for (std::size_t i = 0; i < expected["parameters"].size(); ++i) {
+        const double value = expected["parameters"][i]["value"];
+        EXPECT_NEAR(found["parameters"][i]["value"].get<double>(), value,
+                    1e-9 * std::max(1.0, std::abs(value)))
+            << expected["parameters"][i]["name"];
+    }
+    EXPECT_NEAR(found["on_plane_share"].get<double>(), expected["on_plane_share"].get<double>(), 1e-12);
 }
 
 }  // namespace

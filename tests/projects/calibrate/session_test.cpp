@@ -247,6 +247,21 @@ TEST_F(Session, ResumesWithItsSolution) {
     EXPECT_THAT(refused.error().sentence(), HasSubstr("no calibration session"));
 }
 
+TEST_F(Session, GoesWithItsProject) {
+    {
+        CalibrationSession s = open();
+        capture(s, 2);
+    }
+    const fs::path other = folder / "other.seam";
+    ASSERT_TRUE(CalibrationSession::copy_all(project, other));
+    EXPECT_EQ(CalibrationSession::open(other, "tcp-sphere", "A", "R1")->state().captures.size(), 2U);
+    EXPECT_EQ(open().state().captures.size(), 2U);
+    // Another project in the file's place begins with none.
+    ASSERT_TRUE(CalibrationSession::put_aside(other));
+    EXPECT_FALSE(CalibrationSession::exists(other, "tcp-sphere", "A"));
+    ASSERT_TRUE(CalibrationSession::put_aside(other)) << "nothing to do is no error";
+}
+
 TEST_F(Session, SaysWhatIsNotSeen) {
     CalibrationSession s = open();
     const Calibration base = truth();

@@ -133,7 +133,8 @@ Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame
 }  // namespace
 
 Expected<json> prepared_settings(const CalibrationMethod& method, json settings, const Calibration* base) {
-    if (method.id == "tcp-sphere" && base && !base->flange_from_sensor.isApprox(Pose::Identity()))
+    if (method.id == "tcp-sphere" && !settings.contains("nominal_flange_from_sensor") && base &&
+        !base->flange_from_sensor.isApprox(Pose::Identity()))
         settings["nominal_flange_from_sensor"] = pose_json(base->flange_from_sensor);
     if (method.id == "laser-plane" && !settings.contains("camera") && base && base->model)
         settings["camera"] = camera_json(base->model->camera);

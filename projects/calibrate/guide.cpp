@@ -27,11 +27,21 @@ const std::vector<TargetView>* views_of(const CalibrationMethod& method) {
     return nullptr;
 }
 
-Pose mounting(const CalibrationSession& session, const Pose& known) {
+// Solved, else as known.
+std::optional<Pose> mounting(const CalibrationSession& session, const std::optional<Pose>& known) {
     const json* result = session.result();
+    const auto solved = [&](const json& holder, const char* key) -> std::optional<Pose> {
+        if (!holder.is_object() || !holder.contains(key) || !holder[key].is_object()) return std::nullopt;
+        auto pose = parse_pose(holder[key], key);
+        return pose ? std::optional<Pose>(*pose) : std::nullopt;
+    };
     if (!result) return known;
-    if (session.method().id == "tcp-sphere" && (*result)["flange_from_sensor"].is_object())
-        if (auto pose = parse_pose((*result)["flange_from_sensor"], "flange_from_sensor")) return *pose;
+    if (auto pose = solved(*result, "flange_from_sensor")) return pose;
+    if (session.method().id == "stripe-camera" && result->contains("hand_eye")) {
+        const auto camera = solved((*result)["hand_eye"], "flange_from_camera");
+        const auto laser = solved(*result, "camera_from_laser");
+        if (camera && laser) return *camera * *laser;
+    }
     return known;
 }
 
@@ -52,7 +62,8 @@ bool taken(const CalibrationSession& session, const Pose& at) {
 
 }  // namespace
 
-std::optional<NextPose> next_pose(const CalibrationSession& session, const Pose& flange_from_sensor) {
+std::optional<NextPose> next_pose(const CalibrationSession& session,
+                                  const std::optional<Pose>& flange_from_sensor) {
     const auto* views = views_of(session.method());
     const CalibrationCapture* first = first_with_pose(session);
     if (!views || !first) return std::nullopt;
@@ -62,7 +73,9 @@ std::optional<NextPose> next_pose(const CalibrationSession& session, const Pose&
             if (auto pose = parse_pose(p.value("base_from_flange", json()), "proposals");
                 pose && !taken(session, *pose))
                 return NextPose{*pose, true};
-    const Pose x = mounting(session, flange_from_sensor);
+    const auto known = mounting(session, flange_from_sensor);
+    if (!known) return std::nullopt;
+    const Pose& x = *known;
     // The first capture stands for the first view; the others follow from it.
     const Pose base_from_target = *first->base_from_flange * x * target_from_sensor(views->front()).inverse();
     for (const TargetView& view : *views) {
@@ -91,7 +104,7 @@ std::optional<ViewMark> view_mark(const CalibrationSession& session, const Pose&
                                   const Pose& base_from_flange) {
     const CalibrationCapture* first = first_with_pose(session);
     if (!first) return std::nullopt;
-    const Eigen::Matrix3d x = mounting(session, flange_from_sensor).linear();
+    const Eigen::Matrix3d x = mounting(session, flange_from_sensor)->linear();
     const Eigen::Matrix3d turned =
         (first->base_from_flange->linear() * x).transpose() * base_from_flange.linear() * x;
     const Eigen::Vector3d sight = turned.col(2);

@@ -11,10 +11,12 @@ struct NextPose {
     bool by_solver = false;  // chosen for what it adds to the solution; else the next of the method's views
 };
 
-// Relative to the first capture, which the person has jogged to: `flange_from_sensor` is the mounting as far
-// as known (the solved one is taken where there is one). Before the first capture nothing is proposed.
-// nullopt also when the method takes no poses, or all its views were taken and the solver asks for nothing.
-std::optional<NextPose> next_pose(const CalibrationSession& session, const Pose& flange_from_sensor);
+// Relative to the first capture, which the person has jogged to. `flange_from_sensor`: the mounting as far as
+// it is known, from the calibration in use or a drawing; the solved one is taken where there is one. nullopt:
+// before the first capture, while the mounting is not known (a turn of the flange would lose the target),
+// where the method takes no poses, or when all its views were taken and the solver asks for nothing.
+std::optional<NextPose> next_pose(const CalibrationSession& session,
+                                  const std::optional<Pose>& flange_from_sensor);
 
 // Where a simulated robot has its target in view: the first capture's place. nullopt: the method needs no
 // target, the settings are not those of a simulated cell.

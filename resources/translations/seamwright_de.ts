@@ -938,6 +938,10 @@
         <source>Keep calibration %1</source>
         <translation>Kalibrierung %1 behalten</translation>
     </message>
+    <message>
+        <source>Mounting from the drawing</source>
+        <translation>Einbaulage aus der Zeichnung</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CameraView</name>
@@ -1841,6 +1845,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>The board is looked for with the laser off, at the capture.</source>
         <translation>Die Tafel wird bei ausgeschaltetem Laser gesucht, beim Aufnehmen.</translation>
+    </message>
+    <message>
+        <source>Mounting from the drawing (flange_from_sensor)</source>
+        <translation>Einbaulage aus der Zeichnung (flange_from_sensor)</translation>
+    </message>
+    <message>
+        <source>Roughly is enough: it leads to the next poses and tells mirrored axes</source>
+        <translation>Ungefähr genügt: sie führt zu den nächsten Posen und erkennt gespiegelte Achsen</translation>
     </message>
 </context>
 <context>

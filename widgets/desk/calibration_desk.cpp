@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "devices/exchange/image_file.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/simulated/cell.h"
 #include "projects/calibrate/answer.h"
 #include "projects/measure.h"
 
@@ -125,9 +127,17 @@ const Calibration* CalibrationDesk::base() const {
     return nullptr;
 }
 
-Pose CalibrationDesk::mounting() const {
-    const Calibration* c = base();
-    return c ? c->flange_from_sensor : Pose::Identity();
+std::optional<Pose> CalibrationDesk::mounting() const {
+    if (!session_) return std::nullopt;
+    if (const auto& settings = session_->state().settings; settings.contains("nominal_flange_from_sensor"))
+        if (auto pose = parse_pose(settings["nominal_flange_from_sensor"], "nominal_flange_from_sensor"))
+            return *pose;
+    if (const Calibration* c = base(); c && !c->flange_from_sensor.isApprox(Pose::Identity()))
+        return c->flange_from_sensor;
+    const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
+    if (sensor && sensor->driver == "simulated")
+        if (auto cell = parse_cell_settings(sensor->settings)) return cell->flange_from_sensor;
+    return std::nullopt;
 }
 
 void CalibrationDesk::push(const QString& text, const SessionState& before) {
@@ -169,6 +179,13 @@ Expected<void> CalibrationDesk::remove(const std::string& id) {
 Expected<void> CalibrationDesk::set(const std::string& name, double value) {
     const SessionState before = session_->state();
     return edited(session_->set(name, value), tr("Change %1").arg(QString::fromStdString(name)), before);
+}
+
+Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sensor) {
+    const SessionState before = session_->state();
+    nlohmann::json settings = before.settings;
+    settings["nominal_flange_from_sensor"] = pose_json(flange_from_sensor);
+    return edited(session_->set_settings(std::move(settings)), tr("Mounting from the drawing"), before);
 }
 
 void CalibrationDesk::capture(bool verification) {

@@ -47,13 +47,16 @@ class CalibrationDesk : public QObject {
     QUndoStack& undo_stack() { return undo_; }
     // The calibration in use at the session's sensor; nullptr: none.
     const Calibration* base() const;
-    Pose mounting() const;  // flange_from_sensor as far as known
+    // flange_from_sensor as far as known: given by the drawing, of the calibration in use, or as a simulated
+    // cell is built.
+    std::optional<Pose> mounting() const;
 
     // --- undoable edits
     Expected<void> leave_out(const std::string& id, bool left_out);
     Expected<void> set_verification(const std::string& id, bool verification);
     Expected<void> remove(const std::string& id);
     Expected<void> set(const std::string& setting, double value);
+    Expected<void> set_nominal_mounting(const Pose& flange_from_sensor);
 
     // --- asynchronous; refused() says why not
     void capture(bool verification);

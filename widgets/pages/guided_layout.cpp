@@ -82,6 +82,15 @@ void GuidedPage::make_prepare(QVBoxLayout& box) {
     words->addStretch(1);
     row->addLayout(words, 1);
     inside->addLayout(row);
+    QVBoxLayout* mounting = nullptr;
+    nominal_holder_ = holder(*inside, mounting);
+    mounting->addWidget(make_heading(tr("Mounting from the drawing (flange_from_sensor)")));
+    nominal_ = new PoseEditor;
+    nominal_->setObjectName("calibration_nominal");
+    nominal_->setToolTip(tr("Roughly is enough: it leads to the next poses and tells mirrored axes"));
+    connect(nominal_, &PoseEditor::committed, this,
+            [this] { done(calibration_.set_nominal_mounting(nominal_->pose())); });
+    mounting->addWidget(nominal_);
     settings_holder_ = holder(box, settings_box_);
     base_ = make_text({});
     box.addWidget(base_);

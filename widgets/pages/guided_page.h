@@ -14,6 +14,7 @@
 #include "widgets/calibrate/method_drawing.h"
 #include "widgets/calibrate/target_view.h"
 #include "widgets/desk/calibration_desk.h"
+#include "widgets/editors/pose_editor.h"
 
 namespace seamwright {
 
@@ -70,7 +71,8 @@ class GuidedPage : public QWidget {
     CalibrationDesk calibration_;
     QLabel *title_, *who_, *stage_, *why_, *need_, *base_, *said_;
     MethodDrawing* drawing_;
-    QWidget *prepare_, *settings_holder_, *capture_box_, *solve_box_, *verify_box_;
+    PoseEditor* nominal_;
+    QWidget *prepare_, *settings_holder_, *nominal_holder_, *capture_box_, *solve_box_, *verify_box_;
     QVBoxLayout* settings_box_;
     TargetView* target_;
     QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *load_folder_, *set_target_,

@@ -140,6 +140,9 @@ void GuidedPage::refresh_settings() {
         for (std::size_t i = 0; i < s.method().settings.size(); ++i)
             editors[static_cast<int>(i)]->set_value(setting(s.method().settings[i], s.state().settings));
     }
+    nominal_holder_->setVisible(s.method().robot && s.method().use == AnswerUse::sensor);
+    if (const auto mounting = calibration_.mounting(); mounting && !nominal_->refused())
+        nominal_->set_pose(*mounting);
     const Calibration* base = calibration_.base();
     base_->setVisible(s.method().model || s.method().use == AnswerUse::check);
     if (base)
@@ -230,9 +233,10 @@ void GuidedPage::refresh_coverage() {
     coverage_->setVisible(any);
     if (!any) return;
     std::optional<ViewMark> next;
+    const Pose mounting = calibration_.mounting().value_or(Pose::Identity());
     if (const auto pose = next_pose(s, calibration_.mounting()))
-        next = view_mark(s, calibration_.mounting(), pose->base_from_flange);
-    coverage_->set_data(std::move(entries), view_marks(s, calibration_.mounting()), next, text(selected()));
+        next = view_mark(s, mounting, pose->base_from_flange);
+    coverage_->set_data(std::move(entries), view_marks(s, mounting), next, text(selected()));
 }
 
 void GuidedPage::refresh_next() {
@@ -264,7 +268,7 @@ void GuidedPage::refresh_next() {
         return;
     }
     // How the sensor itself moves, in its own axes, as it is jogged in the tool's frame.
-    const Pose x = calibration_.mounting();
+    const Pose x = calibration_.mounting().value_or(Pose::Identity());
     const Pose step = (*at * x).inverse() * (*pose * x);
     const Eigen::Vector3d turn = rotation_log(step.linear()) * (180 / kPi);
     QStringList words;

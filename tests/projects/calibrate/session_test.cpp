@@ -247,6 +247,19 @@ TEST_F(Session, ResumesWithItsSolution) {
     EXPECT_THAT(refused.error().sentence(), HasSubstr("no calibration session"));
 }
 
+TEST_F(Session, ProposesNothingThatWouldLoseTheTarget) {
+    CalibrationSession s = open();
+    EXPECT_FALSE(next_pose(s, truth().flange_from_sensor)) << "the first place is the person's";
+    capture(s, 1);
+    EXPECT_FALSE(next_pose(s, std::nullopt)) << "the mounting is not known";
+    const auto next = next_pose(s, truth().flange_from_sensor);
+    ASSERT_TRUE(next);
+    EXPECT_GT(angle_rad(next->base_from_flange, *s.state().captures[0].taken->base_from_flange), 0.2);
+    capture(s, 7);
+    solve(s);
+    EXPECT_TRUE(next_pose(s, std::nullopt)) << "solved: known by now";
+}
+
 TEST_F(Session, GoesWithItsProject) {
     {
         CalibrationSession s = open();

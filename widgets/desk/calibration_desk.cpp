@@ -196,8 +196,13 @@ void CalibrationDesk::capture(bool verification) {
     waiting_for_shot_ = true;
     shot_verifies_ = verification;
     set_doing(tr("Capturing"));
-    desk_.worker().take_shot(session_->sensor_id(),
-                             session_->method().robot ? session_->robot_id() : std::string(),
+    // A robot that is there tells its pose also where the method can do without: the next poses follow from
+    // it.
+    const auto& robots = desk_.station().robots;
+    const bool robot = session_->method().robot ||
+                       std::any_of(robots.begin(), robots.end(),
+                                   [&](const RobotState& r) { return r.id == session_->robot_id(); });
+    desk_.worker().take_shot(session_->sensor_id(), robot ? session_->robot_id() : std::string(),
                              kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose);
 }
 
@@ -370,7 +375,7 @@ void CalibrationDesk::look() {
 }
 
 void CalibrationDesk::watch_robot() {
-    if (!session_ || !automatic_ || !session_->method().robot) return;
+    if (!session_ || !automatic_) return;
     std::optional<Pose> at;
     for (const RobotState& r : desk_.station().robots)
         if (r.id == session_->robot_id()) at = r.base_from_flange;

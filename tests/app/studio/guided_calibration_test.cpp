@@ -277,8 +277,8 @@ TEST_P(GuidedLive, OnTheSimulatedCell) {
 INSTANTIATE_TEST_SUITE_P(Methods, GuidedLive,
                          testing::Values(std::tuple{"stripe-camera", 10, true},
                                          std::tuple{"hand-eye", 8, true}, std::tuple{"lens", 9, false}),
-                         [](const auto& info) {
-                             std::string name = std::get<0>(info.param);
+                         [](const auto& one) {
+                             std::string name = std::get<0>(one.param);
                              std::erase(name, '-');
                              return name;
                          });
@@ -387,8 +387,8 @@ TEST_P(GuidedFile, FromItsFile) {
     }
 }
 INSTANTIATE_TEST_SUITE_P(Methods, GuidedFile, testing::Values("laser-plane", "lut", "plate", "static"),
-                         [](const auto& info) {
-                             std::string name = info.param;
+                         [](const auto& one) {
+                             std::string name = one.param;
                              std::erase(name, '-');
                              return name;
                          });

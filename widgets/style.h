@@ -53,8 +53,8 @@ inline QColor outlier(const QPalette& p) {
 
 // Segment n of a profile. Neighbouring numbers differ in lightness as well as in hue.
 inline QColor segment(int number, const QPalette& p) {
-    static constexpr std::array<QRgb, 5> on_light{0xff0067a3, 0xff00805c, 0xff9a4d7c, 0xff8a6200, 0xff2a8fc7};
-    static constexpr std::array<QRgb, 5> on_dark{0xff6cc4f5, 0xff3ddbaa, 0xffe59cc3, 0xfff0e442, 0xff4da3ff};
+    static constexpr std::array<QRgb, 5> on_light{0xff0067a3, 0xff00805c, 0xff7d3560, 0xffa87600, 0xff00527f};
+    static constexpr std::array<QRgb, 5> on_dark{0xff6cc4f5, 0xff2bbd90, 0xfff0e442, 0xffe59cc3, 0xff4da3ff};
     const auto& set = is_dark(p) ? on_dark : on_light;
     return QColor::fromRgb(set[static_cast<std::size_t>(number < 0 ? 0 : number) % set.size()]);
 }
@@ -76,7 +76,7 @@ inline QPalette light_palette() {
     p.setColor(QPalette::PlaceholderText, QColor(0x59636d));
     p.setColor(QPalette::Link, QColor(0x0067a3));
     for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
-        p.setColor(QPalette::Disabled, role, QColor(0x7c858e));
+        p.setColor(QPalette::Disabled, role, QColor(0x606972));
     return p;
 }
 
@@ -93,12 +93,12 @@ inline QPalette dark_palette() {
     p.setColor(QPalette::Mid, QColor(0x4a525b));
     p.setColor(QPalette::Light, QColor(0x3a424b));
     p.setColor(QPalette::Dark, QColor(0x14171a));
-    p.setColor(QPalette::Highlight, QColor(0x2f86bd));
+    p.setColor(QPalette::Highlight, QColor(0x2374a8));
     p.setColor(QPalette::HighlightedText, Qt::white);
     p.setColor(QPalette::PlaceholderText, QColor(0x98a1aa));
     p.setColor(QPalette::Link, QColor(0x6cc4f5));
     for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
-        p.setColor(QPalette::Disabled, role, QColor(0x7c858e));
+        p.setColor(QPalette::Disabled, role, QColor(0x98a1aa));
     return p;
 }
 

@@ -22,16 +22,16 @@ void apply_look(QApplication& application, bool dark) {
         QToolTip { border: 1px solid %2; padding: 4px; }
         QPushButton { min-height: 30px; padding: 0 10px; border: 1px solid %2; border-radius: 4px; background: %4; }
         QPushButton:hover { border-color: %1; }
-        QPushButton:focus, QComboBox:focus, QLineEdit:focus, QAbstractSpinBox:focus, QPlainTextEdit:focus,
+        QPushButton:focus, QLineEdit:focus, QPlainTextEdit:focus, QToolButton:focus,
         QTableView:focus, QTreeView:focus, QListView:focus, QCheckBox:focus { border: 2px solid %1; }
         QPushButton#next_step { font-weight: bold; border: 2px solid %1; text-align: left; min-height: 40px; }
         QPushButton#rail { text-align: left; border: none; background: transparent; padding: 0 6px; }
         QPushButton#rail:hover { background: %3; }
         QPushButton#rail:focus { border: 2px solid %1; }
         QPushButton#rail:checked { background: %3; border-left: 4px solid %1; font-weight: bold; }
-        QLineEdit, QComboBox, QAbstractSpinBox { min-height: 30px; border: 1px solid %2; border-radius: 3px;
-                                                 padding: 0 4px; background: palette(base); }
-        QComboBox { padding-right: 18px; }
+        QLineEdit { min-height: 30px; border: 1px solid %2; border-radius: 3px; padding: 0 4px;
+                    background: palette(base); }
+        QComboBox, QAbstractSpinBox { min-height: 32px; }
         QPlainTextEdit, QTableView, QTreeView, QListView { border: 1px solid %2; background: palette(base); }
         QToolButton { min-width: 32px; min-height: 32px; }
         QTabBar::tab { min-height: 32px; padding: 0 12px; }

@@ -16,6 +16,7 @@
 #include <QTimer>
 #include <QToolBar>
 #include <QToolButton>
+#include <algorithm>
 #include <cmath>
 
 #include "app/studio/command_palette.h"
@@ -34,6 +35,7 @@
 #include "widgets/pages/teach_page.h"
 #include "widgets/print/pdf.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 namespace {
@@ -308,6 +310,7 @@ void MainWindow::make_docks() {
     auto* charts = new QWidget;
     auto* chart_box = new QVBoxLayout(charts);
     chart_box->setContentsMargins(0, 0, 0, 0);
+    charts->setFocusProxy(views_.trend);
     chart_box->addWidget(views_.trend, 3);
     chart_box->addWidget(views_.histogram, 2);
 
@@ -456,6 +459,25 @@ void MainWindow::resizeEvent(QResizeEvent* event) {
     QTimer::singleShot(0, this, &MainWindow::refresh_next);  // when its button has the new width
 }
 
+// Docks behind others in a tab group lie outside of the window, visible to Qt: the focus passes them by.
+bool MainWindow::focusNextPrevChild(bool next) {
+    const auto unseen = [this](const QWidget* w) {
+        return w && w->window() == this &&
+               std::any_of(docks_.begin(), docks_.end(), [&](const QDockWidget* d) {
+                   return d->isAncestorOf(w) &&
+                          !rect().intersects(QRect(d->mapTo(this, QPoint()), d->size()));
+               });
+    };
+    const QWidget* first = nullptr;
+    while (QMainWindow::focusNextPrevChild(next)) {
+        const QWidget* now = focusWidget();
+        if (!unseen(now)) return true;
+        if (now == first) break;  // nothing else takes it
+        if (!first) first = now;
+    }
+    return false;
+}
+
 // Broken at blanks, so that a button shows all of it.
 static QString wrapped(const QString& text, const QFontMetrics& font, int width_px) {
     QString out, line;
@@ -492,10 +514,9 @@ void MainWindow::refresh_status() {
                                       : tr("sensor %1 no frame").arg(QString::fromStdString(s.id)));
     }
     for (const RobotState& r : desk_.station().robots)
-        robots << (r.trouble.empty() ? tr("robot %1 %2 ok")
-                                           .arg(QString::fromStdString(r.id),
-                                                QString::fromStdString(std::string(to_string(r.mode))))
-                                     : tr("robot %1 silent").arg(QString::fromStdString(r.id)));
+        robots << (r.trouble.empty()
+                       ? tr("robot %1 %2 ok").arg(QString::fromStdString(r.id), shown_word(to_string(r.mode)))
+                       : tr("robot %1 silent").arg(QString::fromStdString(r.id)));
     if (!desk_.station().connected) sensors = {tr("not connected")};
     sensors_->setText(sensors.join("   "));
     robots_->setText(robots.join("   "));

@@ -64,7 +64,7 @@
     </message>
     <message>
         <source>region</source>
-        <translation>Korrekturbereich</translation>
+        <translation>Bereich</translation>
     </message>
     <message>
         <source>sensor</source>
@@ -407,6 +407,661 @@
     <message>
         <source>Unsaved edits are not kept against a crash: %1</source>
         <translation>Ungespeicherte Änderungen sind nicht gegen einen Absturz gesichert: %1</translation>
+    </message>
+</context>
+<context>
+    <name>Words</name>
+    <message>
+        <source>Side</source>
+        <translation>Seite</translation>
+    </message>
+    <message>
+        <source>Segment</source>
+        <translation>Segment</translation>
+    </message>
+    <message>
+        <source>Least points</source>
+        <translation>Mindestpunkte</translation>
+    </message>
+    <message>
+        <source>Fitted length</source>
+        <translation>Anpasslänge</translation>
+    </message>
+    <message>
+        <source>Split</source>
+        <translation>Teilung</translation>
+    </message>
+    <message>
+        <source>Left line, x from</source>
+        <translation>Linke Linie, x von</translation>
+    </message>
+    <message>
+        <source>Left line, x to</source>
+        <translation>Linke Linie, x bis</translation>
+    </message>
+    <message>
+        <source>Right line, x from</source>
+        <translation>Rechte Linie, x von</translation>
+    </message>
+    <message>
+        <source>Right line, x to</source>
+        <translation>Rechte Linie, x bis</translation>
+    </message>
+    <message>
+        <source>Length of lines</source>
+        <translation>Länge der Linien</translation>
+    </message>
+    <message>
+        <source>Blend left out</source>
+        <translation>Ausgelassene Rundung</translation>
+    </message>
+    <message>
+        <source>Least angle</source>
+        <translation>Kleinster Winkel</translation>
+    </message>
+    <message>
+        <source>Radius</source>
+        <translation>Radius</translation>
+    </message>
+    <message>
+        <source>Least radius</source>
+        <translation>Kleinster Radius</translation>
+    </message>
+    <message>
+        <source>Largest radius</source>
+        <translation>Größter Radius</translation>
+    </message>
+    <message>
+        <source>Least arc</source>
+        <translation>Kleinster Bogen</translation>
+    </message>
+    <message>
+        <source>Which one</source>
+        <translation>Welches</translation>
+    </message>
+    <message>
+        <source>Window, x from</source>
+        <translation>Fenster, x von</translation>
+    </message>
+    <message>
+        <source>Window, x to</source>
+        <translation>Fenster, x bis</translation>
+    </message>
+    <message>
+        <source>Window, z from</source>
+        <translation>Fenster, z von</translation>
+    </message>
+    <message>
+        <source>Window, z to</source>
+        <translation>Fenster, z bis</translation>
+    </message>
+    <message>
+        <source>Search along x</source>
+        <translation>Suche entlang x</translation>
+    </message>
+    <message>
+        <source>Search along z</source>
+        <translation>Suche entlang z</translation>
+    </message>
+    <message>
+        <source>Search in angle</source>
+        <translation>Suche im Winkel</translation>
+    </message>
+    <message>
+        <source>Least share seen</source>
+        <translation>Mindestanteil</translation>
+    </message>
+    <message>
+        <source>Entry</source>
+        <translation>Einfahrt</translation>
+    </message>
+    <message>
+        <source>Exit</source>
+        <translation>Ausfahrt</translation>
+    </message>
+    <message>
+        <source>Speed</source>
+        <translation>Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Sigma</source>
+        <translation>Sigma</translation>
+    </message>
+    <message>
+        <source>Trigger jitter</source>
+        <translation>Triggerstreuung</translation>
+    </message>
+    <message>
+        <source>Weight of X</source>
+        <translation>Gewicht von X</translation>
+    </message>
+    <message>
+        <source>Weight of Y</source>
+        <translation>Gewicht von Y</translation>
+    </message>
+    <message>
+        <source>Weight of Z</source>
+        <translation>Gewicht von Z</translation>
+    </message>
+    <message>
+        <source>Largest shift</source>
+        <translation>Größter Versatz</translation>
+    </message>
+    <message>
+        <source>Largest turn</source>
+        <translation>Größte Drehung</translation>
+    </message>
+    <message>
+        <source>Largest sigma, shift</source>
+        <translation>Größtes Sigma, Versatz</translation>
+    </message>
+    <message>
+        <source>Largest sigma, turn</source>
+        <translation>Größtes Sigma, Drehung</translation>
+    </message>
+    <message>
+        <source>Exposure</source>
+        <translation>Belichtung</translation>
+    </message>
+    <message>
+        <source>Gain</source>
+        <translation>Verstärkung</translation>
+    </message>
+    <message>
+        <source>Laser</source>
+        <translation>Laser</translation>
+    </message>
+    <message>
+        <source>Frame rate</source>
+        <translation>Bildrate</translation>
+    </message>
+    <message>
+        <source>Rate</source>
+        <translation>Rate</translation>
+    </message>
+    <message>
+        <source>Image region, x</source>
+        <translation>Bildausschnitt, x</translation>
+    </message>
+    <message>
+        <source>Image region, y</source>
+        <translation>Bildausschnitt, y</translation>
+    </message>
+    <message>
+        <source>Image region, width</source>
+        <translation>Bildausschnitt, Breite</translation>
+    </message>
+    <message>
+        <source>Image region, height</source>
+        <translation>Bildausschnitt, Höhe</translation>
+    </message>
+    <message>
+        <source>Pixel format</source>
+        <translation>Pixelformat</translation>
+    </message>
+    <message>
+        <source>Trigger</source>
+        <translation>Trigger</translation>
+    </message>
+    <message>
+        <source>deg</source>
+        <translation type="unfinished">Grad</translation>
+    </message>
+    <message>
+        <source>us</source>
+        <translation>µs</translation>
+    </message>
+    <message>
+        <source>left</source>
+        <translation>links</translation>
+    </message>
+    <message>
+        <source>right</source>
+        <translation>rechts</translation>
+    </message>
+    <message>
+        <source>outermost</source>
+        <translation>äußerstes</translation>
+    </message>
+    <message>
+        <source>longest</source>
+        <translation>längstes</translation>
+    </message>
+    <message>
+        <source>highest</source>
+        <translation>höchstes</translation>
+    </message>
+    <message>
+        <source>lowest</source>
+        <translation>tiefstes</translation>
+    </message>
+    <message>
+        <source>leftmost</source>
+        <translation>linkestes</translation>
+    </message>
+    <message>
+        <source>rightmost</source>
+        <translation>rechtestes</translation>
+    </message>
+    <message>
+        <source>automatic</source>
+        <translation>Automatik</translation>
+    </message>
+    <message>
+        <source>given</source>
+        <translation>vorgegeben</translation>
+    </message>
+    <message>
+        <source>off</source>
+        <translation>aus</translation>
+    </message>
+    <message>
+        <source>on</source>
+        <translation>ein</translation>
+    </message>
+    <message>
+        <source>free running</source>
+        <translation>freilaufend</translation>
+    </message>
+    <message>
+        <source>by software</source>
+        <translation>durch Software</translation>
+    </message>
+    <message>
+        <source>contour end</source>
+        <translation>Konturende</translation>
+    </message>
+    <message>
+        <source>corner</source>
+        <translation>Ecke</translation>
+    </message>
+    <message>
+        <source>circle</source>
+        <translation>Kreis</translation>
+    </message>
+    <message>
+        <source>extremum</source>
+        <translation>Extremum</translation>
+    </message>
+    <message>
+        <source>template</source>
+        <translation type="unfinished">Vorlage</translation>
+    </message>
+    <message>
+        <source>ok</source>
+        <translation type="unfinished">ok</translation>
+    </message>
+    <message>
+        <source>no points</source>
+        <translation>keine Punkte</translation>
+    </message>
+    <message>
+        <source>not found</source>
+        <translation>nicht gefunden</translation>
+    </message>
+    <message>
+        <source>ambiguous</source>
+        <translation>mehrdeutig</translation>
+    </message>
+    <message>
+        <source>ill-conditioned</source>
+        <translation>schlecht bestimmt</translation>
+    </message>
+    <message>
+        <source>measured</source>
+        <translation>gemessen</translation>
+    </message>
+    <message>
+        <source>not measured</source>
+        <translation>nicht gemessen</translation>
+    </message>
+    <message>
+        <source>damaged frame</source>
+        <translation>Bild beschädigt</translation>
+    </message>
+    <message>
+        <source>no stripe</source>
+        <translation>keine Laserlinie</translation>
+    </message>
+    <message>
+        <source>no calibration</source>
+        <translation>keine Kalibrierung</translation>
+    </message>
+    <message>
+        <source>no feature</source>
+        <translation>kein Merkmal</translation>
+    </message>
+    <message>
+        <source>not pushed</source>
+        <translation>nicht übertragen</translation>
+    </message>
+    <message>
+        <source>written, read back</source>
+        <translation>geschrieben, rückgelesen</translation>
+    </message>
+    <message>
+        <source>failed</source>
+        <translation>fehlgeschlagen</translation>
+    </message>
+    <message>
+        <source>old frame restored</source>
+        <translation>alter Frame wiederhergestellt</translation>
+    </message>
+    <message>
+        <source>NOT RESTORED</source>
+        <translation>NICHT WIEDERHERGESTELLT</translation>
+    </message>
+    <message>
+        <source>under-determined</source>
+        <translation>unterbestimmt</translation>
+    </message>
+    <message>
+        <source>over limit</source>
+        <translation>über der Grenze</translation>
+    </message>
+    <message>
+        <source>not converged</source>
+        <translation>nicht konvergiert</translation>
+    </message>
+    <message>
+        <source>unknown</source>
+        <translation>unbekannt</translation>
+    </message>
+    <message>
+        <source>manual, reduced (T1)</source>
+        <translation>Hand, reduziert (T1)</translation>
+    </message>
+    <message>
+        <source>manual, full speed (T2)</source>
+        <translation>Hand, volle Geschwindigkeit (T2)</translation>
+    </message>
+    <message>
+        <source>external</source>
+        <translation>extern</translation>
+    </message>
+    <message>
+        <source>stopped</source>
+        <translation>angehalten</translation>
+    </message>
+    <message>
+        <source>fault</source>
+        <translation>Störung</translation>
+    </message>
+    <message>
+        <source>good</source>
+        <translation>gut</translation>
+    </message>
+    <message>
+        <source>usable</source>
+        <translation>brauchbar</translation>
+    </message>
+    <message>
+        <source>bad</source>
+        <translation>schlecht</translation>
+    </message>
+    <message>
+        <source>The side on which the contour ends.</source>
+        <translation>Die Seite, auf der die Kontur endet.</translation>
+    </message>
+    <message>
+        <source>Of several segments in the window: the outermost on that side, the longest, or the highest.</source>
+        <translation>Von mehreren Segmenten im Fenster: das äußerste auf dieser Seite, das längste oder das höchste.</translation>
+    </message>
+    <message>
+        <source>Shorter segments are passed over.</source>
+        <translation>Kürzere Segmente werden übergangen.</translation>
+    </message>
+    <message>
+        <source>Length of contour before its end that says where the line goes.</source>
+        <translation>Länge der Kontur vor ihrem Ende, die die Richtung der Linie bestimmt.</translation>
+    </message>
+    <message>
+        <source>Where the left line ends and the right one begins: found, or given by two x ranges.</source>
+        <translation>Wo die linke Linie endet und die rechte beginnt: gefunden oder durch zwei x-Bereiche vorgegeben.</translation>
+    </message>
+    <message>
+        <source>Given split: the left line&apos;s first x.</source>
+        <translation>Vorgegebene Teilung: erstes x der linken Linie.</translation>
+    </message>
+    <message>
+        <source>Given split: the left line&apos;s last x.</source>
+        <translation>Vorgegebene Teilung: letztes x der linken Linie.</translation>
+    </message>
+    <message>
+        <source>Given split: the right line&apos;s first x.</source>
+        <translation>Vorgegebene Teilung: erstes x der rechten Linie.</translation>
+    </message>
+    <message>
+        <source>Given split: the right line&apos;s last x.</source>
+        <translation>Vorgegebene Teilung: letztes x der rechten Linie.</translation>
+    </message>
+    <message>
+        <source>Automatic split: length of each line from the corner; 0 takes all.</source>
+        <translation>Automatische Teilung: Länge jeder Linie ab der Ecke; 0 nimmt alles.</translation>
+    </message>
+    <message>
+        <source>Points nearer to the corner than this are left out: radius or burr.</source>
+        <translation>Punkte näher an der Ecke bleiben außer Acht: Radius oder Grat.</translation>
+    </message>
+    <message>
+        <source>Lines that meet at a smaller angle make no corner.</source>
+        <translation>Linien, die sich in kleinerem Winkel treffen, bilden keine Ecke.</translation>
+    </message>
+    <message>
+        <source>The radius when it is known; 0 fits it.</source>
+        <translation>Der Radius, wenn er bekannt ist; 0 passt ihn an.</translation>
+    </message>
+    <message>
+        <source>Free radius: the smallest that is accepted.</source>
+        <translation>Freier Radius: der kleinste, der angenommen wird.</translation>
+    </message>
+    <message>
+        <source>Free radius: the largest that is accepted.</source>
+        <translation>Freier Radius: der größte, der angenommen wird.</translation>
+    </message>
+    <message>
+        <source>The least arc that must be seen.</source>
+        <translation>Der kleinste Bogen, der zu sehen sein muss.</translation>
+    </message>
+    <message>
+        <source>The extremum that is meant.</source>
+        <translation>Das Extremum, das gemeint ist.</translation>
+    </message>
+    <message>
+        <source>Length of contour around the extremum that the parabola takes.</source>
+        <translation>Länge der Kontur um das Extremum, die die Parabel nimmt.</translation>
+    </message>
+    <message>
+        <source>Left limit of the search window.</source>
+        <translation>Linke Grenze des Suchfensters.</translation>
+    </message>
+    <message>
+        <source>Right limit of the search window.</source>
+        <translation>Rechte Grenze des Suchfensters.</translation>
+    </message>
+    <message>
+        <source>Lower limit of the search window.</source>
+        <translation>Untere Grenze des Suchfensters.</translation>
+    </message>
+    <message>
+        <source>Upper limit of the search window.</source>
+        <translation>Obere Grenze des Suchfensters.</translation>
+    </message>
+    <message>
+        <source>How far along x the contour may have moved, +-.</source>
+        <translation>Wie weit die Kontur entlang x verschoben sein darf, +-.</translation>
+    </message>
+    <message>
+        <source>How far along z the contour may have moved, +-.</source>
+        <translation>Wie weit die Kontur entlang z verschoben sein darf, +-.</translation>
+    </message>
+    <message>
+        <source>How far the contour may have turned, +-.</source>
+        <translation>Wie weit die Kontur gedreht sein darf, +-.</translation>
+    </message>
+    <message>
+        <source>Share of the template that must be seen.</source>
+        <translation>Anteil der Vorlage, der zu sehen sein muss.</translation>
+    </message>
+    <message>
+        <source>Travel before the trigger, along the sensor&apos;s Y.</source>
+        <translation>Weg vor dem Trigger, entlang Y des Sensors.</translation>
+    </message>
+    <message>
+        <source>Travel after the trigger, along the sensor&apos;s Y.</source>
+        <translation>Weg nach dem Trigger, entlang Y des Sensors.</translation>
+    </message>
+    <message>
+        <source>Speed of the pass.</source>
+        <translation>Geschwindigkeit der Durchfahrt.</translation>
+    </message>
+    <message>
+        <source>Standard deviation of a measured coordinate, with jitter.</source>
+        <translation>Standardabweichung einer gemessenen Koordinate, mit Streuung.</translation>
+    </message>
+    <message>
+        <source>Half width of the trigger jitter along the travel.</source>
+        <translation>Halbe Breite der Triggerstreuung entlang des Wegs.</translation>
+    </message>
+    <message>
+        <source>How much the sensor&apos;s X counts; 0 = not observed.</source>
+        <translation>Wie viel X des Sensors zählt; 0 = nicht beobachtet.</translation>
+    </message>
+    <message>
+        <source>How much the travel direction Y counts; a profile does not see it.</source>
+        <translation>Wie viel die Fahrtrichtung Y zählt; ein Profil sieht sie nicht.</translation>
+    </message>
+    <message>
+        <source>How much the sensor&apos;s Z (height) counts; 0 = not observed.</source>
+        <translation>Wie viel Z des Sensors (Höhe) zählt; 0 = nicht beobachtet.</translation>
+    </message>
+    <message>
+        <source>Larger displacements are refused.</source>
+        <translation>Größere Verschiebungen werden abgelehnt.</translation>
+    </message>
+    <message>
+        <source>Larger turns are refused.</source>
+        <translation>Größere Drehungen werden abgelehnt.</translation>
+    </message>
+    <message>
+        <source>A correction less sure than this is not pushed.</source>
+        <translation>Eine unsicherere Korrektur wird nicht übertragen.</translation>
+    </message>
+    <message>
+        <source>A turn less sure than this is not pushed.</source>
+        <translation>Eine unsicherere Drehung wird nicht übertragen.</translation>
+    </message>
+    <message>
+        <source>Exposure time.</source>
+        <translation>Belichtungszeit.</translation>
+    </message>
+    <message>
+        <source>Gain after exposure; 0 dB shows a full well as full scale.</source>
+        <translation>Verstärkung nach der Belichtung; bei 0 dB ist ein voller Pixel Vollausschlag.</translation>
+    </message>
+    <message>
+        <source>Gain, as the camera calls it.</source>
+        <translation>Verstärkung, wie die Kamera sie nennt.</translation>
+    </message>
+    <message>
+        <source>Laser on or off.</source>
+        <translation>Laser ein oder aus.</translation>
+    </message>
+    <message>
+        <source>Frames a second when free running.</source>
+        <translation>Bilder je Sekunde im freien Lauf.</translation>
+    </message>
+    <message>
+        <source>Frames per second; 0 replays as fast as frames are asked for.</source>
+        <translation>Bilder je Sekunde; 0 spielt so schnell ab, wie Bilder verlangt werden.</translation>
+    </message>
+    <message>
+        <source>First column of the image.</source>
+        <translation>Erste Spalte des Bilds.</translation>
+    </message>
+    <message>
+        <source>First row of the image.</source>
+        <translation>Erste Zeile des Bilds.</translation>
+    </message>
+    <message>
+        <source>Columns of the image.</source>
+        <translation>Spalten des Bilds.</translation>
+    </message>
+    <message>
+        <source>Rows of the image.</source>
+        <translation>Zeilen des Bilds.</translation>
+    </message>
+    <message>
+        <source>How grey values or coordinates are coded.</source>
+        <translation>Wie Grauwerte oder Koordinaten kodiert sind.</translation>
+    </message>
+    <message>
+        <source>What starts an exposure.</source>
+        <translation>Was eine Belichtung auslöst.</translation>
+    </message>
+    <message>
+        <source>A car door before a stripe camera, rendered</source>
+        <translation>Eine Autotür vor einer Laserlinienkamera, gerechnet</translation>
+    </message>
+    <message>
+        <source>A recorded capture, or profiles (CSV) or images of a folder, with poses</source>
+        <translation>Eine Aufzeichnung, oder Profile (CSV) oder Bilder eines Ordners, mit Posen</translation>
+    </message>
+    <message>
+        <source>GigE Vision and USB3 Vision cameras, images or profiles (GenICam)</source>
+        <translation>Kameras mit GigE Vision und USB3 Vision, Bilder oder Profile (GenICam)</translation>
+    </message>
+    <message>
+        <source>A robot with repeatability and trigger jitter</source>
+        <translation>Ein Roboter mit Wiederholgenauigkeit und Triggerstreuung</translation>
+    </message>
+    <message>
+        <source>KUKA, the controller connects by EthernetKRL</source>
+        <translation>KUKA, die Steuerung verbindet sich über EthernetKRL</translation>
+    </message>
+    <message>
+        <source>KUKA, variables of the controller by KUKAVARPROXY</source>
+        <translation>KUKA, Variablen der Steuerung über KUKAVARPROXY</translation>
+    </message>
+    <message>
+        <source>KUKA path correction in every cycle (RSI)</source>
+        <translation>KUKA, Bahnkorrektur in jedem Takt (RSI)</translation>
+    </message>
+    <message>
+        <source>The poses and spots of a recorded capture or folder</source>
+        <translation>Die Posen und Messstellen einer Aufzeichnung oder eines Ordners</translation>
+    </message>
+    <message>
+        <source>Universal Robots, registers and poses by RTDE</source>
+        <translation>Universal Robots, Register und Posen über RTDE</translation>
+    </message>
+    <message>
+        <source>ABB controller with our RAPID server task (TCP)</source>
+        <translation>ABB-Steuerung mit unserer RAPID-Servertask (TCP)</translation>
+    </message>
+    <message>
+        <source>ABB path correction in every cycle (EGM)</source>
+        <translation>ABB, Bahnkorrektur in jedem Takt (EGM)</translation>
+    </message>
+    <message>
+        <source>Where the surface stops, seen from the left or the right.</source>
+        <translation>Wo die Fläche aufhört, von links oder rechts gesehen.</translation>
+    </message>
+    <message>
+        <source>The intersection of two lines fitted left and right of an edge.</source>
+        <translation>Der Schnittpunkt zweier Linien links und rechts einer Kante.</translation>
+    </message>
+    <message>
+        <source>The centre of a round piece of contour.</source>
+        <translation>Der Mittelpunkt eines runden Konturstücks.</translation>
+    </message>
+    <message>
+        <source>The highest, lowest, leftmost or rightmost place of the contour.</source>
+        <translation>Die höchste, tiefste, linkeste oder rechteste Stelle der Kontur.</translation>
+    </message>
+    <message>
+        <source>A taught piece of contour found again; it carries its reference point along.</source>
+        <translation>Ein eingelerntes Konturstück, wiedergefunden; es trägt seinen Referenzpunkt mit.</translation>
     </message>
 </context>
 <context>
@@ -784,6 +1439,10 @@
         <source>X</source>
         <translation>X</translation>
     </message>
+    <message>
+        <source>Every profile of the pass over the travel; the buttons above change the picture</source>
+        <translation>Alle Profile der Durchfahrt über dem Weg; die Knöpfe darüber wechseln das Bild</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CalibratePage</name>
@@ -985,7 +1644,7 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
     <message>
         <source>Region</source>
-        <translation>Korrekturbereich</translation>
+        <translation>Ausschnitt</translation>
     </message>
     <message>
         <source>Drag the region of interest</source>
@@ -2530,7 +3189,7 @@ hier keine Referenz</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation>Korrekturbereich</translation>
+        <translation>Bereich</translation>
     </message>
     <message>
         <source>Direction</source>
@@ -3115,39 +3774,11 @@ ausgelassen</translation>
     </message>
     <message>
         <source>Region</source>
-        <translation>Korrekturbereich</translation>
+        <translation>Bereich</translation>
     </message>
     <message>
         <source>Verdict</source>
         <translation>Urteil</translation>
-    </message>
-    <message>
-        <source>X mm</source>
-        <translation>X mm</translation>
-    </message>
-    <message>
-        <source>Y mm</source>
-        <translation>Y mm</translation>
-    </message>
-    <message>
-        <source>Z mm</source>
-        <translation>Z mm</translation>
-    </message>
-    <message>
-        <source>A deg</source>
-        <translation>A Grad</translation>
-    </message>
-    <message>
-        <source>B deg</source>
-        <translation>B Grad</translation>
-    </message>
-    <message>
-        <source>C deg</source>
-        <translation>C Grad</translation>
-    </message>
-    <message>
-        <source>Displacement per region with its sigma</source>
-        <translation>Verschiebung je Korrekturbereich mit ihrem Sigma</translation>
     </message>
     <message>
         <source>Spot</source>
@@ -3160,10 +3791,6 @@ ausgelassen</translation>
     <message>
         <source>dz mm</source>
         <translation>dz mm</translation>
-    </message>
-    <message>
-        <source>Why</source>
-        <translation>Warum</translation>
     </message>
     <message>
         <source>What every spot measured against its reference</source>
@@ -3254,10 +3881,6 @@ ausgelassen</translation>
         <translation>freigegeben</translation>
     </message>
     <message>
-        <source>, refused</source>
-        <translation>, abgelehnt</translation>
-    </message>
-    <message>
         <source>%1 ± %2</source>
         <translation>%1 ± %2</translation>
     </message>
@@ -3328,6 +3951,22 @@ ausgelassen</translation>
     <message>
         <source>CSV (*.csv)</source>
         <translation>CSV (*.csv)</translation>
+    </message>
+    <message>
+        <source>X Y Z mm</source>
+        <translation>X Y Z mm</translation>
+    </message>
+    <message>
+        <source>Displacement per region with its sigma, and what was written</source>
+        <translation>Verschiebung je Bereich mit Sigma, und was geschrieben wurde</translation>
+    </message>
+    <message>
+        <source>%1, refused</source>
+        <translation>%1, abgelehnt</translation>
+    </message>
+    <message>
+        <source>Region, verdict</source>
+        <translation>Bereich, Urteil</translation>
     </message>
 </context>
 <context>

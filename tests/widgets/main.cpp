@@ -15,8 +15,9 @@ int main(int argc, char** argv) {
     if (!listing && !std::getenv("DISPLAY") && !std::getenv("SEAMWRIGHT_NO_XVFB")) {
         setenv("SEAMWRIGHT_NO_XVFB", "1", 1);
         std::vector<char*> words;
-        for (const char* word : {"xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 +extension GLX"})
-            words.push_back(const_cast<char*>(word));
+        const char* screen = std::getenv("QT_SCALE_FACTOR") ? "-screen 0 3200x2000x24 +extension GLX"
+                                                            : "-screen 0 1600x1000x24 +extension GLX";
+        for (const char* word : {"xvfb-run", "-a", "-s", screen}) words.push_back(const_cast<char*>(word));
         for (int i = 0; i < argc; ++i) words.push_back(argv[i]);
         words.push_back(nullptr);
         execvp(words[0], words.data());

@@ -17,6 +17,17 @@ double value_of(const TravelOffset& offset, int row) {
     return row == 0 ? offset.dx_mm : row == 1 ? offset.dz_mm : offset.dphi_deg;
 }
 
+// Level, in the corner: a low plot has no room for it along the axis.
+void paint_axis_name(QPainter& painter, const QRect& area, const QString& name, const QPalette& palette) {
+    const QFontMetrics metrics(painter.font());
+    QColor ground = style::plot_ground(palette);
+    ground.setAlpha(225);
+    painter.fillRect(
+        QRect(area.left() + 1, area.top(), metrics.horizontalAdvance(name) + 10, metrics.height()), ground);
+    painter.setPen(style::quiet_text(palette));
+    painter.drawText(area.adjusted(6, 0, 0, 0), Qt::AlignLeft | Qt::AlignTop, name);
+}
+
 }  // namespace
 
 OffsetCanvas::OffsetCanvas(QWidget* parent) : PlotCanvas(parent) {
@@ -39,9 +50,6 @@ OffsetCanvas::OffsetCanvas(QWidget* parent) : PlotCanvas(parent) {
 
 void OffsetCanvas::apply_style() {
     PlotCanvas::apply_style();
-    const QString names[3] = {AlignView::tr("dx (mm)"), AlignView::tr("dz (mm)"), AlignView::tr("turn (°)")};
-    for (int row = 0; row < 3; ++row)
-        if (rect_of(row)) rect_of(row)->axis(QCPAxis::atLeft)->setLabel(names[row]);
     if (rect_of(2)) rect_of(2)->axis(QCPAxis::atBottom)->setLabel(AlignView::tr("travel (mm), trigger at 0"));
     rebuild();
 }
@@ -111,9 +119,20 @@ void OffsetCanvas::rebuild() {
     request_replot();
 }
 
+// As many numbers along a row as it is high.
+void OffsetCanvas::view_changed() {
+    for (QCPAxisRect* row : rects_)
+        if (row)
+            row->axis(QCPAxis::atLeft)
+                ->ticker()
+                ->setTickCount(std::clamp(row->height() / (2 * fontMetrics().height()), 1, 5));
+}
+
 void OffsetCanvas::paint_live(QPainter& painter, const QRect&) {
     QColor band = style::good(palette());
     band.setAlpha(style::is_dark(palette()) ? 46 : 34);
+    const QString names[3] = {AlignView::tr("dx (mm)"), AlignView::tr("dz (mm)"), AlignView::tr("turn (°)")};
+    const QFontMetrics metrics(painter.font());
     for (int row = 0; row < 3; ++row) {
         const QRect area = rect_of(row)->rect();
         const QCPAxis* x = rect_of(row)->axis(QCPAxis::atBottom);
@@ -129,6 +148,7 @@ void OffsetCanvas::paint_live(QPainter& painter, const QRect&) {
             painter.drawLine(QPointF(area.left(), top), QPointF(area.right(), top));
             painter.drawLine(QPointF(area.left(), bottom), QPointF(area.right(), bottom));
         }
+        paint_axis_name(painter, area, names[row], palette());
         painter.setPen(QPen(style::selection(palette()), 2));
         for (const double u : {left, right}) {
             painter.drawLine(QPointF(u, area.top()), QPointF(u, area.bottom()));
@@ -140,10 +160,13 @@ void OffsetCanvas::paint_live(QPainter& painter, const QRect&) {
     painter.setClipping(false);
     if (!filled_) {
         painter.setPen(style::quiet_text(palette()));
-        painter.drawText(
-            rect().adjusted(60, 10, -10, -10), Qt::AlignCenter | Qt::TextWordWrap,
-            AlignView::tr("Run the robot from entry to exit: dx, dz and the turn of every profile against "
-                          "the one at the trigger appear here. A contour that stands still is flat."));
+        const QString text = AlignView::tr(
+            "Run the robot from entry to exit: dx, dz and the turn of every profile against "
+            "the one at the trigger appear here. A contour that stands still is flat.");
+        const QRect room = rect_of(0)->rect().united(rect_of(2)->rect()).adjusted(6, 0, -6, 0);
+        const QRect box = metrics.boundingRect(room, Qt::AlignCenter | Qt::TextWordWrap, text);
+        painter.fillRect(box.adjusted(-6, -4, 6, 4), style::plot_ground(palette()));
+        painter.drawText(box, Qt::AlignCenter | Qt::TextWordWrap, text);
     }
 }
 
@@ -228,7 +251,6 @@ void StackCanvas::rebuild() {
             z1 = std::max(z1, one.profile.z_mm[i]);
         }
     xAxis->setLabel(AlignView::tr("x (mm)"));
-    yAxis->setLabel(overlay ? AlignView::tr("z (mm)") : AlignView::tr("travel (mm)"));
     if (x1 <= x0) {
         xAxis->setRange(-50, 50);
         yAxis->setRange(-20, 20);
@@ -303,8 +325,10 @@ void StackCanvas::rebuild() {
 }
 
 void StackCanvas::paint_live(QPainter& painter, const QRect&) {
-    if (!overlay) return;
     const QRect area = axisRect()->rect();
+    paint_axis_name(painter, area, overlay ? AlignView::tr("z (mm)") : AlignView::tr("travel (mm)"),
+                    palette());
+    if (!overlay) return;
     painter.setClipRect(area);
     std::vector<QRect> rectangles;
     const auto draw = [&](const Profile& profile, const QColor& colour, int thickness) {

@@ -4,6 +4,8 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QSplitter>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -14,6 +16,10 @@
 #include "widgets/style.h"
 
 namespace seamwright {
+
+namespace {
+constexpr int kSide_px = 300;  // verdict and numbers
+}
 
 struct AlignView::Impl {
     OffsetCanvas* offsets = nullptr;
@@ -34,8 +40,22 @@ struct AlignView::Impl {
         own.setColor(QPalette::WindowText, colour);
         verdict->setPalette(own);
     }
+    // As large as the longest word of it allows.
+    void fit_verdict() {
+        QFont big = verdict->parentWidget()->font();
+        big.setBold(true);
+        for (double size = std::max(22.0, 2.2 * big.pointSizeF()); size >= 11; size -= 0.5) {
+            big.setPointSizeF(size);
+            int widest = 0;
+            for (const QString& one : verdict->text().split(' '))
+                widest = std::max(widest, QFontMetrics(big).horizontalAdvance(one));
+            if (widest <= kSide_px - 32) break;
+        }
+        verdict->setFont(big);
+    }
     void say(const QString& word, const QString& why, Mood with, const QPalette& palette) {
         verdict->setText(word);
+        fit_verdict();
         reason->setText(why);
         mood = with;
         paint_verdict(palette);
@@ -71,7 +91,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         made->setAccessibleName(word);
         made->setCheckable(true);
         made->setAutoRaise(true);
-        made->setMinimumSize(style::kTargetPx, style::kTargetPx);
+        made->setMinimumHeight(style::kTargetPx);
         group->addButton(made);
         head->addWidget(made);
         return made;
@@ -85,16 +105,24 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     connect(impl_->as_overlay, &QToolButton::clicked, this, [this] { set_stack(Stack::overlay); });
     lower_column->addLayout(head);
     impl_->stack = new StackCanvas(lower);
+    impl_->stack->setToolTip(
+        tr("Every profile of the pass over the travel; the buttons above change the picture"));
     lower_column->addWidget(impl_->stack, 1);
     split->addWidget(impl_->offsets);
     split->addWidget(lower);
-    split->setStretchFactor(0, 3);
-    split->setStretchFactor(1, 2);
-    split->setSizes({360, 240});
+    split->setStretchFactor(0, 1);
+    split->setStretchFactor(1, 1);
+    split->setSizes({300, 300});
     row->addWidget(split, 1);
 
-    auto* side = new QWidget(this);
-    side->setFixedWidth(300);
+    auto* side_scroll = new QScrollArea(this);
+    side_scroll->setFrameShape(QFrame::NoFrame);
+    side_scroll->setWidgetResizable(true);
+    side_scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    side_scroll->setFixedWidth(kSide_px + side_scroll->verticalScrollBar()->sizeHint().width());
+    side_scroll->setFocusPolicy(Qt::NoFocus);
+    auto* side = new QWidget;
+    side_scroll->setWidget(side);
     auto* column = new QVBoxLayout(side);
     column->setContentsMargins(4, 8, 8, 8);
     column->setSpacing(6);
@@ -116,6 +144,7 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
         value->setAccessibleName(name);
         value->setTextInteractionFlags(Qt::TextSelectableByMouse);
+        value->setFocusPolicy(Qt::NoFocus);
         for (QLabel* one : {label, value}) one->setToolTip(tip);
         grid->addWidget(label, line, 0);
         grid->addWidget(value, line, 1);
@@ -131,11 +160,11 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         number(tr("Tolerance"), tr("What the jitter may cause at most, and the window it was judged over"));
     impl_->shape = number(tr("Shape change"), tr("What remains after the profiles are laid over each other"));
     grid->setColumnStretch(1, 1);
-    column->addLayout(grid);
     impl_->arrow = new CureArrow(side);
     column->addWidget(impl_->arrow);
+    column->addLayout(grid);
     column->addStretch(1);
-    row->addWidget(side);
+    row->addWidget(side_scroll);
 
     impl_->offsets->on_jitter = [this](double half) { emit jitter_dragged(half); };
     impl_->offsets->on_travel = [this](double travel) { emit travel_picked(travel); };
@@ -150,6 +179,7 @@ void AlignView::clear() {
     impl_->offsets->clear();
     impl_->stack->set_pass({});
     impl_->arrow->set_cure(0, 0, false);
+    impl_->arrow->hide();
     for (QLabel* label :
          {impl_->yaw, impl_->pitch, impl_->roll, impl_->radius, impl_->error, impl_->tolerance, impl_->shape})
         label->setText(QStringLiteral("–"));
@@ -192,6 +222,7 @@ void AlignView::set_result(std::span<const TravelProfile> pass, const AlignmentR
     impl_->shape->setText(judged ? tr("%1 mm").arg(result.shape_change_mm, 0, 'f', 3) : QStringLiteral("–"));
     const bool drifting = result.status == AlignmentStatus::drifting;
     impl_->arrow->set_cure(result.cure_about_z_deg, result.cure_about_x_deg, drifting);
+    impl_->arrow->setVisible(drifting);
     const QString cure = QString::fromStdString(result.cure);
     switch (result.status) {
         case AlignmentStatus::frozen:
@@ -247,12 +278,7 @@ void AlignView::changeEvent(QEvent* event) {
     QWidget::changeEvent(event);
     if (!impl_ || !impl_->verdict) return;
     if (event->type() == QEvent::PaletteChange) impl_->paint_verdict(palette());
-    if (event->type() == QEvent::FontChange) {
-        QFont big = font();
-        big.setPointSizeF(std::max(22.0, 2.2 * font().pointSizeF()));
-        big.setBold(true);
-        impl_->verdict->setFont(big);
-    }
+    if (event->type() == QEvent::FontChange) impl_->fit_verdict();
 }
 
 }  // namespace seamwright

@@ -100,6 +100,7 @@ Histogram::Histogram(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     impl_->title->setWordWrap(true);
     impl_->title->setContentsMargins(8, 4, 4, 0);
     impl_->canvas = new PlotCanvas(this);
+    setFocusProxy(impl_->canvas);
     impl_->canvas->setAccessibleName(tr("Distribution chart"));
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 0);

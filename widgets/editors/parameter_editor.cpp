@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 
@@ -24,10 +25,12 @@ struct ParameterEditor::Impl {
 
 namespace {
 
+constexpr int kLabelSigns = 22;
+
 QString range_text(const ParameterInfo& info) {
     return ParameterEditor::tr("%1 to %2 %3")
         .arg(text_from_number(info.minimum, info.decimals), text_from_number(info.maximum, info.decimals),
-             QString::fromStdString(info.unit))
+             shown_word(info.unit))
         .trimmed();
 }
 
@@ -37,8 +40,8 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
     : QWidget(parent), impl_(std::make_unique<Impl>()) {
     impl_->info = info;
     impl_->value = info.default_value;
-    const QString name = QString::fromStdString(info.name);
-    const QString help = QString::fromStdString(info.help);
+    const QString name = shown_word(info.name);
+    const QString help = shown_sentence(info.help);
     setAccessibleName(name);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 0);
@@ -46,9 +49,15 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
     auto* row = new QHBoxLayout;
     row->setSpacing(6);
     column->addLayout(row);
+    auto* label = new QLabel(name, this);
+    label->setWordWrap(true);
+    label->setFixedWidth(fontMetrics().averageCharWidth() * kLabelSigns);
+    label->setToolTip(help);
+    row->addWidget(label);
     if (!info.choices.empty()) {
         impl_->choice = new QComboBox(this);
-        for (const std::string& one : info.choices) impl_->choice->addItem(QString::fromStdString(one));
+        for (const std::string& one : info.choices) impl_->choice->addItem(shown_word(one));
+        label->setBuddy(impl_->choice);
         impl_->choice->setMinimumHeight(style::kTargetPx);
         impl_->choice->setAccessibleName(name);
         impl_->choice->setAccessibleDescription(help);
@@ -66,14 +75,15 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
         impl_->line = new QLineEdit(this);
         impl_->line->setMinimumHeight(style::kTargetPx);
         impl_->line->setAlignment(Qt::AlignRight);
+        label->setBuddy(impl_->line);
         impl_->line->setAccessibleName(name);
         impl_->line->setAccessibleDescription(help + " " + range_text(info));
         impl_->line->setToolTip(help + "\n" + range_text(info));
         impl_->line->installEventFilter(this);
         setFocusProxy(impl_->line);
         row->addWidget(impl_->line, 1);
-        auto* unit = new QLabel(QString::fromStdString(info.unit), this);
-        unit->setMinimumWidth(36);
+        auto* unit = new QLabel(shown_word(info.unit), this);
+        unit->setMinimumWidth(fontMetrics().averageCharWidth() * 5);
         row->addWidget(unit);
         impl_->problem = new QLabel(this);
         impl_->problem->setWordWrap(true);

@@ -1,5 +1,5 @@
 #pragma once
-// One described setting (core/parameter.h) as a line to edit: value, unit, range.
+// One described setting (core/parameter.h) as a line to edit: name, value, unit, range.
 //
 // A number is typed with point or comma whatever the system's language; it is committed on Enter, on leaving
 // the field, and by Up/Down (one unit of the last shown decimal's tenfold). What is refused stays in the

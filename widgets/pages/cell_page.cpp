@@ -10,6 +10,7 @@
 #include "projects/measure.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 namespace {
@@ -59,8 +60,7 @@ CellPage::CellPage(Desk& desk, const Views& views)
     mode_ = new QComboBox;
     mode_->setObjectName("required_mode");
     for (const RobotMode m : kModes)
-        mode_->addItem(m == RobotMode::unknown ? tr("any but stopped and fault")
-                                               : QString::fromStdString(std::string(to_string(m))));
+        mode_->addItem(m == RobotMode::unknown ? tr("any but stopped and fault") : shown_word(to_string(m)));
     add_field(*mode_box, tr("Push only in mode"), mode_,
               tr("Pushes are refused while the robot is in another mode"));
     box().addWidget(mode_row_);
@@ -180,9 +180,8 @@ void CellPage::refresh() {
         QString state = tr("not connected");
         for (const RobotState& k : s.robots)
             if (k.id == robot.id)
-                state = k.trouble.empty()
-                            ? tr("ok, %1").arg(QString::fromStdString(std::string(to_string(k.mode))))
-                            : tr("silent: %1").arg(QString::fromStdString(k.trouble));
+                state = k.trouble.empty() ? tr("ok, %1").arg(shown_word(to_string(k.mode)))
+                                          : tr("silent: %1").arg(QString::fromStdString(k.trouble));
         rows << QStringList{QString::fromStdString(robot.id), tr("robot"),
                             QString::fromStdString(robot.driver), state};
     }
@@ -216,12 +215,10 @@ void CellPage::show_device() {
     QString identity;
     if (sensor)
         for (const SensorDriver& d : sensor_drivers())
-            driver_->addItem(QString::fromStdString(std::string(d.name)),
-                             QString::fromStdString(std::string(d.help)));
+            driver_->addItem(QString::fromStdString(std::string(d.name)), shown_sentence(d.help));
     else
         for (const RobotDriver& d : robot_drivers())
-            driver_->addItem(QString::fromStdString(std::string(d.name)),
-                             QString::fromStdString(std::string(d.help)));
+            driver_->addItem(QString::fromStdString(std::string(d.name)), shown_sentence(d.help));
     for (int i = 0; i < driver_->count(); ++i) driver_->setItemData(i, driver_->itemData(i), Qt::ToolTipRole);
     const auto show = [&](const auto& setup, const std::string& model) {
         driver_->setCurrentText(QString::fromStdString(setup.driver));
@@ -255,12 +252,13 @@ void CellPage::show_parameters() {
     if (key == shown_parameters_) return;
     shown_parameters_ = key;
     while (QLayoutItem* item = parameters_box_->takeAt(0)) {
-        if (item->widget()) item->widget()->deleteLater();
+        delete item->widget();
         delete item;
     }
     if (!state || state->parameters.empty()) return;
     parameters_box_->addWidget(
         make_heading(tr("Exposure and trigger of sensor %1").arg(QString::fromStdString(state->id))));
+    QWidget* before = apply_;
     for (const ParameterInfo& info : state->parameters) {
         auto* editor = new ParameterEditor(info);
         if (const auto it = state->values.find(info.name); it != state->values.end())
@@ -270,6 +268,8 @@ void CellPage::show_parameters() {
                     desk_.worker().set_sensor_parameter(id, name, value);
                 });
         parameters_box_->addWidget(editor);
+        setTabOrder(before, editor);
+        before = editor;
     }
 }
 

@@ -6,6 +6,7 @@
 #include <QSvgRenderer>
 #include <cmath>
 
+#include "widgets/flow_layout.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -40,7 +41,6 @@ QPushButton* make_button(const QString& name, const QString& icon_name, const QS
     button->setToolTip(tip);
     button->setAccessibleName(text.isEmpty() ? tip : text);
     button->setMinimumHeight(style::kTargetPx);
-    button->setMinimumWidth(style::kTargetPx);
     if (!icon_name.isEmpty()) {
         button->setIcon(icon(icon_name, button->palette()));
         button->setProperty("icon_name", icon_name);
@@ -81,11 +81,9 @@ void set_verdict(QLabel& label, const QString& text, Tone tone) {
     label.setPalette(mine);
 }
 
-QHBoxLayout* make_row(std::initializer_list<QWidget*> widgets) {
-    auto* row = new QHBoxLayout;
-    row->setSpacing(6);
+QLayout* make_row(std::initializer_list<QWidget*> widgets) {
+    auto* row = new FlowLayout;
     for (QWidget* w : widgets) row->addWidget(w);
-    row->addStretch(1);
     return row;
 }
 
@@ -102,6 +100,12 @@ void add_field(QVBoxLayout& layout, const QString& label, QWidget* field, const 
     layout.addLayout(row);
 }
 
+// Long tables hold short lines; measuring each row would cost more than it gives.
+static void fit_rows(QTableWidget& table) {
+    constexpr int kMeasured = 300;
+    if (table.rowCount() <= kMeasured) table.resizeRowsToContents();
+}
+
 QTableWidget* make_table(const QString& name, const QStringList& header, const QString& tip) {
     auto* table = new QTableWidget(0, static_cast<int>(header.size()));
     table->setObjectName(name);
@@ -116,7 +120,12 @@ QTableWidget* make_table(const QString& name, const QStringList& header, const Q
     table->setShowGrid(false);
     table->verticalHeader()->hide();
     table->verticalHeader()->setDefaultSectionSize(style::kTargetPx);
+    table->verticalHeader()->setMinimumSectionSize(style::kTargetPx);
+    // The last column takes what is left, and wraps.
     table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    table->horizontalHeader()->setSectionResizeMode(table->columnCount() - 1, QHeaderView::Stretch);
+    QObject::connect(table->horizontalHeader(), &QHeaderView::sectionResized, table,
+                     [table] { fit_rows(*table); });
     table->horizontalHeader()->setHighlightSections(false);
     return table;
 }
@@ -134,6 +143,7 @@ void set_rows(QTableWidget& table, const QVector<QStringList>& rows) {
             table.setItem(r, c, item);
         }
     if (current >= 0 && current < rows.size()) table.setCurrentCell(current, 0);
+    fit_rows(table);
 }
 
 QString number(double value, int decimals) {

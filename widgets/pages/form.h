@@ -22,11 +22,13 @@ QLabel* make_text(const QString& text);  // wraps
 // A verdict: the word is bold, its colour one of style.h's.
 enum class Tone { plain, good, attention, alarm };
 void set_verdict(QLabel& label, const QString& text, Tone tone);
-QHBoxLayout* make_row(std::initializer_list<QWidget*> widgets);
+// Beside each other; what does not fit goes to the next line.
+QLayout* make_row(std::initializer_list<QWidget*> widgets);
 // Name above or beside a field, as its buddy and accessible name.
 void add_field(QVBoxLayout& layout, const QString& label, QWidget* field, const QString& tip);
 
-// Read only, one row selected at a time, first column left and the others right aligned.
+// Read only, one row selected at a time, first column left and the others right aligned;
+// the last one wraps.
 QTableWidget* make_table(const QString& name, const QStringList& header, const QString& tip);
 void set_rows(QTableWidget& table, const QVector<QStringList>& rows);
 

@@ -4,6 +4,7 @@
 
 #include <QDateTime>
 #include <QFileDialog>
+#include <QHeaderView>
 #include <QMessageBox>
 #include <cmath>
 #include <set>
@@ -12,6 +13,7 @@
 #include "devices/exchange/files.h"
 #include "projects/measure.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 namespace {
@@ -118,13 +120,14 @@ RunPage::RunPage(Desk& desk, const Views& views)
     gate_ = make_text({});
     gate_->setObjectName("gate");
     box().addWidget(gate_);
-    regions_ = make_table("run_regions",
-                          {tr("Region"), tr("Verdict"), tr("X mm"), tr("Y mm"), tr("Z mm"), tr("A deg"),
-                           tr("B deg"), tr("C deg"), tr("Push")},
-                          tr("Displacement per region with its sigma"));
+    regions_ = make_table("run_regions", {tr("Region, verdict"), tr("X Y Z mm"), tr("A B C deg")},
+                          tr("Displacement per region with its sigma, and what was written"));
     regions_->setMinimumHeight(6 * style::kTargetPx);
+    // The words wrap, the numbers do not.
+    regions_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::Stretch);
+    regions_->horizontalHeader()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
     box().addWidget(regions_);
-    spots_ = make_table("run_spots", {tr("Spot"), tr("Verdict"), tr("dx mm"), tr("dz mm"), tr("Why")},
+    spots_ = make_table("run_spots", {tr("Spot"), tr("dx mm"), tr("dz mm"), tr("Verdict")},
                         tr("What every spot measured against its reference"));
     spots_->setMinimumHeight(8 * style::kTargetPx);
     connect(spots_, &QTableWidget::currentCellChanged, this, [this](int row) {
@@ -132,8 +135,8 @@ RunPage::RunPage(Desk& desk, const Views& views)
             desk_.selection().select_spot(spots_->item(row, 0)->text().toStdString());
     });
     connect(regions_, &QTableWidget::currentCellChanged, this, [this](int row) {
-        if (row >= 0 && regions_->item(row, 0))
-            desk_.selection().select_region(regions_->item(row, 0)->text().toStdString());
+        if (row >= 0 && shown_ && row < static_cast<int>(shown_->regions.size()))
+            desk_.selection().select_region(shown_->regions[static_cast<std::size_t>(row)].region_id);
     });
     box().addWidget(spots_);
 
@@ -245,28 +248,27 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
     QVector<QStringList> rows;
     QStringList refusals;
     for (const RegionRecord& region : r.regions) {
-        QStringList row{QString::fromStdString(region.region_id)};
+        const QString push = shown_word(to_string(region.push.status));
+        const auto head = [&](const QString& verdict) {
+            return QString::fromStdString(region.region_id) + "\n" + verdict + "\n" + push;
+        };
+        QStringList row;
         if (region.correction) {
-            row << (region.gate_passed
-                        ? tr("passed the gate")
-                        : QString::fromStdString(std::string(to_string(region.correction->status))) +
-                              tr(", refused"));
             const auto v = six(region.correction->displacement.workobject_from_movedworkobject);
+            QStringList moves, turns;
             for (std::size_t k = 0; k < 6; ++k) {
                 const double sigma = k < 3 ? region.correction->sigma_xyz_mm[static_cast<int>(k)]
                                            : region.correction->sigma_abc_deg[static_cast<int>(k) - 3];
                 const int decimals = k < 3 ? 2 : 3;
-                row << tr("%1 ± %2").arg(number(v[k], decimals), number(sigma, decimals));
+                (k < 3 ? moves : turns) << tr("%1 ± %2").arg(number(v[k], decimals), number(sigma, decimals));
             }
+            row << head(region.gate_passed
+                            ? tr("passed the gate")
+                            : tr("%1, refused").arg(shown_word(to_string(region.correction->status))))
+                << moves.join("\n") << turns.join("\n");
         } else {
-            row << tr("not solved") << "-"
-                << "-"
-                << "-"
-                << "-"
-                << "-"
-                << "-";
+            row << head(tr("not solved")) << QStringLiteral("-") << QStringLiteral("-");
         }
-        row << QString::fromStdString(std::string(to_string(region.push.status)));
         rows << row;
         for (const std::string& reason : region.refusals)
             refusals << tr("%1: %2").arg(QString::fromStdString(region.region_id),
@@ -284,9 +286,9 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
         const bool ok = m.status == SpotStatus::measured;
         const Eigen::Vector3d d = spot && ok ? Eigen::Vector3d(m.measured_mm - spot->reference_mm)
                                              : Eigen::Vector3d::Constant(std::nan(""));
-        rows << QStringList{QString::fromStdString(m.spot_id),
-                            QString::fromStdString(std::string(to_string(m.status))), number(d.x(), 2),
-                            number(d.z(), 2), QString::fromStdString(m.message)};
+        const QString word = shown_word(to_string(m.status));
+        rows << QStringList{QString::fromStdString(m.spot_id), number(d.x(), 2), number(d.z(), 2),
+                            m.message.empty() ? word : word + ": " + QString::fromStdString(m.message)};
         for (const RegionRecord& region : r.regions) {
             if (!region.correction) continue;
             bool found = false;
@@ -390,7 +392,7 @@ void RunPage::compare() {
             QStringList mm, deg;
             for (std::size_t k = 0; k < 3; ++k)
                 mm << number(y[k] - x[k], 3), deg << number(y[k + 3] - x[k + 3], 4);
-            rows << QStringList{QString::fromStdString(a.region_id), mm.join("  "), deg.join("  ")};
+            rows << QStringList{QString::fromStdString(a.region_id), mm.join("\n"), deg.join("\n")};
         }
     differences_->setHorizontalHeaderLabels(
         {tr("Region"), tr("Run %1 - %2: X Y Z mm").arg(other->number).arg(shown_->number), tr("A B C deg")});

@@ -49,7 +49,7 @@ void SpotTree::refresh() {
         auto* item = new QTreeWidgetItem(parent, {QString::fromStdString(id), state});
         item->setData(0, kKind, kind);
         item->setData(0, kId, QString::fromStdString(id));
-        item->setSizeHint(0, {0, style::kTargetPx - 4});
+        item->setSizeHint(0, {0, style::kTargetPx});
         return item;
     };
     const auto state_of = [](const Spot& s) {
@@ -59,6 +59,7 @@ void SpotTree::refresh() {
                                                  : tr("taught, aligned");
     };
     auto* spots = new QTreeWidgetItem(this, {tr("Spots (%1)").arg(p.spots.size()), {}});
+    spots->setSizeHint(0, {0, style::kTargetPx});
     QTreeWidgetItem* current = nullptr;
     for (const Spot& s : p.spots) {
         auto* item = make(spots, "spot", s.id, state_of(s));

@@ -6,6 +6,7 @@
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 namespace {
@@ -119,9 +120,11 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
     in->addWidget(make_heading(tr("Feature of the contour")));
     kind_ = new QComboBox;
     kind_->setObjectName("feature_kind");
-    for (const FeatureKind& k : feature_kinds()) kind_->addItem(QString::fromStdString(std::string(k.name)));
+    for (const FeatureKind& k : feature_kinds())
+        kind_->addItem(shown_word(k.name), QString::fromStdString(std::string(k.name)));
     add_field(*in, tr("Kind"), kind_, tr("Which point of the contour is measured"));
-    connect(kind_, &QComboBox::textActivated, this, &TeachPage::set_kind);
+    connect(kind_, &QComboBox::activated, this,
+            [this](int row) { set_kind(kind_->itemData(row).toString()); });
     kind_help_ = make_text({});
     in->addWidget(kind_help_);
     pick_ = make_button("pick", "pick", tr("Point at it"),
@@ -198,21 +201,23 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         done(desk_.edit(s, tr("reference point")));
         views_.profile->set_tool(ProfilePlot::Tool::inspect);
     });
-    connect(&desk_.worker(), &StationWorker::taught, this, [this](const std::shared_ptr<const TaughtSpot>& taught) {
-        const Spot* s = find_spot(desk_.project(), taught->spot.id);
-        if (!s) return;
-        // Only what was measured: the draft may have been edited meanwhile. The curve of an earlier pass was
-        // about the old reference.
-        Spot after = *s;
-        after.reference_mm = taught->spot.reference_mm;
-        after.reference_profile = taught->spot.reference_profile;
-        after.curve.reset();
-        if (done(desk_.edit(after, tr("reference"))))
-            spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
-                                 .arg(taught->measurements.size())
-                                 .arg(number(taught->spread_mm.x(), 4), number(taught->spread_mm.y(), 4))
-                                 .arg(taught->left_out));
-    });
+    connect(
+        &desk_.worker(), &StationWorker::taught, this,
+        [this](const std::shared_ptr<const TaughtSpot>& taught) {
+            const Spot* s = find_spot(desk_.project(), taught->spot.id);
+            if (!s) return;
+            // Only what was measured: the draft may have been edited meanwhile. The curve of an earlier pass
+            // was about the old reference.
+            Spot after = *s;
+            after.reference_mm = taught->spot.reference_mm;
+            after.reference_profile = taught->spot.reference_profile;
+            after.curve.reset();
+            if (done(desk_.edit(after, tr("reference"))))
+                spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
+                                     .arg(taught->measurements.size())
+                                     .arg(number(taught->spread_mm.x(), 4), number(taught->spread_mm.y(), 4))
+                                     .arg(taught->left_out));
+        });
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
     });
@@ -259,9 +264,9 @@ void TeachPage::refresh() {
     for (const RobotSetup& x : desk_.project().robots) robot_->addItem(QString::fromStdString(x.id));
     sensor_->setCurrentText(QString::fromStdString(s->sensor_id));
     robot_->setCurrentText(QString::fromStdString(s->robot_id));
-    kind_->setCurrentText(QString::fromStdString(s->feature.kind));
+    kind_->setCurrentIndex(kind_->findData(QString::fromStdString(s->feature.kind)));
     if (const FeatureKind* kind = feature_kind(s->feature.kind))
-        kind_help_->setText(QString::fromStdString(std::string(kind->help)));
+        kind_help_->setText(shown_sentence(kind->help));
     window_->setVisible(s->feature.kind == "template");
     pick_->setVisible(s->feature.kind != "template");
     show_parameters(*s);
@@ -279,8 +284,9 @@ void TeachPage::show_parameters(const Spot& s) {
     if (!kind) return;
     if (shown_kind_ != s.feature.kind) {
         shown_kind_ = s.feature.kind;
-        for (ParameterEditor* e : parameter_editors_) e->deleteLater();
+        for (ParameterEditor* e : parameter_editors_) delete e;  // at once: the page takes its new length
         parameter_editors_.clear();
+        QWidget* before = click_;
         for (const ParameterInfo& info : kind->parameters) {
             auto* editor = new ParameterEditor(info);
             connect(editor, &ParameterEditor::committed, this, [this, name = info.name](double value) {
@@ -291,6 +297,8 @@ void TeachPage::show_parameters(const Spot& s) {
             });
             parameter_editors_.push_back(editor);
             parameters_->addWidget(editor);
+            setTabOrder(before, editor);
+            before = editor;
         }
     }
     for (ParameterEditor* e : parameter_editors_)

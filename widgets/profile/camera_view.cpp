@@ -1,7 +1,6 @@
 #include "widgets/profile/camera_view.h"
 
 #include <QElapsedTimer>
-#include <QHBoxLayout>
 #include <QImage>
 #include <QKeyEvent>
 #include <QLabel>
@@ -15,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "widgets/flow_layout.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -325,12 +325,12 @@ CameraView::CameraView(QWidget* parent) : QWidget(parent), impl_(std::make_uniqu
     impl_->surface->setAccessibleName(tr("Camera image, pixels"));
     setFocusProxy(impl_->surface);
     impl_->toolbar = new QWidget(this);
-    auto* row = new QHBoxLayout(impl_->toolbar);
+    auto* row = new FlowLayout(impl_->toolbar, true);
     row->setContentsMargins(8, 2, 4, 2);
-    row->setSpacing(4);
+    row->setSpacing(0);
     impl_->caption = new QLabel(impl_->toolbar);
     impl_->caption->setAccessibleName(tr("Camera state"));
-    row->addWidget(impl_->caption, 1);
+    row->addWidget(impl_->caption);
     const auto button = [&](const QString& word, const QString& tip, bool checkable) {
         auto* made = new QToolButton(impl_->toolbar);
         made->setText(word);
@@ -338,7 +338,7 @@ CameraView::CameraView(QWidget* parent) : QWidget(parent), impl_(std::make_uniqu
         made->setAccessibleName(word);
         made->setCheckable(checkable);
         made->setAutoRaise(true);
-        made->setMinimumSize(style::kTargetPx, style::kTargetPx);
+        made->setMinimumHeight(style::kTargetPx);
         row->addWidget(made);
         return made;
     };
@@ -388,6 +388,9 @@ QRect CameraView::region() const {
 }
 void CameraView::set_caption(const QString& caption) {
     impl_->caption->setText(caption);
+    // It never shrinks: the buttons beside it stay where they are while the rate changes.
+    impl_->caption->setMinimumWidth(
+        std::max(impl_->caption->minimumWidth(), impl_->caption->sizeHint().width()));
 }
 void CameraView::set_toolbar_shown(bool shown) {
     impl_->toolbar->setVisible(shown);

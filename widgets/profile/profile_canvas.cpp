@@ -7,6 +7,7 @@
 
 #include "core/geometry/pose.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 
@@ -338,7 +339,7 @@ void ProfileCanvas::paint_marks(QPainter& painter) {
         painter.drawText(box, Qt::AlignCenter, label);
     } else if (feature) {
         painter.setPen(style::alarm(colours));
-        const QString why = feature->message.empty() ? QString::fromUtf8(to_string(feature->status).data())
+        const QString why = feature->message.empty() ? shown_word(to_string(feature->status))
                                                      : QString::fromStdString(feature->message);
         painter.drawText(QRectF(axisRect()->rect()).adjusted(8, 6, -8, -6), Qt::AlignTop | Qt::AlignLeft,
                          ProfilePlot::tr("no feature: %1").arg(why));

@@ -1,11 +1,12 @@
 #include "widgets/profile/profile_plot.h"
 
-#include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 
+#include "widgets/flow_layout.h"
 #include "widgets/profile/profile_canvas.h"
 #include "widgets/style.h"
 
@@ -31,12 +32,12 @@ ProfilePlot::ProfilePlot(QWidget* parent) : QWidget(parent), impl_(std::make_uni
     impl_->canvas->setAccessibleName(tr("Profile, x and z in mm"));
     setFocusProxy(impl_->canvas);
     impl_->toolbar = new QWidget(this);
-    auto* row = new QHBoxLayout(impl_->toolbar);
+    auto* row = new FlowLayout(impl_->toolbar, true);
     row->setContentsMargins(8, 2, 4, 2);
-    row->setSpacing(4);
+    row->setSpacing(0);
     impl_->caption = new QLabel(impl_->toolbar);
     impl_->caption->setAccessibleName(tr("Sensor state"));
-    row->addWidget(impl_->caption, 1);
+    row->addWidget(impl_->caption);
     const auto button = [&](const QString& word, const QString& tip, bool checkable) {
         auto* made = new QToolButton(impl_->toolbar);
         made->setText(word);
@@ -44,7 +45,7 @@ ProfilePlot::ProfilePlot(QWidget* parent) : QWidget(parent), impl_(std::make_uni
         made->setAccessibleName(word);
         made->setCheckable(checkable);
         made->setAutoRaise(true);
-        made->setMinimumSize(style::kTargetPx, style::kTargetPx);
+        made->setMinimumHeight(style::kTargetPx);
         row->addWidget(made);
         return made;
     };
@@ -116,6 +117,9 @@ void ProfilePlot::set_window(const std::optional<QRectF>& window_mm) {
 
 void ProfilePlot::set_caption(const QString& caption) {
     impl_->caption->setText(caption);
+    // It never shrinks: the buttons beside it stay where they are while the rate changes.
+    impl_->caption->setMinimumWidth(
+        std::max(impl_->caption->minimumWidth(), impl_->caption->sizeHint().width()));
 }
 
 void ProfilePlot::set_tool(Tool tool) {

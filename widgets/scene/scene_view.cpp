@@ -5,7 +5,6 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 
-#include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
 #include <QMenu>
@@ -16,6 +15,7 @@
 #include <algorithm>
 #include <map>
 
+#include "widgets/flow_layout.h"
 #include "widgets/scene/scene_canvas.h"
 #include "widgets/scene/scene_managers.h"
 #include "widgets/style.h"
@@ -223,19 +223,21 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     setAccessibleName(tr("Part in 3D"));
     setToolTip(
         tr("Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit."));
-    setFocusPolicy(Qt::StrongFocus);
+    // Before the buttons: Tab goes from the view to the canvas that has its focus, and on from there.
+    QWidget* place = opengl_available() ? new QWidget(this) : nullptr;
+    if (place) impl_->canvas = new SceneCanvas(place);
     impl_->toolbar = new QWidget(this);
-    auto* row = new QHBoxLayout(impl_->toolbar);
+    auto* row = new FlowLayout(impl_->toolbar, true);
     row->setContentsMargins(8, 2, 4, 2);
     row->setSpacing(4);
-    row->addWidget(new QLabel(tr("Part"), impl_->toolbar), 1);
+    row->addWidget(new QLabel(tr("Part"), impl_->toolbar));
     const auto button = [&](const QString& word, const QString& tip) {
         auto* made = new QToolButton(impl_->toolbar);
         made->setText(word);
         made->setToolTip(tip);
         made->setAccessibleName(word);
         made->setAutoRaise(true);
-        made->setMinimumSize(style::kTargetPx, style::kTargetPx);
+        made->setMinimumHeight(style::kTargetPx);
         row->addWidget(made);
         return made;
     };
@@ -268,11 +270,9 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(0);
     column->addWidget(impl_->toolbar);
-    if (opengl_available()) {
-        auto* place = new QWidget(this);
+    if (place) {
         auto* stack = new QStackedLayout(place);
         stack->setStackingMode(QStackedLayout::StackAll);
-        impl_->canvas = new SceneCanvas(place);
         impl_->canvas->setAccessibleName(tr("Part in 3D"));
         impl_->words = new SceneLabels(place);
         stack->addWidget(impl_->words);
@@ -309,6 +309,7 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
                "pushing do not need it. Cure: a graphics driver with OpenGL 3.2, or Mesa's software renderer "
                "(LIBGL_ALWAYS_SOFTWARE=1)."),
             this);
+        setFocusPolicy(Qt::StrongFocus);  // else the canvas has it
         impl_->sentence->setWordWrap(true);
         impl_->sentence->setAlignment(Qt::AlignCenter);
         impl_->sentence->setMargin(24);

@@ -143,7 +143,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
                 me.drag(canvas, from, to);
                 ASSERT_GT(desk.project().spots.back().feature.template_profile.size(), 50U);
             } else {
-                me.choose("feature_kind", "contour-end");
+                me.choose("feature_kind", "contour end");
                 me.click("pick");
                 QTest::mouseClick(plot->focusProxy(), Qt::LeftButton, {}, on_plot(left, left_z));
             }

@@ -295,6 +295,9 @@ QDockWidget* MainWindow::add_dock(const QString& name, const QString& title, QWi
     dock->setTitleBarWidget(new DockTitle(
         dock, [this, dock] { toggle_full(dock); }, tr("This view alone, and back (F11)"),
         tr("In a window of its own, and back")));
+    connect(dock, &QDockWidget::visibilityChanged, this, [this](bool shown) {
+        if (shown && feeder_) QTimer::singleShot(0, feeder_, &ViewFeeder::show_latest);
+    });
     docks_ << dock;
     return dock;
 }

@@ -605,7 +605,7 @@
     </message>
     <message>
         <source>deg</source>
-        <translation type="unfinished">Grad</translation>
+        <translation>Grad</translation>
     </message>
     <message>
         <source>us</source>
@@ -685,11 +685,11 @@
     </message>
     <message>
         <source>template</source>
-        <translation type="unfinished">Vorlage</translation>
+        <translation>Vorlage</translation>
     </message>
     <message>
         <source>ok</source>
-        <translation type="unfinished">ok</translation>
+        <translation>ok</translation>
     </message>
     <message>
         <source>no points</source>
@@ -1062,6 +1062,30 @@
     <message>
         <source>A taught piece of contour found again; it carries its reference point along.</source>
         <translation>Ein eingelerntes Konturstück, wiedergefunden; es trägt seinen Referenzpunkt mit.</translation>
+    </message>
+    <message>
+        <source>Number</source>
+        <translation>Nummer</translation>
+    </message>
+    <message>
+        <source>sensor&apos;s own point</source>
+        <translation>Punkt des Sensors</translation>
+    </message>
+    <message>
+        <source>LMI Gocator, profiles or the results of its own tools over TCP</source>
+        <translation>LMI Gocator, Profile oder Ergebnisse seiner eigenen Werkzeuge über TCP</translation>
+    </message>
+    <message>
+        <source>A point that the sensor&apos;s own tools have measured.</source>
+        <translation>Ein Punkt, den die Werkzeuge des Sensors gemessen haben.</translation>
+    </message>
+    <message>
+        <source>Which of the sensor&apos;s points, from 0.</source>
+        <translation>Welcher der Punkte des Sensors, ab 0.</translation>
+    </message>
+    <message>
+        <source>Noise of each coordinate (1 sigma).</source>
+        <translation>Rauschen jeder Koordinate (1 Sigma).</translation>
     </message>
 </context>
 <context>
@@ -4510,6 +4534,10 @@ und %1 weitere</translation>
     <message>
         <source>sensor %1   %2 /s   %3 dropped</source>
         <translation>Sensor %1   %2 /s   %3 verloren</translation>
+    </message>
+    <message>
+        <source>Sensor %1 cannot be told to send a part of its image.</source>
+        <translation>Sensor %1 kann keinen Ausschnitt seines Bilds senden.</translation>
     </message>
 </context>
 </TS>

@@ -7,6 +7,7 @@
 #include "projects/known_shift.h"
 #include "projects/zero_shift.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 namespace {
@@ -204,7 +205,7 @@ void ProvePage::refresh_zero_shift() {
         if (r.region_id != id) continue;
         for (std::size_t k = 0; k < 6; ++k) {
             const int decimals = k < 3 ? 3 : 4;
-            const QString unit = k < 3 ? QStringLiteral(" mm") : QStringLiteral(" deg");
+            const QString unit = k < 3 ? QStringLiteral(" mm") : QChar(0x20) + shown_word("deg");
             rows << QStringList{names[static_cast<int>(k)], number(r.mean[k], decimals) + unit,
                                 number(r.three_sigma[k], decimals) + unit,
                                 number(r.stated_three_sigma[k], decimals) + unit};

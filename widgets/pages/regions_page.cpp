@@ -6,6 +6,7 @@
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "widgets/style.h"
+#include "widgets/words.h"
 
 namespace seamwright {
 
@@ -210,7 +211,7 @@ void RegionsPage::show_plan(const Region& r) {
                             : !std::isfinite(sigma)
                                 ? tr("not observed")
                                 : number(3 * sigma, i < 3 ? 3 : 4) +
-                                      (i < 3 ? QStringLiteral(" mm") : QStringLiteral(" deg"))};
+                                      (i < 3 ? QStringLiteral(" mm") : QChar(0x20) + shown_word("deg"))};
     }
     set_rows(*plan_, rows);
     QString text = QString::fromStdString(plan->advice);

@@ -18,6 +18,11 @@ Pose workobject_from_sensor(const Project& project, const Spot& spot) {
            (calibration ? calibration->flange_from_sensor : Pose::Identity());
 }
 
+// Docks behind others in a tab group are visible to Qt; nothing of them is on the screen.
+static bool seen(const QWidget* view) {
+    return view->isVisible() && !view->visibleRegion().isEmpty();
+}
+
 ViewFeeder::ViewFeeder(Desk& desk, Views views, QObject* parent)
     : QObject(parent), desk_(desk), views_(std::move(views)) {
     connect(&desk_.live(), &LiveFeed::arrived, this, &ViewFeeder::live);
@@ -36,10 +41,40 @@ ViewFeeder::ViewFeeder(Desk& desk, Views views, QObject* parent)
     });
     connect(views_.residuals, &ResidualBars::spot_picked, this,
             [this](const QString& id) { desk_.selection().select_spot(id.toStdString()); });
+    connect(views_.camera, &CameraView::region_dragged, this, &ViewFeeder::crop);
     project();
     selected();
     robot();
     desk_.live().taken();
+}
+
+void ViewFeeder::show_latest() {
+    last_number_ = 0;
+    live();
+}
+
+// The sensor sends only what was marked from now on; its settings in step Cell hold the numbers, to widen it
+// again.
+void ViewFeeder::crop(const QRect& region_px) {
+    constexpr int kStep_px = 8;  // cameras take multiples
+    const std::string id = shown_sensor(desk_, desk_.selection());
+    views_.camera->set_region_tool(false);
+    views_.camera->set_region({});
+    for (const SensorState& s : desk_.station().sensors) {
+        const auto x = s.values.find("region_x"), y = s.values.find("region_y");
+        if (s.id != id || x == s.values.end() || y == s.values.end()) continue;
+        const int left = region_px.left() / kStep_px * kStep_px, top = region_px.top() / kStep_px * kStep_px;
+        const int width = (region_px.right() - left + kStep_px) / kStep_px * kStep_px;
+        const int height = (region_px.bottom() - top + kStep_px) / kStep_px * kStep_px;
+        StationWorker& worker = desk_.worker();
+        worker.set_sensor_parameter(id, "region_width", width);  // smaller first: then it may move
+        worker.set_sensor_parameter(id, "region_height", height);
+        worker.set_sensor_parameter(id, "region_x", x->second + left);
+        worker.set_sensor_parameter(id, "region_y", y->second + top);
+        return;
+    }
+    emit desk_.trouble(
+        tr("Sensor %1 cannot be told to send a part of its image.").arg(QString::fromStdString(id)));
 }
 
 void ViewFeeder::live() {
@@ -61,13 +96,13 @@ void ViewFeeder::live() {
         views_.profile->set_caption(caption);
         views_.camera->set_caption(caption);
     }
-    if (views_.profile->isVisible()) {
+    if (seen(views_.profile)) {
         views_.profile->set_profile(snapshot->profile);
         views_.profile->set_feature(snapshot->feature);
     }
-    if (views_.camera->isVisible() && snapshot->frame)
+    if (seen(views_.camera) && snapshot->frame)
         views_.camera->set_frame(snapshot->frame->image, &snapshot->peaks);
-    if (views_.align->isVisible()) views_.align->set_live(snapshot->profile);
+    if (seen(views_.align)) views_.align->set_live(snapshot->profile);
 }
 
 void ViewFeeder::selected() {

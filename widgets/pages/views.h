@@ -41,9 +41,11 @@ class ViewFeeder : public QObject {
     ViewFeeder(Desk& desk, Views views, QObject* parent);
     // Corrections of a run as arrows at the spots; nullptr removes them.
     void show_run(const RunRecord* run);
+    void show_latest();  // a view that was hidden is shown: it gets the newest picture
 
   private:
     void live();
+    void crop(const QRect& region_px);
     void selected();
     void project();
     void robot();

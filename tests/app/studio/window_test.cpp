@@ -1,0 +1,239 @@
+// The window's own furniture: docks, recent files, drag and drop, the palette of actions, and what is dragged
+// in the views.
+
+#include <gtest/gtest.h>
+#include <qcustomplot.h>
+#include <unistd.h>
+
+#include <QDropEvent>
+#include <QListWidget>
+#include <QMenu>
+#include <QMimeData>
+#include <QSignalSpy>
+#include <QUrl>
+#include <filesystem>
+#include <fstream>
+
+#include "app/studio/command_palette.h"
+#include "app/studio/studio.h"
+#include "devices/simulated/cell.h"
+#include "devices/simulated/mesh_file.h"
+#include "tests/app/studio/person.h"
+
+namespace seamwright {
+namespace {
+
+class Furniture : public testing::Test {
+  protected:
+    std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("seamwright_window_" + std::to_string(::getpid()));
+    std::unique_ptr<Studio> studio;
+
+    void SetUp() override {
+        std::filesystem::create_directories(folder);
+        QApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
+        start(false);
+    }
+    ~Furniture() override {
+        studio.reset();
+        std::filesystem::remove_all(folder);
+    }
+    void start(bool connect) {
+        studio.reset();
+        StudioOptions o;
+        o.language = "en";
+        o.theme = "light";
+        o.settings = path("settings.ini");
+        o.data = path("");
+        o.connect = connect;
+        studio = std::make_unique<Studio>(*qApp, o);
+        studio->window().resize(1280, 800);
+        QApplication::setActiveWindow(&window());
+        QApplication::processEvents();
+    }
+    QString path(const std::string& name) const { return QString::fromStdString((folder / name).string()); }
+    MainWindow& window() { return studio->window(); }
+    QDockWidget* dock(const char* name) { return window().findChild<QDockWidget*>(name); }
+    // Drops a file onto the window; false: the window does not take it.
+    bool drop(const QString& file) {
+        QMimeData data;
+        data.setUrls({QUrl::fromLocalFile(file)});
+        const QPoint at(200, 200);
+        QDragEnterEvent enter(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        enter.ignore();
+        QApplication::sendEvent(&window(), &enter);
+        if (!enter.isAccepted()) return false;
+        QDropEvent event(at, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(&window(), &event);
+        QApplication::processEvents();
+        return true;
+    }
+};
+
+TEST_F(Furniture, ThePaletteRunsWhatIsTyped) {
+    Person me(window());
+    me.shortcut(Qt::Key_K);
+    auto* palette = window().findChild<CommandPalette*>();
+    ASSERT_TRUE(palette);
+    auto* input = palette->findChild<QLineEdit*>("palette_input");
+    auto* list = palette->findChild<QListWidget*>("palette_list");
+    EXPECT_EQ(list->count(), window().all_actions().size()) << "everything is listed at first";
+    QTest::keyClicks(input, "regions");
+    ASSERT_GT(list->count(), 0);
+    EXPECT_LT(list->count(), window().all_actions().size());
+    EXPECT_TRUE(list->item(0)->text().contains("Regions")) << list->item(0)->text().toStdString();
+    QTest::keyClick(input, Qt::Key_Return);
+    EXPECT_TRUE(me.wait([&] { return window().step() == Step::regions; }));
+    EXPECT_TRUE(me.wait([&] { return !window().findChild<CommandPalette*>(); })) << "it has gone";
+}
+
+TEST_F(Furniture, RecentFilesAreListedNewestFirstAndRemembered) {
+    ASSERT_TRUE(studio->create(path("one.seam")));
+    ASSERT_TRUE(studio->create(path("two.seam")));
+    start(false);  // opens the demo project
+    const QStringList recent = studio->recent();
+    ASSERT_GE(recent.size(), 3);
+    EXPECT_TRUE(recent[0].endsWith("demo.seam"));
+    EXPECT_TRUE(recent[1].endsWith("two.seam"));
+    EXPECT_TRUE(recent[2].endsWith("one.seam"));
+    QMenu* menu = nullptr;
+    for (auto* one : window().findChildren<QMenu*>())
+        if (one->title() == "Recent") menu = one;
+    ASSERT_TRUE(menu);
+    emit menu->aboutToShow();
+    ASSERT_EQ(menu->actions().size(), recent.size());
+    menu->actions()[2]->trigger();
+    EXPECT_EQ(studio->desk().path().filename(), "one.seam");
+    EXPECT_TRUE(studio->recent()[0].endsWith("one.seam")) << "the opened one is the newest";
+    EXPECT_EQ(studio->recent().count(studio->recent()[0]), 1);
+}
+
+TEST_F(Furniture, FilesAreDroppedIntoTheWindow) {
+    ASSERT_TRUE(studio->create(path("one.seam")));
+    ASSERT_TRUE(studio->create(path("two.seam")));
+    ASSERT_TRUE(drop(path("one.seam")));
+    EXPECT_EQ(studio->desk().path().filename(), "one.seam");
+    const auto cell = SimulatedCell::open(nlohmann::json::object()).value();
+    const std::vector<std::byte> mesh = ply_bytes(cell->part_mesh());
+    std::ofstream(folder / "door.ply", std::ios::binary)
+        .write(reinterpret_cast<const char*>(mesh.data()), static_cast<std::streamsize>(mesh.size()));
+    ASSERT_TRUE(drop(path("door.ply")));
+    EXPECT_FALSE(studio->desk().project().part.mesh_ply.empty());
+    studio->desk().undo_stack().undo();
+    EXPECT_TRUE(studio->desk().project().part.mesh_ply.empty()) << "an import is an edit like others";
+    EXPECT_FALSE(drop(path("notes.txt")));
+    std::ofstream(folder / "broken.seam") << "no project";
+    ASSERT_TRUE(drop(path("broken.seam")));
+    EXPECT_EQ(studio->desk().path().filename(), "one.seam") << "what cannot be opened changes nothing";
+    Person me(window());
+    EXPECT_FALSE(me.text_of("trouble_text").isEmpty());
+}
+
+TEST_F(Furniture, DocksFloatFillTheWindowAndAreRemembered) {
+    auto* scene = dock("dock_scene");
+    ASSERT_TRUE(scene);
+    Person me(window());
+    auto* loose = scene->titleBarWidget()->findChild<QPushButton*>("dock_float");
+    ASSERT_TRUE(loose);
+    QTest::mouseClick(loose, Qt::LeftButton);
+    EXPECT_TRUE(scene->isFloating());
+    window().remember();
+    start(false);
+    EXPECT_TRUE(dock("dock_scene")->isFloating()) << "as it was left";
+    window().findChild<QAction*>("reset_layout")->trigger();
+    EXPECT_FALSE(dock("dock_scene")->isFloating());
+
+    auto* profile = dock("dock_profile");
+    window().views().profile->setFocus();
+    QTest::keyClick(&window(), Qt::Key_F11);
+    EXPECT_FALSE(window().centralWidget()->isVisible());
+    EXPECT_FALSE(dock("dock_scene")->isVisible());
+    EXPECT_TRUE(profile->isVisible());
+    QTest::keyClick(&window(), Qt::Key_F11);
+    EXPECT_TRUE(window().centralWidget()->isVisible());
+    EXPECT_TRUE(dock("dock_scene")->isVisible());
+}
+
+TEST_F(Furniture, TheJitterWindowIsDraggedOnTheAlignmentPlot) {
+    start(true);
+    Person me(window());
+    Desk& desk = studio->desk();
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
+    me.step(4);
+    me.click("start_pass");
+    ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+    ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+    QTest::qWait(100);
+    AlignView* view = window().views().align;
+    QSignalSpy dragged(view, &AlignView::jitter_dragged);
+    QCustomPlot* plot = qobject_cast<QCustomPlot*>(view->focusProxy());
+    ASSERT_TRUE(plot);
+    const QCPAxisRect* row = plot->axisRect(0);
+    const auto at = [&](double travel) {
+        return QPoint(static_cast<int>(std::lround(row->axis(QCPAxis::atBottom)->coordToPixel(travel))),
+                      row->rect().center().y());
+    };
+    const double before = view->jitter_mm();
+    Person::drag(plot, at(before), at(before + 4));
+    ASSERT_GT(dragged.count(), 0);
+    EXPECT_NEAR(view->jitter_mm(), before + 4, 0.3);
+    const double wide = view->jitter_mm();
+    Person::drag(plot, at(-wide), at(-2));
+    EXPECT_NEAR(view->jitter_mm(), 2, 0.3) << "the other line moves it too: they are symmetric";
+    // What is accepted then is what was dragged.
+    ASSERT_EQ(me.text_of("align_verdict"), "FROZEN");
+    me.click("accept_pass");
+    EXPECT_NEAR(desk.project().spots.front().jitter_mm, view->jitter_mm(), 1e-9);
+}
+
+TEST_F(Furniture, ADistanceIsMeasuredOnTheProfile) {
+    ProfilePlot* plot = window().views().profile;
+    plot->set_view(QRectF(-30, -20, 60, 40));
+    QSignalSpy measured(plot, &ProfilePlot::measured);
+    QWidget* canvas = plot->focusProxy();
+    canvas->setFocus();
+    QTest::keyClick(canvas, Qt::Key_M);
+    ASSERT_EQ(plot->tool(), ProfilePlot::Tool::measure);
+    for (const QPointF mm : {QPointF(-8, -3), QPointF(4, 2)})
+        QTest::mouseClick(canvas, Qt::LeftButton, {}, canvas->mapFrom(plot, plot->to_screen(mm)).toPoint());
+    ASSERT_EQ(measured.count(), 1);
+    EXPECT_NEAR(measured[0][0].toDouble(), 13, 0.3);
+    EXPECT_NEAR(measured[0][1].toDouble(), 22.62, 1.5);
+    QTest::keyClick(canvas, Qt::Key_Escape);
+    EXPECT_EQ(plot->tool(), ProfilePlot::Tool::inspect);
+}
+
+TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
+    CameraView* view = window().views().camera;
+    dock("dock_camera")->show();
+    dock("dock_camera")->raise();
+    QTest::qWait(50);
+    std::vector<std::byte> pixels(320 * 200);
+    StripeImage image;
+    image.pixels = pixels.data();
+    image.width = 320;
+    image.height = 200;
+    image.row_bytes = 320;
+    image.bit_depth = 8;
+    view->set_frame(image, nullptr);
+    view->fit();
+    QSignalSpy dragged(view, &CameraView::region_dragged);
+    QWidget* surface = view->focusProxy();
+    const auto at = [&](int u, int v) {
+        return surface->mapFrom(view, view->to_screen(QPointF(u, v))).toPoint();
+    };
+    Person::drag(surface, at(40, 30), at(200, 120));
+    EXPECT_EQ(dragged.count(), 0) << "without the tool a drag moves the picture";
+    view->fit();
+    view->set_region_tool(true);
+    Person::drag(surface, at(40, 30), at(200, 120));
+    ASSERT_EQ(dragged.count(), 1);
+    const QRect region = view->region();
+    EXPECT_NEAR(region.left(), 40, 1);
+    EXPECT_NEAR(region.top(), 30, 1);
+    EXPECT_NEAR(region.right(), 200, 1);
+    EXPECT_NEAR(region.bottom(), 120, 1);
+}
+
+}  // namespace
+}  // namespace seamwright

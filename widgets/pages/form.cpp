@@ -55,6 +55,7 @@ QLabel* make_heading(const QString& text) {
     font.setBold(true);
     label->setFont(font);
     label->setContentsMargins(0, 8, 0, 0);
+    label->setWordWrap(true);
     return label;
 }
 

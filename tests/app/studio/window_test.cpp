@@ -228,11 +228,13 @@ TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
     view->set_region_tool(true);
     Person::drag(surface, at(40, 30), at(200, 120));
     ASSERT_EQ(dragged.count(), 1);
-    const QRect region = view->region();
+    const QRect region = dragged[0][0].toRect();
     EXPECT_NEAR(region.left(), 40, 1);
     EXPECT_NEAR(region.top(), 30, 1);
     EXPECT_NEAR(region.right(), 200, 1);
     EXPECT_NEAR(region.bottom(), 120, 1);
+    Person me(window());
+    EXPECT_TRUE(me.text_of("trouble_text").contains("part of its image")) << "no sensor is connected that could";
 }
 
 }  // namespace

@@ -340,6 +340,14 @@ void CalibrationDesk::set_looking(bool on) {
     if (on) look();
 }
 
+bool CalibrationDesk::switches_laser() const {
+    for (const SensorState& s : desk_.station().sensors)
+        if (s.id == session_->sensor_id())
+            return std::any_of(s.parameters.begin(), s.parameters.end(),
+                               [](const ParameterInfo& p) { return p.name == "laser"; });
+    return false;
+}
+
 // The newest live frame through the same function that captures, so that what is outlined is what will be
 // taken.
 void CalibrationDesk::look() {
@@ -348,6 +356,13 @@ void CalibrationDesk::look() {
     const auto snapshot = desk_.live().latest(session_->sensor_id());
     if (!sensor || !snapshot || !snapshot->frame || snapshot->number == looked_number_) return;
     looked_number_ = snapshot->number;
+    const CaptureKind kind = session_->method().capture;
+    if ((kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose) && switches_laser()) {
+        // Looking in vain for a board in the dark takes long, and a capture would wait for it.
+        live_ = {};
+        live_.frame = snapshot->frame;
+        return emit looked();
+    }
     look_pending_ = true;
     std::optional<Calibration> used;
     if (base()) used = *base();

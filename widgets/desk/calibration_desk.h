@@ -71,6 +71,8 @@ class CalibrationDesk : public QObject {
     double stillness() const { return stillness_; }  // 0 moving .. 1 stood still long enough
     void set_looking(bool on);                       // only while a page shows it
     const LiveTarget& live() const { return live_; }
+    bool switches_laser()
+        const;  // the sensor takes a board's picture with its laser off, when it is captured
 
     // The session's answer into the project, undoable there: kept, and with `use` put to use. Error: not
     // verified, nothing solved.

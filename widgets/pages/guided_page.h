@@ -62,7 +62,6 @@ class GuidedPage : public QWidget {
     bool simulated_sensor() const;
     bool simulated_robot() const;
     bool stored() const;
-    bool switches_laser() const;
     std::optional<Pose> target_pose() const;  // the next pose, or a simulated robot's first
     std::optional<Pose> flange() const;
     bool done(const Expected<void>& result);

@@ -404,14 +404,6 @@ void GuidedPage::refresh_busy() {
     keep_->setEnabled(ready);
 }
 
-bool GuidedPage::switches_laser() const {
-    for (const SensorState& s : desk_.station().sensors)
-        if (s.id == calibration_.session().sensor_id())
-            return std::any_of(s.parameters.begin(), s.parameters.end(),
-                               [](const ParameterInfo& p) { return p.name == "laser"; });
-    return false;
-}
-
 void GuidedPage::refresh_live() {
     if (!isVisible() || !calibration_.is_open()) return;
     const LiveTarget& live = calibration_.live();
@@ -420,7 +412,7 @@ void GuidedPage::refresh_live() {
     const CaptureKind kind = calibration_.session().method().capture;
     const bool board = kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose;
     QString words = live.seen ? tr("target seen") : live.words;
-    if (!live.seen && board && switches_laser())
+    if (!live.seen && board && calibration_.switches_laser())
         words = tr("The board is looked for with the laser off, at the capture.");
     target_->set_live(live.picture, image ? small_picture(live.frame->image, kLivePicture) : QImage(),
                       live.seen, words);

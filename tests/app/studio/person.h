@@ -29,6 +29,7 @@ inline constexpr int kPatienceMs = 20000;
 class Person {
   public:
     explicit Person(MainWindow& window) : window_(window) {}
+    MainWindow& window() const { return window_; }
 
     template <class T>
     T* find(const QString& name) const {
@@ -92,16 +93,31 @@ class Person {
         QApplication::processEvents();
         EXPECT_FALSE(editor->refused()) << editor->reason().toStdString();
     }
-    // Types into the file dialog that the next action opens.
+    // Pastes into the file dialog that the next action opens, as soon as it is there, and again when the list
+    // of completions has taken the Return for itself.
     void answer_file_dialog(const QString& path) const {
-        QTimer::singleShot(300, &window_, [path] {
+        auto* timer = new QTimer(&window_);
+        QObject::connect(timer, &QTimer::timeout, timer, [timer, path, patience = 60]() mutable {
             auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
-            ASSERT_TRUE(dialog) << "no file dialog opened";
+            if (!dialog) {
+                if (--patience > 0) return;
+                ADD_FAILURE() << "no file dialog opened";
+                timer->deleteLater();
+                return;
+            }
+            timer->stop();
             auto* line = dialog->findChild<QLineEdit*>("fileNameEdit");
+            line->setFocus();
             line->selectAll();
-            QTest::keyClicks(line, path);
+            QApplication::clipboard()->setText(path);
+            QTest::keyClick(line, Qt::Key_V, Qt::ControlModifier);
             QTest::keyClick(line, Qt::Key_Return);
+            if (dialog->isVisible())
+                timer->start();
+            else
+                timer->deleteLater();
         });
+        timer->start(300);
     }
     static void drag(QWidget* on, QPoint from, QPoint to) {
         QTest::mousePress(on, Qt::LeftButton, {}, from);

@@ -32,7 +32,9 @@ class HandOverCommands : public testing::Test {
         project.calibrations[0].created_utc = "2024-01-01T00:00:00.000Z";
         project.requirements.calibration_age_days = 3650;
         project.regions[0].sigma_limit_mm = 0.15;
-        project.regions[0].limits = {8, 0.8};
+        project.regions[0].limits = {1.5, 0.15};
+        project.requirements.known_shift_mm = 2;  // contour ends are lost farther out
+        project.requirements.known_shift_deg = 0.2;
         ASSERT_TRUE(ProjectFile::create(file, project));
         // References as the first run measures them.
         ASSERT_NE(run({"run", file.string()}).exit_code, 3);
@@ -76,13 +78,14 @@ TEST_F(HandOverCommands, FromOpenStepsToASignedReport) {
 
     const json zero = answer({"zero-shift", file.string(), "--runs", "3"}, 0);
     EXPECT_EQ(zero["runs"].size(), 3u);
-    const json known = answer({"known-shift", file.string(), "--step-mm", "10", "--step-deg", "1", "--csv",
-                               (folder / "shift.csv").string()},
-                              0);
+    const json known =
+        answer({"known-shift", file.string(), "--range-mm", "2", "--step-mm", "2", "--range-deg", "0.2",
+                "--step-deg", "0.2", "--csv", (folder / "shift.csv").string()},
+               0);
     EXPECT_EQ(known["tests"].size(), 18u);
     EXPECT_LT(known["regions"][0]["three_sigma_mm"].get<double>(), 0.5);
-    EXPECT_GT(known["proven_translation_mm"].get<double>(), 9);
-    EXPECT_THAT(slurp(folder / "shift.csv"), HasSubstr("translation,X,-10,"));
+    EXPECT_GT(known["proven_translation_mm"].get<double>(), 1.9);
+    EXPECT_THAT(slurp(folder / "shift.csv"), HasSubstr("translation,X,-2,"));
     EXPECT_EQ(run({"run", file.string(), "--part", "first", "--push"}).exit_code, 0);
 
     check = answer({"check", file.string(), "--commissioned", "--connect"}, 0);

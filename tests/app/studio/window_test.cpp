@@ -234,7 +234,8 @@ TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
     EXPECT_NEAR(region.right(), 200, 1);
     EXPECT_NEAR(region.bottom(), 120, 1);
     Person me(window());
-    EXPECT_TRUE(me.text_of("trouble_text").contains("part of its image")) << "no sensor is connected that could";
+    EXPECT_TRUE(me.text_of("trouble_text").contains("part of its image"))
+        << "no sensor is connected that could";
 }
 
 }  // namespace

@@ -509,10 +509,9 @@ void MainWindow::refresh_next() {
 void MainWindow::refresh_status() {
     QStringList sensors, robots;
     for (const SensorState& s : desk_.station().sensors) {
-        const auto live = desk_.live().latest(s.id);
         sensors << (s.trouble.empty() ? tr("sensor %1 ok %2 /s, %3 dropped")
                                             .arg(QString::fromStdString(s.id))
-                                            .arg(live ? std::lround(live->rate_hz) : 0)
+                                            .arg(std::lround(desk_.live().rate_hz(s.id)))
                                             .arg(s.counters.damaged + s.counters.underrun)
                                       : tr("sensor %1 no frame").arg(QString::fromStdString(s.id)));
     }

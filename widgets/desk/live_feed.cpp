@@ -1,7 +1,5 @@
 #include "widgets/desk/live_feed.h"
 
-#include <chrono>
-
 #include "core/features/feature.h"
 
 namespace seamwright {
@@ -17,7 +15,7 @@ struct LiveFeed::Lane {
     std::int64_t last_time_ns = -1;
     std::uint64_t number = 0;
     double rate_hz = 0;
-    Clock::time_point last_seen;
+    Clock::time_point last_seen, asked;  // converted; by a view
     ProfileCandidates candidates;
     std::shared_ptr<const LiveSnapshot> newest;
 };
@@ -84,7 +82,15 @@ void LiveFeed::set_recipe(const std::string& sensor_id, const LiveRecipe& recipe
 std::shared_ptr<const LiveSnapshot> LiveFeed::latest(const std::string& sensor_id) const {
     const std::lock_guard lock(mutex_);
     const auto it = lanes_.find(sensor_id);
-    return it == lanes_.end() ? nullptr : it->second->newest;
+    if (it == lanes_.end()) return nullptr;
+    it->second->asked = Clock::now();
+    return it->second->newest;
+}
+
+double LiveFeed::rate_hz(const std::string& sensor_id) const {
+    const std::lock_guard lock(mutex_);
+    const auto it = lanes_.find(sensor_id);
+    return it == lanes_.end() || !it->second->newest ? 0 : it->second->newest->rate_hz;
 }
 
 void LiveFeed::taken() {
@@ -108,6 +114,8 @@ void LiveFeed::work(const std::stop_token& stop) {
                     const std::lock_guard lock(mutex_);
                     const auto it = lanes_.find(id);
                     if (it == lanes_.end() || it->second != lane) continue;  // detached meanwhile
+                    const auto now = Clock::now();
+                    if (now - lane->asked > kShownFor && now - lane->last_seen < kHiddenPeriod) continue;
                 }
                 frame = lane->source->latest();
                 if (!frame ||
@@ -115,6 +123,8 @@ void LiveFeed::work(const std::stop_token& stop) {
                     continue;
                 counters = lane->source->counters();
             }
+            const std::uint64_t frames =
+                frame->sequence > lane->last_sequence ? frame->sequence - lane->last_sequence : 1;
             lane->last_sequence = frame->sequence;
             lane->last_time_ns = frame->host_time_ns;
             LiveRecipe recipe;
@@ -139,7 +149,7 @@ void LiveFeed::work(const std::stop_token& stop) {
             const auto now = Clock::now();
             if (lane->number > 1) {
                 const double seconds = std::chrono::duration<double>(now - lane->last_seen).count();
-                const double rate = seconds > 1e-6 ? 1 / seconds : 0;
+                const double rate = seconds > 1e-6 ? static_cast<double>(frames) / seconds : 0;
                 lane->rate_hz = lane->rate_hz > 0 ? 0.9 * lane->rate_hz + 0.1 * rate : rate;
             }
             lane->last_seen = now;

@@ -1,10 +1,13 @@
 #pragma once
 // What the sensors see, for screens: newest frames only, turned into profiles by the project's recipe on a
 // thread of its own. Whoever triggers the sensors (StationWorker when nothing runs, a run, a free-running
-// sensor) does not wait for it and is not waited for.
+// sensor) does not wait for it and is not waited for. A sensor whose snapshots nobody has asked for within
+// kShownFor is looked at twice a second only: filtering what no view shows would cost a core with eight
+// sensors.
 
 #include <QObject>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <memory>
@@ -36,10 +39,12 @@ struct LiveSnapshot {
     std::optional<Feature> feature;  // of LiveRecipe::feature
     FramePtr frame;                  // raw image where the sensor gives one
     StripePeaks peaks;               // of the image
-    double rate_hz = 0;              // frames seen by the screen
+    double rate_hz = 0;              // frames of the source, by their numbers
     SourceCounters counters;
     std::string trouble;  // why there is no profile; empty when there is one
 };
+
+inline constexpr std::chrono::milliseconds kShownFor{1000}, kHiddenPeriod{500};
 
 class LiveFeed : public QObject {
     Q_OBJECT
@@ -51,8 +56,9 @@ class LiveFeed : public QObject {
     void attach(const std::map<std::string, ProfileSource*>& sources);
     void detach();
     void set_recipe(const std::string& sensor_id, const LiveRecipe& recipe);
-    // nullptr before the first frame.
+    // nullptr before the first frame. Whoever asks shows it.
     std::shared_ptr<const LiveSnapshot> latest(const std::string& sensor_id) const;
+    double rate_hz(const std::string& sensor_id) const;  // 0 before the second frame
 
   signals:
     void arrived();  // at least one sensor has a newer snapshot; coalesced

@@ -53,7 +53,6 @@ QStringList differences(const Project& before, const Project& after) {
     if (!same(before.requirements, after.requirements)) lines << RecoveryText::tr("requirements changed");
     if (!same(before.part, after.part) || before.part.mesh_ply != after.part.mesh_ply)
         lines << RecoveryText::tr("part changed");
-    if (!same(before.requirements, after.requirements)) lines << RecoveryText::tr("requirements changed");
     list_differences(before.sensors, after.sensors, lines);
     list_differences(before.robots, after.robots, lines);
     list_differences(before.calibrations, after.calibrations, lines);

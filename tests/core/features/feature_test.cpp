@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "contours.h"
 #include "core/features/gap_flush.h"
 #include "counted_allocations.h"
@@ -23,7 +26,7 @@ std::unique_ptr<FeatureFinder> finder(const std::string& kind, ParameterValues v
 }
 
 TEST(FeatureRegistry, EveryKindIsMadeAndDescribesItself) {
-    ASSERT_EQ(feature_kinds().size(), 5U);
+    ASSERT_EQ(feature_kinds().size(), 6U);
     for (const FeatureKind& kind : feature_kinds()) {
         EXPECT_EQ(feature_kind(kind.name), &kind);
         EXPECT_FALSE(kind.help.empty());
@@ -214,6 +217,19 @@ TEST(GapFlush, KnownGapEitherReference) {
     EXPECT_EQ(GapFlushGauge({}).measure(sample(line, 0.05)).status, GapFlushStatus::not_found);
 }
 
+TEST(Features, SensorPointIsTheSensorsWithTheStatedSigma) {
+    Profile points;
+    points.x_mm = {1, std::numeric_limits<double>::quiet_NaN(), -3.5};
+    points.z_mm = {2, 4, 0.25};
+    points.segment = {kOutlier, kOutlier, kOutlier};  // no contour, no segments
+    const Feature third = finder("sensor-point", {{"index", 2}, {"sigma_mm", 0.1}})->find(points);
+    ASSERT_EQ(third.status, FeatureStatus::ok) << third.message;
+    EXPECT_EQ(third.point_mm, Eigen::Vector2d(-3.5, 0.25));
+    EXPECT_TRUE(third.covariance_mm2.isApprox(0.01 * Eigen::Matrix2d::Identity(), 1e-12));
+    EXPECT_EQ(finder("sensor-point", {{"index", 1}})->find(points).status, FeatureStatus::not_found);
+    EXPECT_EQ(finder("sensor-point", {{"index", 3}})->find(points).status, FeatureStatus::no_points);
+}
+
 TEST(Features, HostileProfilesNeverGiveAGoodPoint) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     Profile none, one, same, nans, two;
@@ -229,6 +245,8 @@ TEST(Features, HostileProfilesNeverGiveAGoodPoint) {
     for (const FeatureKind& kind : feature_kinds()) {
         const auto f = finder(std::string(kind.name));
         for (const Profile* p : {&none, &one, &two, &same, &nans, &outliers, &infinite}) {
+            // The sensor's own point needs no contour: any finite one is what the sensor says.
+            if (kind.name == "sensor-point" && p->size() > 0 && std::isfinite(p->z_mm[0])) continue;
             const Feature r = f->find(*p);
             EXPECT_NE(r.status, FeatureStatus::ok) << kind.name;
             EXPECT_FALSE(r.message.empty()) << kind.name;

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "projects/calibrate/methods.h"
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/lookup_table_file.h"
+#include "projects/calibrate/methods.h"
 #include "tests/core/calibration/camera_scene.h"
 #include "tests/devices/temporary_folder.h"
 

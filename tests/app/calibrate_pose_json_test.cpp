@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "projects/calibrate/methods.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods.h"
 #include "tests/core/calibration/hand_eye_simulation.h"
 #include "tests/core/calibration/sphere_simulation.h"
 

@@ -15,6 +15,7 @@
 namespace seamwright {
 
 struct ParameterEditor::Impl {
+    QLabel* label = nullptr;
     ParameterInfo info;
     double value = 0;
     QLineEdit* line = nullptr;
@@ -49,7 +50,7 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
     auto* row = new QHBoxLayout;
     row->setSpacing(6);
     column->addLayout(row);
-    auto* label = new QLabel(name, this);
+    auto* label = impl_->label = new QLabel(name, this);
     label->setWordWrap(true);
     label->setFixedWidth(fontMetrics().averageCharWidth() * kLabelSigns);
     label->setToolTip(help);
@@ -96,6 +97,13 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
 }
 
 ParameterEditor::~ParameterEditor() = default;
+
+void ParameterEditor::set_name(const QString& name) {
+    impl_->label->setText(name);
+    setAccessibleName(name);
+    if (impl_->line) impl_->line->setAccessibleName(name);
+    if (impl_->choice) impl_->choice->setAccessibleName(name);
+}
 
 const ParameterInfo& ParameterEditor::info() const {
     return impl_->info;

@@ -26,6 +26,7 @@ class ParameterEditor : public QWidget {
     explicit ParameterEditor(const ParameterInfo& info, QWidget* parent = nullptr);
     ~ParameterEditor() override;
     const ParameterInfo& info() const;
+    void set_name(const QString& name);  // in place of the word for info().name
     double value() const;
     void set_value(double value);  // no signal; clamped into the range (NaN: the default)
     bool refused() const;

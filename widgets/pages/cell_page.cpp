@@ -124,8 +124,8 @@ CellPage::CellPage(Desk& desk, const Views& views)
         auto* editor = new ParameterEditor(f.info);
         connect(editor, &ParameterEditor::committed, this,
                 [this, name = f.info.name](double value) { done(desk_.set_requirement(name, value)); });
-        add_field(box(), names.value(static_cast<qsizetype>(requirements_.size())), editor,
-                  QString::fromStdString(f.info.help));
+        editor->set_name(names.value(static_cast<qsizetype>(requirements_.size())));
+        box().addWidget(editor);
         requirements_.push_back(editor);
     }
 

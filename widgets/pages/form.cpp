@@ -92,7 +92,8 @@ void add_field(QVBoxLayout& layout, const QString& label, QWidget* field, const 
     auto* row = new QHBoxLayout;
     auto* name = new QLabel(label);
     name->setBuddy(field);
-    name->setMinimumWidth(130);
+    name->setFixedWidth(130);
+    name->setWordWrap(true);
     row->addWidget(name);
     row->addWidget(field, 1);
     field->setToolTip(tip);

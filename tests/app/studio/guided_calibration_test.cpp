@@ -242,52 +242,6 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     EXPECT_TRUE(me.wait([&] { return me.find<QPushButton>("calibration_use")->isEnabled(); }));
 }
 
-// Every method that captures live, from the first capture to the stored calibration.
-class GuidedLive : public Guided, public testing::WithParamInterface<std::tuple<const char*, int, bool>> {};
-
-TEST_P(GuidedLive, OnTheSimulatedCell) {
-    const auto [method, poses, used] = GetParam();
-    make_project();
-    Studio studio(*qApp, options());
-    MainWindow& window = studio.window();
-    window.resize(1280, 800);
-    window.show();
-    Person me(window);
-    Desk& desk = studio.desk();
-    go_to_page(me, desk, method);
-    me.click("calibration_set_target");
-    for (int i = 0; i < poses; ++i) {
-        capture(me, desk);
-        ASSERT_FALSE(HasFailure());
-    }
-    ASSERT_TRUE(solved(me, window));
-    capture(me, desk, "calibration_verify");
-    ASSERT_TRUE(solved(me, window));
-    me.picture(QString("guided_%1").arg(method));
-    const QString verdict = me.text_of("calibration_verdict");
-    EXPECT_TRUE(verdict == "good" || verdict == "usable") << me.text_of("calibration_reason").toStdString();
-    EXPECT_TRUE(me.text_of("calibration_verified").startsWith("confirmed"))
-        << me.text_of("calibration_verified").toStdString();
-    me.click(used ? "calibration_use" : "calibration_keep");
-    ASSERT_EQ(desk.project().calibrations.size(), 2U) << me.text_of("calibration_said").toStdString();
-    const Calibration& made = desk.project().calibrations.back();
-    EXPECT_EQ(made.method, method);
-    EXPECT_EQ(desk.project().sensors.at(0).calibration_id == made.id, used);
-    if (used) {
-        EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 1.0)
-            << "over the whole field";
-    }
-    me.click("calibration_back");
-}
-INSTANTIATE_TEST_SUITE_P(Methods, GuidedLive,
-                         testing::Values(std::tuple{"stripe-camera", 10, true},
-                                         std::tuple{"hand-eye", 8, true}, std::tuple{"lens", 9, false}),
-                         [](const auto& one) {
-                             std::string name = std::get<0>(one.param);
-                             std::erase(name, '-');
-                             return name;
-                         });
-
 // Every method whose data are measured elsewhere, from its file to the stored calibration; one entry of each
 // is wrong, is seen in the list and left out.
 class GuidedFile : public Guided, public testing::WithParamInterface<const char*> {

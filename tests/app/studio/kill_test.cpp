@@ -225,7 +225,8 @@ TEST(StudioKilled, NothingCommittedIsLostAndTheQuestionComesWhenThereIsSomething
         expected.meet(disk);
         ++count[disk.differs ? "something to restore" : "nothing to restore"];
         if (disk.kept && !disk.differs) ++count["kept as saved"];
-        if (fs::exists(file.string() + "-journal") || fs::exists(file.string() + "-wal")) ++count["journal left"];
+        if (fs::exists(file.string() + "-journal") || fs::exists(file.string() + "-wal"))
+            ++count["journal left"];
     }
     for (const auto& [what, times] : count) std::printf("%s: %d\n", what.c_str(), times);
     for (const auto& entry : fs::directory_iterator(folder.path()))

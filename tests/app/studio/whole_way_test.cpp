@@ -47,7 +47,15 @@ class WholeWay : public testing::Test {
     }
 };
 
+// Limits are held against the displacements that were proven.
+bool green_when(bool proven, CheckStep step) {
+    return proven || (step != CheckStep::known_shift && step != CheckStep::limits);
+}
+
 TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
+    // A spot that jitters along the displaced contour makes a known shift contradict itself now and then; the
+    // checklist says so then, and stays open there.
+    bool proven = false;
     const nlohmann::json settings = {
         {"seed", 3},
         {"robot", {{"frames", {{"BASE_Region1", pose_json(default_cell_settings().base_from_workobject)}}}}}};
@@ -231,13 +239,11 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
             ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 6 * kPatienceMs));
             QTest::qWait(100);
         }
-        // A spot that jitters along the displaced contour makes a shift contradict itself now and then; the
-        // checklist says so then and stays open there.
-        if (!item(CheckStep::known_shift).done())
-            EXPECT_NE(
-                item(CheckStep::known_shift).why.in(Language::english).find("known shifts were refused"),
-                std::string::npos)
-                << item(CheckStep::known_shift).why.in(Language::english);
+        proven = item(CheckStep::known_shift).done();
+        if (!proven) {
+            const std::string why = item(CheckStep::known_shift).why.in(Language::english);
+            EXPECT_NE(why.find("known shifts were refused"), std::string::npos) << why;
+        }
         me.picture("08_known");
 
         // Limits: the checklist says which are too wide, and leads to their page.
@@ -248,15 +254,16 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         checklist->setFocus();
         checklist->setCurrentCell(static_cast<int>(CheckStep::limits), 0);
         me.picture("08_checklist");
-        EXPECT_TRUE(me.text_of("finding").contains("lower its limits"))
-            << me.text_of("finding").toStdString();
+        if (proven) {
+            EXPECT_TRUE(me.text_of("finding").contains("lower its limits"))
+                << me.text_of("finding").toStdString();
+        }
         me.click("open_step");
         ASSERT_EQ(window.step(), Step::regions);
         me.write_parameter("limit_translation_mm", "15");
         me.write_parameter("limit_rotation_deg", "1");
-        EXPECT_TRUE(item(CheckStep::limits).done()) << item(CheckStep::limits).why.in(Language::english);
         for (const CheckItem& check : desk.checks())
-            EXPECT_EQ(check.done(), check.step != CheckStep::headless)
+            EXPECT_EQ(check.done(), check.step != CheckStep::headless && green_when(proven, check.step))
                 << to_string(check.step) << ": " << check.why.in(Language::english);
 
         // The next part, measured and pushed.
@@ -323,8 +330,9 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
 
     // Everything is green: the way ends at measuring, and the report is one click.
     for (const CheckItem& check : again.desk().checks())
-        EXPECT_TRUE(check.done()) << to_string(check.step) << ": " << check.why.in(Language::english);
-    EXPECT_EQ(next_step(again.desk().steps()), Step::run);
+        EXPECT_EQ(check.done(), green_when(proven, check.step))
+            << to_string(check.step) << ": " << check.why.in(Language::english);
+    EXPECT_EQ(next_step(again.desk().steps()), proven ? Step::run : Step::prove);
     me.step(6);
     me.picture("12_green");
     const QString pdf = QString::fromStdString((folder / "door.pdf").string());

@@ -25,17 +25,15 @@ class HandOverCommands : public testing::Test {
 
     void SetUp() override {
         nlohmann::json settings = cell_settings(Pose::Identity());
-        // A contour end that jitters along a displaced contour contradicts the others now and then; this is
-        // about the way from open steps to a report.
-        settings["robot"]["trigger_jitter_mm"] = 0.1;
-        settings["robot"]["repeatability_mm"] = 0.01;
         const auto cell = SimulatedCell::open(settings).value();
         settings["robot"]["frames"]["path"] = pose_json(cell->base_from_workobject());
         project = door_project(*cell, settings);
-        project.requirements.sigma3_mm = 0.5;
+        // Contour ends scatter more than door_project() states: stated so, no shift contradicts itself.
+        for (Spot& spot : project.spots) spot.sigma_mm *= 3;
+        project.requirements.sigma3_mm = 1.5;
         project.calibrations[0].created_utc = "2024-01-01T00:00:00.000Z";
         project.requirements.calibration_age_days = 3650;
-        project.regions[0].sigma_limit_mm = 0.15;
+        project.regions[0].sigma_limit_mm = 0.5;
         project.regions[0].limits = {1.5, 0.15};
         project.requirements.known_shift_mm = 2;  // contour ends are lost farther out
         project.requirements.known_shift_deg = 0.2;

@@ -95,10 +95,13 @@ void ProvePage::make_known_shift() {
     by_->addItem(tr("I shift the base or the part"), static_cast<int>(ShiftBy::by_hand));
     by_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     by_->setMinimumContentsLength(16);
-    add_field(box(), tr("How"), by_,
-              tr("A base shift looks to the sensor as if the part had moved. Controllers that hold their own "
-                 "program "
-                 "are shifted by hand."));
+    by_->setAccessibleName(tr("How"));
+    by_->setMinimumHeight(style::kTargetPx);
+    by_->setToolTip(
+        tr("A base shift looks to the sensor as if the part had moved. Controllers that hold their own "
+           "program "
+           "are shifted by hand."));
+    box().addWidget(by_);
     const ShiftGrid grid;
     range_mm_ = spin("shift_range_mm", grid.range_mm, 100, 1, tr(" mm"));
     step_mm_ = spin("shift_step_mm", grid.step_mm, 100, 1, tr(" mm"));

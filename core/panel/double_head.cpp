@@ -1,0 +1,335 @@
+#include "core/panel/double_head.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <tuple>
+
+namespace seamwright {
+namespace {
+
+constexpr int kSharedCellsOfOneSegment = 3;
+constexpr int kDirectionCells = 5;  // to either side, for the direction of the contour in a cell
+
+struct Point {
+    double x, z;
+    float intensity;
+    int piece;  // of both heads, counted through
+    double weight;
+};
+
+struct Side {
+    std::vector<Point> points;  // in sensor order
+    double pitch = 0;
+    double off_plane = 0;
+};
+
+// The points of one head in a cell that belong to one piece.
+struct Group {
+    int piece, head, count = 0;
+    std::vector<Point> points{};
+    double x = 0, z = 0, weight = 0;
+};
+
+struct Shared {
+    std::int64_t cell;
+    const Group *first, *second;
+    Eigen::Vector2d mean;
+    double weight;
+};
+
+Expected<void> check_head(const Profile& profile, const Head& head, const std::string& where) {
+    const std::size_t n = profile.x_mm.size();
+    if (profile.z_mm.size() != n || (!profile.intensity.empty() && profile.intensity.size() != n))
+        return input_error("the columns of the profile differ in length", where);
+    if (n > 0 && !profile.filtered())
+        return input_error("the profile is not filtered", where, "filter it before the heads are merged");
+    if (auto rigid = pose_from_matrix(head.sensor_from_head.matrix(), where); !rigid)
+        return tl::unexpected(rigid.error());
+    if (!(head.sigma_mm > 0) || !std::isfinite(head.sigma_mm))
+        return input_error(fmt::format("sigma of {} mm is not positive", head.sigma_mm), where,
+                           "state the standard deviation of a point");
+    return {};
+}
+
+Side side_of(const Profile& profile, const Head& head, int first_piece, int& pieces) {
+    Side side;
+    std::map<std::int32_t, int> piece_of;
+    std::vector<double> steps;
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        const double x = profile.x_mm[i], z = profile.z_mm[i];
+        if (profile.segment[i] == kOutlier || !std::isfinite(x) || !std::isfinite(z)) continue;
+        const Eigen::Vector3d p = head.sensor_from_head * Eigen::Vector3d(x, 0, z);
+        const int piece =
+            piece_of.try_emplace(profile.segment[i], first_piece + static_cast<int>(piece_of.size()))
+                .first->second;
+        if (!side.points.empty() && side.points.back().piece == piece)
+            steps.push_back(std::hypot(p.x() - side.points.back().x, p.z() - side.points.back().z));
+        side.off_plane = std::max(side.off_plane, std::abs(p.y()));
+        side.points.push_back({p.x(), p.z(), profile.intensity.empty() ? 0.f : profile.intensity[i], piece,
+                               1 / (head.sigma_mm * head.sigma_mm)});
+    }
+    pieces = static_cast<int>(piece_of.size());
+    if (!steps.empty()) {
+        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+        std::nth_element(steps.begin(), middle, steps.end());
+        side.pitch = *middle;
+    }
+    return side;
+}
+
+// Cell -> groups, the points of a group in an order that does not depend on how they came.
+using Cells = std::map<std::int64_t, std::vector<Group>>;
+
+void add_to(Cells& cells, const Side& side, int head, double pitch) {
+    for (const Point& p : side.points) {
+        auto& groups = cells[static_cast<std::int64_t>(std::floor(p.x / pitch))];
+        auto group =
+            std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.piece == p.piece; });
+        if (group == groups.end()) group = groups.insert(groups.end(), Group{p.piece, head});
+        group->points.push_back(p);
+    }
+}
+
+void close(Cells& cells) {
+    for (auto& [cell, groups] : cells)
+        for (Group& g : groups) {
+            std::sort(g.points.begin(), g.points.end(),
+                      [](const Point& a, const Point& b) { return std::tie(a.x, a.z) < std::tie(b.x, b.z); });
+            for (const Point& p : g.points) {
+                g.x += p.weight * p.x;
+                g.z += p.weight * p.z;
+                g.weight += p.weight;
+                ++g.count;
+            }
+            g.x /= g.weight;
+            g.z /= g.weight;
+        }
+}
+
+// The nearest pair of the two heads in each cell. Cells where both see something, but nothing in common, are
+// counted in `contradicting`.
+std::vector<Shared> share(const Cells& cells, int& contradicting) {
+    std::vector<Shared> out;
+    for (const auto& [cell, groups] : cells) {
+        std::optional<Shared> best;
+        double nearest = kSameSurfaceMm;
+        bool both = false;
+        for (const Group& a : groups)
+            for (const Group& b : groups) {
+                if (a.head != 0 || b.head != 1) continue;
+                both = true;
+                const double off = std::abs(b.z - a.z);
+                if (off > nearest) continue;
+                nearest = off;
+                const double w = a.weight + b.weight;
+                best = Shared{
+                    cell, &a, &b,
+                    Eigen::Vector2d(a.weight * a.x + b.weight * b.x, a.weight * a.z + b.weight * b.z) / w, w};
+            }
+        if (best)
+            out.push_back(*best);
+        else
+            contradicting += both;
+    }
+    return out;
+}
+
+// Across the contour around cell k, on the sensor's side.
+Eigen::Vector2d normal_at(const std::vector<Shared>& shared, std::size_t k) {
+    const auto reach = static_cast<std::size_t>(kDirectionCells);
+    const std::size_t from = k > reach ? k - reach : 0, to = std::min(shared.size(), k + reach + 1);
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    int n = 0;
+    const auto same = [&](std::size_t i) {
+        return shared[i].first->piece == shared[k].first->piece &&
+               shared[i].second->piece == shared[k].second->piece;
+    };
+    for (std::size_t i = from; i < to; ++i)
+        if (same(i)) {
+            centre += shared[i].mean;
+            ++n;
+        }
+    centre /= n;
+    double xx = 0, xz = 0, zz = 0;
+    for (std::size_t i = from; i < to; ++i)
+        if (same(i)) {
+            const Eigen::Vector2d d = shared[i].mean - centre;
+            xx += d.x() * d.x();
+            xz += d.x() * d.y();
+            zz += d.y() * d.y();
+        }
+    const double angle = 0.5 * std::atan2(2 * xz, xx - zz);
+    const Eigen::Vector2d normal(-std::sin(angle), std::cos(angle));
+    return normal.y() < 0 ? Eigen::Vector2d(-normal) : normal;
+}
+
+void compare(const std::vector<Shared>& shared, DoubleHeadProfile& out) {
+    double squares = 0, sum = 0, weights = 0;
+    for (std::size_t k = 0; k < shared.size(); ++k) {
+        const Group &a = *shared[k].first, &b = *shared[k].second;
+        const double d = normal_at(shared, k).dot(Eigen::Vector2d(b.x - a.x, b.z - a.z));
+        const double weight = 1 / (1 / a.weight + 1 / b.weight);
+        squares += d * d;
+        sum += weight * d;
+        weights += weight;
+    }
+    out.disagreement_mm = std::sqrt(squares / static_cast<double>(shared.size()));
+    out.offset_mm = sum / weights;
+    out.offset_sigma_mm = 1 / std::sqrt(weights);
+}
+
+// Pieces that became one: union-find over all pieces of both heads.
+class Pieces {
+  public:
+    explicit Pieces(int count) : parent_(static_cast<std::size_t>(count)) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
+    int root(int piece) {
+        while (parent_[static_cast<std::size_t>(piece)] != piece)
+            piece = parent_[static_cast<std::size_t>(piece)];
+        return piece;
+    }
+    void join(int a, int b) { parent_[static_cast<std::size_t>(root(a))] = root(b); }
+
+  private:
+    std::vector<int> parent_;
+};
+
+struct Merged {
+    double x, z, intensity, sigma;
+    int piece;
+};
+
+void write(std::vector<Merged> points, bool with_intensity, DoubleHeadProfile& out) {
+    std::map<int, std::pair<double, double>> first;  // least (x, z) of a piece
+    for (const Merged& p : points) {
+        const auto at = std::pair(p.x, p.z);
+        if (auto [it, added] = first.try_emplace(p.piece, at); !added) it->second = std::min(it->second, at);
+    }
+    std::vector<std::pair<std::pair<double, double>, int>> order;
+    for (const auto& [piece, at] : first) order.push_back({at, piece});
+    std::sort(order.begin(), order.end());
+    std::map<int, std::int32_t> number;
+    for (const auto& [at, piece] : order) number[piece] = static_cast<std::int32_t>(number.size());
+    for (Merged& p : points) p.piece = number[p.piece];
+    std::sort(points.begin(), points.end(), [](const Merged& a, const Merged& b) {
+        return std::tie(a.piece, a.x, a.z) < std::tie(b.piece, b.x, b.z);
+    });
+    for (const Merged& p : points) {
+        out.profile.x_mm.push_back(p.x);
+        out.profile.z_mm.push_back(p.z);
+        out.profile.segment.push_back(p.piece);
+        if (with_intensity) out.profile.intensity.push_back(static_cast<float>(p.intensity));
+        out.sigma_mm.push_back(p.sigma);
+    }
+}
+
+void merge(const Cells& cells, const std::vector<Shared>& shared, int pieces, bool with_intensity,
+           DoubleHeadProfile& out) {
+    Pieces joined(pieces);
+    for (const Shared& s : shared) joined.join(s.first->piece, s.second->piece);
+    std::vector<Merged> points;
+    auto next = shared.begin();
+    for (const auto& [cell, groups] : cells) {
+        const Shared* both = next != shared.end() && next->cell == cell ? &*next++ : nullptr;
+        for (const Group& g : groups) {
+            if (both && (&g == both->first || &g == both->second)) continue;
+            for (const Point& p : g.points)
+                points.push_back({p.x, p.z, p.intensity, 1 / std::sqrt(p.weight), joined.root(p.piece)});
+        }
+        if (!both) continue;
+        const auto total = [](const Group& g) {
+            double sum = 0;
+            for (const Point& p : g.points) sum += p.weight * static_cast<double>(p.intensity);
+            return sum;
+        };
+        points.push_back({both->mean.x(), both->mean.y(),
+                          (total(*both->first) + total(*both->second)) / both->weight,
+                          1 / std::sqrt(both->weight), joined.root(both->first->piece)});
+    }
+    write(std::move(points), with_intensity, out);
+}
+
+}  // namespace
+
+std::string_view to_string(DoubleHeadStatus status) {
+    constexpr std::array<std::string_view, 5> names{"ok", "no_points", "not_coplanar", "no_overlap",
+                                                    "disagree"};
+    return names[static_cast<std::size_t>(status)];
+}
+
+Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_head, const Profile& second,
+                                        const Head& second_head, const DoubleHeadOptions& options) {
+    if (auto good = check_head(first, first_head, "first head"); !good) return tl::unexpected(good.error());
+    if (auto good = check_head(second, second_head, "second head"); !good)
+        return tl::unexpected(good.error());
+    if (!(options.disagreement_limit_mm > 0 && options.disagreement_limit_mm < kSameSurfaceMm))
+        return input_error(
+            fmt::format("a disagreement limit of {} mm is out of range", options.disagreement_limit_mm),
+            "disagreement_limit_mm", fmt::format("give more than 0 and less than {} mm", kSameSurfaceMm));
+    if (!(options.plane_limit_mm > 0) || !(options.minimum_overlap_mm > 0))
+        return input_error("a limit of the double head is not positive",
+                           "plane_limit_mm, minimum_overlap_mm");
+
+    DoubleHeadProfile out;
+    int first_pieces = 0, second_pieces = 0;
+    const Side a = side_of(first, first_head, 0, first_pieces);
+    const Side b = side_of(second, second_head, first_pieces, second_pieces);
+    if (!(a.pitch > 0) || !(b.pitch > 0)) {
+        out.message = fmt::format("the {} head saw no usable contour", a.pitch > 0 ? "second" : "first");
+        return out;
+    }
+    if (const double off = std::max(a.off_plane, b.off_plane); off > options.plane_limit_mm) {
+        out.status = DoubleHeadStatus::not_coplanar;
+        out.message = fmt::format("the laser planes of the heads lie {:.2f} mm apart, allowed are {:.2f} mm",
+                                  off, options.plane_limit_mm);
+        return out;
+    }
+    const double pitch = std::max(a.pitch, b.pitch);
+    Cells cells;
+    add_to(cells, a, 0, pitch);
+    add_to(cells, b, 1, pitch);
+    close(cells);
+    int contradicting = 0;
+    std::vector<Shared> shared = share(cells, contradicting);
+    std::map<std::pair<int, int>, int> together;
+    for (const Shared& s : shared) ++together[{s.first->piece, s.second->piece}];
+    std::erase_if(shared, [&](const Shared& s) {
+        return together[{s.first->piece, s.second->piece}] < kSharedCellsOfOneSegment;
+    });
+
+    out.shared_cells = static_cast<int>(shared.size());
+    out.overlap_mm = pitch * out.shared_cells;
+    if (contradicting > out.shared_cells) {
+        out.status = DoubleHeadStatus::disagree;
+        out.disagreement_mm = kSameSurfaceMm;
+        out.message = fmt::format("the heads show surfaces more than {:g} mm apart in most of the overlap",
+                                  kSameSurfaceMm);
+        return out;
+    }
+    if (!(out.overlap_mm >= options.minimum_overlap_mm)) {
+        out.status = DoubleHeadStatus::no_overlap;
+        out.message = fmt::format("the stripes of the heads share {:.1f} mm, needed are {:.1f} mm",
+                                  out.overlap_mm, options.minimum_overlap_mm);
+        return out;
+    }
+    compare(shared, out);
+    merge(cells, shared, first_pieces + second_pieces, !first.intensity.empty() && !second.intensity.empty(),
+          out);
+    out.status = DoubleHeadStatus::ok;
+    if (out.disagreement_mm > options.disagreement_limit_mm) {
+        out.status = DoubleHeadStatus::disagree;
+        out.message = fmt::format(
+            "the heads disagree by {:.3f} mm in the overlap, allowed are {:.3f} mm: calibrate their relation",
+            out.disagreement_mm, options.disagreement_limit_mm);
+    }
+    return out;
+}
+
+}  // namespace seamwright

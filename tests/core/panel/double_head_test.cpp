@@ -187,19 +187,22 @@ TEST(DoubleHead, StatedSigmaHolds) {
     EXPECT_NEAR(static_cast<double>(offsets) / kTrials, 0.95, 0.02);
 }
 
-TEST(DoubleHead, MeanOfTheOverlapIsBetterThanEitherHead) {
+TEST(DoubleHead, InformationIsNeitherLostNorCountedTwice) {
     std::mt19937_64 engine(3);
-    const DoubleHeadProfile m = merged(left_view(), right_view(), 0.03, &engine);
-    int better = 0, points = 0;
-    for (std::size_t i = 0; i < m.profile.size(); ++i) {
-        if (m.profile.x_mm[i] > 16) {
-            EXPECT_NEAR(m.sigma_mm[i], 0.03, 1e-12);
-        }
-        if (std::abs(m.profile.x_mm[i] - 7) > 2) continue;
-        ++points;
-        better += m.sigma_mm[i] <= 0.03 / std::sqrt(2) + 1e-12;
+    const View a = left_view(), b = right_view();
+    const Profile first = seen(a, 0.03, &engine), second = seen(b, 0.03, &engine);
+    const auto m = merge_heads(first, {a.sensor_from_head, 0.03}, second, {b.sensor_from_head, 0.05});
+    ASSERT_TRUE(m);
+    double information = 0, single = 0;
+    for (double sigma : m->sigma_mm) {
+        information += 1 / (sigma * sigma);
+        single += sigma == 0.03 || sigma == 0.05;
     }
-    EXPECT_GT(better, 0.9 * points);  // a head's noise may leave a cell to the other
+    const double given = static_cast<double>(first.size()) / (0.03 * 0.03) +
+                         static_cast<double>(second.size()) / (0.05 * 0.05);
+    EXPECT_NEAR(information / given, 1, 1e-12);
+    EXPECT_LT(m->sigma_mm.size() + 100, first.size() + second.size());  // the overlap is merged, not mixed
+    EXPECT_GT(m->shared_cells, 100);
 }
 
 TEST(DoubleHead, TellsAWrongRelationAndRefusesBeyondTheLimit) {

@@ -1,5 +1,7 @@
 #include "core/features/gap_flush.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,23 @@ std::string_view to_string(GapFlushStatus status) {
             return "ill_conditioned";
     }
     return "not_found";
+}
+
+Expected<void> check(const GapFlushSettings& s) {
+    const FeatureWindow& w = s.window;
+    if (!(w.x_min < w.x_max) || !(w.z_min < w.z_max))
+        return input_error("the window of gap and flush is empty", "window",
+                           "give a minimum below the maximum");
+    const auto in = [](double value, double least, double most) { return value >= least && value <= most; };
+    if (!in(s.surface_mm, 0.1, 1000) || !in(s.edge_skip_mm, 0, 100))
+        return input_error(fmt::format("a surface of {} mm, {} mm beside the edge, gives no line",
+                                       s.surface_mm, s.edge_skip_mm),
+                           "surface_mm, edge_skip_mm",
+                           "give 0.1 to 1000 mm of surface and 0 to 100 mm beside the edge");
+    if (s.minimum_points < 4 || s.minimum_points > 1000000)
+        return input_error(fmt::format("{} points are no surface", s.minimum_points), "minimum_points",
+                           "give at least 4");
+    return {};
 }
 
 // The surface line of a piece: points between edge_skip and edge_skip + surface length from its edge.
@@ -137,6 +156,15 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
                               other.line.variance_at(s_other) / (along_u * along_u) +
                               slope * slope * other_edge;
     result.covariance(0, 1) = result.covariance(1, 0) = -across * s_reference * turn + slope * other_edge;
+    if (const double distance = between.norm(); settings_.gap_by == GapBy::edge_distance && distance > 0) {
+        // Turning u moves no edge; along the line between them each edge has its share of pitch and noise.
+        const double by_pitch = u.dot(between) / distance, by_noise = across / distance;
+        const double noise = std::pow(reference.line.sigma_mm, 2) * reference.line.widening +
+                             std::pow(other.line.sigma_mm, 2) * other.line.widening;
+        result.gap_mm = std::copysign(distance, result.gap_mm);
+        result.covariance(0, 0) = by_pitch * by_pitch * edges + by_noise * by_noise * noise;
+        result.covariance(0, 1) = result.covariance(1, 0) = std::abs(by_pitch) * slope * other_edge;
+    }
     result.status = GapFlushStatus::ok;
     return result;
 }

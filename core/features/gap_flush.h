@@ -11,11 +11,14 @@
 // (a fold's roundest point, or the last return plus half a pitch where the surface tears off). The other
 // side's surface line, fitted beside its edge, is continued to that edge.
 //     gap   = u . (other edge - reference edge)                       negative when the parts overlap
+//           or, as a feeler gauge finds it, the distance of the two edges with that sign
+//           (GapBy::edge_distance)
 //     flush = n . (other surface at its edge - reference line)        positive when the other side stands
 //     proud
 //
 // Noise model: independent noise across each surface, estimated from each line's residuals; an edge is known
-// to a pitch along u (variance pitch^2 / 12 each). Covariance of (gap, flush) in mm^2.
+// to a pitch along u (variance pitch^2 / 12 each) and to a point's noise across. Covariance of (gap, flush)
+// in mm^2.
 
 #include <Eigen/Core>
 #include <string>
@@ -35,13 +38,19 @@ enum class GapFlushStatus {
 };
 std::string_view to_string(GapFlushStatus status);
 
+enum class GapBy { along_surface, edge_distance };
+
 struct GapFlushSettings {
     enum class Reference { left, right } reference = Reference::left;
+    GapBy gap_by = GapBy::along_surface;
     FeatureWindow window{-1e5, 1e5, -1e5, 1e5};
     double surface_mm = 5;      // length of surface that a line takes
     double edge_skip_mm = 1.5;  // beside the edge, left out of the line: the fold's radius
     int minimum_points = 8;     // per side; shorter pieces (the gap's ground, dirt) are no side
 };
+
+// Refuses an empty window and lengths or counts that are no surface.
+Expected<void> check(const GapFlushSettings& settings);
 
 struct GapFlush {
     GapFlushStatus status = GapFlushStatus::not_found;
@@ -53,7 +62,8 @@ struct GapFlush {
 };
 
 // Buffers live in the object: nothing is allocated after the first calls; one thread per object. The two
-// sides are the two pieces with most points in the window. `profile` as for features.
+// sides are the two pieces with most points in the window. `profile` as for features. Precondition: check()
+// has nothing against the settings.
 class GapFlushGauge {
   public:
     explicit GapFlushGauge(const GapFlushSettings& settings) : settings_(settings) {}

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "contours.h"
 #include "core/features/gap_flush.h"
@@ -207,6 +208,11 @@ TEST(GapFlush, KnownGapEitherReference) {
             ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
             EXPECT_NEAR(g.gap_mm, 3 - (-15 + 0.05 * 299) - 0.05, 1e-6);  // half a pitch at either edge
             EXPECT_NEAR(g.flush_mm, right ? -0.8 : 0.8, 1e-6);
+            settings.gap_by = GapBy::edge_distance;
+            const GapFlush d = GapFlushGauge(settings).measure(q);
+            ASSERT_EQ(d.status, GapFlushStatus::ok) << d.message;
+            EXPECT_NEAR(d.gap_mm, std::hypot(g.gap_mm, 0.8), 1e-6);
+            EXPECT_EQ(d.flush_mm, g.flush_mm);
         }
     }
     Profile whole = sample(hem(-10, 10), 0.05);
@@ -215,6 +221,54 @@ TEST(GapFlush, KnownGapEitherReference) {
     line.line_to(-10, 0);
     line.line_to(10, 1);
     EXPECT_EQ(GapFlushGauge({}).measure(sample(line, 0.05)).status, GapFlushStatus::not_found);
+}
+
+TEST(GapFlush, EdgeDistanceIsAsSureAsItSays) {
+    std::mt19937_64 engine(9);
+    std::normal_distribution<double> noise(0, 0.02);
+    std::uniform_real_distribution<double> phase(0, 1);
+    int inside = 0;
+    constexpr int kTrials = 2000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        Profile p;
+        const double left = -2 - 0.05 * phase(engine), right = 1 + 0.05 * phase(engine);
+        for (int i = 240; i >= 0; --i) {
+            p.x_mm.push_back(left - 0.05 * i);
+            p.z_mm.push_back(noise(engine));
+        }
+        for (int i = 0; i < 240; ++i) {
+            p.x_mm.push_back(right + 0.05 * i);
+            p.z_mm.push_back(3 + noise(engine));
+        }
+        GapFlushSettings settings;
+        settings.gap_by = GapBy::edge_distance;
+        const GapFlush g = GapFlushGauge(settings).measure(p);
+        ASSERT_EQ(g.status, GapFlushStatus::ok);
+        // The surfaces end at -2 and 1, up to a pitch beyond their last returns.
+        inside += std::abs(g.gap_mm - std::hypot(3, 3)) <= 1.959964 * std::sqrt(g.covariance(0, 0));
+    }
+    EXPECT_NEAR(static_cast<double>(inside) / kTrials, 0.95, 0.02);
+}
+
+TEST(GapFlush, RefusesSettingsThatAreNoSurface) {
+    EXPECT_TRUE(check(GapFlushSettings{}));
+    const auto with = [](auto change) {
+        GapFlushSettings s;
+        change(s);
+        return check(s).has_value();
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(with([](auto& s) { s.window.x_min = s.window.x_max; }));
+    EXPECT_FALSE(with([&](auto& s) { s.window.z_max = nan; }));
+    EXPECT_FALSE(with([](auto& s) { s.surface_mm = 0; }));
+    EXPECT_FALSE(with([&](auto& s) { s.surface_mm = nan; }));
+    EXPECT_FALSE(with([](auto& s) { s.edge_skip_mm = -1; }));
+    EXPECT_FALSE(with([](auto& s) { s.minimum_points = 3; }));
+    // A profile of nothing but missing returns, and one whose numbers overflow.
+    Profile bad;
+    bad.x_mm = {nan, 1e308, -1e308, nan};
+    bad.z_mm = {nan, 1e308, 1e308, 0};
+    EXPECT_NE(GapFlushGauge({}).measure(bad).status, GapFlushStatus::ok);
 }
 
 TEST(Features, SensorPointIsTheSensorsWithTheStatedSigma) {

@@ -22,6 +22,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,6 +59,12 @@ class RunSetup {
 };
 
 // One thread at a time. Several processes may have a file open; a writer waits up to 5 s for another's lock.
+// What of a run under way is in the file.
+struct StoredMeasurements {
+    std::size_t captures = 0;
+    std::set<std::size_t> spots;  // positions in RunRecord::spots
+};
+
 class ProjectFile {
   public:
     // Makes a file holding `project`. An existing file is refused unless `replace`, and then only if it is
@@ -89,11 +96,11 @@ class ProjectFile {
     // A whole run. Returns its number; events of the record get it too.
     Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
     // A run as it comes, so that little is left to store when the robot waits for the verdict: its row first
-    // (number, part, times, status, message), captures as they arrive (`stored`: how many there are of it
-    // already), then all the rest with the captures that are still missing.
+    // (number, part, times, status, message), then again and again the captures and the spots that have one
+    // since `stored`, at last all the rest.
     Expected<std::int64_t> begin_run(const RunRecord& run, const RunSetup& setup);
-    Expected<void> append_captures(std::int64_t run, std::span<const Capture> captures, std::size_t stored);
-    Expected<void> finish_run(const RunRecord& run, std::size_t stored);
+    Expected<void> append_measured(const RunRecord& run, StoredMeasurements& stored);
+    Expected<void> finish_run(const RunRecord& run, const StoredMeasurements& stored);
     // Replaces the outcome of a run (times, status, message, regions); spots, captures and events stay.
     Expected<void> update_run(const RunRecord& run);
     // Returns the event's id.

@@ -81,12 +81,14 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
     return {};
 }
 
-// What a run's row refers to, but for the first `stored` captures.
-Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t number, std::size_t stored) {
+// Those spots that `wanted` says by their position.
+template <class Wanted>
+Expected<void> insert_spots(Database& db, const RunRecord& run, std::int64_t number, const Wanted& wanted) {
     auto spot =
         db.prepare("INSERT INTO run_spots (run, position, spot_id, status, body) VALUES (?, ?, ?, ?, ?)");
     if (!spot) return tl::unexpected(spot.error());
     for (std::size_t i = 0; i < run.spots.size(); ++i) {
+        if (!wanted(i)) continue;
         auto text = row_text(run.spots[i], "spot " + run.spots[i].spot_id, kResult);
         if (!text) return tl::unexpected(text.error());
         spot->bind(1, number);
@@ -96,8 +98,18 @@ Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t numb
         spot->bind(5, *text);
         if (auto done = spot->run(); !done) return done;
     }
+    return {};
+}
+
+// What a run's row refers to, but for what is stored.
+Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t number,
+                           const StoredMeasurements& stored) {
+    const auto open = [&](std::size_t i) { return stored.spots.count(i) == 0; };
+    if (auto done = insert_spots(db, run, number, open); !done) return done;
     if (auto done = insert_regions(db, run, number); !done) return done;
-    if (auto done = insert_captures(db, std::span(run.captures).subspan(stored), stored, number); !done)
+    if (auto done =
+            insert_captures(db, std::span(run.captures).subspan(stored.captures), stored.captures, number);
+        !done)
         return done;
     for (const EventRecord& event : run.events)
         if (auto done = insert_event(db, event, number); !done) return done;
@@ -217,7 +229,7 @@ Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Proje
     if (!transaction) return tl::unexpected(transaction.error());
     auto number = insert_run(run, *text);
     if (!number) return number;
-    if (auto done = insert_rest(impl_->db, run, *number, 0); !done) return tl::unexpected(done.error());
+    if (auto done = insert_rest(impl_->db, run, *number, {}); !done) return tl::unexpected(done.error());
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return number;
 }
@@ -231,15 +243,25 @@ Expected<std::int64_t> ProjectFile::begin_run(const RunRecord& run, const RunSet
     return number;
 }
 
-Expected<void> ProjectFile::append_captures(std::int64_t run, std::span<const Capture> captures,
-                                            std::size_t stored) {
+Expected<void> ProjectFile::append_measured(const RunRecord& run, StoredMeasurements& stored) {
+    StoredMeasurements then = stored;
+    const auto measured = [&](std::size_t i) {
+        return run.spots[i].capture >= 0 && then.spots.insert(i).second;
+    };
     auto transaction = Transaction::begin(impl_->db);
     if (!transaction) return tl::unexpected(transaction.error());
-    if (auto done = insert_captures(impl_->db, captures, stored, run); !done) return done;
-    return transaction->commit();
+    if (auto done = insert_captures(impl_->db, std::span(run.captures).subspan(stored.captures),
+                                    stored.captures, run.number);
+        !done)
+        return done;
+    if (auto done = insert_spots(impl_->db, run, run.number, measured); !done) return done;
+    if (auto done = transaction->commit(); !done) return done;
+    then.captures = run.captures.size();
+    stored = std::move(then);
+    return {};
 }
 
-Expected<void> ProjectFile::finish_run(const RunRecord& run, std::size_t stored) {
+Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasurements& stored) {
     auto transaction = Transaction::begin(impl_->db);
     if (!transaction) return tl::unexpected(transaction.error());
     auto s = impl_->db.prepare(

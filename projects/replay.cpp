@@ -126,7 +126,7 @@ Part replay_run(const ProjectFile& file, const RunSummary& run, std::map<std::in
     auto again = setup->second.recompute(*stored);
     if (!again) return failed(again.error());
     part.captures = static_cast<std::int64_t>(stored->captures.size());
-    if (stored->status == RunStatus::interrupted && stored->spots.empty()) return part;  // never judged
+    if (stored->status == RunStatus::interrupted && stored->regions.empty()) return part;  // never judged
     part.differences = compare(*stored, *again);
     return part;
 }

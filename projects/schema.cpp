@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
+#include <mutex>
 
 namespace seamwright {
 namespace {
@@ -138,6 +140,21 @@ CREATE TABLE evidence (
 
 constexpr std::array<Migration, 3> kMigrations{{{1, kVersion1}, {2, kVersion2}, {3, kVersion3}}};
 
+// The tables of a fresh file of that version; made once for each version, since making them costs more than
+// checking a file does.
+Expected<Database::Tables> tables_of(std::int32_t version) {
+    static std::mutex mutex;
+    static std::map<std::int32_t, Database::Tables> known;
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(version); found != known.end()) return found->second;
+    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
+    if (!fresh) return tl::unexpected(fresh.error());
+    if (auto made = migrate(*fresh, version); !made) return tl::unexpected(made.error());
+    auto tables = fresh->tables();
+    if (tables) known.emplace(version, *tables);
+    return tables;
+}
+
 }  // namespace
 
 std::span<const Migration> migrations() {
@@ -185,12 +202,11 @@ Expected<void> check_structure(Database& db, std::int32_t version) {
         return file_error(fmt::format("the project file is damaged ({})", finding), db.path(),
                           "take the last good copy from the backup");
     };
-    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
-    if (!fresh) return tl::unexpected(fresh.error());
-    if (auto made = migrate(*fresh, version); !made) return made;
-    const auto same = db.same_tables(*fresh);
-    if (!same) return tl::unexpected(same.error());
-    if (!*same) return damaged("its tables are not those of a project");
+    const auto wanted = tables_of(version);
+    if (!wanted) return tl::unexpected(wanted.error());
+    const auto found = db.tables();
+    if (!found) return tl::unexpected(found.error());
+    if (*found != *wanted) return damaged("its tables are not those of a project");
 
     auto check = db.prepare("PRAGMA quick_check(1)");
     if (!check) return tl::unexpected(check.error());

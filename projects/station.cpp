@@ -52,7 +52,8 @@ struct Station::Impl {
         StartedSensors started_sensors{};                 // stopped when the robots have it
         std::int64_t part_since_ns = 0;
         int done = 0, total = 0;
-        std::size_t stored = 0;  // captures that are in the file
+        StoredMeasurements stored{};
+        bool in_file = false;  // the judged run
 
         void event(EventKind kind, const std::string& subject, const std::string& text) {
             run.events.push_back({0, utc_now(), 0, kind, subject, text});
@@ -111,13 +112,6 @@ struct Station::Impl {
         return {};
     }
 
-    Expected<void> store_captures(Job& job) {
-        auto done =
-            file.append_captures(job.run.number, std::span(job.run.captures).subspan(job.stored), job.stored);
-        if (done) job.stored = job.run.captures.size();
-        return done;
-    }
-
     // All spots of one robot, in the project's order.
     Expected<void> measure_robot(Job& job, const std::string& robot_id) {
         std::vector<const Spot*> spots;
@@ -145,7 +139,7 @@ struct Station::Impl {
             ++job.done;
             job.progress(fmt::format("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
             if (!open.empty())  // while the robot travels; the last ones go with the judged run
-                if (auto stored = store_captures(job); !stored) return stored;
+                if (auto stored = file.append_measured(job.run, job.stored); !stored) return stored;
         }
         return {};
     }
@@ -181,6 +175,7 @@ struct Station::Impl {
         request.part_id = job.run.part_id;
         request.part_since_ns = job.part_since_ns;
         std::string robot_id;
+        std::map<std::string, RobotIdentity> answered;  // by robot; a question may be a round trip
         for (const std::string& id : region.spot_ids) {
             const Spot* spot = find_spot(project, id);
             if (!spot) continue;  // the gate misses it
@@ -204,8 +199,12 @@ struct Station::Impl {
             // Asked anew: a cable may have been put on another sensor since the start.
             if (const auto it = sensors.find(spot->sensor_id); it != sensors.end())
                 g.sensor = it->second->identity();
-            if (const auto it = robots.find(spot->robot_id); it != robots.end())
-                if (auto identity = it->second->identity()) g.robot = *identity;
+            if (const auto it = robots.find(spot->robot_id); it != robots.end()) {
+                const auto [asked, first] = answered.try_emplace(spot->robot_id);
+                if (first)
+                    if (auto identity = it->second->identity()) asked->second = *identity;
+                g.robot = asked->second;
+            }
             if (robot_id.empty()) robot_id = spot->robot_id;
             request.spots.push_back(std::move(g));
         }
@@ -245,9 +244,25 @@ struct Station::Impl {
         return *robots.at(find_spot(project, region.spot_ids.front())->robot_id);
     }
 
-    // An event of a run that is in the file already.
+    // The run as judged, durable with all its events.
+    Expected<void> store_judged(Job& job) {
+        if (job.in_file) return {};
+        for (auto& [id, robot] : robots)
+            for (const std::string& notice : robot->take_notices()) job.event(EventKind::device, id, notice);
+        if (auto stored = file.finish_run(job.run, job.stored); !stored) return stored;
+        for (EventRecord& event : job.run.events) event.run = job.run.number;
+        job.in_file = true;
+        return {};
+    }
+
+    // Durable. The first event of a push takes the judged run with it into the file: one wait for the disk
+    // while the robot waits, not two.
     Expected<void> record_event(Job& job, EventKind kind, const std::string& subject,
                                 const std::string& text) {
+        if (!job.in_file) {
+            job.event(kind, subject, text);
+            return store_judged(job);
+        }
         EventRecord event{0, utc_now(), job.run.number, kind, subject, text};
         auto id = file.append_event(event);
         if (!id) return tl::unexpected(id.error());
@@ -311,6 +326,7 @@ struct Station::Impl {
         // Written and read back everywhere: the application may run. A robot that does not take that is an
         // alarm too.
         if (!alarm) {
+            job.run.status = RunStatus::ok;
             job.run.message = verdict(job.run);
             alarm = !confirm_all(job, PartVerdict::corrected);
             if (alarm) job.run.message = "alarm: a robot did not acknowledge the corrected frames";
@@ -526,19 +542,18 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
                 corrected_frame(i.project.part.base_from_workobject, run.regions[k].correction->displacement,
                                 i.project.regions[k].base_from_frame);
 
-    // The judged run is in the file before the first byte goes to a robot. If one region is refused none is
+    // The judged run is in the file before the first frame goes to a robot. If one region is refused none is
     // pushed: half a part corrected is worse than a stopped line.
     bool pushing = options.push && run.status == RunStatus::ok && !passes.empty();
     if (pushing) run.status = RunStatus::interrupted;
     run.message = Impl::verdict(run);
     run.finished_utc = utc_now();
-    for (auto& [id, robot] : i.robots)
-        for (const std::string& notice : robot->take_notices()) job.event(EventKind::device, id, notice);
-    if (auto judged = i.file.finish_run(run, job.stored); !judged) {
-        i.confirm_all(job, PartVerdict::failed);
-        return tl::unexpected(judged.error());
-    }
-    for (EventRecord& event : run.events) event.run = run.number;
+    // A push that nobody is asked about stores it with its first attempt.
+    if (!pushing || options.confirm_push)
+        if (auto judged = i.store_judged(job); !judged) {
+            i.confirm_all(job, PartVerdict::failed);
+            return tl::unexpected(judged.error());
+        }
     if (pushing && options.confirm_push && !i.confirmed(job, passes)) {
         pushing = false;
         if (auto updated = i.file.update_run(run); !updated) {
@@ -547,10 +562,10 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
         }
     }
     if (pushing) {
-        run.status = RunStatus::ok;
         i.push_all(job, passes);
         run.message = Impl::verdict(run);
         run.finished_utc = utc_now();
+        if (auto judged = i.store_judged(job); !judged) return tl::unexpected(judged.error());
         if (auto updated = i.file.update_run(run); !updated) return tl::unexpected(updated.error());
     } else {
         i.confirm_all(job, run.status == RunStatus::device || run.status == RunStatus::cancelled

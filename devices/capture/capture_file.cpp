@@ -65,6 +65,13 @@ CREATE TABLE events (
 ) STRICT;
 )sql";
 
+Expected<Database::Tables> fresh_tables() {
+    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kCaptureFile);
+    if (!fresh) return tl::unexpected(fresh.error());
+    if (auto made = fresh->execute(kTables); !made) return tl::unexpected(made.error());
+    return fresh->tables();
+}
+
 constexpr auto kEventNames = std::to_array<std::string_view>({"trigger", "pose", "mode", "note"});
 
 std::array<double, 12> pose_numbers(const Pose& pose) {
@@ -256,12 +263,11 @@ Expected<CaptureReader> CaptureReader::open(const fs::path& path) {
             path.string(), "open it with a newer Seamwright");
     if (*version < 1) return file_error("the capture has no valid version", path.string());
     if (auto whole = reader.db_.check_length(); !whole) return tl::unexpected(whole.error());
-    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kCaptureFile);
-    if (!fresh) return tl::unexpected(fresh.error());
-    if (auto made = fresh->execute(kTables); !made) return tl::unexpected(made.error());
-    auto same = reader.db_.same_tables(*fresh);
-    if (!same) return tl::unexpected(same.error());
-    if (!*same) return damaged(path, "its tables are not those of a capture");
+    static const Expected<Database::Tables> wanted = fresh_tables();
+    if (!wanted) return tl::unexpected(wanted.error());
+    const auto found = reader.db_.tables();
+    if (!found) return tl::unexpected(found.error());
+    if (*found != *wanted) return damaged(path, "its tables are not those of a capture");
     if (auto read = reader.read_tables(); !read) return tl::unexpected(read.error());
     return reader;
 }

@@ -219,13 +219,10 @@ Expected<void> Database::check_length() {
     return {};
 }
 
-namespace {
-using SchemaEntries = std::set<std::pair<std::string, std::string>>;  // name, SQL
-
-Expected<SchemaEntries> schema_entries(Database& db) {
-    auto s = db.prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
+Expected<Database::Tables> Database::tables() {
+    auto s = prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
     if (!s) return tl::unexpected(s.error());
-    SchemaEntries entries;
+    Tables entries;
     for (;;) {
         auto row = s->step();
         if (!row) return tl::unexpected(row.error());
@@ -233,15 +230,6 @@ Expected<SchemaEntries> schema_entries(Database& db) {
         entries.emplace(s->text(0), s->text(1));
         if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
     }
-}
-}  // namespace
-
-Expected<bool> Database::same_tables(Database& other) {
-    const auto mine = schema_entries(*this);
-    if (!mine) return tl::unexpected(mine.error());
-    const auto others = schema_entries(other);
-    if (!others) return tl::unexpected(others.error());
-    return *mine == *others;
 }
 
 Expected<Transaction> Transaction::begin(Database& db) {

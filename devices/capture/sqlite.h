@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -75,8 +76,9 @@ class Database {
     // after the first read, which rolls a killed writer's journal back, and with the rollback journal only:
     // the end of the file may still be in a log.
     Expected<void> check_length();
-    // Whether both hold exactly the same tables, indices, triggers and views.
-    Expected<bool> same_tables(Database& other);
+    // Name and SQL of all tables, indices, triggers and views.
+    using Tables = std::set<std::pair<std::string, std::string>>;
+    Expected<Tables> tables();
     const std::string& path() const { return path_; }
     sqlite3* handle() const { return db_.get(); }
 

@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/correction/travel.h"
+
 namespace seamwright {
 namespace {
 
@@ -299,6 +301,43 @@ CorrectionOptions correction_options(const Region& region) {
     return options;
 }
 
+namespace {
+
+// What the part's displacement does to a spot whose trigger may come anywhere in its jitter window: the
+// contour stands still over the window as taught, not as displaced.
+void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation) {
+    if (spot.stop_at_trigger || spot.jitter_mm == 0) return;
+    // A contour that came to lie along the laser line tells nothing; so much is as good as infinite.
+    constexpr double kNothingMm2 = 1e6;
+    const double sigma2 = observation.sigma_mm * observation.sigma_mm;
+    Eigen::Matrix2d c = travel_covariance(observation, displacement, spot.jitter_mm / std::sqrt(3.0));
+    if (!c.allFinite() || c.trace() > kNothingMm2) c = kNothingMm2 * Eigen::Matrix2d::Identity();
+    if (spot.weights.x() == spot.weights.z()) {
+        observation.covariance_mm2 = c + sigma2 * Eigen::Matrix2d::Identity();
+    } else {  // one sigma for both: the worse of those observed
+        const double worst = std::max(spot.weights.x() > 0 ? c(0, 0) : 0, spot.weights.z() > 0 ? c(1, 1) : 0);
+        observation.sigma_mm = std::sqrt(sigma2 + worst);
+    }
+}
+
+Expected<RegionCorrection> correct_region(const Project& project, const Region& region,
+                                          std::vector<SpotObservation> observations) {
+    // First where the part lies, to know what the travel does there. A good spot that the travel made look
+    // wrong does not matter to that.
+    CorrectionOptions roughly = correction_options(region);
+    roughly.limits = {};
+    auto rough = solve_region(observations, roughly);
+    if (rough && rough->status != CorrectionStatus::ok) {
+        roughly.reject_outliers = false;
+        rough = solve_region(observations, roughly);
+    }
+    if (rough && rough->status == CorrectionStatus::ok)
+        for (SpotObservation& o : observations) add_travel(*find_spot(project, o.id), rough->displacement, o);
+    return solve_region(observations, correction_options(region));
+}
+
+}  // namespace
+
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements) {
     std::vector<RegionRecord> records;
@@ -329,7 +368,7 @@ std::vector<RegionRecord> correct_regions(const Project& project,
                                                    : "no spot of the region was measured");
             continue;
         }
-        auto solved = solve_region(observations, correction_options(region));
+        auto solved = correct_region(project, region, std::move(observations));
         if (!solved) {
             record.refusals.push_back("the correction refuses its input: " + solved.error().sentence());
             continue;

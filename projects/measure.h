@@ -11,7 +11,8 @@
 //     flange_from_sensor,
 // so that the correction sees the part's motion and not the robot's. m' has a small y: the cut was made
 // there, which the spot's contour curve can use; with weight 0 along Y it changes nothing else. Jitter that
-// the controller does not report stays in the measurement and belongs into Spot::sigma_mm.
+// the controller does not report stays in the measurement; Spot::sigma_mm holds what it does to the contour
+// as taught.
 
 #include <memory>
 #include <optional>
@@ -87,6 +88,9 @@ class SpotMeasurer {
 CorrectionOptions correction_options(const Region& region);
 
 // Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
+// Solved twice: where the part lies tells how far the contour of each spot moves in the laser plane while the
+// trigger jitters over Spot::jitter_mm (uniform, half width; travel.h), and that is part of the covariance of
+// the measured point. A spot with stop_at_trigger does not jitter.
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
 // correction and says why in `refusals`.
 std::vector<RegionRecord> correct_regions(const Project& project,

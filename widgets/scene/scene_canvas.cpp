@@ -8,9 +8,8 @@
 #include <vtkOpenGLState.h>
 
 #include <QMouseEvent>
-#include <QOffscreenSurface>
-#include <QOpenGLContext>
-#include <QOpenGLFunctions>
+#include <QOpenGLFramebufferObject>
+#include <QPainter>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
@@ -48,55 +47,52 @@ bool opengl_available() {
     return available;
 }
 
-SceneCanvas::SceneCanvas(QWidget* parent) : QOpenGLWidget(parent) {
-    setFormat(scene_format());
+SceneCanvas::SceneCanvas(QWidget* parent) : QWidget(parent) {
+    setAttribute(Qt::WA_OpaquePaintEvent);
     setFocusPolicy(Qt::StrongFocus);
+    surface_.setFormat(scene_format());
+    surface_.create();
     window_->SetOwnContext(0);
     window_->SetFrameBlitModeToNoBlit();
     window_->SetMultiSamples(0);
     window_->AddRenderer(renderer_);
     timer_.setSingleShot(true);
-    connect(&timer_, &QTimer::timeout, this, [this] {
-        since_.restart();
-        update();
-    });
+    connect(&timer_, &QTimer::timeout, this, [this] { update(); });
     since_.start();
 }
 
-SceneCanvas::~SceneCanvas() {
-    release();
-}
-
 // VTK's buffers go while the context that made them lives.
-void SceneCanvas::release() {
-    if (!ready_) return;
-    ready_ = false;
-    makeCurrent();
+SceneCanvas::~SceneCanvas() {
+    if (!ready_ || !context_.makeCurrent(&surface_)) return;
     window_->Finalize();
-    doneCurrent();
+    context_.doneCurrent();
 }
 
 void SceneCanvas::request_render() {
+    stale_ = true;
     if (!timer_.isActive()) timer_.start(std::max(0, 16 - static_cast<int>(since_.elapsed())));
 }
 
-void SceneCanvas::initializeGL() {
-    window_->SetMapped(true);
-    window_->SetIsDirect(true);
-    window_->SetReadyForRendering(true);
-    window_->InitializeFromCurrentContext();
-    ready_ = true;
-    connect(
-        context(), &QOpenGLContext::aboutToBeDestroyed, this, [this] { release(); }, Qt::DirectConnection);
+bool SceneCanvas::make_current() {
+    if (!context_.isValid()) {
+        context_.setFormat(scene_format());
+        if (!context_.create()) return false;
+    }
+    if (!context_.makeCurrent(&surface_)) return false;
+    if (!ready_) {
+        window_->SetMapped(true);
+        window_->SetIsDirect(true);
+        window_->SetReadyForRendering(true);
+        window_->InitializeFromCurrentContext();
+        ready_ = true;
+    }
+    return true;
 }
 
-void SceneCanvas::resizeGL(int, int) {
+void SceneCanvas::render() {
     const QSize size = (QSizeF(this->size()) * devicePixelRatioF()).toSize();
+    if (size.isEmpty() || !make_current()) return;
     window_->SetSize(size.width(), size.height());
-}
-
-void SceneCanvas::paintGL() {
-    if (!ready_) return;
     window_->GetState()->Reset();
     window_->GetState()->Push();
     window_->GetState()->vtkglDepthFunc(0x0203);  // GL_LEQUAL
@@ -104,18 +100,38 @@ void SceneCanvas::paintGL() {
     renderer_->ResetCameraClippingRange();
     window_->Render();
     window_->GetState()->Pop();
-    QOpenGLFunctions* gl = context()->functions();
-    gl->glBindFramebuffer(0x8CA9 /* GL_DRAW_FRAMEBUFFER */, defaultFramebufferObject());
-    window_->BlitDisplayFramebuffer();
-    gl->glBindFramebuffer(0x8D40 /* GL_FRAMEBUFFER */, defaultFramebufferObject());
-    // Without this the ground shines through where the picture's alpha is 0.
-    gl->glColorMask(false, false, false, true);
-    gl->glDisable(0x0C11 /* GL_SCISSOR_TEST */);
-    gl->glClearColor(0, 0, 0, 1);
-    gl->glClear(0x4000 /* GL_COLOR_BUFFER_BIT */);
-    gl->glColorMask(true, true, true, true);
+    {
+        QOpenGLFramebufferObject copy(size);
+        copy.bind();
+        window_->BlitDisplayFramebuffer();
+        copy.bind();  // VTK has bound another one for reading
+        picture_ = copy.toImage();
+        // Alpha is 0 where no surface lies; the ground's colour is there all the same.
+        picture_.reinterpretAsFormat(QImage::Format_RGB32);
+    }
+    context_.doneCurrent();
+    picture_.setDevicePixelRatio(devicePixelRatioF());
+    stale_ = false;
+    since_.restart();
     ++rendered;
-    if (on_rendered) on_rendered();
+}
+
+const QImage& SceneCanvas::picture() {
+    if (stale_) render();
+    return picture_;
+}
+
+void SceneCanvas::resizeEvent(QResizeEvent*) {
+    stale_ = true;
+}
+
+void SceneCanvas::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    if (picture().isNull())
+        painter.fillRect(rect(), palette().base());
+    else
+        painter.drawImage(rect(), picture_);
+    if (on_paint) on_paint(painter);
 }
 
 void SceneCanvas::show_view(SceneView::View view) {

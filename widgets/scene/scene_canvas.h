@@ -1,13 +1,21 @@
 #pragma once
-// VTK's picture inside a QOpenGLWidget, camera and mouse.
+// VTK's picture inside a plain widget, camera and mouse.
+//
+// VTK renders into a buffer of a context of its own, and only after request_render(); the widget shows the
+// picture that was read back. A QOpenGLWidget would make Qt compose the whole window through OpenGL at every
+// repaint of any widget in it, sixty times a second for the live profile: on a machine without a graphics
+// card that is more than a core.
 
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 #include <vtkRenderer.h>
 
 #include <QElapsedTimer>
-#include <QOpenGLWidget>
+#include <QImage>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
 #include <QTimer>
+#include <QWidget>
 #include <functional>
 
 #include "core/geometry/pose.h"
@@ -18,39 +26,43 @@ namespace seamwright {
 // Whether an OpenGL 3.2 core context can be had here; asked once.
 bool opengl_available();
 
-class SceneCanvas : public QOpenGLWidget {
+class SceneCanvas : public QWidget {
   public:
     explicit SceneCanvas(QWidget* parent);
     ~SceneCanvas() override;
 
     vtkRenderer& renderer() { return *renderer_; }
-    void request_render();
+    void request_render();    // within a sixtieth of a second, as soon as the widget is seen
+    const QImage& picture();  // of the scene as it is; null when the driver refuses
     void show_view(SceneView::View view);
     Eigen::Vector3d project(const Eigen::Vector3d& point) const;  // x, y in this widget, depth 0..1 in front
     // Where the ray through a pixel meets the actor.
     std::optional<Eigen::Vector3d> pick(const QPointF& at, vtkActor& actor);
     std::function<void(const QPointF&)> on_click;
-    std::function<void()> on_rendered;
+    std::function<void(QPainter&)> on_paint;  // over the picture
     int rendered = 0;
     vtkActor* part = nullptr;  // what the views are fitted to, while it shows
 
   protected:
-    void initializeGL() override;
-    void resizeGL(int width, int height) override;
-    void paintGL() override;
+    void paintEvent(QPaintEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
 
   private:
-    void release();
+    bool make_current();
+    void render();
+    QOpenGLContext context_;
+    QOffscreenSurface surface_;
+    QImage picture_;
     vtkNew<vtkGenericOpenGLRenderWindow> window_;
     vtkNew<vtkRenderer> renderer_;
     QTimer timer_;
     QElapsedTimer since_;
     QPointF press_, last_;
-    bool ready_ = false, dragged_ = false;
+    bool ready_ = false, stale_ = true, dragged_ = false;
 };
 
 }  // namespace seamwright

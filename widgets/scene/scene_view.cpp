@@ -9,7 +9,6 @@
 #include <QLabel>
 #include <QMenu>
 #include <QPainter>
-#include <QStackedLayout>
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -24,13 +23,8 @@ namespace seamwright {
 
 namespace {
 
-// Words over the picture in the window's own font; lets the mouse through.
-class SceneLabels : public QWidget {
-  public:
-    explicit SceneLabels(QWidget* parent) : QWidget(parent) {
-        setAttribute(Qt::WA_TransparentForMouseEvents);
-        setAttribute(Qt::WA_NoSystemBackground);
-    }
+// Words over the picture in the window's own font.
+struct SceneLabels {
     struct Label {
         QPointF at;
         QString text;
@@ -40,10 +34,11 @@ class SceneLabels : public QWidget {
     std::vector<Label> labels;
     QString foot;
 
-    void paint(QPainter& painter) const {
-        QColor ground = palette().color(QPalette::Base);
+    void paint(QPainter& painter, const QWidget& owner) const {
+        QColor ground = owner.palette().color(QPalette::Base);
         ground.setAlpha(205);
-        const QFontMetrics metrics(font());
+        painter.setFont(owner.font());
+        const QFontMetrics metrics(owner.font());
         std::vector<QRectF> taken;
         for (const Label& label : labels) {
             QRectF box(label.at + QPointF(11, -metrics.height() - 3),
@@ -65,24 +60,49 @@ class SceneLabels : public QWidget {
             painter.drawText(box, Qt::AlignCenter, label.text);
         }
         if (!foot.isEmpty()) {
-            painter.setPen(style::quiet_text(palette()));
-            painter.drawText(rect().adjusted(8, 4, -8, -6), Qt::AlignBottom | Qt::AlignLeft, foot);
+            painter.setPen(style::quiet_text(owner.palette()));
+            painter.drawText(owner.rect().adjusted(8, 4, -8, -6), Qt::AlignBottom | Qt::AlignLeft, foot);
         }
     }
-
-  protected:
-    void paintEvent(QPaintEvent*) override {
-        QPainter painter(this);
-        paint(painter);
-    }
 };
+
+// What would give the same picture is not drawn again.
+bool same(const Pose& a, const Pose& b) {
+    return a.matrix() == b.matrix();
+}
+
+bool same(const SceneSpot& a, const SceneSpot& b) {
+    return a.id == b.id && same(a.workobject_from_sensor, b.workobject_from_sensor) &&
+           a.reference_mm == b.reference_mm && a.enabled == b.enabled && a.field_mm == b.field_mm &&
+           a.stand_off_mm == b.stand_off_mm && a.shift_mm == b.shift_mm;
+}
+
+bool same(const SceneRegion& a, const SceneRegion& b) {
+    return a.id == b.id && a.spot_ids == b.spot_ids && a.weak_direction == b.weak_direction &&
+           a.weak_text == b.weak_text;
+}
+
+bool same(const std::optional<SceneRobot>& a, const std::optional<SceneRobot>& b) {
+    if (!a || !b) return !a && !b;
+    constexpr double kSeen = 1e-4;  // mm, and of a rotation matrix: a standing robot's encoders move less
+    const auto near = [](const Pose& p, const Pose& q) {
+        return (p.matrix() - q.matrix()).cwiseAbs().maxCoeff() < kSeen;
+    };
+    return near(a->workobject_from_flange, b->workobject_from_flange) &&
+           near(a->workobject_from_sensor, b->workobject_from_sensor);
+}
+
+template <typename T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const T& x, const T& y) { return same(x, y); });
+}
 
 }  // namespace
 
 struct SceneView::Impl {
     SceneView& view;
     SceneCanvas* canvas = nullptr;
-    SceneLabels* words = nullptr;
     QWidget* toolbar = nullptr;
     QLabel* sentence = nullptr;
     std::map<Layer, std::unique_ptr<LayerManager>> layers;
@@ -107,7 +127,8 @@ struct SceneView::Impl {
     void restyle();
     void redraw(Layer layer);
     void redraw_all();
-    void place_words();
+    SceneLabels words() const;
+    void paint_words(QPainter& painter) const { words().paint(painter, *canvas); }
     void changed() {
         if (canvas) canvas->request_render();
     }
@@ -183,39 +204,38 @@ void SceneView::Impl::redraw_all() {
         redraw(layer);
 }
 
-void SceneView::Impl::place_words() {
-    words->labels.clear();
-    words->foot.clear();
+SceneLabels SceneView::Impl::words() const {
+    SceneLabels words;
     const QPalette palette = view.palette();
-    if (shown[Layer::labels]) {
+    if (shown.at(Layer::labels)) {
         for (const SceneSpot& one : spots) {
             const Eigen::Vector3d at = canvas->project(one.workobject_from_sensor * one.reference_mm);
             if (at.z() > 1) continue;
             QString text = QString::fromStdString(one.id);
             if (!one.enabled) text = SceneView::tr("%1 (off)").arg(text);
-            if (one.shift_mm && shown[Layer::corrections])
+            if (one.shift_mm && shown.at(Layer::corrections))
                 text += SceneView::tr("  %1 mm").arg(one.shift_mm->norm(), 0, 'f', 2);
             const bool chosen = one.id == spot;
-            words->labels.push_back(
+            words.labels.push_back(
                 {{at.x(), at.y()}, text, chosen ? style::selection(palette) : style::text(palette), chosen});
         }
-        if (shown[Layer::regions])
+        if (shown.at(Layer::regions))
             for (const SceneRegion& one : regions) {
                 const auto weak = weak_arrow(one, spots);
                 if (!weak || one.weak_text.empty()) continue;
                 const Eigen::Vector3d at = canvas->project(weak->tip);
                 if (at.z() <= 1)
-                    words->labels.push_back({{at.x(), at.y()},
-                                             QString::fromStdString(one.id + ": " + one.weak_text),
-                                             style::alarm(palette),
-                                             false});
+                    words.labels.push_back({{at.x(), at.y()},
+                                            QString::fromStdString(one.id + ": " + one.weak_text),
+                                            style::alarm(palette),
+                                            false});
             }
     }
     const bool any =
         std::any_of(spots.begin(), spots.end(), [](const SceneSpot& s) { return s.shift_mm.has_value(); });
-    if ((any && shown[Layer::corrections]) || (!path.after_mm.empty() && shown[Layer::path]))
-        words->foot = SceneView::tr("corrections drawn × %1").arg(scale, 0, 'g', 3);
-    words->update();
+    if ((any && shown.at(Layer::corrections)) || (!path.after_mm.empty() && shown.at(Layer::path)))
+        words.foot = SceneView::tr("corrections drawn × %1").arg(scale, 0, 'g', 3);
+    return words;
 }
 
 SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>(*this)) {
@@ -224,8 +244,7 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     setToolTip(
         tr("Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit."));
     // Before the buttons: Tab goes from the view to the canvas that has its focus, and on from there.
-    QWidget* place = opengl_available() ? new QWidget(this) : nullptr;
-    if (place) impl_->canvas = new SceneCanvas(place);
+    if (opengl_available()) impl_->canvas = new SceneCanvas(this);
     impl_->toolbar = new QWidget(this);
     auto* row = new FlowLayout(impl_->toolbar, true);
     row->setContentsMargins(8, 2, 4, 2);
@@ -270,18 +289,12 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     column->setContentsMargins(0, 0, 0, 0);
     column->setSpacing(0);
     column->addWidget(impl_->toolbar);
-    if (place) {
-        auto* stack = new QStackedLayout(place);
-        stack->setStackingMode(QStackedLayout::StackAll);
+    if (impl_->canvas) {
         impl_->canvas->setAccessibleName(tr("Part in 3D"));
-        impl_->words = new SceneLabels(place);
-        stack->addWidget(impl_->words);
-        stack->addWidget(impl_->canvas);
-        stack->setCurrentWidget(impl_->words);
-        column->addWidget(place, 1);
+        column->addWidget(impl_->canvas, 1);
         setFocusProxy(impl_->canvas);
         impl_->make_layers();
-        impl_->canvas->on_rendered = [this] { impl_->place_words(); };
+        impl_->canvas->on_paint = [this](QPainter& painter) { impl_->paint_words(painter); };
         impl_->canvas->on_click = [this](const QPointF& at) {
             const SceneSpot* nearest = nullptr;
             double best = 18;  // px: a gloved click
@@ -343,6 +356,7 @@ void SceneView::set_part(const SceneMesh& mesh) {
 }
 
 void SceneView::set_part_shift(const Pose& workobject_from_part) {
+    if (same(impl_->part_shift, workobject_from_part)) return;
     impl_->part_shift = workobject_from_part;
     if (LayerManager* part = impl_->manager(Layer::part)) {
         vtkNew<vtkMatrix4x4> matrix;
@@ -354,12 +368,14 @@ void SceneView::set_part_shift(const Pose& workobject_from_part) {
 }
 
 void SceneView::set_spots(const std::vector<SceneSpot>& spots) {
+    if (same(impl_->spots, spots)) return;
     impl_->spots = spots;
     for (const Layer layer : {Layer::spots, Layer::sensors, Layer::regions, Layer::corrections})
         impl_->redraw(layer);
 }
 
 void SceneView::set_regions(const std::vector<SceneRegion>& regions) {
+    if (same(impl_->regions, regions)) return;
     impl_->regions = regions;
     impl_->redraw(Layer::regions);
 }
@@ -370,6 +386,7 @@ void SceneView::set_path(const ScenePath& path) {
 }
 
 void SceneView::set_robot(const std::optional<SceneRobot>& robot) {
+    if (same(impl_->robot, robot)) return;
     impl_->robot = robot;
     impl_->redraw(Layer::robot);
 }
@@ -423,13 +440,10 @@ int SceneView::pictures_rendered() const {
 
 QImage SceneView::picture() {
     if (!impl_->canvas) return {};
-    QImage image = impl_->canvas->grabFramebuffer().convertToFormat(QImage::Format_RGB32);
+    QImage image = impl_->canvas->picture();
     if (image.isNull()) return image;
-    impl_->place_words();
-    image.setDevicePixelRatio(devicePixelRatioF());
     QPainter painter(&image);
-    painter.setFont(font());
-    impl_->words->paint(painter);
+    impl_->paint_words(painter);
     return image;
 }
 

@@ -14,6 +14,7 @@
 #include "devices/kuka/rsi.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
+#include "devices/simulated/gripper_cell.h"
 #include "devices/ur/program.h"
 #include "devices/ur/rtde.h"
 
@@ -22,6 +23,7 @@ namespace seamwright {
 const std::vector<SensorDriver>& sensor_drivers() {
     static const std::vector<SensorDriver> drivers = {
         {"simulated", "A car door before a stripe camera, rendered", &open_simulated_sensor},
+        {"simulated-gripper", "A panel in a gripper before a body's opening, rendered", &open_gripper_sensor},
         {"replay", "A recorded capture, or profiles (CSV) or images of a folder, with poses",
          &open_replay_sensor},
         {"genicam", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)",
@@ -34,6 +36,7 @@ const std::vector<SensorDriver>& sensor_drivers() {
 const std::vector<RobotDriver>& robot_drivers() {
     static const std::vector<RobotDriver> drivers = {
         {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
+        {"simulated-gripper", "A robot whose gripper holds a panel", &open_gripper_robot},
         {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki},
         {"kuka-kvp", "KUKA, variables of the controller by KUKAVARPROXY", &open_kuka_kvp},
         {"kuka-rsi", "KUKA path correction in every cycle (RSI)",

@@ -11,6 +11,8 @@
 namespace seamwright {
 namespace {
 
+constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
+
 bool hardware_triggered(const SensorSetup& sensor) {
     const auto it = sensor.settings.find("hardware_trigger");
     return it != sensor.settings.end() && it->is_boolean() && it->get<bool>();
@@ -138,6 +140,19 @@ Expected<void> TriggeredFrames::finish() {
         return device_error("the sensor exposed more often than the robot fired", "sensor " + setup_.id,
                             "check the trigger line between robot and sensor");
     return {};
+}
+
+Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange) {
+    const auto moved = robot.move_to(base_from_flange);
+    auto at = robot.base_from_flange();
+    if (moved && at) return at;
+    if (!at) return moved ? at : tl::unexpected(moved.error());
+    const double off_mm = distance_mm(*at, base_from_flange);
+    const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
+    if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
+    return device_error(fmt::format("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
+                                    off_mm, off_deg, moved.error().what),
+                        "spot " + spot_id, "jog it there");
 }
 
 Expected<SoftwareTriggered> SoftwareTriggered::begin(ProfileSource& sensor) {

@@ -68,6 +68,10 @@ class TriggeredFrames {
     std::optional<std::uint64_t> expected_;
 };
 
+// For teaching: goes to `base_from_flange`. A robot that the program cannot move is jogged there by hand, and
+// must stand there, within half a millimetre and a tenth of a degree. Returns where it says that it stands.
+Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange);
+
 // For teaching and calibrating: a sensor that is wired to the robot (parameter "trigger") listens to software
 // triggers while this lives, then to its own source again. Does nothing with other sensors. Error: the sensor
 // does not take it.

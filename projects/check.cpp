@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/panel/double_head.h"
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/project.h"
@@ -183,6 +184,74 @@ void check_region(const Project& project, const Region& region, Findings& findin
     }
 }
 
+void check_place(const Project& project, const PanelJob& job, const PanelPlace& place, Findings& findings) {
+    const std::string where = fmt::format("panel job {}, place {}", job.id, place.id);
+    findings.unless(known(project.sensors, place.sensor_id), where,
+                    fmt::format("its sensor \"{}\" is not in the project", place.sensor_id));
+    findings.unless(place.second_sensor_id.empty() || known(project.sensors, place.second_sensor_id), where,
+                    fmt::format("its second sensor \"{}\" is not in the project", place.second_sensor_id));
+    findings.unless(place.second_sensor_id != place.sensor_id, where, "both its heads are the same sensor",
+                    "a double head has two sensors");
+    if (auto good = check(place.gauge); !good)
+        findings.add(where + ".gauge", good.error().what, good.error().mend);
+    findings.unless(place.panel_reference_mm.allFinite() && place.body_reference_mm.allFinite() &&
+                        std::isfinite(place.gap_mm) && std::isfinite(place.flush_mm) &&
+                        std::isfinite(place.surface_deg),
+                    where, "what was taught is not finite", "teach it again");
+    findings.unless(
+        place.weights.allFinite() && place.weights.minCoeff() >= 0 && place.weights.maxCoeff() > 0, where,
+        "the weights must be finite, not negative, and one of them positive");
+    findings.unless(positive(place.sigma_mm) && place.sigma_mm <= 10, where,
+                    fmt::format("sigma of {} mm is not plausible (0..10)", place.sigma_mm));
+    check_profile(place.reference_profile, where + ".reference_profile", findings);
+}
+
+void check_panel_job(const Project& project, const PanelJob& job, Findings& findings) {
+    const std::string where = "panel job " + job.id;
+    findings.unless(known(project.robots, job.robot_id), where,
+                    fmt::format("its robot \"{}\" is not in the project", job.robot_id));
+    std::set<std::string> seen, sensors;
+    int enabled = 0;
+    for (const PanelPlace& place : job.places) {
+        findings.unless(!place.id.empty() && seen.insert(place.id).second, where,
+                        fmt::format("place \"{}\" has no name of its own", place.id));
+        findings.unless(place.enabled || !place.required, where,
+                        fmt::format("its required place {} is switched off", place.id));
+        enabled += place.enabled;
+        for (const std::string& id : {place.sensor_id, place.second_sensor_id})
+            findings.unless(id.empty() || !place.enabled || sensors.insert(id).second, where,
+                            fmt::format("sensor {} is used at two places", id), "a sensor sees one place");
+        check_place(project, job, place, findings);
+    }
+    findings.unless(enabled >= 3, where, fmt::format("{} enabled places do not determine a motion", enabled),
+                    "measure at three or more places in different orientations");
+    findings.unless(positive(job.limits.translation_mm) && job.limits.translation_mm <= 1000 &&
+                        positive(job.limits.rotation_deg) && job.limits.rotation_deg <= 45,
+                    where, "the limits of the motion are not plausible (0..1000 mm, 0..45 degrees)");
+    findings.unless(positive(job.sigma_limit_mm) && positive(job.sigma_limit_deg), where,
+                    "the limits of sigma must be positive");
+    findings.unless(positive(job.gap_tolerance_mm) && positive(job.flush_tolerance_mm), where,
+                    "the tolerances of gap and flush must be positive");
+    findings.unless(positive(job.head_limit_mm) && job.head_limit_mm < kSameSurfaceMm, where,
+                    fmt::format("a double head's limit of {} mm is not plausible (0..{})", job.head_limit_mm,
+                                kSameSurfaceMm));
+    findings.unless(!job.frame_name.empty(), where,
+                    "it names no frame on the controller, nothing can be moved");
+    findings.rigid(job.base_from_gripper, where + ".base_from_gripper");
+    findings.rigid(job.base_from_frame, where + ".base_from_frame");
+    const auto same_frame = [&](const std::string& other) {
+        return !job.frame_name.empty() && other == job.frame_name;
+    };
+    for (const Region& region : project.regions)
+        findings.unless(!same_frame(region.frame_name), where,
+                        fmt::format("region {} writes the same frame {}", region.id, job.frame_name));
+    for (const PanelJob& other : project.panel_jobs) {
+        if (&other == &job) break;
+        findings.unless(!same_frame(other.frame_name), where,
+                        fmt::format("panel job {} writes the same frame {}", other.id, job.frame_name));
+    }
+}
+
 }  // namespace
 
 std::vector<Error> check(const Project& project) {
@@ -201,6 +270,8 @@ std::vector<Error> check(const Project& project) {
     for (const Calibration& calibration : project.calibrations) check_calibration(calibration, findings);
     for (const Spot& spot : project.spots) check_spot(project, spot, findings);
     for (const Region& region : project.regions) check_region(project, region, findings);
+    check_ids(project.panel_jobs, "panel job", findings);
+    for (const PanelJob& job : project.panel_jobs) check_panel_job(project, job, findings);
     return findings.list;
 }
 

@@ -88,6 +88,8 @@ Expected<nlohmann::json> export_file(const ProjectFile& file, bool with_profiles
                         {"captures", summary.captures},
                         {"spots", spots},
                         {"regions", regions}});
+        if (run->panel)
+            list.back()["panel"] = to_json_document(*run->panel, {.profiles = false, .rigid_poses = false});
     }
     document["runs"] = std::move(list);
     auto events = file.events();

@@ -139,8 +139,16 @@ std::vector<SpotObservation> planned_observations(const Project& project, const 
     return observations;
 }
 
+const PanelJob* find_panel_job(const Project& project, const std::string& id) {
+    return find_by_id(project.panel_jobs, id);
+}
+
 const Calibration* calibration_of(const Project& project, const Spot& spot) {
-    const SensorSetup* sensor = find_sensor(project, spot.sensor_id);
+    return calibration_of(project, spot.sensor_id);
+}
+
+const Calibration* calibration_of(const Project& project, const std::string& sensor_id) {
+    const SensorSetup* sensor = find_sensor(project, sensor_id);
     return sensor && !sensor->calibration_id.empty()
                ? find_by_id(project.calibrations, sensor->calibration_id)
                : nullptr;

@@ -47,8 +47,10 @@ SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
 // calibration are left out, as they are in a run.
 std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
 
-// The calibration in use at a spot's sensor; nullptr when there is none.
+// The calibration in use at a sensor, at a spot's sensor; nullptr when there is none.
+const Calibration* calibration_of(const Project& project, const std::string& sensor_id);
 const Calibration* calibration_of(const Project& project, const Spot& spot);
+const PanelJob* find_panel_job(const Project& project, const std::string& id);
 const SensorSetup* find_sensor(const Project& project, const std::string& id);
 const RobotSetup* find_robot(const Project& project, const std::string& id);
 const Spot* find_spot(const Project& project, const std::string& id);

@@ -129,6 +129,10 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
     if (!plane.normal.allFinite() || std::abs(plane.normal.norm() - 1) > 1e-9 ||
         !std::isfinite(plane.offset_mm))
         return input_error("the mirror plane has no unit normal", "plane", "give x, y, z or a normal");
+    if (!project.panel_jobs.empty())
+        return input_error("a gripper with its sensors has no mirror image that is only taught differently",
+                           "panel job " + project.panel_jobs.front().id,
+                           "teach the panel job of the other side; mirror the project without it");
     Project out = project;
     const Eigen::Matrix3d sensor_mirror = Eigen::Vector3d(-1, 1, 1).asDiagonal();
 

@@ -21,6 +21,7 @@
 #include "core/profile/sensor_model.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
+#include "projects/panel_job.h"
 
 namespace seamwright {
 
@@ -117,6 +118,7 @@ struct Project {
     std::vector<Calibration> calibrations;
     std::vector<Spot> spots;
     std::vector<Region> regions;
+    std::vector<PanelJob> panel_jobs;
 };
 
 // Empty when plausible; else one Error per finding (unknown ids, duplicates, spots without region, ...).

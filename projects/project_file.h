@@ -14,11 +14,11 @@
 // A new file is made under another name in the same folder and renamed when complete. Migrations run on a
 // copy that replaces the file when it has passed the checks.
 //
-// Contents: one row per sensor, robot, calibration, spot, region (key columns + JSON in project_json.h's
-// form, doubles exact, profiles as blobs of profile_blob.h); a run is one row with its spots, regions, and
-// captures packed into blobs of about 1 MiB, and refers to the setup it was made with (the project as JSON,
-// stored once per content), so that it can be computed again after the project was edited. Evidence
-// (evidence.h) refers to its setup in the same way.
+// Contents: one row per sensor, robot, calibration, spot, region, panel job (key columns + JSON in
+// project_json.h's form, doubles exact, profiles as blobs of profile_blob.h); a run is one row with its
+// spots, regions, and captures packed into blobs of about 1 MiB, and refers to the setup it was made with
+// (the project as JSON, stored once per content), so that it can be computed again after the project was
+// edited. Evidence (evidence.h) refers to its setup in the same way.
 
 #include <filesystem>
 #include <memory>
@@ -101,7 +101,8 @@ class ProjectFile {
     Expected<std::int64_t> begin_run(const RunRecord& run, const RunSetup& setup);
     Expected<void> append_measured(const RunRecord& run, StoredMeasurements& stored);
     Expected<void> finish_run(const RunRecord& run, const StoredMeasurements& stored);
-    // Replaces the outcome of a run (times, status, message, regions); spots, captures and events stay.
+    // Replaces the outcome of a run (times, status, message, regions, panel); spots, captures and events
+    // stay.
     Expected<void> update_run(const RunRecord& run);
     // Returns the event's id.
     Expected<std::int64_t> append_event(const EventRecord& event);

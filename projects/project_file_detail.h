@@ -16,10 +16,16 @@
 
 namespace seamwright {
 
-inline constexpr ArchiveOptions kRow{.profiles = false,
-                                     .rigid_poses = true};  // profiles have columns of their own
-inline constexpr ArchiveOptions kSetup{.profiles = true, .rigid_poses = true};
-inline constexpr ArchiveOptions kResult{.profiles = true, .rigid_poses = false};
+// What belongs to a run holds names and messages that devices chose.
+struct RowForm {
+    ArchiveOptions archive;
+    bool of_a_run;
+};
+inline constexpr RowForm kRow{{.profiles = false, .rigid_poses = true},  // profiles have columns of their own
+                              false};
+inline constexpr RowForm kPanelRow{{.profiles = true, .rigid_poses = true}, false};
+inline constexpr RowForm kSetup{{.profiles = true, .rigid_poses = true}, true};
+inline constexpr RowForm kResult{{.profiles = true, .rigid_poses = false}, true};
 
 inline std::uint32_t crc_of(std::span<const std::byte> bytes) {
     return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -31,24 +37,24 @@ inline std::uint32_t crc_of(std::string_view text) {
 // Text of a value that must be readable again; the Error is the caller's input. Devices may name themselves
 // and write messages in any bytes, so what belongs to a run is made UTF-8 instead of refused.
 template <class T>
-Expected<std::string> row_text(const T& value, const std::string& where, const ArchiveOptions& options) {
-    const nlohmann::json document = to_json_document(value, options);
-    if (auto again = from_json_document<T>(document, where, options); !again)
+Expected<std::string> row_text(const T& value, const std::string& where, const RowForm& form) {
+    const nlohmann::json document = to_json_document(value, form.archive);
+    if (auto again = from_json_document<T>(document, where, form.archive); !again)
         return tl::unexpected(again.error());
-    if (options.profiles) return dump_messages(document);  // of a run
+    if (form.of_a_run) return dump_messages(document);
     return dump_document(document, where);
 }
 
 template <class T>
 Expected<T> row_value(const std::string& text, const std::string& where, const std::string& path,
-                      const ArchiveOptions& options) {
+                      const RowForm& form) {
     nlohmann::json document;
     try {
         document = nlohmann::json::parse(text);
     } catch (const nlohmann::json::exception&) {
         return file_error("an entry of the project file cannot be read", path + ": " + where);
     }
-    auto value = from_json_document<T>(document, where, options);
+    auto value = from_json_document<T>(document, where, form.archive);
     if (!value) {
         Error error = value.error();
         error.kind = ErrorKind::file;

@@ -21,6 +21,9 @@ SEAMWRIGHT_WORDS(SpotStatus, "measured", "not_measured", "damaged_frame", "no_st
 SEAMWRIGHT_WORDS(PushStatus, "not_pushed", "written", "failed", "restored", "not_restored");
 SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_enough_profiles");
 SEAMWRIGHT_WORDS(ShiftBy, "simulated_part", "robot_moves", "by_hand");
+SEAMWRIGHT_WORDS(GapFlushSettings::Reference, "left", "right");
+SEAMWRIGHT_WORDS(GapBy, "along_surface", "edge_distance");
+SEAMWRIGHT_WORDS(PanelVerdict, "not_verified", "in_tolerance", "out_of_tolerance");
 SEAMWRIGHT_WORDS(ShiftKind, "translation", "rotation", "both");
 #undef SEAMWRIGHT_WORDS
 
@@ -283,6 +286,54 @@ void describe(A& a, Region& v) {
     a("base_from_frame", v.base_from_frame);
 }
 template <class A>
+void describe(A& a, FeatureWindow& v) {
+    a("x_min_mm", v.x_min);
+    a("x_max_mm", v.x_max);
+    a("z_min_mm", v.z_min);
+    a("z_max_mm", v.z_max);
+}
+template <class A>
+void describe(A& a, GapFlushSettings& v) {
+    a("reference", v.reference);
+    a("gap_by", v.gap_by);
+    a("window", v.window);
+    a("surface_mm", v.surface_mm);
+    a("edge_skip_mm", v.edge_skip_mm);
+    a("minimum_points", v.minimum_points);
+}
+template <class A>
+void describe(A& a, PanelPlace& v) {
+    a("id", v.id);
+    a("sensor_id", v.sensor_id);
+    a("second_sensor_id", v.second_sensor_id);
+    a("enabled", v.enabled);
+    a("required", v.required);
+    a("gauge", v.gauge);
+    a("panel_reference_mm", v.panel_reference_mm);
+    a("body_reference_mm", v.body_reference_mm);
+    a("gap_mm", v.gap_mm);
+    a("flush_mm", v.flush_mm);
+    a("surface_deg", v.surface_deg);
+    if (a.options().profiles) a("reference_profile", v.reference_profile);
+    a("weights", v.weights);
+    a("sigma_mm", v.sigma_mm);
+}
+template <class A>
+void describe(A& a, PanelJob& v) {
+    a("id", v.id);
+    a("robot_id", v.robot_id);
+    a("places", v.places);
+    a("base_from_gripper", v.base_from_gripper);
+    a("limits", v.limits);
+    a("sigma_limit_mm", v.sigma_limit_mm);
+    a("sigma_limit_deg", v.sigma_limit_deg);
+    a("gap_tolerance_mm", v.gap_tolerance_mm);
+    a("flush_tolerance_mm", v.flush_tolerance_mm);
+    a("head_limit_mm", v.head_limit_mm);
+    a("frame_name", v.frame_name);
+    a("base_from_frame", v.base_from_frame);
+}
+template <class A>
 void describe(A& a, Requirements& v) {
     a("sigma3_mm", v.sigma3_mm);
     a("calibration_age_days", v.calibration_age_days);
@@ -300,6 +351,7 @@ void describe(A& a, Project& v) {
     a("calibrations", v.calibrations);
     a("spots", v.spots);
     a("regions", v.regions);
+    a("panel_jobs", v.panel_jobs);
 }
 
 // --- runs
@@ -333,6 +385,71 @@ void describe(A& a, RegionRecord& v) {
     a("gate_passed", v.gate_passed);
     a("refusals", v.refusals);
     a("push", v.push);
+}
+
+template <class A>
+void describe(A& a, PanelMeasurement& v) {
+    a("place_id", v.place_id);
+    a("status", v.status);
+    a("message", v.message);
+    a("panel_mm", v.panel_mm);
+    a("body_mm", v.body_mm);
+    a("sigma_mm", v.sigma_mm);
+    a("gap_mm", v.gap_mm);
+    a("flush_mm", v.flush_mm);
+    a("gap_flush_covariance", v.gap_flush_covariance);
+    a("head_disagreement_mm", v.head_disagreement_mm);
+    a("head_offset_mm", v.head_offset_mm);
+    a("head_overlap_mm", v.head_overlap_mm);
+    a("part_id", v.part_id);
+    a("host_time_ns", v.host_time_ns);
+    a("capture", v.capture);
+    a("second_capture", v.second_capture);
+}
+template <class A>
+void describe(A& a, GapFlushValue& v) {
+    a("gap_mm", v.gap_mm);
+    a("flush_mm", v.flush_mm);
+}
+template <class A>
+void describe(A& a, PanelSpotResult& v) {
+    a("id", v.id);
+    a("taught", v.taught);
+    a("before", v.before);
+    a("remaining", v.remaining);
+    a("residual_mm", v.residual_mm);
+    a("panel_used", v.panel_used);
+    a("body_used", v.body_used);
+}
+template <class A>
+void describe(A& a, PanelFit& v) {
+    a("status", v.status);
+    a("gripper_motion", v.gripper_motion);
+    a("single_step", v.single_step);
+    a("covariance", v.covariance);
+    a("sigma_xyz_mm", v.sigma_xyz_mm);
+    a("sigma_abc_deg", v.sigma_abc_deg);
+    a("sigma_at_spots_mm", v.sigma_at_spots_mm);
+    a("rms_mm", v.rms_mm);
+    a("panel", v.panel);
+    a("body", v.body);
+    a("spots", v.spots);
+    a("unobservable", v.unobservable);
+    a("message", v.message);
+}
+template <class A>
+void describe(A& a, PanelRecord& v) {
+    a("job_id", v.job_id);
+    a("before", v.before);
+    a("after", v.after);
+    a("fit", v.fit);
+    a("base_from_gripper", v.base_from_gripper);
+    a("base_from_moved_gripper", v.base_from_moved_gripper);
+    a("base_from_frame", v.base_from_frame);
+    a("gate_passed", v.gate_passed);
+    a("refusals", v.refusals);
+    a("push", v.push);
+    a("verdict", v.verdict);
 }
 
 // --- evidence
@@ -425,6 +542,9 @@ SEAMWRIGHT_DOCUMENT(RobotSetup);
 SEAMWRIGHT_DOCUMENT(Calibration);
 SEAMWRIGHT_DOCUMENT(Spot);
 SEAMWRIGHT_DOCUMENT(Region);
+SEAMWRIGHT_DOCUMENT(PanelJob);
+SEAMWRIGHT_DOCUMENT(PanelMeasurement);
+SEAMWRIGHT_DOCUMENT(PanelRecord);
 SEAMWRIGHT_DOCUMENT(SpotMeasurement);
 SEAMWRIGHT_DOCUMENT(RegionRecord);
 SEAMWRIGHT_DOCUMENT(Requirements);

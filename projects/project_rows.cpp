@@ -78,7 +78,8 @@ Expected<void> load_rows(Database& db, const char* sql, const char* kind, std::v
     if (!s) return tl::unexpected(s.error());
     return for_each_row(*s, [&](Statement& row) -> Expected<void> {
         const std::string id = row.text(0), where = fmt::format("{} {}", kind, id);
-        auto value = row_value<T>(row.text(1), where, db.path(), kRow);
+        auto value =
+            row_value<T>(row.text(1), where, db.path(), std::is_same_v<T, PanelJob> ? kPanelRow : kRow);
         if (!value) return tl::unexpected(value.error());
         if (value->id != id)
             return file_error("an entry stands under another's id", db.path() + ": " + where);
@@ -101,7 +102,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     for (const auto& unique :
          {unique_ids(ids_of(project.sensors), "sensor"), unique_ids(ids_of(project.robots), "robot"),
           unique_ids(ids_of(project.calibrations), "calibration"), unique_ids(ids_of(project.spots), "spot"),
-          unique_ids(ids_of(project.regions), "region")})
+          unique_ids(ids_of(project.regions), "region"), unique_ids(ids_of(project.panel_jobs), "panel job")})
         if (!unique) return unique;
 
     auto name = db.prepare(
@@ -180,11 +181,20 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                       return s.run();
                   });
     if (!spots) return spots;
-    return save_rows(db, "regions", {"frame_name", "body"}, project.regions,
-                     [](Statement& s, const Region& region) -> Expected<void> {
-                         auto text = row_text(region, "region " + region.id, kRow);
+    auto regions = save_rows(db, "regions", {"frame_name", "body"}, project.regions,
+                             [](Statement& s, const Region& region) -> Expected<void> {
+                                 auto text = row_text(region, "region " + region.id, kRow);
+                                 if (!text) return tl::unexpected(text.error());
+                                 s.bind(3, region.frame_name);
+                                 s.bind(4, *text);
+                                 return s.run();
+                             });
+    if (!regions) return regions;
+    return save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs,
+                     [](Statement& s, const PanelJob& job) -> Expected<void> {
+                         auto text = row_text(job, "panel job " + job.id, kPanelRow);
                          if (!text) return tl::unexpected(text.error());
-                         s.bind(3, region.frame_name);
+                         s.bind(3, job.frame_name);
                          s.bind(4, *text);
                          return s.run();
                      });
@@ -226,7 +236,9 @@ Expected<Project> load_rows_of(Database& db) {
                     project.calibrations),
           load_rows(db, "SELECT id, body, reference_profile, template_profile FROM spots ORDER BY position",
                     "spot", project.spots),
-          load_rows(db, "SELECT id, body FROM regions ORDER BY position", "region", project.regions)})
+          load_rows(db, "SELECT id, body FROM regions ORDER BY position", "region", project.regions),
+          load_rows(db, "SELECT id, body FROM panel_jobs ORDER BY position", "panel job",
+                    project.panel_jobs)})
         if (!done) return tl::unexpected(done.error());
     return project;
 }

@@ -38,6 +38,19 @@ Expected<void> insert_regions(Database& db, const RunRecord& run, std::int64_t n
     return {};
 }
 
+Expected<void> insert_panel(Database& db, const RunRecord& run, std::int64_t number) {
+    if (!run.panel) return {};
+    auto text = row_text(*run.panel, "panel job " + run.panel->job_id, kResult);
+    if (!text) return tl::unexpected(text.error());
+    auto s = db.prepare("INSERT INTO run_panels (run, job_id, gate_passed, body) VALUES (?, ?, ?, ?)");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, number);
+    s->bind(2, run.panel->job_id);
+    s->bind(3, std::int64_t{run.panel->gate_passed});
+    s->bind(4, *text);
+    return s->run();
+}
+
 // Behind the `stored` captures that the run has already.
 Expected<void> insert_captures(Database& db, std::span<const Capture> captures, std::size_t stored,
                                std::int64_t number) {
@@ -107,6 +120,7 @@ Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t numb
     const auto open = [&](std::size_t i) { return stored.spots.count(i) == 0; };
     if (auto done = insert_spots(db, run, number, open); !done) return done;
     if (auto done = insert_regions(db, run, number); !done) return done;
+    if (auto done = insert_panel(db, run, number); !done) return done;
     if (auto done =
             insert_captures(db, std::span(run.captures).subspan(stored.captures), stored.captures, number);
         !done)
@@ -296,11 +310,15 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
     if (!row) return tl::unexpected(row.error());
     if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
     if (auto done = s->run(); !done) return done;
-    auto remove = db.prepare("DELETE FROM run_regions WHERE run = ?");
-    if (!remove) return tl::unexpected(remove.error());
-    remove->bind(1, run.number);
-    if (auto done = remove->run(); !done) return done;
+    for (const char* outcome :
+         {"DELETE FROM run_regions WHERE run = ?", "DELETE FROM run_panels WHERE run = ?"}) {
+        auto remove = db.prepare(outcome);
+        if (!remove) return tl::unexpected(remove.error());
+        remove->bind(1, run.number);
+        if (auto done = remove->run(); !done) return done;
+    }
     if (auto done = insert_regions(db, run, run.number); !done) return done;
+    if (auto done = insert_panel(db, run, run.number); !done) return done;
     return transaction->commit();
 }
 
@@ -428,6 +446,11 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
                          number, run.regions);
         !done)
         return tl::unexpected(done.error());
+    std::vector<PanelRecord> panels;
+    if (auto done = load_results(db, "SELECT job_id, body FROM run_panels WHERE run = ?", number, panels);
+        !done)
+        return tl::unexpected(done.error());
+    if (!panels.empty()) run.panel = std::move(panels.front());
     if (with_captures)
         if (auto done = load_captures(db, run); !done) return tl::unexpected(done.error());
     auto events_of_run = events(number);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "projects/measure.h"
+#include "projects/panel_measure.h"
 #include "projects/project_json.h"
 #include "projects/safety_gate.h"
 
@@ -32,6 +33,19 @@ RegionRecord computed_part(const RegionRecord& record) {
     return part;
 }
 
+PanelRecord computed_part(const PanelRecord& record) {
+    PanelRecord part = record;
+    part.gate_passed = false;
+    part.refusals.clear();
+    part.push = {};
+    return part;
+}
+
+bool nothing_kept(const Capture& raw) {
+    return raw.status != FrameStatus::ok ||
+           (raw.profile.size() == 0 && raw.candidates.lines == 0 && !raw.image);
+}
+
 // A setup with its spots made ready.
 class Recomputer {
   public:
@@ -45,11 +59,9 @@ class Recomputer {
                 return file_error(fmt::format("the capture of spot {} is missing", m.spot_id),
                                   fmt::format("run {}", stored.number));
             const Capture& raw = stored.captures[static_cast<std::size_t>(m.capture)];
-            const bool empty = raw.status != FrameStatus::ok ||
-                               (raw.profile.size() == 0 && raw.candidates.lines == 0 && !raw.image);
             // Nothing was kept because there was nothing to measure: the verdict of then stands. Had it been
             // measured, the difference shows below.
-            if (empty && m.status != SpotStatus::measured) continue;
+            if (nothing_kept(raw) && m.status != SpotStatus::measured) continue;
             auto it = measurers_.find(m.spot_id);
             if (it == measurers_.end()) {
                 auto made = SpotMeasurer::make(setup_, m.spot_id);
@@ -76,10 +88,51 @@ class Recomputer {
                 }
         }
         again.regions = std::move(regions);
+        if (again.panel)
+            if (auto done = recompute_panel(stored, *again.panel); !done) return tl::unexpected(done.error());
         return again;
     }
 
   private:
+    Expected<void> recompute_panel(const RunRecord& stored, PanelRecord& panel) {
+        const std::string where = fmt::format("run {}", stored.number);
+        const PanelJob* job = find_panel_job(setup_, panel.job_id);
+        if (!job) return file_error("the setup of the run has no panel job " + panel.job_id, where);
+        for (auto* list : {&panel.before, &panel.after})
+            for (PanelMeasurement& m : *list) {
+                if (m.capture < 0) continue;
+                const auto count = static_cast<int>(stored.captures.size());
+                if (m.capture >= count || m.second_capture >= count)
+                    return file_error(fmt::format("the capture of place {} is missing", m.place_id), where);
+                const Capture& first = stored.captures[static_cast<std::size_t>(m.capture)];
+                const Capture* second = m.second_capture < 0
+                                            ? nullptr
+                                            : &stored.captures[static_cast<std::size_t>(m.second_capture)];
+                if (m.status != SpotStatus::measured &&
+                    (nothing_kept(first) || (second && nothing_kept(*second))))
+                    continue;
+                const auto place = std::find_if(job->places.begin(), job->places.end(),
+                                                [&](const PanelPlace& p) { return p.id == m.place_id; });
+                if (place == job->places.end())
+                    return file_error(fmt::format("the setup of the run has no place {}", m.place_id), where);
+                const std::string key = job->id + "\n" + place->id;
+                auto it = panel_measurers_.find(key);
+                if (it == panel_measurers_.end()) {
+                    auto made = PanelMeasurer::make(setup_, *job, *place);
+                    if (!made) return tl::unexpected(made.error());
+                    it = panel_measurers_.emplace(key, std::move(*made)).first;
+                }
+                PanelMeasurement again = it->second.measure(first, second);
+                again.part_id = m.part_id;
+                again.capture = m.capture;
+                again.second_capture = m.second_capture;
+                m = std::move(again);
+            }
+        compute_panel(setup_, *job, panel);
+        return {};
+    }
+
+    std::map<std::string, PanelMeasurer> panel_measurers_;
     Project setup_;
     std::map<std::string, SpotMeasurer> measurers_;
 };
@@ -101,6 +154,32 @@ std::string describe_change(const RegionRecord& a, const RegionRecord& b) {
     const Pose& to = b.correction->displacement.workobject_from_movedworkobject;
     return fmt::format("displacement changed by {} mm and {} degrees", distance_mm(from, to),
                        deg_from_rad(angle_rad(from, to)));
+}
+
+std::string describe_change(const PanelMeasurement& a, const PanelMeasurement& b) {
+    if (a.status != b.status)
+        return fmt::format("{} -> {} {}", to_string(a.status), to_string(b.status), b.message);
+    return fmt::format("gap {}, flush {} -> gap {}, flush {} mm", a.gap_mm, a.flush_mm, b.gap_mm, b.flush_mm);
+}
+
+void compare_panels(std::int64_t run, const PanelRecord& a, const PanelRecord& b,
+                    std::vector<ReplayDifference>& differences) {
+    const auto places = [&](const char* when, const std::vector<PanelMeasurement>& one,
+                            const std::vector<PanelMeasurement>& other) {
+        for (std::size_t i = 0; i < std::min(one.size(), other.size()); ++i)
+            if (exact(one[i]) != exact(other[i]))
+                differences.push_back({run, fmt::format("place {} {} the motion", one[i].place_id, when),
+                                       describe_change(one[i], other[i]),
+                                       std::max((one[i].panel_mm - other[i].panel_mm).norm(),
+                                                (one[i].body_mm - other[i].body_mm).norm())});
+    };
+    const std::size_t found = differences.size();
+    places("before", a.before, b.before);
+    places("after", a.after, b.after);
+    if (exact(computed_part(a)) == exact(computed_part(b)) || differences.size() > found) return;
+    const double off = distance_mm(a.base_from_moved_gripper, b.base_from_moved_gripper);
+    differences.push_back(
+        {run, "panel job " + a.job_id, fmt::format("the motion changed by {} mm", off), off});
 }
 
 struct Part {  // what one run came to
@@ -126,7 +205,8 @@ Part replay_run(const ProjectFile& file, const RunSummary& run, std::map<std::in
     auto again = setup->second.recompute(*stored);
     if (!again) return failed(again.error());
     part.captures = static_cast<std::int64_t>(stored->captures.size());
-    if (stored->status == RunStatus::interrupted && stored->regions.empty()) return part;  // never judged
+    if (stored->status == RunStatus::interrupted && stored->regions.empty() && !stored->panel)
+        return part;  // never judged
     part.differences = compare(*stored, *again);
     return part;
 }
@@ -156,6 +236,7 @@ std::vector<ReplayDifference> compare(const RunRecord& stored, const RunRecord& 
         differences.push_back({stored.number, "region " + a.region_id, describe_change(a, b),
                                distance_mm(a.base_from_frame, b.base_from_frame)});
     }
+    if (stored.panel && again.panel) compare_panels(stored.number, *stored.panel, *again.panel, differences);
     return differences;
 }
 

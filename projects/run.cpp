@@ -14,6 +14,9 @@ constexpr auto kEventKind =
 constexpr auto kRunStatus =
     std::to_array<std::string_view>({"interrupted", "ok", "refused", "alarm", "device", "cancelled"});
 
+constexpr auto kPanelVerdict =
+    std::to_array<std::string_view>({"not_verified", "in_tolerance", "out_of_tolerance"});
+
 template <class E, std::size_t N>
 std::optional<E> find_word(const std::array<std::string_view, N>& words, std::string_view name) {
     for (std::size_t i = 0; i < N; ++i)
@@ -34,6 +37,10 @@ std::string_view to_string(EventKind kind) {
 }
 std::string_view to_string(RunStatus status) {
     return kRunStatus.at(static_cast<std::size_t>(status));
+}
+
+std::string_view to_string(PanelVerdict verdict) {
+    return kPanelVerdict.at(static_cast<std::size_t>(verdict));
 }
 
 std::optional<SpotStatus> spot_status_from(std::string_view name) {

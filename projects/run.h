@@ -11,6 +11,7 @@
 
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
+#include "core/panel/panel_fit.h"
 #include "core/profile/profile.h"
 #include "devices/capture/capture.h"
 
@@ -68,6 +69,42 @@ struct RegionRecord {
     PushRecord push;
 };
 
+// One place of a panel job (panel_job.h), in the place's frame.
+struct PanelMeasurement {
+    std::string place_id;
+    SpotStatus status = SpotStatus::not_measured;
+    std::string message;  // empty when measured
+    Eigen::Vector3d panel_mm = Eigen::Vector3d::Zero(), body_mm = Eigen::Vector3d::Zero();
+    double sigma_mm = 0;              // of an observed coordinate
+    double gap_mm = 0, flush_mm = 0;  // by the gauge
+    Eigen::Matrix2d gap_flush_covariance = Eigen::Matrix2d::Zero();
+    // Double heads: see core/panel/double_head.h. 0 with a single head.
+    double head_disagreement_mm = 0, head_offset_mm = 0, head_overlap_mm = 0;
+    std::string part_id;
+    std::int64_t host_time_ns = 0;          // of the later frame, steady clock
+    int capture = -1, second_capture = -1;  // in RunRecord::captures
+};
+
+enum class PanelVerdict {
+    not_verified,  // nothing was moved, or what stands there afterwards could not be measured
+    in_tolerance,  // gap and flush after the motion lie within the job's tolerance of the taught ones
+    out_of_tolerance
+};
+std::string_view to_string(PanelVerdict verdict);
+
+struct PanelRecord {
+    std::string job_id;
+    std::vector<PanelMeasurement> before, after;  // enabled places; `after` the motion, empty without one
+    std::optional<PanelFit> fit;  // of `before`; absent when it could not be solved, `refusals` says so
+    // Where the gripper stood when it measured, where it goes, and the frame that takes it there.
+    Pose base_from_gripper = Pose::Identity(), base_from_moved_gripper = Pose::Identity();
+    Pose base_from_frame = Pose::Identity();
+    bool gate_passed = false;
+    std::vector<std::string> refusals;
+    PushRecord push;
+    PanelVerdict verdict = PanelVerdict::not_verified;
+};
+
 enum class EventKind { note, refusal, push_attempt, push, alarm, device };
 std::string_view to_string(EventKind kind);
 std::optional<EventKind> event_kind_from(std::string_view name);
@@ -84,11 +121,11 @@ struct EventRecord {
 enum class RunStatus {
     interrupted,  // the program ended while measuring (no spots and regions; the captures until then), or
                   // between judging and the last push; the events tell how far it came
-    ok,        // every region solved and passed the gate (and, in a push run, written and read back)
-    refused,   // at least one region refused by the gate or not solvable
-    alarm,     // a push went wrong
-    device,    // a sensor or robot failed; nothing was pushed
-    cancelled  // by the user; nothing was pushed
+    ok,           // every region solved and passed the gate (and, in a push run, written and read back)
+    refused,      // at least one region refused by the gate or not solvable
+    alarm,        // a push went wrong
+    device,       // a sensor or robot failed; nothing was pushed
+    cancelled     // by the user; nothing was pushed
 };
 std::string_view to_string(RunStatus status);
 std::optional<RunStatus> run_status_from(std::string_view name);
@@ -102,6 +139,7 @@ struct RunRecord {
     std::string message;                 // one sentence
     std::vector<SpotMeasurement> spots;  // enabled spots, in the order of the project
     std::vector<RegionRecord> regions;
+    std::optional<PanelRecord> panel;  // of a panel job's run, which has no spots and regions
     std::vector<Capture> captures;
     std::vector<EventRecord> events;
 };

@@ -138,7 +138,24 @@ CREATE TABLE evidence (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 3> kMigrations{{{1, kVersion1}, {2, kVersion2}, {3, kVersion3}}};
+// Panel jobs with the profiles that were taught, as JSON; a panel job's run beside the path runs.
+constexpr const char* kVersion4 = R"sql(
+CREATE TABLE panel_jobs (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    frame_name TEXT NOT NULL,
+    body TEXT NOT NULL
+) STRICT;
+CREATE TABLE run_panels (
+    run INTEGER PRIMARY KEY REFERENCES runs (number) ON DELETE CASCADE,
+    job_id TEXT NOT NULL,
+    gate_passed INTEGER NOT NULL CHECK (gate_passed IN (0, 1)),
+    body TEXT NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 4> kMigrations{
+    {{1, kVersion1}, {2, kVersion2}, {3, kVersion3}, {4, kVersion4}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.

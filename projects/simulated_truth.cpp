@@ -1,7 +1,10 @@
 #include "projects/simulated_truth.h"
 
 #include "devices/capture/capture.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/registry.h"
 #include "devices/simulated/cell.h"
+#include "devices/simulated/gripper_cell.h"
 
 namespace seamwright {
 
@@ -24,6 +27,69 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
     c.flange_from_sensor = (*cell)->flange_from_sensor();
     c.verdict = "good";
     return c;
+}
+
+Expected<Project> simulated_panel_project(const nlohmann::json& given) {
+    constexpr const char* kFrame = "panel";
+    const auto parsed = parse_gripper_settings(given);
+    if (!parsed) return tl::unexpected(parsed.error());
+    nlohmann::json settings = given;
+    settings.erase("head");
+    settings["robot"]["frames"][kFrame] = pose_json(parsed->base_from_opening);
+    DeviceSession session;
+    auto cell = shared_gripper_cell(settings, session);
+    if (!cell) return tl::unexpected(cell.error());
+
+    Project p;
+    p.name = "simulated panel";
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = "simulated-gripper";
+    robot.settings = settings;
+    robot.identity = *make_gripper_robot(*cell)->identity();
+    for (const auto& [head, flange_from_sensor] : parsed->heads) {
+        SensorSetup sensor;
+        sensor.id = head;
+        sensor.driver = "simulated-gripper";
+        sensor.settings = settings;
+        sensor.settings["head"] = head;
+        sensor.identity = make_gripper_sensor(*cell, head)->identity();
+        Calibration c;
+        c.id = sensor.calibration_id = "truth " + head;
+        c.method = "simulated truth";
+        c.sensor_id = head;
+        c.robot_id = robot.id;
+        c.sensor_identity = sensor.identity;
+        c.robot_identity = robot.identity;
+        c.created_utc = utc_now();
+        c.source = "the simulated gripper's own optics and mounting";
+        c.model = (*cell)->sensor_model();
+        c.flange_from_sensor = flange_from_sensor;
+        c.verdict = "good";
+        p.calibrations.push_back(std::move(c));
+        p.sensors.push_back(std::move(sensor));
+    }
+    p.robots.push_back(robot);
+
+    PanelJob job;
+    job.id = "panel";
+    job.robot_id = robot.id;
+    job.base_from_gripper = parsed->base_from_opening;
+    job.frame_name = kFrame;
+    job.base_from_frame = parsed->base_from_opening;
+    job.limits = {20, 2};
+    for (const GripperPlace& place : default_gripper_places()) {
+        PanelPlace out;
+        out.id = place.id;
+        out.sensor_id = "H" + place.id.substr(1);
+        if (parsed->heads.count(out.sensor_id + "b")) out.second_sensor_id = out.sensor_id + "b";
+        if (!parsed->heads.count(out.sensor_id)) continue;
+        out.gauge.reference = GapFlushSettings::Reference::right;
+        out.sigma_mm = 0.05;
+        job.places.push_back(std::move(out));
+    }
+    p.panel_jobs.push_back(std::move(job));
+    return p;
 }
 
 }  // namespace seamwright

@@ -10,4 +10,9 @@ namespace seamwright {
 // (input): another driver, settings that the cell refuses.
 Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetup& robot);
 
+// The simulated gripper (devices/simulated/gripper_cell.h) as a project: its sensors and robot calibrated by
+// construction, one panel job "panel" of its places, not taught yet. `settings`:
+// those of the cell, without "head"; the job's frame is added to them.
+Expected<Project> simulated_panel_project(const nlohmann::json& settings);
+
 }  // namespace seamwright

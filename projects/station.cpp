@@ -496,7 +496,10 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
         run.spots.push_back(std::move(m));
     }
     if (run.spots.empty())
-        return input_error("no spot is enabled", i.file.path().string(), "teach a spot first");
+        return input_error("no spot is enabled", i.file.path().string(),
+                           i.project.panel_jobs.empty()
+                               ? "teach a spot first"
+                               : "teach a spot, or run its panel job (seamwright panel)");
 
     const auto setup = RunSetup::of(i.project);
     if (!setup) return tl::unexpected(setup.error());

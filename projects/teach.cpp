@@ -15,22 +15,6 @@ namespace {
 using Visit =
     std::function<void(std::size_t move, const SpotMeasurer& measurer, const SpotMeasurement& measurement)>;
 
-// Goes to `base_from_flange`. A robot that the program cannot move is jogged there by hand, and must stand
-// there.
-constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
-Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange) {
-    const auto moved = robot.move_to(base_from_flange);
-    auto at = robot.base_from_flange();
-    if (moved && at) return at;
-    if (!at) return moved ? at : tl::unexpected(moved.error());
-    const double off_mm = distance_mm(*at, base_from_flange);
-    const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
-    if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
-    return device_error(fmt::format("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
-                                    off_mm, off_deg, moved.error().what),
-                        "spot " + spot_id, "jog it there");
-}
-
 // Measures standing still at each of `poses` (base_from_flange).
 Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<Pose>& poses,
                           const std::stop_token& cancel,

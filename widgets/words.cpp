@@ -178,6 +178,8 @@ constexpr auto kWords = std::to_array<Word>({
     QT_TRANSLATE_NOOP("Words", "How grey values or coordinates are coded."),
     QT_TRANSLATE_NOOP("Words", "What starts an exposure."),
     QT_TRANSLATE_NOOP("Words", "A car door before a stripe camera, rendered"),
+    QT_TRANSLATE_NOOP("Words", "A panel in a gripper before a body's opening, rendered"),
+    QT_TRANSLATE_NOOP("Words", "A robot whose gripper holds a panel"),
     QT_TRANSLATE_NOOP("Words", "A recorded capture, or profiles (CSV) or images of a folder, with poses"),
     QT_TRANSLATE_NOOP("Words", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)"),
     QT_TRANSLATE_NOOP("Words", "A robot with repeatability and trigger jitter"),

@@ -173,4 +173,52 @@ std::string alignment_text(const AlignmentResult& a) {
         a.cure.empty() ? "" : "to cure: ", a.cure.empty() ? "" : a.cure + "\n");
 }
 
+static json value_json(const GapFlushValue& v) {
+    return {{"gap_mm", v.gap_mm}, {"flush_mm", v.flush_mm}};
+}
+
+json panel_fit_json(const PanelFit& fit) {
+    json spots = json::array();
+    for (const PanelSpotResult& s : fit.spots)
+        spots.push_back({{"id", s.id},
+                         {"gap_mm", s.remaining.gap_mm},
+                         {"flush_mm", s.remaining.flush_mm},
+                         {"residual_mm", vector_json(s.residual_mm)},
+                         {"taught", value_json(s.taught)},
+                         {"before", value_json(s.before)},
+                         {"panel_used", s.panel_used},
+                         {"body_used", s.body_used}});
+    return {
+        {"status", to_string(fit.status)},
+        {"gripper_motion", pose_json(fit.gripper_motion)},
+        {"single_step", pose_json(fit.single_step)},
+        {"sigma", {{"xyz_mm", vector_json(fit.sigma_xyz_mm)}, {"abc_deg", vector_json(fit.sigma_abc_deg)}}},
+        {"covariance", matrix_json(fit.covariance)},
+        {"rms_mm", fit.rms_mm},
+        {"panel", correction_json(fit.panel)},
+        {"body", correction_json(fit.body)},
+        {"spots", spots},
+        {"unobservable", fit.unobservable},
+        {"message", fit.message}};
+}
+
+std::string panel_fit_text(const PanelFit& fit) {
+    std::string text =
+        fmt::format("{}{}{}\n", to_string(fit.status), fit.message.empty() ? "" : ": ", fit.message);
+    for (const std::string& direction : fit.unobservable) text += "unobservable: " + direction + "\n";
+    if (fit.status == CorrectionStatus::under_determined) return text;
+    text += "G      " + pose_text(fit.gripper_motion) + "\n";
+    text += fmt::format("sigma  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n",
+                        fit.sigma_xyz_mm.x(), fit.sigma_xyz_mm.y(), fit.sigma_xyz_mm.z(),
+                        fit.sigma_abc_deg.x(), fit.sigma_abc_deg.y(), fit.sigma_abc_deg.z());
+    text += fmt::format("left off after the motion, rms {:.4f} mm:\n", fit.rms_mm);
+    for (const PanelSpotResult& s : fit.spots)
+        text +=
+            fmt::format("  {:<12} gap {:+8.4f}   flush {:+8.4f} mm   (as measured {:+8.4f}, {:+8.4f}){}{}\n",
+                        s.id, s.remaining.gap_mm, s.remaining.flush_mm, s.before.gap_mm, s.before.flush_mm,
+                        s.panel_used ? "" : "   panel left out: contradicts the others",
+                        s.body_used ? "" : "   body left out: contradicts the others");
+    return text;
+}
+
 }  // namespace seamwright::cli

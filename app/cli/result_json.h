@@ -8,6 +8,7 @@
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
 #include "core/features/registration.h"
+#include "core/panel/panel_fit.h"
 
 namespace seamwright::cli {
 
@@ -27,5 +28,7 @@ nlohmann::json registration_json(const Registration& registration);
 std::string registration_text(const Registration& registration);
 nlohmann::json alignment_json(const AlignmentResult& alignment);
 std::string alignment_text(const AlignmentResult& alignment);
+nlohmann::json panel_fit_json(const PanelFit& fit);
+std::string panel_fit_text(const PanelFit& fit);
 
 }  // namespace seamwright::cli

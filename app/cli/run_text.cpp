@@ -9,6 +9,66 @@ namespace seamwright::cli {
 
 using nlohmann::json;
 
+namespace {
+
+json push_json(const PushRecord& p) {
+    json push = {{"status", to_string(p.status)}, {"frame", p.frame_name}, {"message", p.message}};
+    if (p.before) push["before"] = pose_json(*p.before);
+    if (p.read_back) push["read_back"] = pose_json(*p.read_back);
+    return push;
+}
+
+json places_json(const std::vector<PanelMeasurement>& places) {
+    json list = json::array();
+    for (const PanelMeasurement& m : places)
+        list.push_back({{"id", m.place_id},
+                        {"status", to_string(m.status)},
+                        {"message", m.message},
+                        {"gap_mm", m.gap_mm},
+                        {"flush_mm", m.flush_mm},
+                        {"panel_mm", vector_json(m.panel_mm)},
+                        {"body_mm", vector_json(m.body_mm)},
+                        {"sigma_mm", m.sigma_mm},
+                        {"head_disagreement_mm", m.head_disagreement_mm},
+                        {"head_offset_mm", m.head_offset_mm},
+                        {"head_overlap_mm", m.head_overlap_mm}});
+    return list;
+}
+
+json panel_json(const PanelRecord& p) {
+    return {{"job", p.job_id},
+            {"verdict", to_string(p.verdict)},
+            {"before", places_json(p.before)},
+            {"after", places_json(p.after)},
+            {"fit", p.fit ? panel_fit_json(*p.fit) : json()},
+            {"base_from_gripper", pose_json(p.base_from_gripper)},
+            {"base_from_moved_gripper", pose_json(p.base_from_moved_gripper)},
+            {"base_from_frame", pose_json(p.base_from_frame)},
+            {"gate_passed", p.gate_passed},
+            {"refusals", p.refusals},
+            {"push", push_json(p.push)}};
+}
+
+std::string panel_text(const RunRecord& run) {
+    const PanelRecord& p = *run.panel;
+    std::string text;
+    for (const auto& [when, places] : {std::pair{"before", &p.before}, {"after", &p.after}})
+        for (const PanelMeasurement& m : *places) {
+            text += fmt::format("  {:<6} place {:<6} ", when, m.place_id);
+            text += m.status == SpotStatus::measured
+                        ? fmt::format("gap {:8.3f}   flush {:+8.3f} mm\n", m.gap_mm, m.flush_mm)
+                        : fmt::format("{}: {}\n", to_string(m.status), m.message);
+        }
+    if (p.fit) text += panel_fit_text(*p.fit);
+    for (const std::string& reason : p.refusals) text += "  refused: " + reason + "\n";
+    if (run.push)
+        text += fmt::format("  push of {}: {}{}{}\n", p.push.frame_name, to_string(p.push.status),
+                            p.push.message.empty() ? "" : ": ", p.push.message);
+    return text + fmt::format("panel job {}: {}\n", p.job_id, to_string(p.verdict));
+}
+
+}  // namespace
+
 json run_json(const RunRecord& run) {
     json spots = json::array(), regions = json::array(), events = json::array();
     for (const SpotMeasurement& s : run.spots)
@@ -19,30 +79,28 @@ json run_json(const RunRecord& run) {
                          {"measured_mm", vector_json(s.measured_mm)},
                          {"sigma_mm", s.sigma_mm}});
     for (const RegionRecord& r : run.regions) {
-        json push = {
-            {"status", to_string(r.push.status)}, {"frame", r.push.frame_name}, {"message", r.push.message}};
-        if (r.push.before) push["before"] = pose_json(*r.push.before);
-        if (r.push.read_back) push["read_back"] = pose_json(*r.push.read_back);
         regions.push_back({{"id", r.region_id},
                            {"correction", r.correction ? correction_json(*r.correction) : json()},
                            {"base_from_frame", pose_json(r.base_from_frame)},
                            {"gate_passed", r.gate_passed},
                            {"refusals", r.refusals},
-                           {"push", push}});
+                           {"push", push_json(r.push)}});
     }
     for (const EventRecord& e : run.events)
         events.push_back(
             {{"utc", e.utc}, {"kind", to_string(e.kind)}, {"subject", e.subject}, {"text", e.text}});
-    return {{"status", to_string(run.status)},
-            {"message", run.message},
-            {"run", run.number},
-            {"part", run.part_id},
-            {"started_utc", run.started_utc},
-            {"finished_utc", run.finished_utc},
-            {"push", run.push},
-            {"spots", spots},
-            {"regions", regions},
-            {"events", events}};
+    json out = {{"status", to_string(run.status)},
+                {"message", run.message},
+                {"run", run.number},
+                {"part", run.part_id},
+                {"started_utc", run.started_utc},
+                {"finished_utc", run.finished_utc},
+                {"push", run.push},
+                {"spots", spots},
+                {"regions", regions},
+                {"events", events}};
+    if (run.panel) out["panel"] = panel_json(*run.panel);
+    return out;
 }
 
 std::string run_text(const RunRecord& run) {
@@ -65,6 +123,7 @@ std::string run_text(const RunRecord& run) {
             text += fmt::format("  push of {}: {}{}{}\n", r.push.frame_name, to_string(r.push.status),
                                 r.push.message.empty() ? "" : ": ", r.push.message);
     }
+    if (run.panel) text += panel_text(run);
     return text;
 }
 

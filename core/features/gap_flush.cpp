@@ -7,6 +7,10 @@
 
 namespace seamwright {
 
+namespace {
+constexpr double kFoldBreak_mm = 1;
+}
+
 std::string_view to_string(GapFlushStatus status) {
     switch (status) {
         case GapFlushStatus::ok:
@@ -51,6 +55,23 @@ bool GapFlushGauge::measure_line(const FeaturePoints::Piece& piece, double edge_
     }
     line = fit_line(x_, z_, workspace_);
     return line.ok && line.used >= 4;
+}
+
+// A fold or flank that the filter cut off from its surface belongs to it: pieces between the two sides that
+// go on where a side ends.
+void GapFlushGauge::join_folds(FeaturePoints::Piece& left, FeaturePoints::Piece& right) const {
+    const auto near = [&](int a, int b) {
+        return std::hypot(points_.x[b] - points_.x[a], points_.z[b] - points_.z[a]) <= kFoldBreak_mm;
+    };
+    const auto end = [](const FeaturePoints::Piece& p) { return p.first + p.count; };
+    for (const auto& p : points_.pieces)
+        if (p.first >= end(left) && end(p) <= right.first && near(end(left) - 1, p.first))
+            left.count = end(p) - left.first;
+    for (auto p = points_.pieces.rbegin(); p != points_.pieces.rend(); ++p)
+        if (end(*p) <= right.first && p->first >= end(left) && near(right.first, end(*p) - 1)) {
+            right.count += right.first - p->first;
+            right.first = p->first;
+        }
 }
 
 // The outermost place along u, half a pitch beyond the outermost return where the surface tears off there.
@@ -101,8 +122,9 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
         return sum / p.count;
     };
     const bool first_is_left = mean_x(*first) < mean_x(*second);
-    const FeaturePoints::Piece& left = first_is_left ? *first : *second;
-    const FeaturePoints::Piece& right = first_is_left ? *second : *first;
+    FeaturePoints::Piece left = first_is_left ? *first : *second;
+    FeaturePoints::Piece right = first_is_left ? *second : *first;
+    join_folds(left, right);
     const bool reference_left = settings_.reference == GapFlushSettings::Reference::left;
     const FeaturePoints::Piece& reference_piece = reference_left ? left : right;
     const FeaturePoints::Piece& other_piece = reference_left ? right : left;
@@ -143,6 +165,8 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
     const double s_other = u.dot(other.edge - other.line.centre) / along_u;
     const Eigen::Vector2d surface = other.line.centre + s_other * d;
     result.flush_mm = n.dot(surface - reference.line.centre);
+    result.reference_point_mm = reference.line.centre + u * u.dot(reference.edge - reference.line.centre);
+    result.other_point_mm = surface;
 
     // u turns with the reference line: the gap then changes by -(n . between), the flush by the distance
     // along u.

@@ -57,13 +57,16 @@ struct GapFlush {
     double gap_mm = 0, flush_mm = 0;
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of (gap, flush)
     Eigen::Vector2d reference_edge_mm = Eigen::Vector2d::Zero(), other_edge_mm = Eigen::Vector2d::Zero();
+    // The surfaces at their edges: flush and the gap along the surface are n and u of their difference.
+    Eigen::Vector2d reference_point_mm = Eigen::Vector2d::Zero(), other_point_mm = Eigen::Vector2d::Zero();
     Eigen::Vector2d along = Eigen::Vector2d::UnitX();  // u
     std::string message;                               // empty when ok
 };
 
 // Buffers live in the object: nothing is allocated after the first calls; one thread per object. The two
-// sides are the two pieces with most points in the window. `profile` as for features. Precondition: check()
-// has nothing against the settings.
+// sides are the two pieces with most points in the window, each with the shorter pieces that go on within 1
+// mm of its end towards the other (a fold that the filter cut off). `profile` as for features. Precondition:
+// check() has nothing against the settings.
 class GapFlushGauge {
   public:
     explicit GapFlushGauge(const GapFlushSettings& settings) : settings_(settings) {}
@@ -76,6 +79,7 @@ class GapFlushGauge {
         double pitch = 0;
     };
     bool measure_line(const FeaturePoints::Piece& piece, double edge_along_x, double inward, LineFit& line);
+    void join_folds(FeaturePoints::Piece& left, FeaturePoints::Piece& right) const;
     void measure_edge(const FeaturePoints::Piece& piece, const Eigen::Vector2d& u, Side& side);
 
     GapFlushSettings settings_;

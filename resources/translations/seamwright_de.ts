@@ -1004,6 +1004,14 @@
         <translation>Eine Autotür vor einer Laserlinienkamera, gerechnet</translation>
     </message>
     <message>
+        <source>A panel in a gripper before a body&apos;s opening, rendered</source>
+        <translation>Ein Anbauteil im Greifer vor der Öffnung einer Karosserie, gerechnet</translation>
+    </message>
+    <message>
+        <source>A robot whose gripper holds a panel</source>
+        <translation>Ein Roboter, dessen Greifer ein Anbauteil hält</translation>
+    </message>
+    <message>
         <source>A recorded capture, or profiles (CSV) or images of a folder, with poses</source>
         <translation>Eine Aufzeichnung, oder Profile (CSV) oder Bilder eines Ordners, mit Posen</translation>
     </message>

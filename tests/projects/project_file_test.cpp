@@ -568,6 +568,48 @@ TEST(Migration, VersionTwoBecomesCurrentAndTakesEvidence) {
     EXPECT_EQ(file->load()->requirements.sigma3_mm, 0.1);
 }
 
+TEST(Migration, VersionThreeBecomesCurrentAndTakesPanelJobs) {
+    TemporaryFolder folder;
+    const fs::path path = folder / "old.seam";
+    make_old_version(path, 3);
+    auto file = ProjectFile::open(path);
+    ASSERT_TRUE(file) << file.error().sentence();
+    Project project = file->load().value();
+    EXPECT_EQ(project.requirements.sigma3_mm, 0.2);
+    EXPECT_EQ(file->evidence()->size(), 1u);
+    EXPECT_TRUE(project.panel_jobs.empty());
+    EXPECT_FALSE(file->load_run(1)->panel);
+    project.panel_jobs = sample_project().panel_jobs;
+    ASSERT_TRUE(file->save(project));
+    RunRecord run = sample_run(1);
+    run.panel = sample_panel_record(1);
+    ASSERT_TRUE(file->append_run(run, project));
+    EXPECT_EQ(exact_text(file->load()->panel_jobs[0]), exact_text(project.panel_jobs[0]));
+    EXPECT_TRUE(file->check().empty());
+}
+
+TEST(ProjectFile, PanelRunsComeBackToTheLastBit) {
+    TemporaryFolder folder;
+    const Project project = sample_project();
+    auto file = ProjectFile::create(folder / "a.seam", project).value();
+    RunRecord run = sample_run(1);
+    run.spots.clear();
+    run.regions.clear();
+    run.panel = sample_panel_record(5);
+    run.number = file.append_run(run, project).value();
+    auto loaded = file.load_run(run.number).value();
+    ASSERT_TRUE(loaded.panel);
+    EXPECT_EQ(exact_text(*loaded.panel), exact_text(*run.panel));
+    run.panel->after.pop_back();
+    run.panel->verdict = PanelVerdict::in_tolerance;
+    ASSERT_TRUE(file.update_run(run));
+    EXPECT_EQ(exact_text(*file.load_run(run.number)->panel), exact_text(*run.panel));
+    EXPECT_EQ(exact_text(file.load_run_setup(run.number)->panel_jobs[0]), exact_text(project.panel_jobs[0]));
+    EXPECT_TRUE(file.check().empty());
+    ASSERT_TRUE(file.delete_run(run.number));
+    EXPECT_TRUE(file.check().empty());
+}
+
 TEST(ProjectFile, EvidenceComesBackToTheLastBitAndOutlivesRuns) {
     TemporaryFolder folder;
     const Project project = sample_project();

@@ -172,6 +172,42 @@ inline Project sample_project(unsigned seed = 1) {
     r.frame_name = "BASE_DATA[7]";
     r.base_from_frame = make.pose();
     p.regions.push_back(r);
+    PanelJob job;
+    job.id = "fit \u00fc";
+    job.robot_id = "R1";
+    for (int i = 0; i < 3; ++i) {
+        PanelPlace place;
+        place.id = "P" + std::to_string(i + 1);
+        place.sensor_id = "A";
+        place.second_sensor_id = i == 1 ? "B" : "";
+        place.enabled = i != 2;
+        place.required = i != 2;
+        place.gauge.reference = GapFlushSettings::Reference::right;
+        place.gauge.gap_by = GapBy::edge_distance;
+        place.gauge.window = {-1.0 / 3.0, 25, -4, 5};
+        place.gauge.surface_mm = 4.5;
+        place.gauge.edge_skip_mm = 1.25;
+        place.gauge.minimum_points = 12;
+        place.panel_reference_mm = {make.number(), 0, make.number()};
+        place.body_reference_mm = {make.number(), 0, make.number()};
+        place.gap_mm = make.number(3);
+        place.flush_mm = make.number(1);
+        place.surface_deg = make.number(20);
+        place.reference_profile = make.profile(100);
+        place.weights = {1, 0, 0.25};
+        place.sigma_mm = 0.04;
+        job.places.push_back(place);
+    }
+    job.base_from_gripper = make.pose();
+    job.limits = {12.5, std::numeric_limits<double>::infinity()};
+    job.sigma_limit_mm = 0.15;
+    job.sigma_limit_deg = 0.025;
+    job.gap_tolerance_mm = 0.7;
+    job.flush_tolerance_mm = 0.4;
+    job.head_limit_mm = 0.2;
+    job.frame_name = "BASE_DATA[9]";
+    job.base_from_frame = make.pose();
+    p.panel_jobs.push_back(job);
     return p;
 }
 
@@ -226,6 +262,52 @@ inline RunRecord sample_run(unsigned seed, int captures = 4, int points = 300) {
     run.regions.push_back(region);
     run.events.push_back({0, "2024-05-01T12:00:01.000Z", 0, EventKind::refusal, "edge", "because"});
     return run;
+}
+
+inline PanelRecord sample_panel_record(unsigned seed) {
+    SampleMaker make(seed);
+    PanelRecord panel;
+    panel.job_id = "fit \u00fc";
+    for (auto* list : {&panel.before, &panel.after})
+        for (int i = 0; i < 3; ++i) {
+            PanelMeasurement m;
+            m.place_id = "P" + std::to_string(i + 1);
+            m.status = i == 2 ? SpotStatus::no_feature : SpotStatus::measured;
+            m.message = i == 2 ? "no gap" : "";
+            m.panel_mm = {make.number(), 0, make.number()};
+            m.body_mm = {make.number(), 0, make.number()};
+            m.sigma_mm = 0.05;
+            m.gap_mm = make.number(3);
+            m.flush_mm = std::numeric_limits<double>::infinity();
+            m.gap_flush_covariance << 1, 0.5, 0.5, 2;
+            m.head_disagreement_mm = make.number(0.1);
+            m.head_offset_mm = make.number(0.1);
+            m.head_overlap_mm = 12;
+            m.part_id = "car";
+            m.host_time_ns = 1234567890123456789;
+            m.capture = i;
+            m.second_capture = i == 1 ? 3 : -1;
+            list->push_back(m);
+        }
+    panel.fit.emplace();
+    panel.fit->status = CorrectionStatus::over_limit;
+    panel.fit->gripper_motion = make.pose();
+    panel.fit->single_step = make.pose();
+    panel.fit->covariance(2, 3) = 1.0 / 3.0;
+    panel.fit->sigma_xyz_mm = {0.1, std::numeric_limits<double>::infinity(), 0.3};
+    panel.fit->panel.displacement.workobject_from_movedworkobject = make.pose();
+    panel.fit->spots.push_back(
+        {"P1", {4, 0.5}, {0.1, std::nan("")}, {0.01, 0.02}, {0.1, 0, 0.2}, true, false});
+    panel.fit->unobservable = {"translation along Y"};
+    panel.base_from_gripper = make.pose();
+    panel.base_from_moved_gripper = make.pose();
+    panel.base_from_frame = make.pose();
+    panel.gate_passed = true;
+    panel.refusals = {"because"};
+    panel.push.before = make.pose();
+    panel.push.status = PushStatus::written;
+    panel.verdict = PanelVerdict::out_of_tolerance;
+    return panel;
 }
 
 // Equality to the last bit, NaN equal to itself, through the complete and exact JSON form.

@@ -22,12 +22,17 @@ Answer panel_answer(int panels, std::uint64_t seed) {
         {"panels", c.panels}, {"noise_mm", c.noise_mm}, {"seed", seed}, {"training_moves", c.training_moves}};
     for (const auto& [name, way] : {std::pair<const char*, const PanelWay*>{"single_step", &c.single_step},
                                     {"servoing", &c.servoing}}) {
-        answer.text +=
-            fmt::format("{:<12} rms {:.4f} mm   worst {:.4f} mm   {:.1f} moves   {:.2f} ms   failed {}\n",
-                        name, way->rms_mm, way->worst_mm, way->moves, way->compute_ms, way->failed);
+        answer.text += fmt::format(
+            "{:<12} rms {:.4f} mm   worst {:.4f} mm   within 3 sigma {:.1f} %   {:.1f} moves ({} to {}) "
+            "  {:.2f} ms   failed {}\n",
+            name, way->rms_mm, way->worst_mm, 100 * way->within_three_sigma, way->moves, way->fewest_moves,
+            way->most_moves, way->compute_ms, way->failed);
         answer.json[name] = {{"rms_mm", way->rms_mm},
                              {"worst_mm", way->worst_mm},
+                             {"within_three_sigma", way->within_three_sigma},
                              {"moves", way->moves},
+                             {"fewest_moves", way->fewest_moves},
+                             {"most_moves", way->most_moves},
                              {"failed", way->failed}};
     }
     answer.text += fmt::format("servoing needed {} training moves beforehand\n", c.training_moves);

@@ -1,13 +1,24 @@
-// seamwright panel: the gripper's motion that brings the panel into the body as taught.
+// seamwright panel: the gripper's motion that brings the panel into the body as taught, of a job's measures
+// or run on a project's devices.
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
 #include "app/cli/command.h"
 #include "app/cli/result_json.h"
+#include "app/cli/run_text.h"
+#include "app/cli/signal_watch.h"
 #include "core/panel/panel_fit.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/simulated/random.h"
+#include "projects/panel_station.h"
+#include "projects/simulated_truth.h"
 
 namespace seamwright::cli {
 namespace {
@@ -95,63 +106,136 @@ Expected<Job> read_job(const std::string& file) {
     return job;
 }
 
-json value_json(const GapFlushValue& v) {
-    return {{"gap_mm", v.gap_mm}, {"flush_mm", v.flush_mm}};
-}
-
-json fit_json(const PanelFit& fit) {
-    json spots = json::array();
-    for (const PanelSpotResult& s : fit.spots)
-        spots.push_back({{"id", s.id},
-                         {"gap_mm", s.remaining.gap_mm},
-                         {"flush_mm", s.remaining.flush_mm},
-                         {"residual_mm", vector_json(s.residual_mm)},
-                         {"taught", value_json(s.taught)},
-                         {"before", value_json(s.before)},
-                         {"panel_used", s.panel_used},
-                         {"body_used", s.body_used}});
-    return {
-        {"status", to_string(fit.status)},
-        {"gripper_motion", pose_json(fit.gripper_motion)},
-        {"single_step", pose_json(fit.single_step)},
-        {"sigma", {{"xyz_mm", vector_json(fit.sigma_xyz_mm)}, {"abc_deg", vector_json(fit.sigma_abc_deg)}}},
-        {"covariance", matrix_json(fit.covariance)},
-        {"rms_mm", fit.rms_mm},
-        {"panel", correction_json(fit.panel)},
-        {"body", correction_json(fit.body)},
-        {"spots", spots},
-        {"unobservable", fit.unobservable},
-        {"message", fit.message}};
-}
-
-std::string fit_text(const PanelFit& fit) {
-    std::string text =
-        fmt::format("{}{}{}\n", to_string(fit.status), fit.message.empty() ? "" : ": ", fit.message);
-    for (const std::string& direction : fit.unobservable) text += "unobservable: " + direction + "\n";
-    if (fit.status == CorrectionStatus::under_determined) return text;
-    text += "G      " + pose_text(fit.gripper_motion) + "\n";
-    text += fmt::format("sigma  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n",
-                        fit.sigma_xyz_mm.x(), fit.sigma_xyz_mm.y(), fit.sigma_xyz_mm.z(),
-                        fit.sigma_abc_deg.x(), fit.sigma_abc_deg.y(), fit.sigma_abc_deg.z());
-    text += fmt::format("left off after the motion, rms {:.4f} mm:\n", fit.rms_mm);
-    for (const PanelSpotResult& s : fit.spots)
-        text +=
-            fmt::format("  {:<12} gap {:+8.4f}   flush {:+8.4f} mm   (as measured {:+8.4f}, {:+8.4f}){}{}\n",
-                        s.id, s.remaining.gap_mm, s.remaining.flush_mm, s.before.gap_mm, s.before.flush_mm,
-                        s.panel_used ? "" : "   panel left out: contradicts the others",
-                        s.body_used ? "" : "   body left out: contradicts the others");
-    return text;
-}
-
 Expected<Answer> panel(const std::string& file) {
     auto job = read_job(file);
     if (!job) return tl::unexpected(job.error());
     auto fit = fit_panel(job->spots, job->options);
     if (!fit) return tl::unexpected(fit.error());
     Answer answer;
-    answer.json = fit_json(*fit);
-    answer.text = fit_text(*fit);
+    answer.json = panel_fit_json(*fit);
+    answer.text = panel_fit_text(*fit);
     answer.exit_code = fit->status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    return answer;
+}
+
+// --- on a project's devices
+
+struct Arguments {
+    std::string file, job, part;
+    bool push = false, dry_run = false, keep_images = false, simulated = false;
+    int teach = 0;
+    std::uint64_t seed = 1;
+};
+
+bool is_project(const Arguments& a) {
+    if (a.simulated || std::filesystem::path(a.file).extension() == ".seam") return true;
+    constexpr std::string_view kSqlite = "SQLite format 3";
+    std::ifstream in(a.file, std::ios::binary);
+    std::string head(kSqlite.size(), '\0');
+    return in.read(head.data(), static_cast<std::streamsize>(head.size())) && head == kSqlite;
+}
+
+RunOptions run_options(const Arguments& a) {
+    RunOptions options;
+    options.part_id = a.part;
+    options.push = a.push;
+    options.keep_images = a.keep_images;
+    options.cancel = stop_on_signal();
+    options.progress = [](const RunProgress& p) {
+        fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
+    };
+    return options;
+}
+
+// The job named, or the only one.
+Expected<std::string> job_of(const Project& project, const Arguments& a) {
+    if (!a.job.empty()) return a.job;
+    if (project.panel_jobs.size() == 1) return project.panel_jobs.front().id;
+    std::string names;
+    for (const PanelJob& job : project.panel_jobs) names += (names.empty() ? "" : ", ") + job.id;
+    if (names.empty())
+        return input_error("the project has no panel job", a.file, "make one, or see --simulated");
+    return usage_error("the project has several panel jobs", a.file, "name one with --job: " + names);
+}
+
+Expected<void> teach(Station& station, const std::string& id, const Arguments& a) {
+    Project project = station.project();
+    const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
+                                  [&](const PanelJob& j) { return j.id == id; });
+    if (job == project.panel_jobs.end())
+        return input_error(fmt::format("there is no panel job \"{}\"", id), a.file);
+    TeachOptions options;
+    options.repeats = a.teach;
+    options.cancel = stop_on_signal();
+    options.progress = run_options(a).progress;
+    auto taught = teach_panel(station, *job, options);
+    if (!taught) return tl::unexpected(taught.error());
+    *job = std::move(*taught);
+    return station.edit(project);
+}
+
+// Panel or body somewhere off: 3 mm across, as much within the opening as the gap leaves to both.
+nlohmann::json somewhere(Random& random) {
+    const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5), z = random.uniform(-3, 3);
+    const double a = random.uniform(-8e-4, 8e-4), b = random.uniform(-8e-4, 8e-4),
+                 c = random.uniform(-8e-4, 8e-4);
+    return {{"displacement", pose_json(make_pose(rotation_exp({a, b, c}), {x, y, z}))}};
+}
+
+// The simulated gripper with its panel job, taught in zero position; then panel and body stand somewhere
+// else.
+Expected<void> make_simulated(const Arguments& a) {
+    const json settings = {{"seed", a.seed}};
+    auto project = simulated_panel_project(settings);
+    if (!project) return tl::unexpected(project.error());
+    auto file = ProjectFile::create(a.file, *project);
+    if (!file) return tl::unexpected(file.error());
+    Station station(std::move(*file), std::move(*project));
+    if (auto connected = station.connect(); !connected) return connected;
+    Arguments teaching = a;
+    if (teaching.teach == 0) teaching.teach = 5;
+    if (auto taught = teach(station, station.project().panel_jobs.front().id, teaching); !taught)
+        return taught;
+    station.disconnect();
+    Project displaced = station.project();
+    Random random(a.seed, 77);
+    const json panel = somewhere(random), body = somewhere(random);
+    for (SensorSetup& s : displaced.sensors) s.settings.update({{"panel", panel}, {"body", body}});
+    for (RobotSetup& r : displaced.robots) r.settings.update({{"panel", panel}, {"body", body}});
+    return station.edit(displaced);
+}
+
+Expected<Answer> panel_on_devices(const Arguments& a) {
+    if (a.simulated)
+        if (auto made = make_simulated(a); !made) return tl::unexpected(made.error());
+    auto station = Station::open(a.file);
+    if (!station) return tl::unexpected(station.error());
+    auto id = job_of(station->project(), a);
+    if (!id) return tl::unexpected(id.error());
+    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    Answer answer;
+    if (a.teach > 0 && !a.simulated) {
+        if (auto taught = teach(*station, *id, a); !taught) return tl::unexpected(taught.error());
+        json places = json::array();
+        for (const PanelJob& job : station->project().panel_jobs) {
+            if (job.id != *id) continue;
+            for (const PanelPlace& p : job.places) {
+                places.push_back({{"id", p.id}, {"gap_mm", p.gap_mm}, {"flush_mm", p.flush_mm}});
+                answer.text +=
+                    fmt::format("place {:<6} gap {:8.3f}   flush {:+8.3f} mm\n", p.id, p.gap_mm, p.flush_mm);
+            }
+        }
+        answer.json = {{"status", "taught"}, {"job", *id}, {"places", places}};
+        return answer;
+    }
+    auto record = run_panel(*station, *id, run_options(a));
+    if (!record) return tl::unexpected(record.error());
+    answer.json = run_json(*record);
+    answer.text = run_text(*record);
+    answer.exit_code = record->status == RunStatus::ok ? kExitOk
+                       : record->status == RunStatus::device || record->status == RunStatus::alarm
+                           ? kExitDevice
+                           : kExitVerdict;
     return answer;
 }
 
@@ -160,7 +244,12 @@ Expected<Answer> panel(const std::string& file) {
 void add_panel(CommandLine& line) {
     CLI::App* command = line.add(
         "panel",
-        "Motion of the gripper that brings the panel into the body as taught, in a single step.\n"
+        "Motion of the gripper that brings the panel into the body as taught, in a single step: of a job's "
+        "measures,\n"
+        "or, with a project, on its devices: measured, judged by the safety gate, with --push moved by the "
+        "job's "
+        "frame\n"
+        "and measured again. The run is kept in the project.\n"
         "\"gripper_motion\" is G: base_from_gripper_new = base_from_gripper_old * G (in the gripper's own "
         "frame).\n"
         "G minimises the deviation of panel from body at the spots (4.29); \"single_step\" is B * P^-1 of "
@@ -174,15 +263,36 @@ void add_panel(CommandLine& line) {
         "(across it). The body is the reference side; surface_deg (default 0) turns its surface from +x "
         "towards +z.",
         "seamwright panel job.json --json -\n"
+        "  seamwright panel fender.seam --part CAR-0815 --push\n"
+        "  seamwright panel try.seam --simulated --push\n"
         "  job.json: "
         "{\"spots\":[{\"id\":\"S1\",\"gripper_from_sensor\":{\"xyz\":[500,0,900],\"abc\":[0,0,0]},\n"
         "             \"panel\":{\"reference\":[0,0,0],\"measured\":[0.3,0,0.1]},\n"
         "             \"body\":{\"reference\":[4,0,0],\"measured\":[4.2,0,-0.1]},\n"
         "             \"weights\":[1,0,1],\"sigma_mm\":0.05}, ...],\n"
         "             \"limits\":{\"translation_mm\":25,\"rotation_deg\":3}}");
-    auto file = std::make_shared<std::string>();
-    command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");
-    line.on(command, [file] { return panel(*file); });
+    auto a = std::make_shared<Arguments>();
+    command->add_option("job", a->file, "The job's measures (JSON), or a project")
+        ->required()
+        ->type_name("JOB.json|FILE.seam");
+    command->add_option("--job", a->job, "Which panel job of the project (default: the only one)");
+    command->add_option("--part", a->part, "Name of the panel in the gripper");
+    auto* push = command->add_flag(
+        "--push", a->push,
+        "Write the frame that moves the panel, if the safety gate passes it, and measure again");
+    command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);
+    command->add_flag("--keep-images", a->keep_images, "Keep the raw images with the run");
+    command
+        ->add_option("--teach", a->teach,
+                     "Instead of a run: the panel is in its zero position, measure it so often and keep that")
+        ->check(CLI::Range(1, 1000))
+        ->excludes(push);
+    auto* simulated =
+        command->add_flag("--simulated", a->simulated,
+                          "Make FILE.seam first: a simulated gripper, taught, then panel and body displaced");
+    command->add_option("--seed", a->seed, "With --simulated: every random number follows from it")
+        ->needs(simulated);
+    line.on(command, [a] { return is_project(*a) ? panel_on_devices(*a) : panel(a->file); });
 }
 
 }  // namespace seamwright::cli

@@ -54,7 +54,10 @@ struct Cell {
         }
         return v;
     }
-    void judge(const Pose& motion, PanelWay& way) const {
+    void judge(const Pose& motion, int moves, double noise_mm, PanelWay& way) const {
+        way.moves += moves;
+        way.fewest_moves = way.judged++ ? std::min(way.fewest_moves, moves) : moves;
+        way.most_moves = std::max(way.most_moves, moves);
         const Pose left = body.inverse() * motion * panel;
         for (const PanelSpot& s : spots) {
             const Eigen::Vector3d p = s.gripper_from_sensor * s.panel.reference_mm;
@@ -62,6 +65,7 @@ struct Cell {
             for (double v : {off.x(), off.z()}) {
                 way.rms_mm += v * v;
                 way.worst_mm = std::max(way.worst_mm, std::abs(v));
+                way.within_three_sigma += std::abs(v) <= 3 * std::sqrt(2.0) * noise_mm;  // of two points
             }
         }
     }
@@ -99,22 +103,23 @@ PanelComparison compare_panel_fitting(int panels, std::uint64_t seed) {
         const auto fit = fit_panel(cell.spots, {});
         out.single_step.compute_ms += since(start) / panels;
         if (fit && fit->status == CorrectionStatus::ok) {
-            out.single_step.moves += 1.0 / panels;
-            cell.judge(fit->gripper_motion, out.single_step);
+            cell.judge(fit->gripper_motion, 1, out.noise_mm, out.single_step);
         } else {
             ++out.single_step.failed;
         }
         start = Clock::now();
         const ServoingResult r = servo(learnt, values, set, options);
         out.servoing.compute_ms += since(start) / panels;
-        out.servoing.moves += static_cast<double>(r.moves) / panels;
         out.servoing.failed += r.status != ServoingStatus::reached && r.status != ServoingStatus::settled;
-        cell.judge(r.motion, out.servoing);
+        cell.judge(r.motion, r.moves, out.noise_mm, out.servoing);
     }
     const double count = 2.0 * static_cast<double>(cell.spots.size());
-    out.single_step.rms_mm =
-        std::sqrt(out.single_step.rms_mm / (count * std::max(1, panels - out.single_step.failed)));
-    out.servoing.rms_mm = std::sqrt(out.servoing.rms_mm / (count * panels));
+    for (PanelWay* way : {&out.single_step, &out.servoing}) {
+        const double judged = std::max(1, way->judged);
+        way->rms_mm = std::sqrt(way->rms_mm / (count * judged));
+        way->within_three_sigma /= count * judged;
+        way->moves /= judged;
+    }
     return out;
 }
 

@@ -12,8 +12,10 @@ namespace seamwright::cli {
 struct PanelWay {
     double rms_mm = 0, worst_mm = 0;  // gap and flush against taught, over all panels
     double moves = 0;                 // mean
-    double compute_ms = 0;            // mean, without the moves
-    int failed = 0;
+    int fewest_moves = 0, most_moves = 0;
+    double within_three_sigma = 0;  // share of gaps and flushes as taught within 3 sigma of a measured one
+    double compute_ms = 0;          // mean, without the moves
+    int judged = 0, failed = 0;     // panels; a single step that failed moves nothing and is not judged
 };
 struct PanelComparison {
     int panels = 0, training_moves = 0;

@@ -208,6 +208,9 @@ TEST(GapFlush, KnownGapEitherReference) {
             ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
             EXPECT_NEAR(g.gap_mm, 3 - (-15 + 0.05 * 299) - 0.05, 1e-6);  // half a pitch at either edge
             EXPECT_NEAR(g.flush_mm, right ? -0.8 : 0.8, 1e-6);
+            const Eigen::Vector2d between = g.other_point_mm - g.reference_point_mm;
+            EXPECT_NEAR(between.dot(g.along), g.gap_mm, 1e-9);
+            EXPECT_NEAR(between.norm(), std::hypot(g.gap_mm, g.flush_mm), 1e-9);
             settings.gap_by = GapBy::edge_distance;
             const GapFlush d = GapFlushGauge(settings).measure(q);
             ASSERT_EQ(d.status, GapFlushStatus::ok) << d.message;

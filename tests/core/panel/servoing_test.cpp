@@ -83,6 +83,56 @@ TEST(Servoing, LearnsAndReachesTheTaughtRelationInSeveralMovesTheSingleStepInOne
     }
 }
 
+// One move against several, with the sensors' noise in all that is measured, on the same panels.
+TEST(Servoing, OneStepIsWithinThreeSigmaWhereServoingNeedsThreeMovesOrMore) {
+    constexpr int kSeeds = 500;
+    constexpr double kNoise = 0.03;
+    int values_judged = 0, within = 0, fewest = 100;
+    double worst = 0, servo_squares = 0, step_squares = 0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+        Bench bench;
+        bench.engine.seed(static_cast<std::uint64_t>(seed));
+        const ServoValues values = [&](const Pose& motion) { return bench.values(motion); };
+        const Eigen::VectorXd set = bench.values(Pose::Identity());  // the taught relation
+        bench.noise_mm = kNoise;
+        const Sensitivity learnt = learn_sensitivity(values, {});
+        ASSERT_TRUE(learnt.usable);
+        const auto somewhere = [&] {
+            std::uniform_real_distribution<double> mm(-10, 10), rad(-0.01, 0.01);
+            const Eigen::Vector3d turn(rad(bench.engine), rad(bench.engine), rad(bench.engine));
+            const Eigen::Vector3d move(mm(bench.engine), mm(bench.engine), mm(bench.engine));
+            return make_pose(rotation_exp(turn), move);
+        };
+        bench.panel = somewhere();
+        bench.body = somewhere();
+        bench.measure(Pose::Identity());
+        const auto fit = fit_panel(bench.spots, {});
+        ASSERT_TRUE(fit);
+        ASSERT_EQ(fit->status, CorrectionStatus::ok) << fit->message;
+        const ServoingResult r = servo(learnt, values, set, {});
+        ASSERT_TRUE(r.status == ServoingStatus::reached || r.status == ServoingStatus::settled);
+        fewest = std::min(fewest, r.moves);
+        // The truth after the last move: gap and flush without noise.
+        bench.noise_mm = 0;
+        const Eigen::VectorXd off = bench.values(fit->gripper_motion) - set;
+        const Eigen::VectorXd servo_off = bench.values(r.motion) - set;
+        for (double v : off) {
+            ++values_judged;
+            within += std::abs(v) <= 3 * kNoise;
+            worst = std::max(worst, std::abs(v));
+        }
+        step_squares += off.squaredNorm();
+        servo_squares += servo_off.squaredNorm();
+    }
+    EXPECT_GE(fewest, 3);
+    // A gap is the difference of two points, each with the sensor's noise.
+    EXPECT_LE(worst, 3 * std::sqrt(2.0) * kNoise);
+    EXPECT_GE(static_cast<double>(within) / values_judged, 0.99);  // even of a single point's
+    // Servoing measures anew before every move and averages over its last ones: both end at the noise.
+    for (const double squares : {step_squares, servo_squares})
+        EXPECT_LE(std::sqrt(squares / values_judged), 1.1 * kNoise);
+}
+
 TEST(Servoing, NoiseAndDeformationLetItSettle) {
     Bench bench;
     const ServoValues values = [&](const Pose& motion) { return bench.values(motion); };

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "projects/acquire.h"
+#include "projects/file_use.h"
 #include "projects/measure.h"
 #include "projects/safety_gate.h"
 
@@ -28,6 +29,7 @@ struct Station::Impl {
     DeviceSession session;
     std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
     std::map<std::string, std::unique_ptr<RobotLink>> robots;
+    std::optional<FileUse> use;  // while real devices are connected
 
     std::shared_ptr<Recorder> recorder;
     std::map<std::string, std::int64_t> recorded;  // sources of the recording, kept across reconnects
@@ -72,6 +74,7 @@ struct Station::Impl {
         sensors.clear();
         robots.clear();
         session = DeviceSession();
+        use.reset();
         if (connected) file.keep_write_ahead(false);
         connected = false;
     }
@@ -430,6 +433,16 @@ void Station::use(const Project& project) {
 Expected<void> Station::connect() {
     Impl& i = *impl_;
     i.disconnect();
+    const auto alone = [](const auto& setups) {
+        return std::any_of(setups.begin(), setups.end(), [](const auto& setup) {
+            return setup.driver != "simulated" && setup.driver != "replay";  // those are each program's own
+        });
+    };
+    if (alone(i.project.sensors) || alone(i.project.robots)) {
+        auto use = FileUse::take(i.file.path(), FileUse::For::devices);
+        if (!use) return tl::unexpected(use.error());
+        i.use = std::move(*use);
+    }
     const auto give_up = [&](Error error, const std::string& where) {
         i.disconnect();
         error.where = error.where.empty() ? where : where + ": " + error.where;

@@ -55,7 +55,8 @@ class Station {
     void use(const Project& project);
 
     // Opens every device of the project through the registry and notes who answered in the project
-    // (SensorSetup::identity, RobotSetup::identity). All or nothing.
+    // (SensorSetup::identity, RobotSetup::identity). All or nothing. Real devices are refused while another
+    // program has those of this file (projects/file_use.h).
     Expected<void> connect();
     // The same with devices made elsewhere (tests, a simulation already running).
     void connect(std::map<std::string, std::unique_ptr<ProfileSource>> sensors,

@@ -207,6 +207,8 @@ void Desk::keep_newest() {
 
 Expected<void> Desk::create(const std::filesystem::path& path, const Project& project) {
     if (file_ && path == file_->path()) close();
+    auto use = FileUse::take(path, FileUse::For::desk);
+    if (!use) return tl::unexpected(use.error());
     auto file = ProjectFile::create(path, project, true);
     if (!file) return tl::unexpected(file.error());
     if (auto aside = CalibrationSession::put_aside(path); !aside)
@@ -215,10 +217,17 @@ Expected<void> Desk::create(const std::filesystem::path& path, const Project& pr
     drop_kept();
     recovery_.reset();
     take_over(std::move(*file), project);
+    use_ = std::move(*use);
     return {};
 }
 
 Expected<void> Desk::open(const std::filesystem::path& path) {
+    std::optional<FileUse> use;
+    if (!file_ || path != file_->path()) {
+        auto taken = FileUse::take(path, FileUse::For::desk);
+        if (!taken) return tl::unexpected(taken.error());
+        use = std::move(*taken);
+    }
     auto file = ProjectFile::open(path);
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
@@ -244,6 +253,7 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
                         QString::fromStdString(aside.error().sentence()));
     }
     take_over(std::move(*file), std::move(*project));
+    if (use) use_ = std::move(*use);
     if (!told.isEmpty()) {
         note(EventKind::note, "studio", told.toStdString());
         emit trouble(told);
@@ -288,6 +298,8 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (path == file_->path()) return save();
     if (worker_.busy())
         return usage_error("a measurement is running", path.string(), "wait for its end or cancel it");
+    auto use = FileUse::take(path, FileUse::For::desk);
+    if (!use) return tl::unexpected(use.error());
     keep_newest();
     // The old file keeps what was saved there; runs go along.
     const auto part = std::filesystem::path(path.string() + ".part");
@@ -311,6 +323,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     const bool connected = state_->connected;
     recovery_.reset();
     take_over(std::move(*file), project_);
+    use_ = std::move(*use);
     selection_.select_spot(spot);
     selection_.select_region(region);
     if (connected) worker_.connect_devices();
@@ -322,6 +335,7 @@ void Desk::close() {
     drop_kept();
     recovery_writer_.close();
     file_.reset();
+    use_.reset();
     recovery_.reset();
     project_ = {};
     facts_ = {};

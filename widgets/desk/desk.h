@@ -4,6 +4,7 @@
 //
 // Files. Save writes the project file. Until then every edit goes to FILE.seam.recovery at once (recovery.h).
 // Runs and events are in the project file as soon as they are finished, with the setup they were made with.
+// A file that another desk has open is refused (projects/file_use.h).
 
 #include <QObject>
 #include <QUndoStack>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "projects/file_use.h"
 #include "projects/reteach.h"
 #include "widgets/desk/commands.h"
 #include "widgets/desk/recovery.h"
@@ -123,6 +125,7 @@ class Desk : public QObject {
     LiveFeed live_;
     StationWorker worker_;
     RecoveryWriter recovery_writer_;
+    std::optional<FileUse> use_;  // of file_
     std::optional<ProjectFile> file_;
     Project project_;
     std::optional<Recovery> recovery_;

@@ -25,7 +25,7 @@ class RecoveryTest : public testing::Test {
     std::vector<std::string> names() const {
         std::vector<std::string> found;
         for (const auto& entry : fs::directory_iterator(folder.path()))
-            found.push_back(entry.path().filename().string());
+            if (entry.path().extension() != ".lock") found.push_back(entry.path().filename().string());
         std::sort(found.begin(), found.end());
         return found;
     }

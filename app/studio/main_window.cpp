@@ -26,6 +26,7 @@
 #include "devices/exchange/files.h"
 #include "projects/exchange.h"
 #include "projects/hand_over.h"
+#include "widgets/errors.h"
 #include "widgets/pages/align_page.h"
 #include "widgets/pages/calibrate_page.h"
 #include "widgets/pages/cell_page.h"
@@ -554,7 +555,7 @@ bool MainWindow::may_leave() {
 
 bool MainWindow::save() {
     if (auto saved = desk_.save(); !saved) {
-        tell(QString::fromStdString(saved.error().sentence()));
+        tell(shown_error(tr("The project was not saved."), saved.error()));
         return false;
     }
     return true;
@@ -580,7 +581,7 @@ void MainWindow::save_as() {
                                      tr("Seamwright projects (*.seam)"));
     if (file.isEmpty()) return;
     if (auto saved = desk_.save_as(file.toStdString()); !saved)
-        tell(QString::fromStdString(saved.error().sentence()));
+        tell(shown_error(tr("The project was not saved."), saved.error()));
 }
 
 void MainWindow::export_project() {
@@ -590,7 +591,7 @@ void MainWindow::export_project() {
     if (auto written = write_text_file(file.toStdString(),
                                        seamwright::export_project(desk_.project(), true).dump(2) + "\n");
         !written)
-        tell(QString::fromStdString(written.error().sentence()));
+        tell(shown_error(tr("The file was not written."), written.error()));
 }
 
 void MainWindow::import_project() {
@@ -598,16 +599,16 @@ void MainWindow::import_project() {
     const QString from = QFileDialog::getOpenFileName(this, tr("Import project"), {}, tr("JSON (*.json)"));
     if (from.isEmpty()) return;
     auto text = read_text_file(from.toStdString());
-    if (!text) return tell(QString::fromStdString(text.error().sentence()));
+    if (!text) return tell(shown_error(tr("Nothing was imported."), text.error()));
     const auto json = nlohmann::json::parse(*text, nullptr, false);
     if (json.is_discarded()) return tell(tr("%1 is no JSON").arg(from));
     auto project = seamwright::import_project(json, from.toStdString());
-    if (!project) return tell(QString::fromStdString(project.error().sentence()));
+    if (!project) return tell(shown_error(tr("Nothing was imported."), project.error()));
     const QString file = QFileDialog::getSaveFileName(this, tr("Save the imported project as"), {},
                                                       tr("Seamwright projects (*.seam)"));
     if (file.isEmpty()) return;
     if (auto made = desk_.create(file.toStdString(), *project); !made)
-        tell(QString::fromStdString(made.error().sentence()));
+        tell(shown_error(tr("The project was not made."), made.error()));
 }
 
 void MainWindow::make_report() {
@@ -620,11 +621,11 @@ void MainWindow::make_report() {
     HandOverOptions options;
     options.language = desk_.language();
     auto page = hand_over_report(desk_.file(), desk_.project(), desk_.facts(), options);
-    if (!page) return tell(QString::fromStdString(page.error().sentence()));
+    if (!page) return tell(shown_error(tr("There is no report."), page.error()));
     const auto written = file.endsWith(".html", Qt::CaseInsensitive)
                              ? write_text_file(file.toStdString(), page->html())
                              : write_pdf(*page, file.toStdString());
-    if (!written) return tell(QString::fromStdString(written.error().sentence()));
+    if (!written) return tell(shown_error(tr("The file was not written."), written.error()));
     desk_.note(EventKind::note, "report", "hand-over report written to " + file.toStdString());
     tell(tr("The report is in %1").arg(file));
 }
@@ -635,7 +636,7 @@ void MainWindow::mirror_project() {
     MirrorDialog dialog(this);
     if (dialog.exec() != QDialog::Accepted) return;
     auto mirrored = mirrored_project(desk_.project(), dialog.plane());
-    if (!mirrored) return tell(QString::fromStdString(mirrored.error().sentence()));
+    if (!mirrored) return tell(shown_error(mirrored.error()));
     const QFileInfo project(QString::fromStdString(desk_.path().string()));
     QString file =
         QFileDialog::getSaveFileName(this, tr("Save the mirrored project as"),
@@ -646,7 +647,7 @@ void MainWindow::mirror_project() {
     if (file == project.filePath()) return tell(tr("Choose another name: the original stays."));
     mirrored->name = QFileInfo(file).completeBaseName().toStdString();
     if (auto made = desk_.create(file.toStdString(), *mirrored); !made)
-        return tell(QString::fromStdString(made.error().sentence()));
+        return tell(shown_error(tr("The project was not made."), made.error()));
     tell(tr("This is the mirrored clone. Drive its spots slowly once, and teach their references again."));
 }
 
@@ -655,7 +656,7 @@ void MainWindow::reteach() {
     ExchangeDialog dialog(desk_.project(), this);
     if (dialog.exec() != QDialog::Accepted) return;
     const auto moved = desk_.reteach(dialog.exchange());
-    if (!moved) return tell(QString::fromStdString(moved.error().sentence()));
+    if (!moved) return tell(shown_error(moved.error()));
     show_step(Step::prove);
     tell(tr("%1 spots were led along. Drive each slowly once, then repeat the zero shift.")
              .arg(moved->size()));
@@ -687,7 +688,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
             return;
         }
         if (auto imported = desk_.import_part(file.toStdString(), ""); !imported)
-            tell(QString::fromStdString(imported.error().sentence()));
+            tell(shown_error(tr("Nothing was imported."), imported.error()));
     }
 }
 

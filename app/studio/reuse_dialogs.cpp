@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "projects/measure.h"
+#include "widgets/errors.h"
 #include "widgets/pages/form.h"
 #include "widgets/style.h"
 
@@ -116,8 +117,7 @@ Exchange ExchangeDialog::exchange() const {
 void ExchangeDialog::preview() {
     const auto retaught = after_exchange(project_, exchange());
     apply_->setEnabled(retaught.has_value());
-    if (!retaught)
-        return set_verdict(*outcome_, QString::fromStdString(retaught.error().sentence()), Tone::attention);
+    if (!retaught) return set_verdict(*outcome_, shown_error(retaught.error()), Tone::attention);
     double mm = 0, deg = 0;
     for (const MovedSpot& s : retaught->spots)
         mm = std::max(mm, s.moved_mm), deg = std::max(deg, s.turned_deg);

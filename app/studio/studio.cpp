@@ -13,6 +13,7 @@
 #include "app/studio/demo_project.h"
 #include "app/studio/look.h"
 #include "app/studio/main_window.h"
+#include "widgets/errors.h"
 
 // Outside of any namespace, as Qt wants it: a static library's resources are linked only when named.
 static void link_resources() {
@@ -103,7 +104,7 @@ void Studio::remember(const QString& file) {
 
 bool Studio::open(const QString& file) {
     if (auto opened = desk_.open(QFileInfo(file).absoluteFilePath().toStdString()); !opened) {
-        emit desk_.trouble(QString::fromStdString(opened.error().sentence()));
+        emit desk_.trouble(shown_error(tr("The project was not opened."), opened.error()));
         return false;
     }
     remember(file);
@@ -122,7 +123,7 @@ bool Studio::create(const QString& file) {
     Project project;
     project.name = QFileInfo(file).completeBaseName().toStdString();
     if (auto made = desk_.create(QFileInfo(file).absoluteFilePath().toStdString(), project); !made) {
-        emit desk_.trouble(QString::fromStdString(made.error().sentence()));
+        emit desk_.trouble(shown_error(tr("The project was not made."), made.error()));
         return false;
     }
     remember(file);
@@ -135,11 +136,11 @@ bool Studio::open_demo(bool fresh) {
     if (!fresh && QFileInfo::exists(file)) return open(file);
     const auto project = demo_project();
     if (!project) {
-        emit desk_.trouble(QString::fromStdString(project.error().sentence()));
+        emit desk_.trouble(shown_error(project.error()));
         return false;
     }
     if (auto made = desk_.create(file.toStdString(), *project); !made) {
-        emit desk_.trouble(QString::fromStdString(made.error().sentence()));
+        emit desk_.trouble(shown_error(tr("The project was not made."), made.error()));
         return false;
     }
     remember(file);

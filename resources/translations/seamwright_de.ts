@@ -136,6 +136,381 @@
     </message>
 </context>
 <context>
+    <name>Errors</name>
+    <message>
+        <source>the file does not exist</source>
+        <translation>die Datei gibt es nicht</translation>
+    </message>
+    <message>
+        <source>the file exists already</source>
+        <translation>die Datei gibt es schon</translation>
+    </message>
+    <message>
+        <source>the file exists and is no project file</source>
+        <translation>die Datei gibt es schon, und sie ist keine Projektdatei</translation>
+    </message>
+    <message>
+        <source>the file is empty</source>
+        <translation>die Datei ist leer</translation>
+    </message>
+    <message>
+        <source>the folder does not exist</source>
+        <translation>den Ordner gibt es nicht</translation>
+    </message>
+    <message>
+        <source>this is a folder</source>
+        <translation>das ist ein Ordner</translation>
+    </message>
+    <message>
+        <source>this is no file</source>
+        <translation>das ist keine Datei</translation>
+    </message>
+    <message>
+        <source>is no file</source>
+        <translation>ist keine Datei</translation>
+    </message>
+    <message>
+        <source>the file cannot be made (%1)</source>
+        <translation>die Datei lässt sich nicht anlegen (%1)</translation>
+    </message>
+    <message>
+        <source>the file cannot be replaced: %1</source>
+        <translation>die Datei lässt sich nicht ersetzen: %1</translation>
+    </message>
+    <message>
+        <source>another program works with the file</source>
+        <translation>ein anderes Programm arbeitet mit der Datei</translation>
+    </message>
+    <message>
+        <source>the project is open already (%1, process %2 on %3, since %4)</source>
+        <translation>das Projekt ist schon geöffnet (%1, Prozess %2 auf %3, seit %4)</translation>
+    </message>
+    <message>
+        <source>the devices of the project are in use already (%1, process %2 on %3, since %4)</source>
+        <translation>die Geräte des Projekts sind schon in Gebrauch (%1, Prozess %2 auf %3, seit %4)</translation>
+    </message>
+    <message>
+        <source>go on there, or close it there first</source>
+        <translation>dort weiterarbeiten oder es dort zuerst schließen</translation>
+    </message>
+    <message>
+        <source>disconnect them there, or end it, first</source>
+        <translation>sie dort zuerst trennen oder das Programm beenden</translation>
+    </message>
+    <message>
+        <source>the project file could not be brought up to date</source>
+        <translation>die Projektdatei ließ sich nicht auf den neuen Stand bringen</translation>
+    </message>
+    <message>
+        <source>cannot be written</source>
+        <translation>lässt sich nicht schreiben</translation>
+    </message>
+    <message>
+        <source>choose a folder that you may write to</source>
+        <translation>einen Ordner wählen, in den geschrieben werden darf</translation>
+    </message>
+    <message>
+        <source>choose another name</source>
+        <translation>einen anderen Namen wählen</translation>
+    </message>
+    <message>
+        <source>choose a .seam file</source>
+        <translation>eine .seam-Datei wählen</translation>
+    </message>
+    <message>
+        <source>close it there or choose another name</source>
+        <translation>sie dort schließen oder einen anderen Namen wählen</translation>
+    </message>
+    <message>
+        <source>make it first</source>
+        <translation>ihn zuerst anlegen</translation>
+    </message>
+    <message>
+        <source>name a file</source>
+        <translation>eine Datei nennen</translation>
+    </message>
+    <message>
+        <source>cannot be read (%1)</source>
+        <translation>lässt sich nicht lesen (%1)</translation>
+    </message>
+    <message>
+        <source>holds no readable triangles</source>
+        <translation>enthält keine lesbaren Dreiecke</translation>
+    </message>
+    <message>
+        <source>is neither .stl, .ply nor .obj</source>
+        <translation>ist weder .stl noch .ply noch .obj</translation>
+    </message>
+    <message>
+        <source>the part is only %1 long: metres suspected</source>
+        <translation>das Teil ist nur %1 lang: vermutlich sind es Meter</translation>
+    </message>
+    <message>
+        <source>say the unit: &quot;mm&quot; or &quot;m&quot;</source>
+        <translation>die Einheit angeben: „mm“ oder „m“</translation>
+    </message>
+    <message>
+        <source>no project is open</source>
+        <translation>kein Projekt ist geöffnet</translation>
+    </message>
+    <message>
+        <source>open or make one</source>
+        <translation>eines öffnen oder anlegen</translation>
+    </message>
+    <message>
+        <source>no answer in time</source>
+        <translation>keine Antwort in der Zeit</translation>
+    </message>
+    <message>
+        <source>no answer in time: no frame within %1 ms</source>
+        <translation>keine Antwort in der Zeit: kein Bild in %1 ms</translation>
+    </message>
+    <message>
+        <source>no answer in time: no trigger within %1 ms</source>
+        <translation>keine Antwort in der Zeit: kein Trigger in %1 ms</translation>
+    </message>
+    <message>
+        <source>no answer in time: the next attempt to connect is in %1 ms</source>
+        <translation>keine Antwort in der Zeit: der nächste Verbindungsversuch ist in %1 ms</translation>
+    </message>
+    <message>
+        <source>the connection was closed by the other side</source>
+        <translation>die Gegenseite hat die Verbindung geschlossen</translation>
+    </message>
+    <message>
+        <source>the connection is closed</source>
+        <translation>die Verbindung ist geschlossen</translation>
+    </message>
+    <message>
+        <source>check the cable and the controller</source>
+        <translation>Kabel und Steuerung prüfen</translation>
+    </message>
+    <message>
+        <source>check that the controller runs and its program is started</source>
+        <translation>prüfen, ob die Steuerung läuft und ihr Programm gestartet ist</translation>
+    </message>
+    <message>
+        <source>nobody connected</source>
+        <translation>niemand hat sich verbunden</translation>
+    </message>
+    <message>
+        <source>another program may use this port</source>
+        <translation>vielleicht belegt ein anderes Programm diesen Port</translation>
+    </message>
+    <message>
+        <source>cannot listen: %1</source>
+        <translation>kann keine Verbindung annehmen: %1</translation>
+    </message>
+    <message>
+        <source>the station is not connected to its devices</source>
+        <translation>die Station ist nicht mit ihren Geräten verbunden</translation>
+    </message>
+    <message>
+        <source>its sensor or robot is not connected</source>
+        <translation>ihr Sensor oder Roboter ist nicht verbunden</translation>
+    </message>
+    <message>
+        <source>connect first</source>
+        <translation>zuerst verbinden</translation>
+    </message>
+    <message>
+        <source>the recording has ended</source>
+        <translation>die Aufzeichnung ist zu Ende</translation>
+    </message>
+    <message>
+        <source>the driver &quot;%1&quot; is not known</source>
+        <translation>der Treiber „%1“ ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>the robot is stopped</source>
+        <translation>der Roboter ist angehalten</translation>
+    </message>
+    <message>
+        <source>start it on its controller</source>
+        <translation>ihn an seiner Steuerung starten</translation>
+    </message>
+    <message>
+        <source>the robot has not moved anywhere yet</source>
+        <translation>der Roboter ist noch nirgendwohin gefahren</translation>
+    </message>
+    <message>
+        <source>move the robot first</source>
+        <translation>zuerst den Roboter fahren</translation>
+    </message>
+    <message>
+        <source>the robot stands %1 mm and %2 deg off the pose to teach at (%3)</source>
+        <translation>der Roboter steht %1 mm und %2 Grad neben der Pose, an der eingelernt wird (%3)</translation>
+    </message>
+    <message>
+        <source>jog it there</source>
+        <translation>ihn von Hand dorthin fahren</translation>
+    </message>
+    <message>
+        <source>this robot cannot be moved from the program</source>
+        <translation>dieser Roboter lässt sich nicht aus dem Programm fahren</translation>
+    </message>
+    <message>
+        <source>move it by hand and read its position</source>
+        <translation>ihn von Hand fahren und seine Position lesen</translation>
+    </message>
+    <message>
+        <source>the controller has no frame &quot;%1&quot;</source>
+        <translation>die Steuerung hat kein Frame „%1“</translation>
+    </message>
+    <message>
+        <source>give it in the settings under robot.frames</source>
+        <translation>es in den Einstellungen unter robot.frames angeben</translation>
+    </message>
+    <message>
+        <source>the controller holds no measuring program</source>
+        <translation>die Steuerung hat kein Messprogramm</translation>
+    </message>
+    <message>
+        <source>load the program that was generated from the project</source>
+        <translation>das Programm laden, das aus dem Projekt erzeugt wurde</translation>
+    </message>
+    <message>
+        <source>the measuring program has ended</source>
+        <translation>das Messprogramm ist zu Ende</translation>
+    </message>
+    <message>
+        <source>the robot fired for spot &quot;%1&quot;, which is measured already</source>
+        <translation>der Roboter löste für Messstelle „%1“ aus, die schon gemessen ist</translation>
+    </message>
+    <message>
+        <source>the robot fired for spot &quot;%1&quot;, which is not in the measuring program</source>
+        <translation>der Roboter löste für Messstelle „%1“ aus, die nicht im Messprogramm ist</translation>
+    </message>
+    <message>
+        <source>compare the program on the controller with the project</source>
+        <translation>das Programm auf der Steuerung mit dem Projekt vergleichen</translation>
+    </message>
+    <message>
+        <source>check the trigger line between robot and sensor</source>
+        <translation>die Triggerleitung zwischen Roboter und Sensor prüfen</translation>
+    </message>
+    <message>
+        <source>the sensor exposed more often than the robot fired</source>
+        <translation>der Sensor belichtete öfter, als der Roboter auslöste</translation>
+    </message>
+    <message>
+        <source>the sensor gave no frame</source>
+        <translation>der Sensor gab kein Bild</translation>
+    </message>
+    <message>
+        <source>the sensor is not started</source>
+        <translation>der Sensor ist nicht gestartet</translation>
+    </message>
+    <message>
+        <source>let the robot measure or trigger the sensor</source>
+        <translation>den Roboter messen lassen oder den Sensor auslösen</translation>
+    </message>
+    <message>
+        <source>cancelled</source>
+        <translation>abgebrochen</translation>
+    </message>
+    <message>
+        <source>a measurement is running</source>
+        <translation>eine Messung läuft</translation>
+    </message>
+    <message>
+        <source>wait for its end or cancel it</source>
+        <translation>ihr Ende abwarten oder sie abbrechen</translation>
+    </message>
+    <message>
+        <source>no spot is enabled</source>
+        <translation>keine Messstelle ist eingeschaltet</translation>
+    </message>
+    <message>
+        <source>teach a spot first</source>
+        <translation>zuerst eine Messstelle einlernen</translation>
+    </message>
+    <message>
+        <source>the feature was found in %1 of %2 measurements (%3)</source>
+        <translation>das Merkmal wurde in %1 von %2 Messungen gefunden (%3)</translation>
+    </message>
+    <message>
+        <source>choose another feature or move the sensor</source>
+        <translation>ein anderes Merkmal wählen oder den Sensor versetzen</translation>
+    </message>
+    <message>
+        <source>only %1 of %2 measurements agree</source>
+        <translation>nur %1 von %2 Messungen stimmen überein</translation>
+    </message>
+    <message>
+        <source>choose another feature, shield reflections or move the sensor</source>
+        <translation>ein anderes Merkmal wählen, Reflexe abschirmen oder den Sensor versetzen</translation>
+    </message>
+    <message>
+        <source>a spot needs a sensor and a robot</source>
+        <translation>eine Messstelle braucht einen Sensor und einen Roboter</translation>
+    </message>
+    <message>
+        <source>add them first</source>
+        <translation>sie zuerst hinzufügen</translation>
+    </message>
+    <message>
+        <source>the name is empty</source>
+        <translation>der Name ist leer</translation>
+    </message>
+    <message>
+        <source>give it a name</source>
+        <translation>einen Namen geben</translation>
+    </message>
+    <message>
+        <source>the name is longer than 64 signs</source>
+        <translation>der Name ist länger als 64 Zeichen</translation>
+    </message>
+    <message>
+        <source>shorten it</source>
+        <translation>ihn kürzen</translation>
+    </message>
+    <message>
+        <source>the sensor &quot;%1&quot; is not in the project</source>
+        <translation>der Sensor „%1“ ist nicht im Projekt</translation>
+    </message>
+    <message>
+        <source>the robot &quot;%1&quot; is not in the project</source>
+        <translation>der Roboter „%1“ ist nicht im Projekt</translation>
+    </message>
+    <message>
+        <source>its sensor &quot;%1&quot; is not in the project</source>
+        <translation>ihr Sensor „%1“ ist nicht im Projekt</translation>
+    </message>
+    <message>
+        <source>choose one of the project&apos;s</source>
+        <translation>einen des Projekts wählen</translation>
+    </message>
+    <message>
+        <source>choose one of the project&apos;s sensors</source>
+        <translation>einen Sensor des Projekts wählen</translation>
+    </message>
+    <message>
+        <source>there is no spot &quot;%1&quot;</source>
+        <translation>es gibt keine Messstelle „%1“</translation>
+    </message>
+    <message>
+        <source>no degree of freedom is free</source>
+        <translation>kein Freiheitsgrad ist frei</translation>
+    </message>
+    <message>
+        <source>leave at least one free</source>
+        <translation>mindestens einen frei lassen</translation>
+    </message>
+    <message>
+        <source>spot %1 uses it</source>
+        <translation>Messstelle %1 benutzt ihn</translation>
+    </message>
+    <message>
+        <source>give the spot another sensor first</source>
+        <translation>der Messstelle zuerst einen anderen Sensor geben</translation>
+    </message>
+    <message>
+        <source>give the spot another robot first</source>
+        <translation>der Messstelle zuerst einen anderen Roboter geben</translation>
+    </message>
+</context>
+<context>
     <name>MethodText</name>
     <message>
         <source>Sensor on the flange (sphere)</source>
@@ -2931,6 +3306,26 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>%1 spots were led along. Drive each slowly once, then repeat the zero shift.</source>
         <translation>%1 Messstellen wurden nachgeführt. Jede einmal langsam anfahren, dann die Nullverschiebung wiederholen.</translation>
     </message>
+    <message>
+        <source>The project was not saved.</source>
+        <translation>Das Projekt wurde nicht gespeichert.</translation>
+    </message>
+    <message>
+        <source>The file was not written.</source>
+        <translation>Die Datei wurde nicht geschrieben.</translation>
+    </message>
+    <message>
+        <source>Nothing was imported.</source>
+        <translation>Nichts wurde importiert.</translation>
+    </message>
+    <message>
+        <source>The project was not made.</source>
+        <translation>Das Projekt wurde nicht angelegt.</translation>
+    </message>
+    <message>
+        <source>There is no report.</source>
+        <translation>Es gibt keinen Bericht.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::MethodDrawing</name>
@@ -3398,14 +3793,6 @@ hier keine Referenz</translation>
     <message>
         <source>Tests</source>
         <translation>Versuche</translation>
-    </message>
-    <message>
-        <source>Min</source>
-        <translation>Min</translation>
-    </message>
-    <message>
-        <source>Max</source>
-        <translation>Max</translation>
     </message>
     <message>
         <source>3 rms</source>
@@ -4189,6 +4576,42 @@ ausgelassen</translation>
         <source>Known shift</source>
         <translation>Bekannte Verschiebung</translation>
     </message>
+    <message>
+        <source>The devices were not connected.</source>
+        <translation>Die Geräte wurden nicht verbunden.</translation>
+    </message>
+    <message>
+        <source>The part was not measured.</source>
+        <translation>Das Teil wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>The zero shift was not measured.</source>
+        <translation>Die Nullverschiebung wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>The known shift was not measured.</source>
+        <translation>Die bekannte Verschiebung wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>The reference was not measured.</source>
+        <translation>Die Referenz wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>The pass was not recorded.</source>
+        <translation>Die Durchfahrt wurde nicht aufgezeichnet.</translation>
+    </message>
+    <message>
+        <source>The pass cannot be judged.</source>
+        <translation>Die Durchfahrt lässt sich nicht beurteilen.</translation>
+    </message>
+    <message>
+        <source>The robot was not moved.</source>
+        <translation>Der Roboter wurde nicht gefahren.</translation>
+    </message>
+    <message>
+        <source>The sensor did not take the setting.</source>
+        <translation>Der Sensor nahm die Einstellung nicht an.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StepPage</name>
@@ -4259,6 +4682,14 @@ und %1 weitere</translation>
     <message>
         <source>The edits are thrown away</source>
         <translation>Die Änderungen werden verworfen</translation>
+    </message>
+    <message>
+        <source>The project was not opened.</source>
+        <translation>Das Projekt wurde nicht geöffnet.</translation>
+    </message>
+    <message>
+        <source>The project was not made.</source>
+        <translation>Das Projekt wurde nicht angelegt.</translation>
     </message>
 </context>
 <context>
@@ -4493,6 +4924,18 @@ und %1 weitere</translation>
     <message>
         <source>template</source>
         <translation>Vorlage</translation>
+    </message>
+    <message>
+        <source>Stand still at the trigger</source>
+        <translation>Am Trigger stehen bleiben</translation>
+    </message>
+    <message>
+        <source>The robot stops, measures and goes on: no trigger jitter, but it costs time. Write the robot&apos;s program anew after a change.</source>
+        <translation>Der Roboter hält, misst und fährt weiter: kein Triggerjitter, aber es kostet Zeit. Nach einer Änderung das Roboterprogramm neu schreiben.</translation>
+    </message>
+    <message>
+        <source>stand still at the trigger</source>
+        <translation>am Trigger stehen bleiben</translation>
     </message>
 </context>
 <context>

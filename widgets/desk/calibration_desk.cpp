@@ -11,6 +11,7 @@
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/answer.h"
 #include "projects/measure.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 namespace {
@@ -18,10 +19,6 @@ namespace {
 constexpr double kStillSeconds = 0.5, kStillMm = 0.02, kStillDeg = 0.005;
 // Nearer than this to a capture nothing is captured by itself.
 constexpr double kNewMm = 3, kNewDeg = 1;
-
-QString text_of(const Error& error) {
-    return QString::fromStdString(error.sentence());
-}
 
 // The whole state before and after: captures are shared, so that it costs a list.
 class CmdSession final : public QUndoCommand {
@@ -143,7 +140,7 @@ std::optional<Pose> CalibrationDesk::mounting() const {
 void CalibrationDesk::push(const QString& text, const SessionState& before) {
     undo_.push(new CmdSession(text, before, session_->state(), [this](const SessionState& state) {
         if (!session_) return;
-        if (auto ok = session_->set_state(state); !ok) emit refused(text_of(ok.error()));
+        if (auto ok = session_->set_state(state); !ok) emit refused(shown_error(ok.error()));
         emit changed();
         solve_when_due();
     }));
@@ -191,7 +188,7 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
 void CalibrationDesk::capture(bool verification) {
     if (!session_ || busy()) return;
     auto settings = prepared_settings(session_->method(), session_->state().settings, base());
-    if (!settings) return emit refused(text_of(settings.error()));
+    if (!settings) return emit refused(shown_error(settings.error()));
     const CaptureKind kind = session_->method().capture;
     waiting_for_shot_ = true;
     shot_verifies_ = verification;
@@ -217,7 +214,7 @@ void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
     auto settings = prepared_settings(session_->method(), session_->state().settings, base());
     if (!settings) {
         set_doing({});
-        return emit refused(text_of(settings.error()));
+        return emit refused(shown_error(settings.error()));
     }
     post([this, shot, used, id, session = *session_, settings = *settings, sensor = *found,
           generation = generation_, verification = shot_verifies_](const std::stop_token&) {
@@ -236,7 +233,7 @@ void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
         QMetaObject::invokeMethod(this, [this, taken, generation, verification] {
             if (generation != generation_) return;
             set_doing({});
-            if (!*taken) return emit refused(text_of(taken->error()));
+            if (!*taken) return emit refused(shown_error(taken->error()));
             take_captures({std::move((*taken)->capture)}, std::move((*taken)->settings), verification,
                           tr("Capture"));
         });
@@ -251,7 +248,7 @@ void CalibrationDesk::take_captures(std::vector<CalibrationCapture> captures, nl
         if (!done) break;
         if (auto id = session_->add(std::move(capture), verification); !id) done = tl::unexpected(id.error());
     }
-    if (!done) emit refused(text_of(done.error()));
+    if (!done) emit refused(shown_error(done.error()));
     if (!(session_->state() == before)) (void)edited({}, text, before);
 }
 
@@ -272,7 +269,7 @@ void CalibrationDesk::load(const std::filesystem::path& path) {
         QMetaObject::invokeMethod(this, [this, read, generation, path] {
             if (generation != generation_) return;
             set_doing({});
-            if (!*read) return emit refused(text_of(read->error()));
+            if (!*read) return emit refused(shown_error(read->error()));
             for (const std::string& sentence : (*read)->skipped)
                 emit refused(QString::fromStdString(sentence));
             take_captures(std::move((*read)->captures), std::move((*read)->settings), false,
@@ -306,9 +303,9 @@ void CalibrationDesk::solve() {
             }
             if (!*outcome) {
                 // Only what was asked for the captures as they are is worth a sentence.
-                if (of == session_->state()) emit refused(text_of(outcome->error()));
+                if (of == session_->state()) emit refused(shown_error(outcome->error()));
             } else if (auto taken = session_->take(**outcome, of); !taken) {
-                emit refused(text_of(taken.error()));
+                emit refused(shown_error(taken.error()));
             }
             emit changed();
             if (!(of == session_->state())) solve_when_due();
@@ -378,7 +375,7 @@ void CalibrationDesk::look() {
             live->seen = true;
             live->picture = entry_picture(*method, taken->settings, taken->capture.entry);
         } else {
-            live->words = text_of(taken.error());
+            live->words = shown_error(taken.error());
         }
         QMetaObject::invokeMethod(this, [this, live, generation] {
             look_pending_ = false;

@@ -9,6 +9,7 @@
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/project_json.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 namespace {
@@ -211,8 +212,7 @@ Expected<void> Desk::create(const std::filesystem::path& path, const Project& pr
     if (!use) return tl::unexpected(use.error());
     auto file = ProjectFile::create(path, project, true);
     if (!file) return tl::unexpected(file.error());
-    if (auto aside = CalibrationSession::put_aside(path); !aside)
-        emit trouble(QString::fromStdString(aside.error().sentence()));
+    if (auto aside = CalibrationSession::put_aside(path); !aside) emit trouble(shown_error(aside.error()));
     discard_recovery(path);
     drop_kept();
     recovery_.reset();
@@ -249,8 +249,7 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
         told = tr("The unsaved edits of an earlier session cannot be read (%1). They stand in the way of "
                   "those of "
                   "this session, which are not kept against a crash: %2")
-                   .arg(QString::fromStdString(found.error().what),
-                        QString::fromStdString(aside.error().sentence()));
+                   .arg(QString::fromStdString(found.error().what), shown_error(aside.error()));
     }
     take_over(std::move(*file), std::move(*project));
     if (use) use_ = std::move(*use);
@@ -316,7 +315,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     drop_kept();
     recovery_writer_.flush();
     if (auto copied = CalibrationSession::copy_all(file_->path(), path); !copied)
-        emit trouble(QString::fromStdString(copied.error().sentence()));
+        emit trouble(shown_error(copied.error()));
     auto file = ProjectFile::open(path);
     if (!file) return tl::unexpected(file.error());
     const std::string spot = selection_.spot(), region = selection_.region();
@@ -580,8 +579,7 @@ void Desk::derive() {
         facts_.sensors->push_back({s.id, state_->connected, s.trouble});
     for (const RobotState& r : state_->robots) facts_.robots->push_back({r.id, state_->connected, r.trouble});
     if (file_)
-        if (auto known = gather(*file_, facts_); !known)
-            emit trouble(QString::fromStdString(known.error().sentence()));
+        if (auto known = gather(*file_, facts_); !known) emit trouble(shown_error(known.error()));
     checks_ = checklist(project_, facts_);
     steps_ = steps_of(checks_, language_);
     emit checklist_changed();
@@ -635,7 +633,7 @@ Expected<void> Desk::delete_run(std::int64_t number) {
 void Desk::note(EventKind kind, const std::string& subject, const std::string& text) {
     if (!file_) return;
     if (auto id = file_->append_event({0, now_utc(), 0, kind, subject, text}); !id)
-        emit trouble(QString::fromStdString(id.error().sentence()));
+        emit trouble(shown_error(id.error()));
     emit events_changed();
 }
 

@@ -6,6 +6,7 @@
 
 #include "projects/project_json.h"
 #include "widgets/desk/commands.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 namespace {
@@ -191,7 +192,7 @@ void RecoveryWriter::work(const std::stop_token& stop) {
                     file.emplace(std::move(*made));
                 else
                     told = RecoveryText::tr("Unsaved edits are not kept against a crash: %1")
-                               .arg(QString::fromStdString(made.error().sentence()));
+                               .arg(shown_error(made.error()));
             }
             wrote = file.has_value();
         }

@@ -7,6 +7,7 @@
 
 #include "projects/acquire.h"
 #include "projects/measure.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 namespace {
@@ -14,10 +15,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLivePeriod{60}, kLiveFrame{400}, kRobotPeriod{500}, kRest{5};
 constexpr const char* kSimulated = "simulated";
-
-QString text_of(const Error& error) {
-    return QString::fromStdString(error.sentence());
-}
 
 }  // namespace
 
@@ -118,7 +115,7 @@ void StationWorker::connect_devices() {
         auto connected = station.connect();
         if (!connected) {
             connect_trouble_ = connected.error().sentence();
-            emit failed(QString::fromStdString(connect_trouble_));
+            emit failed(shown_error(tr("The devices were not connected."), connected.error()));
         } else {
             // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
             // see; a real one is never moved from here.
@@ -149,7 +146,7 @@ void StationWorker::disconnect_devices() {
 void StationWorker::run_one(Station& station, const RunOptions& options) {
     auto run = station.run(options);
     if (!run) {
-        emit failed(text_of(run.error()));
+        emit failed(shown_error(tr("The part was not measured."), run.error()));
         return;
     }
     emit measured(std::make_shared<const RunRecord>(std::move(*run)));
@@ -189,7 +186,7 @@ void StationWorker::zero_shift(int runs) {
             emit measured(std::make_shared<const RunRecord>(run));
         };
         if (auto zero = measure_zero_shift(station, options); !zero)
-            return emit failed(text_of(zero.error()));
+            return emit failed(shown_error(tr("The zero shift was not measured."), zero.error()));
         emit proven();
     });
 }
@@ -218,7 +215,7 @@ void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid) {
         };
         auto proof = prove_known_shift(station, options);
         attach_feed(station);
-        if (!proof) return emit failed(text_of(proof.error()));
+        if (!proof) return emit failed(shown_error(tr("The known shift was not measured."), proof.error()));
         emit proven();
     });
 }
@@ -231,7 +228,7 @@ void StationWorker::teach(const Spot& draft, int repeats) {
         options.progress = progress_sink();
         auto spot = teach_spot(station, draft, options);
         if (!spot)
-            emit failed(text_of(spot.error()));
+            emit failed(shown_error(tr("The reference was not measured."), spot.error()));
         else
             emit taught(std::make_shared<const TaughtSpot>(std::move(*spot)));
     });
@@ -244,7 +241,7 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
         options.cancel = cancelled;
         options.progress = progress_sink();
         auto pass = seamwright::record_pass(station, spot, options);
-        if (!pass) return emit failed(text_of(pass.error()));
+        if (!pass) return emit failed(shown_error(tr("The pass was not recorded."), pass.error()));
         auto result = std::make_shared<PassResult>();
         result->spot_id = spot.id;
         result->pass = std::move(*pass);
@@ -253,7 +250,7 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
             return emit failed(
                 tr("spot %1: no profile was seen on the whole pass").arg(QString::fromStdString(spot.id)));
         auto judged = check_alignment(result->pass.profiles, alignment);
-        if (!judged) return emit failed(text_of(judged.error()));
+        if (!judged) return emit failed(shown_error(tr("The pass cannot be judged."), judged.error()));
         result->result = std::move(*judged);
         if (auto curve = fit_contour_curve(result->pass.references)) result->curve = *curve;
         emit passed(std::move(result));
@@ -365,7 +362,7 @@ Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, 
 void StationWorker::take_shot(const std::string& sensor_id, const std::string& robot_id, bool board) {
     post(tr("Capturing"), [=, this](Station& station, const std::stop_token& cancelled) {
         auto shot = shoot(station, sensor_id, robot_id, board, cancelled);
-        if (!shot) return emit shot_failed(text_of(shot.error()));
+        if (!shot) return emit shot_failed(shown_error(shot.error()));
         emit shot_taken(std::make_shared<const CalibrationShot>(std::move(*shot)));
     });
 }
@@ -376,7 +373,8 @@ void StationWorker::jog_simulated(const std::string& robot_id, const Pose& base_
         RobotLink* robot = station.robot(robot_id);
         if (!setup || !robot || setup->driver != kSimulated)
             return emit failed(tr("only a simulated robot is moved from here"));
-        if (auto moved = robot->move_to(base_from_flange); !moved) emit failed(text_of(moved.error()));
+        if (auto moved = robot->move_to(base_from_flange); !moved)
+            emit failed(shown_error(tr("The robot was not moved."), moved.error()));
         publish(station);
     });
 }
@@ -387,7 +385,8 @@ void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std
         ProfileSource* sensor = station.sensor(sensor_id);
         if (!sensor)
             return emit failed(tr("sensor %1 is not connected").arg(QString::fromStdString(sensor_id)));
-        if (auto set = sensor->set(name, value); !set) emit failed(text_of(set.error()));
+        if (auto set = sensor->set(name, value); !set)
+            emit failed(shown_error(tr("The sensor did not take the setting."), set.error()));
         publish(station);
     });
 }
@@ -485,7 +484,7 @@ void StationWorker::work(const std::stop_token& stop) {
                     if (file)
                         station_.emplace(std::move(*file), std::move(opening->second));
                     else
-                        emit failed(text_of(file.error()));
+                        emit failed(shown_error(file.error()));
                 }
                 emit state_changed(std::make_shared<const StationState>());
                 lock.lock();

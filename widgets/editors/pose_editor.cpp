@@ -12,6 +12,7 @@
 #include <array>
 
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/errors.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -104,7 +105,7 @@ QString PoseEditor::Impl::typed() const {
 bool PoseEditor::Impl::take(PoseEditor& editor, const QString& text) {
     const auto taken = pose_from_text(text, notation);
     if (!taken) {
-        reason = QString::fromStdString(taken.error().sentence());
+        reason = shown_error(taken.error());
         problem->setText(PoseEditor::tr("refused: %1").arg(reason));
         QPalette red = problem->palette();
         red.setColor(QPalette::WindowText, style::alarm(editor.palette()));

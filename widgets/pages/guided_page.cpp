@@ -15,6 +15,7 @@
 #include "projects/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/errors.h"
 #include "widgets/pages/form.h"
 #include "widgets/style.h"
 
@@ -66,7 +67,7 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk) {
 
 bool GuidedPage::done(const Expected<void>& result) {
     if (result) return true;
-    set_verdict(*said_, QString::fromStdString(result.error().sentence()), Tone::attention);
+    set_verdict(*said_, shown_error(result.error()), Tone::attention);
     said_->show();
     return false;
 }
@@ -77,7 +78,7 @@ bool GuidedPage::begin(const std::string& method, const std::string& sensor_id, 
     shown_method_.clear();
     target_set_ = false;
     if (auto opened = calibration_.open(method, sensor_id, robot_id); !opened) {
-        emit desk_.trouble(QString::fromStdString(opened.error().sentence()));
+        emit desk_.trouble(shown_error(opened.error()));
         return false;
     }
     needs_shown_ = calibration_.session().state().captures.empty();

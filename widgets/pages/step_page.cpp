@@ -2,6 +2,7 @@
 
 #include <QTimer>
 
+#include "widgets/errors.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -52,7 +53,7 @@ void StepPage::later() {
 }
 
 bool StepPage::done(const Expected<void>& result) {
-    if (!result) emit desk_.trouble(QString::fromStdString(result.error().sentence()));
+    if (!result) emit desk_.trouble(shown_error(result.error()));
     return result.has_value();
 }
 

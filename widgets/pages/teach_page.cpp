@@ -76,6 +76,19 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         done(desk_.edit(s, tr("required")));
     });
     in->addLayout(make_row({enabled_, required_}));
+    stop_ = new QCheckBox(tr("Stand still at the trigger"));
+    stop_->setObjectName("spot_stop");
+    stop_->setToolTip(
+        tr("The robot stops, measures and goes on: no trigger jitter, but it costs time. Write the robot's "
+           "program anew after a change."));
+    stop_->setMinimumHeight(style::kTargetPx);
+    connect(stop_, &QCheckBox::clicked, this, [this](bool on) {
+        if (!spot()) return;
+        Spot s = *spot();
+        s.stop_at_trigger = on;
+        done(desk_.edit(s, tr("stand still at the trigger")));
+    });
+    in->addLayout(make_row({stop_}));
 
     in->addWidget(make_heading(tr("Pose of the flange at the trigger")));
     pose_ = new PoseEditor;
@@ -247,6 +260,7 @@ void TeachPage::refresh() {
     if (!s) return;
     enabled_->setChecked(s->enabled);
     required_->setChecked(s->required);
+    stop_->setChecked(s->stop_at_trigger);
     if (const RobotSetup* r = find_robot(desk_.project(), s->robot_id);
         r && !pose_->isAncestorOf(focusWidget())) {
         pose_->set_notation(notation_of_brand(r->identity.brand));

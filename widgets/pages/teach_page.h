@@ -36,7 +36,7 @@ class TeachPage : public StepPage {
     SpotTree* tree_;
     QPushButton *duplicate_, *rename_, *up_, *down_, *remove_, *take_, *go_, *measure_;
     QPushButton *pick_, *window_, *click_;
-    QCheckBox *enabled_, *required_;
+    QCheckBox *enabled_, *required_, *stop_;
     PoseEditor* pose_;
     QComboBox *sensor_, *robot_, *kind_;
     QLabel *kind_help_, *reference_, *spread_;

@@ -5,7 +5,9 @@
 #include <qcustomplot.h>
 #include <unistd.h>
 
+#include <QCheckBox>
 #include <QDropEvent>
+#include <QLabel>
 #include <QListWidget>
 #include <QMenu>
 #include <QMimeData>
@@ -85,6 +87,47 @@ TEST_F(Furniture, ThePaletteRunsWhatIsTyped) {
     QTest::keyClick(input, Qt::Key_Return);
     EXPECT_TRUE(me.wait([&] { return window().step() == Step::regions; }));
     EXPECT_TRUE(me.wait([&] { return !window().findChild<CommandPalette*>(); })) << "it has gone";
+}
+
+TEST_F(Furniture, ASecondStudioSaysThatTheProjectIsOpenInTheLanguageOfItsWindow) {
+    StudioOptions o;
+    o.language = "de";
+    o.theme = "light";
+    o.settings = path("other.ini");
+    o.data = path("");
+    o.connect = false;
+    {
+        Studio second(*qApp, o);  // wants the demo project, which the first has open
+        EXPECT_FALSE(second.desk().is_open());
+        auto* text = second.window().findChild<QLabel*>("trouble_text");
+        ASSERT_TRUE(text);
+        EXPECT_TRUE(text->isVisible());
+        const QString said = text->text();
+        EXPECT_TRUE(said.startsWith("Das Projekt wurde nicht geöffnet.")) << said.toStdString();
+        EXPECT_TRUE(said.contains("demo.seam: das Projekt ist schon geöffnet")) << said.toStdString();
+        EXPECT_TRUE(said.contains("dort weiterarbeiten")) << said.toStdString();
+        EXPECT_FALSE(second.open(path("missing.seam")));
+        EXPECT_TRUE(text->text().contains("die Datei gibt es nicht")) << text->text().toStdString();
+        second.window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/second_studio.png");
+    }
+    EXPECT_TRUE(studio->desk().is_open());
+    EXPECT_TRUE(studio->desk().rename_project("still mine"));
+    EXPECT_TRUE(studio->desk().save());
+}
+
+TEST_F(Furniture, ASpotIsToldToStandStillAtTheTrigger) {
+    Person me(window());
+    me.step(3);
+    ASSERT_FALSE(studio->desk().project().spots.at(0).stop_at_trigger);
+    auto* box = me.find<QCheckBox>("spot_stop");
+    ASSERT_TRUE(box);
+    me.look_at(box);
+    box->setFocus();
+    QTest::keyClick(box, Qt::Key_Space);
+    EXPECT_TRUE(studio->desk().project().spots.at(0).stop_at_trigger);
+    me.shortcut(Qt::Key_Z);
+    EXPECT_FALSE(studio->desk().project().spots.at(0).stop_at_trigger);
+    EXPECT_FALSE(box->isChecked());
 }
 
 TEST_F(Furniture, RecentFilesAreListedNewestFirstAndRemembered) {

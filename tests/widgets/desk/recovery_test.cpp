@@ -387,5 +387,27 @@ TEST(Differences, NameEveryKindOfEdit) {
     EXPECT_EQ(reversed([](Project& p) { std::swap(p.regions[0], p.regions[1]); }), order);
 }
 
+TEST_F(RecoveryTest, ASecondDeskIsRefusedAndNothingIsLost) {
+    const fs::path file = fresh("a.seam"), other = fresh("b.seam");
+    WatchedDesk first, second;
+    ASSERT_TRUE(first.desk.open(file));
+    ASSERT_TRUE(first.desk.rename_project("edited by the first"));
+    ASSERT_TRUE(second.desk.open(other));
+    for (const auto& refused :
+         {second.desk.open(file), second.desk.create(file, sample_project()), second.desk.save_as(file)}) {
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().sentence(), HasSubstr("the project is open already"));
+    }
+    EXPECT_EQ(second.desk.path(), other) << "it keeps what it had";
+    EXPECT_EQ(second.desk.project().name, "saved");
+    EXPECT_TRUE(first.desk.open(file)) << "its own file once more";
+    ASSERT_TRUE(first.desk.rename_project("edited again"));
+    ASSERT_TRUE(first.desk.save());
+    first.desk.close();
+    ASSERT_TRUE(second.desk.open(file));
+    EXPECT_EQ(second.desk.project().name, "edited again");
+    EXPECT_TRUE(first.desk.open(other)) << "which the second has left";
+}
+
 }  // namespace
 }  // namespace seamwright

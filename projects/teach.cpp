@@ -161,4 +161,20 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
     return pass;
 }
 
+FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,
+                             const AlignmentOptions& options) {
+    FrozenContour frozen{spot_id,
+                         result.status,
+                         result.yaw_deg,
+                         result.pitch_deg,
+                         result.radius_mm,
+                         result.expected_error_mm,
+                         options.tolerance_mm,
+                         options.jitter_mm,
+                         {}};
+    for (const TravelOffset& offset : result.offsets)
+        if (offset.ok) frozen.offsets.push_back(offset);
+    return frozen;
+}
+
 }  // namespace seamwright

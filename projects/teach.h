@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
+#include "projects/evidence.h"
 #include "projects/run.h"
 #include "projects/station.h"
 
@@ -45,5 +46,9 @@ struct RecordedPass {
 
 // The robot stops at every step, so that travel is exact; the run itself triggers in motion.
 Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options);
+
+// What the file keeps of an accepted pass: the verdict with what it was judged by, and the usable offsets.
+FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,
+                             const AlignmentOptions& options);
 
 }  // namespace seamwright

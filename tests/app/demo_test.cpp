@@ -130,6 +130,11 @@ TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
     ASSERT_TRUE(file);
     const auto runs = *file->runs();
     ASSERT_GE(runs.size(), 3u);
+    const auto evidence = *file->evidence();
+    EXPECT_EQ(std::count_if(evidence.begin(), evidence.end(),
+                            [](const Evidence& e) { return kind_of(e) == kHeadlessRun; }),
+              1)
+        << "three good parts, one proof";
     const auto second = file->load_run(runs[runs.size() - 2].number, false);
     EXPECT_EQ(second->part_id, "CAR-2");
     const Pose d = second->regions.front().correction->displacement.workobject_from_movedworkobject;

@@ -140,6 +140,10 @@ TEST_F(Checklist, FrozenIsStaleWhenItsSpotWasTurned) {
     expect(CheckStep::frozen, CheckStatus::missing, "record the pass");
     project.spots[2].enabled = false;
     expect(CheckStep::frozen, CheckStatus::done, "stands still");
+    const std::vector<Evidence> kept = facts.evidence;
+    facts.evidence.clear();
+    expect(CheckStep::frozen, CheckStatus::missing, "was not kept");
+    facts.evidence = kept;
     FrozenContour drifting;
     drifting.spot_id = project.spots[0].id;
     drifting.status = AlignmentStatus::drifting;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "projects/measure.h"
+#include "projects/teach.h"
 
 namespace seamwright {
 
@@ -150,19 +151,7 @@ void AlignPage::accept() {
     s.curve = pass_->curve;
     s.jitter_mm = pass_->options.jitter_mm;
     if (!done(desk_.edit(s, tr("alignment")))) return;
-    const AlignmentResult& r = pass_->result;
-    FrozenContour frozen{s.id,
-                         r.status,
-                         r.yaw_deg,
-                         r.pitch_deg,
-                         r.radius_mm,
-                         r.expected_error_mm,
-                         pass_->options.tolerance_mm,
-                         s.jitter_mm,
-                         {}};
-    for (const TravelOffset& offset : r.offsets)
-        if (offset.ok) frozen.offsets.push_back(offset);
-    done(desk_.record({0, {}, 0, std::move(frozen)}));
+    done(desk_.record({0, {}, 0, frozen_contour(s.id, pass_->result, pass_->options)}));
 }
 
 void AlignPage::adopt() {

@@ -78,7 +78,7 @@ Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, c
     auto curve = fit_contour_curve(pass->references);
     if (!curve) return tl::unexpected(curve.error());
     spot.curve = *curve;
-    return DemoTaughtSpot{spot.id, taught->spread_mm, *frozen};
+    return DemoTaughtSpot{spot.id, taught->spread_mm, *frozen, alignment};
 }
 
 // Deviation of a taught point (work object): what is left between the frame on the controller and the part's
@@ -284,6 +284,11 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         project.regions.push_back(region);
     }
     if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
+    for (const DemoTaughtSpot& spot : outcome.taught)
+        if (auto kept = station.file().append_evidence(
+                {0, {}, 0, frozen_contour(spot.id, spot.alignment, spot.judged_by)}, project);
+            !kept)
+            return tl::unexpected(kept.error());
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     for (const Region& region : project.regions) {
         auto plan = plan_region(planned_observations(project, region), {});

@@ -64,6 +64,7 @@ struct DemoTaughtSpot {
     std::string id;
     Eigen::Vector2d spread_mm = Eigen::Vector2d::Zero();
     AlignmentResult alignment;
+    AlignmentOptions judged_by;
 };
 
 struct DemoOutcome {

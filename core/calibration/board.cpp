@@ -269,7 +269,7 @@ bool worth_the_effort(const cv::Mat& grey, const cv::Mat& even, const cv::Size& 
     return false;
 }
 
-std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& spec) {
+std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& spec, BoardEffort effort) {
     const cv::Size pattern(spec.columns, spec.rows);
     const cv::Mat stripe = detail::stripe_mask(grey);
     const cv::Mat clean = detail::without_stripe(grey, stripe);
@@ -308,8 +308,11 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
     constexpr double kLeastSpacingFromHalf = 20;  // px
     const bool small_image = grey.total() <= kSmallImage;
     constexpr std::size_t kFirstThorough = 8;  // from here on an attempt may take seconds
+    // Quads of a noisy image at full size take up to half a minute when there is no whole board.
+    const bool quick = effort == BoardEffort::quick && !small_image;
     for (std::size_t n = 0; n < std::size(attempts); ++n) {
         const Attempt& a = attempts[n];
+        if (quick && (a.scale == 1 || n >= kFirstThorough)) continue;
         if (n == kFirstThorough && !worth_the_effort(grey, even, pattern)) break;
         if (a.scale < 1 && std::min(grey.cols, grey.rows) * a.scale < 200) continue;
         if (n == 0 && small_image) continue;
@@ -361,13 +364,13 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
 
 }  // namespace
 
-std::optional<FoundBoard> find_board(const StripeImage& image, const BoardSpec& spec) {
+std::optional<FoundBoard> find_board(const StripeImage& image, const BoardSpec& spec, BoardEffort effort) {
     if (image.empty() || image.width < 32 || image.height < 32 || !validate(spec)) return std::nullopt;
     try {
         const cv::Mat grey = grey_of(image);
         switch (spec.pattern) {
             case BoardPattern::chessboard:
-                return find_chessboard(grey, spec);
+                return find_chessboard(grey, spec, effort);
             case BoardPattern::circles:
                 return detail::find_circles(grey, spec);
             case BoardPattern::charuco:

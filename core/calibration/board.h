@@ -43,8 +43,14 @@ struct FoundBoard {
     std::string detector;  // which attempt found it
 };
 
+// `thorough` is for images that nobody can take again: a chessboard that is cut off may cost a minute.
+// `quick` is for a person who stands at the camera and can move the board or the lamp: a moment when the
+// board is there, a second or two at 1.3 megapixels when it is not.
+enum class BoardEffort { thorough, quick };
+
 // nullopt: no complete board (ChArUco: fewer than 6 corners). Never throws; damaged images are "not found".
-std::optional<FoundBoard> find_board(const StripeImage& image, const BoardSpec& spec);
+std::optional<FoundBoard> find_board(const StripeImage& image, const BoardSpec& spec,
+                                     BoardEffort effort = BoardEffort::thorough);
 
 // The same board with its indices turned by `quarter_turns` quarter turns (only half turns when columns !=
 // rows): the alternative reading of a symmetric board.

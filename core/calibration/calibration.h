@@ -49,6 +49,7 @@ struct PoseResidual {
     double deg = std::numeric_limits<double>::quiet_NaN();
     double rms_px = std::numeric_limits<double>::quiet_NaN();
     bool used = true;
+    bool contradicts = false;  // used, but for a part that was found wrong (the note says which)
     std::string note;  // why it is not used, or what is odd about it; empty when nothing is
 };
 

@@ -131,7 +131,7 @@ Prediction predict(const CameraData& data, const std::vector<std::vector<char>>&
         const CameraModel camera = camera_of(rest.intrinsics, data.width, data.height);
         for (std::size_t i = 0; i < n; ++i) {
             if (!drop[i]) continue;
-            CameraView view;
+            CameraPoints view;
             view.id = data.views[i].id;
             for (std::size_t k = 0; k < data.views[i].pixel.size(); ++k)
                 if (used[i][k])

@@ -25,7 +25,7 @@
 namespace seamwright {
 
 // Points of one image: object_mm[i] (target frame) was seen at pixel[i].
-struct CameraView {
+struct CameraPoints {
     std::string id;
     std::vector<Eigen::Vector3d> object_mm;
     std::vector<Eigen::Vector2d> pixel;
@@ -33,7 +33,7 @@ struct CameraView {
 
 struct CameraData {
     int width = 0, height = 0;  // px, the same for all views
-    std::vector<CameraView> views;
+    std::vector<CameraPoints> views;
 };
 
 // Which intrinsics the data may move. What may not: fy = fx, centre of the image, zero distortion.
@@ -78,7 +78,7 @@ struct TargetPose {
     Matrix6 covariance = Matrix6::Zero();
     double rms_px = 0;
 };
-Expected<TargetPose> locate_target(const CameraModel& camera, const CameraView& view);
+Expected<TargetPose> locate_target(const CameraModel& camera, const CameraPoints& view);
 
 // Homography h with (u, v, 1) ~ h (x, y, 1) by normalised DLT; nullopt when degenerate (2.18)-(2.22).
 std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>& from,
@@ -108,7 +108,7 @@ Intrinsics conform(const Intrinsics& k, const CameraFreedom& freedom, int width,
 // when given. Infinity when a point falls behind the camera. `used` may be empty (all).
 using ViewNormal = Eigen::Matrix<double, 15, 15>;
 using ViewGradient = Eigen::Matrix<double, 15, 1>;
-double accumulate_view(const Intrinsics& k, const Pose& camera_from_target, const CameraView& view,
+double accumulate_view(const Intrinsics& k, const Pose& camera_from_target, const CameraPoints& view,
                        const std::vector<char>& used, ViewNormal* normal, ViewGradient* gradient);
 
 // Bare joint refinement from a start, no verdict. `normal` is that of the free unknowns at the solution.

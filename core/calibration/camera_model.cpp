@@ -73,7 +73,7 @@ std::optional<Pose> pose_from_homography(Eigen::Matrix3d h) {
 }
 
 // Normalised (x/z, y/z) of every pixel.
-std::vector<Eigen::Vector2d> normalised(const CameraModel& camera, const CameraView& view) {
+std::vector<Eigen::Vector2d> normalised(const CameraModel& camera, const CameraPoints& view) {
     std::vector<Eigen::Vector2d> out;
     out.reserve(view.pixel.size());
     for (const auto& p : view.pixel) out.push_back(camera.undistort(p));
@@ -108,7 +108,7 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
     return make_pose(rotation, m.col(3) / s / scale - rotation * f.centre);
 }
 
-double refine_pose(const Intrinsics& k, const CameraView& view, const std::vector<char>& used, Pose& pose,
+double refine_pose(const Intrinsics& k, const CameraPoints& view, const std::vector<char>& used, Pose& pose,
                    Matrix6* information) {
     double damping = 1e-4;
     ViewNormal n = ViewNormal::Zero();
@@ -139,7 +139,7 @@ double refine_pose(const Intrinsics& k, const CameraView& view, const std::vecto
 }
 
 // Best of the closed-form pose and its mirror (the two poses of a plate that look alike from afar).
-std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraView& view, int width, int height,
+std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraPoints& view, int width, int height,
                                        Matrix6* information, double* cost) {
     const CameraModel camera = camera_of(k, width, height);
     const auto image = normalised(camera, view);
@@ -257,7 +257,7 @@ Intrinsics conform(const Intrinsics& k, const CameraFreedom& freedom, int width,
     return out;
 }
 
-double accumulate_view(const Intrinsics& k, const Pose& pose, const CameraView& view,
+double accumulate_view(const Intrinsics& k, const Pose& pose, const CameraPoints& view,
                        const std::vector<char>& used, ViewNormal* normal, ViewGradient* gradient) {
     double cost = 0;
     const Eigen::Matrix3d r = pose.linear();
@@ -429,7 +429,7 @@ std::optional<CameraSolution> start_camera(const CameraData& data) {
     return best;
 }
 
-Expected<TargetPose> locate_target(const CameraModel& camera, const CameraView& view) {
+Expected<TargetPose> locate_target(const CameraModel& camera, const CameraPoints& view) {
     if (view.pixel.size() != view.object_mm.size() || view.pixel.size() < 4)
         return input_error("a pose needs at least 4 points, each with a pixel", view.id, "give more points");
     for (std::size_t i = 0; i < view.pixel.size(); ++i)

@@ -11,8 +11,8 @@
 namespace seamwright {
 namespace {
 
-CameraView view_of(const std::vector<LaserPair>& pairs, const std::vector<char>& used, int without = -1) {
-    CameraView view;
+CameraPoints view_of(const std::vector<LaserPair>& pairs, const std::vector<char>& used, int without = -1) {
+    CameraPoints view;
     view.id = "pairs";
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (used[i] && static_cast<int>(i) != without) {
@@ -28,7 +28,7 @@ double residual_px(const CameraModel& camera, const Pose& pose, const LaserPair&
 }
 
 // Width of the points across their main direction relative to along it.
-double flatness(const CameraView& view) {
+double flatness(const CameraPoints& view) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& p : view.object_mm) mean += p / static_cast<double>(view.object_mm.size());
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -104,7 +104,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
         if (!again) break;
         solved = again;
     }
-    const CameraView view = view_of(pairs, used);
+    const CameraPoints view = view_of(pairs, used);
     if (flatness(view) < 0.01) return undetermined("the points lie on one line of the laser plane");
     result.camera_from_laser = solved->camera_from_target;
     result.covariance = solved->covariance;

@@ -306,7 +306,7 @@ class Solver {
             p.view_used.assign(count(), 1);
             p.view_used[k] = 0;
             const auto rest = solve_plate_bundle(p, all.state);
-            CameraView view = data_.views[k];
+            CameraPoints view = data_.views[k];
             for (auto& x : view.object_mm) x = rest.state.shape.apply(x);
             if (const auto t =
                     locate_target(camera_of(rest.state.intrinsics, data_.width, data_.height), view))
@@ -495,7 +495,7 @@ class Solver {
         for (std::size_t k = 0; k < count(); ++k) {
             auto& f = result_.frames[view_frame_[k]];
             f.camera_from_target = state_.camera_from_target[k];
-            CameraView bent = data_.views[k];
+            CameraPoints bent = data_.views[k];
             for (auto& x : bent.object_mm) x = state_.shape.apply(x);
             f.corner_rms_px = std::sqrt(
                 accumulate_view(state_.intrinsics, f.camera_from_target, bent, {}, nullptr, nullptr) /
@@ -635,7 +635,9 @@ class Solver {
             p.used = f.used;
             p.note = f.note;
             if (f.used) p.rms_px = f.corner_rms_px;
-            if (f.robot_used) p.rms_mm = f.robot_mm, p.deg = f.robot_deg;
+            p.rms_mm = f.robot_mm;
+            p.deg = f.robot_deg;
+            p.contradicts = f.used && !f.robot_used && std::isfinite(f.robot_mm);
             report.poses.push_back(std::move(p));
         }
         report.judgement = verdict();

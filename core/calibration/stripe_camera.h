@@ -15,6 +15,7 @@
 // Degenerate: all plates parallel (f undetermined without robot motion); all stripes on one line in space
 // (the plane may turn about it); fewer than two rotation axes of the robot (hand-eye undetermined).
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,7 +45,8 @@ struct StripeObservation {
 
 // Finds plate and stripe. Never fails for what is not in the image: then the board is empty or the stripe has
 // no points.
-StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec);
+StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec,
+                          BoardEffort effort = BoardEffort::thorough);
 
 struct StripeCameraOptions {
     std::vector<std::string> exclude;      // frames left out of the solution
@@ -63,7 +65,9 @@ struct StripeFrameResult {
     double median_off_plane_mm = 0;
     int rows_on_board = 0,
         rows_on_plane = 0;  // rows within 0.5 mm; rows of the plate without a usable peak count as off
-    double robot_mm = 0, robot_deg = 0;  // hand-eye residual
+    // Hand-eye residual, also of a robot pose that was left out; NaN: no pose, no hand-eye.
+    double robot_mm = std::numeric_limits<double>::quiet_NaN(),
+           robot_deg = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct StripeCameraResult {

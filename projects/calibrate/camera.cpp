@@ -92,7 +92,7 @@ Expected<CalibrateOutcome> calibrate_camera_json(const json& data, const std::ve
     for (std::size_t i = 0; i < (*views)->size(); ++i) {
         const json& entry = (**views)[i];
         const std::string where = json_path("views", i);
-        CameraView view;
+        CameraPoints view;
         auto id = entry_id(entry, i, where);
         if (!id) return tl::unexpected(id.error());
         view.id = *id;

@@ -11,6 +11,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/acquire.h"
+#include "projects/calibrate/apex_pair.h"
 #include "projects/calibrate/camera_json.h"
 #include "projects/calibrate/plate_images.h"
 #include "projects/calibrate/sphere_profile_json.h"
@@ -85,17 +86,24 @@ Expected<json> stripe_entry(const json& settings, const SensorSetup& sensor, con
         o.width = stripe.image.width;
         o.height = stripe.image.height;
         o.scan = ScanLines::columns;
-        o.board = find_board(board->image, *spec);
+        o.board = find_board(board->image, *spec, BoardEffort::quick);
         StripePeaks peaks;
         auto points = stripe_points(stripe.image, peaks);
         if (!points) return tl::unexpected(points.error());
         o.stripe = std::move(*points);
     } else {
-        o = observe({"", stripe.image, base_from_flange}, *spec);
+        o = observe({"", stripe.image, base_from_flange}, *spec, BoardEffort::quick);
     }
     o.base_from_flange = base_from_flange;
     if (!o.board) return tl::unexpected(no_board(*spec, "sensor " + sensor.id));
     return stripe_frame_json(o);
+}
+
+// For thumbnails: where the board is in the picture.
+void note_outline(json& entry, const Calibration& base, const FoundBoard& board, const BoardSpec& spec) {
+    entry["size"] = {base.model->camera.width, base.model->camera.height};
+    entry["outline"] = json::array();
+    for (const Eigen::Vector2d& p : outline(board, spec)) entry["outline"].push_back({p.x(), p.y()});
 }
 
 Expected<json> board_entry(const std::string& where, const Calibration* base,
@@ -105,19 +113,74 @@ Expected<json> board_entry(const std::string& where, const Calibration* base,
         return input_error("the camera is not known", where, "calibrate camera and laser plane first");
     if (!board) return tl::unexpected(no_board(spec, where));
     if (!base_from_flange)
-        return input_error("the robot's pose is missing", where, "put its pose file beside the image");
+        return input_error("the robot's pose is missing", where,
+                           "connect the robot, or put its pose file beside the image");
     auto target = locate_target(base->model->camera, {"", board->object_mm, board->pixel});
     if (!target) return tl::unexpected(target.error());
-    return json{{"base_from_flange", pose_json(*base_from_flange)},
-                {"camera_from_target", pose_json(target->camera_from_target)}};
+    json entry{{"base_from_flange", pose_json(*base_from_flange)},
+               {"camera_from_target", pose_json(target->camera_from_target)}};
+    note_outline(entry, *base, *board, spec);
+    return entry;
 }
 
-Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame& frame) {
+// Outer corners of the board, on it and in the robot's base.
+Expected<json> plate_entry(const std::string& where, const Calibration* base,
+                           const std::optional<FoundBoard>& board, const BoardSpec& spec,
+                           const std::optional<Pose>& base_from_flange) {
+    auto seen = board_entry(where, base, board, spec, base_from_flange);
+    if (!seen) return seen;
+    if (base->flange_from_sensor.isApprox(Pose::Identity()))
+        return input_error("where the camera sits on the flange is not known", where,
+                           "calibrate hand-eye or with the sphere first, or load measured points");
+    const Pose flange_from_camera = base->flange_from_sensor * base->model->camera_from_laser.inverse();
+    const auto camera_from_target = parse_pose((*seen)["camera_from_target"], "camera_from_target");
+    const Pose base_from_target = *base_from_flange * flange_from_camera * *camera_from_target;
+    json points = json::array();
+    for (const int i : {0, spec.columns - 1, (spec.rows - 1) * spec.columns, spec.rows * spec.columns - 1}) {
+        const Eigen::Vector3d on_plate = board->object_mm[static_cast<std::size_t>(i)];
+        const Eigen::Vector3d world = base_from_target * on_plate;
+        points.push_back({{"plate", {on_plate.x(), on_plate.y(), on_plate.z()}},
+                          {"world", {world.x(), world.y(), world.z()}}});
+    }
+    return json{{"points", std::move(points)}, {"outline", (*seen)["outline"]}, {"size", (*seen)["size"]}};
+}
+
+// One shot: the chain ends on the flange, where it stands now.
+Expected<json> chain_entry(json& settings, const std::string& where, const Calibration* base,
+                           const std::optional<FoundBoard>& board, const BoardSpec& spec,
+                           const std::optional<Pose>& base_from_flange) {
+    if (!settings.contains("world_from_plate"))
+        return input_error("where the plate stands is not known", where,
+                           "find it with \"Plate in the world\" first, or load the chain");
+    auto seen = board_entry(where, base, board, spec, base_from_flange);
+    if (!seen) return seen;
+    if (settings.contains("reference_from_world")) {
+        const auto before = parse_pose(settings["reference_from_world"], "reference_from_world");
+        constexpr double kSameMm = 0.05;
+        if (before && (distance_mm(before->inverse(), *base_from_flange) > kSameMm))
+            return input_error("the robot has moved since the first shot", where,
+                               "one shot is enough: remove the first to take another from here");
+    }
+    settings["reference_from_world"] = pose_json(base_from_flange->inverse());
+    return json{{"world_from_plate", settings["world_from_plate"]},
+                {"camera_from_plate", (*seen)["camera_from_target"]},
+                {"camera_from_laser", pose_json(base->model->camera_from_laser)},
+                {"outline", (*seen)["outline"]},
+                {"size", (*seen)["size"]}};
+}
+
+// A method that works on pixels learns the image's size from its first capture.
+Expected<void> note_size(json& settings, const SensorSetup& sensor, const Frame& frame) {
     const json size = {frame.image.width, frame.image.height};
     if (settings.contains("size") && settings["size"] != size)
         return input_error("the image has another size than those before", "sensor " + sensor.id,
                            "use one camera at one resolution");
     settings["size"] = size;
+    return {};
+}
+
+Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame& frame) {
+    if (auto size = note_size(settings, sensor, frame); !size) return tl::unexpected(size.error());
     StripePeaks peaks;
     auto points = stripe_points(frame.image, peaks);
     if (!points) return tl::unexpected(points.error());
@@ -178,15 +241,26 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
         case CaptureKind::board_and_stripe:
             entry = stripe_entry(settings, sensor, stripe, board, base_from_flange);
             break;
-        case CaptureKind::board_pose: {
+        case CaptureKind::board_pose:
+        case CaptureKind::board_points:
+        case CaptureKind::board_chain: {
             auto spec = board_of(settings);
             if (!spec) return tl::unexpected(spec.error());
-            entry = board_entry(where, base, find_board((board ? *board : stripe).image, *spec), *spec,
-                                base_from_flange);
+            const auto found = find_board((board ? *board : stripe).image, *spec, BoardEffort::quick);
+            entry = method.capture == CaptureKind::board_pose
+                        ? board_entry(where, base, found, *spec, base_from_flange)
+                    : method.capture == CaptureKind::board_points
+                        ? plate_entry(where, base, found, *spec, base_from_flange)
+                        : chain_entry(taken.settings, where, base, found, *spec, base_from_flange);
             break;
         }
         case CaptureKind::stripe_line:
             entry = line_entry(taken.settings, sensor, stripe);
+            break;
+        case CaptureKind::apex:
+            if (auto size = note_size(taken.settings, sensor, stripe); !size)
+                return tl::unexpected(size.error());
+            entry = apex_pair(taken.settings, sensor, base, stripe, base_from_flange);
             break;
         case CaptureKind::files:
             return usage_error("the data of this method are loaded from a file", method.id);
@@ -195,6 +269,8 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
     taken.capture.entry = std::move(*entry);
     taken.capture.base_from_flange = base_from_flange;
     taken.capture.origin = "live";
+    // The answer finds this sensor's chain by its name.
+    if (method.capture == CaptureKind::board_chain) taken.capture.id = sensor.id;
     return taken;
 }
 
@@ -352,6 +428,10 @@ EntryPicture entry_picture(const CalibrationMethod& method, const json& settings
             }
         }
         picture.points = pixels_of(json::array({entry["pixel"]}));
+        picture.outline = pixels_of(entry.value("flanks", json()));
+    } else if (entry.is_object() && entry.contains("outline")) {
+        image_size(entry, picture);
+        picture.outline = picture.points = pixels_of(entry["outline"]);
     } else {
         picture.pixels = false;
     }

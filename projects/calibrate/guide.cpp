@@ -12,15 +12,19 @@ using nlohmann::json;
 // Closer than this to a capture, a view counts as taken.
 constexpr double kNearMm = 12, kNearDeg = 8;
 
-const std::vector<TargetView>* views_of(const CalibrationMethod& method) {
+const std::vector<TargetPlace>* views_of(const CalibrationMethod& method) {
     switch (method.capture) {
         case CaptureKind::sphere_profile:
             return &sphere_views();
         case CaptureKind::board_and_stripe:
         case CaptureKind::board_pose:
+        case CaptureKind::board_points:
+        case CaptureKind::board_chain:
             return &plate_views();
         case CaptureKind::stripe_line:
             return &line_views();
+        case CaptureKind::apex:
+            return &apex_views();
         case CaptureKind::files:
             break;
     }
@@ -35,7 +39,9 @@ std::optional<Pose> mounting(const CalibrationSession& session, const std::optio
         auto pose = parse_pose(holder[key], key);
         return pose ? std::optional<Pose>(*pose) : std::nullopt;
     };
-    if (!result) return known;
+    // A solution that is not sound would lead away from the target.
+    if (!result || (result->value("verdict", "") != "good" && result->value("verdict", "") != "usable"))
+        return known;
     if (auto pose = solved(*result, "flange_from_sensor")) return pose;
     if (session.method().id == "stripe-camera" && result->contains("hand_eye")) {
         const auto camera = solved((*result)["hand_eye"], "flange_from_camera");
@@ -78,7 +84,7 @@ std::optional<NextPose> next_pose(const CalibrationSession& session,
     const Pose& x = *known;
     // The first capture stands for the first view; the others follow from it.
     const Pose base_from_target = *first->base_from_flange * x * target_from_sensor(views->front()).inverse();
-    for (const TargetView& view : *views) {
+    for (const TargetPlace& view : *views) {
         const Pose pose = base_from_target * target_from_sensor(view) * x.inverse();
         if (!taken(session, pose)) return NextPose{pose, false};
     }
@@ -94,10 +100,11 @@ std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method, c
     const auto* views = views_of(method);
     auto settings = parse_cell_settings(cell_settings);
     if (!views || !settings) return std::nullopt;
-    return SimulatedStart{
-        settings->base_from_target * target_from_sensor(views->front()) *
-            settings->flange_from_sensor.inverse(),
-        std::string(to_string(method.capture == CaptureKind::sphere_profile ? Scene::sphere : Scene::plate))};
+    return SimulatedStart{settings->base_from_target * target_from_sensor(views->front()) *
+                              settings->flange_from_sensor.inverse(),
+                          std::string(to_string(method.capture == CaptureKind::sphere_profile ? Scene::sphere
+                                                : method.capture == CaptureKind::apex ? Scene::triangle
+                                                                                      : Scene::plate))};
 }
 
 std::optional<ViewMark> view_mark(const CalibrationSession& session, const Pose& flange_from_sensor,

@@ -35,6 +35,11 @@ Expected<CalibrateOutcome> solve_lut(const json& data, const std::vector<std::st
 
 }  // namespace
 
+bool shows_board(CaptureKind kind) {
+    return kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose ||
+           kind == CaptureKind::board_points || kind == CaptureKind::board_chain;
+}
+
 const std::vector<CalibrationMethod>& calibration_methods() {
     static const std::vector<CalibrationMethod> methods = [] {
         std::vector<CalibrationMethod> list;
@@ -55,7 +60,7 @@ const std::vector<CalibrationMethod>& calibration_methods() {
              calibrate_hand_eye_json, board_settings()});
         add({"laser-plane",
              "pairs",
-             CaptureKind::files,
+             CaptureKind::apex,
              AnswerUse::sensor,
              4,
              10,
@@ -63,17 +68,9 @@ const std::vector<CalibrationMethod>& calibration_methods() {
              true,
              calibrate_laser_plane_json,
              {}});
-        add({"lut", "pairs", CaptureKind::files, AnswerUse::sensor, 9, 25, false, false, solve_lut, {}});
-        add({"static",
-             "sensors",
-             CaptureKind::files,
-             AnswerUse::sensor,
-             1,
-             1,
-             false,
-             false,
-             calibrate_static_json,
-             {}});
+        add({"lut", "pairs", CaptureKind::apex, AnswerUse::sensor, 9, 25, false, false, solve_lut, {}});
+        add({"static", "sensors", CaptureKind::board_chain, AnswerUse::sensor, 1, 1, false, true,
+             calibrate_static_json, board_settings()});
         add({"lens",
              "lines",
              CaptureKind::stripe_line,
@@ -84,16 +81,8 @@ const std::vector<CalibrationMethod>& calibration_methods() {
              false,
              calibrate_lens_json,
              {}});
-        add({"plate",
-             "points",
-             CaptureKind::files,
-             AnswerUse::record,
-             3,
-             6,
-             false,
-             false,
-             calibrate_plate_json,
-             {}});
+        add({"plate", "points", CaptureKind::board_points, AnswerUse::record, 3, 6, false, true,
+             calibrate_plate_json, board_settings()});
         add({"drift",
              "observations",
              CaptureKind::sphere_profile,

@@ -12,7 +12,21 @@
 namespace seamwright {
 
 // What is taken when the robot stands still. `files`: this method's data are measured elsewhere and loaded.
-enum class CaptureKind { sphere_profile, board_and_stripe, stripe_line, board_pose, files };
+// `apex`: of a triangular body, see apex_pair.h. `board_points`: corners of a board in the robot's base,
+// through the calibration in use. `board_chain`: one sensor's chain from the plate's place to its laser
+// plane.
+enum class CaptureKind {
+    sphere_profile,
+    board_and_stripe,
+    stripe_line,
+    board_pose,
+    apex,
+    board_points,
+    board_chain,
+    files
+};
+// A whole board must be in the picture, taken with the laser off where the sensor can switch it.
+bool shows_board(CaptureKind kind);
 
 // What the answer is good for. `sensor`: it can become the sensor's calibration. `record`: kept in the
 // project (a plate's place, a lens). `check`: it only judges the calibration in use.

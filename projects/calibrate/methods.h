@@ -5,7 +5,7 @@
 // Every result holds "status", "verdict" (good | usable | poor | undetermined), "reason", "cure", and of the
 // report (core/calibration/calibration.h) "parameters" [{"name","value","unit","sigma"}], "covariance" (their
 // order and units), "correlations" [{"first","second","correlation"}], "per_pose"
-// [{"id","rms_mm","deg","rms_px","used","note"}] and "hold_out"
+// [{"id","rms_mm","deg","rms_px","used","contradicts","note"}] and "hold_out"
 // {"folds","left_out","rms_mm","max_mm","rms_deg","rms_px"}. A number that does not exist is null; numbers of
 // an undetermined answer are null. Poses are written as by pose_json(). "notices" are sentences worth a look.
 
@@ -50,7 +50,8 @@ Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const nlohmann::json& data,
 Expected<CalibrateOutcome> calibrate_hand_eye_json(const nlohmann::json& data,
                                                    const std::vector<std::string>& exclude);
 
-// {"points":[{"id"?,"plate":[3],"world":[3]}],"sigma_mm"?} ->
+// {"points":[{"id"?,"plate":[3],"world":[3]} or {"id"?,"points":[{"plate","world"},..]} (measured in one
+// stand, left out together)],"sigma_mm"?} ->
 // {"status","world_from_plate","rms_mm","sigma","scale","mirrored",...}
 Expected<CalibrateOutcome> calibrate_plate_json(const nlohmann::json& data,
                                                 const std::vector<std::string>& exclude);

@@ -52,6 +52,7 @@ void add_report(const CalibrationReport& report, json& result) {
                          {"deg", number_json(p.deg)},
                          {"rms_px", number_json(p.rms_px)},
                          {"used", p.used},
+                         {"contradicts", p.contradicts},
                          {"note", p.note}});
     result["per_pose"] = std::move(poses);
     const auto& h = report.hold_out;

@@ -366,7 +366,7 @@ std::vector<PoseRow> CalibrationSession::rows() const {
             row.deg = at_most(p, "deg");
             row.rms_px = at_most(p, "rms_px");
             if (c.left_out || c.verification) break;
-            row.contradicts = !p.value("used", true);
+            row.contradicts = !p.value("used", true) || p.value("contradicts", false);
             row.note = p.value("note", "");
         }
         rows.push_back(std::move(row));

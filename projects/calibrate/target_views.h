@@ -8,19 +8,21 @@
 
 namespace seamwright {
 
-struct TargetView {
+struct TargetPlace {
     Eigen::Vector3d turn_deg;   // rotation vector of the sensor against the target
     Eigen::Vector3d offset_mm;  // of the sensor's origin, target frame
 };
-Pose target_from_sensor(const TargetView& view);
+Pose target_from_sensor(const TargetPlace& view);
 
 // Plate: tilts to both sides about both axes at different heights and places, turned about the sight line.
-const std::vector<TargetView>& plate_views();
+const std::vector<TargetPlace>& plate_views();
 // Sphere (target frame at its centre): the cut off the middle to both sides, the sensor turned about all
 // three axes.
-const std::vector<TargetView>& sphere_views();
+const std::vector<TargetPlace>& sphere_views();
 // Plate: heights over the whole field, a little tilted to both sides, so that the lines cross the image
 // everywhere.
-const std::vector<TargetView>& line_views();
+const std::vector<TargetPlace>& line_views();
+// Triangular body: its apex all over the field, corners first, the sensor never turned.
+const std::vector<TargetPlace>& apex_views();
 
 }  // namespace seamwright

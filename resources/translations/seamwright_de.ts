@@ -593,8 +593,12 @@
         <translation>Findet die Laserebene in einer bekannten Kamera, aus der Spitze eines Dreikantkörpers.</translation>
     </message>
     <message>
-        <source>A triangular body on a stage, its apex seen in the picture and in the sensor&apos;s profile.</source>
-        <translation>Ein Dreikantkörper auf einem Verstelltisch, dessen Spitze im Bild und im Profil des Sensors gesehen wird.</translation>
+        <source>A triangular body square to the sensor, its apex seen in the picture.</source>
+        <translation>Ein zum Sensor rechtwinklig liegender Dreikantkörper, dessen Spitze im Bild gesehen wird.</translation>
+    </message>
+    <message>
+        <source>A sensor that gives profiles in millimetres; or the robot as the stage: it shifts the sensor along its own X and Z alone and never turns it.</source>
+        <translation>Ein Sensor, der Profile in Millimetern liefert; oder der Roboter als Verstelltisch: er verschiebt den Sensor nur in dessen X und Z und dreht ihn nie.</translation>
     </message>
     <message>
         <source>10 or more positions spread over the field, not on one line.</source>
@@ -613,8 +617,8 @@
         <translation>Bildet Pixel direkt auf Millimeter ab, aus einem Ziel an bekannten Plätzen.</translation>
     </message>
     <message>
-        <source>A target on a stage whose places are known better than the wanted accuracy.</source>
-        <translation>Ein Ziel auf einem Verstelltisch, dessen Plätze genauer bekannt sind als die gewünschte Genauigkeit.</translation>
+        <source>A triangular body square to the sensor, and the robot that shifts the sensor along its own X and Z alone; or pairs measured on a stage, from a file.</source>
+        <translation>Ein zum Sensor rechtwinklig liegender Dreikantkörper und der Roboter, der den Sensor nur in dessen X und Z verschiebt; oder auf einem Verstelltisch gemessene Paare, aus einer Datei.</translation>
     </message>
     <message>
         <source>25 or more places over the whole field; what lies outside is not measured later.</source>
@@ -633,12 +637,12 @@
         <translation>Bringt alle Sensoren eines Greifers in ein Koordinatensystem, aus je einem Bild einer bekannten Platte.</translation>
     </message>
     <message>
-        <source>A plate whose place in the world is known, seen by every camera.</source>
-        <translation>Eine Platte, deren Platz in der Welt bekannt ist und die jede Kamera sieht.</translation>
+        <source>A plate whose place is known (&quot;Plate in the world&quot;), seen by the camera.</source>
+        <translation>Eine Platte, deren Ort bekannt ist („Platte in der Welt“) und die von der Kamera gesehen wird.</translation>
     </message>
     <message>
-        <source>The laser plane in each camera, and where the reference stands in the world.</source>
-        <translation>Die Laserebene in jeder Kamera und wo der Bezug in der Welt steht.</translation>
+        <source>The laser plane in the camera; the robot tells where the flange stands.</source>
+        <translation>Die Laserebene in der Kamera; der Roboter sagt, wo der Flansch steht.</translation>
     </message>
     <message>
         <source>JSON with the chain of poses of each sensor</source>
@@ -673,12 +677,12 @@
         <translation>Findet, wo eine Platte steht, aus Punkten, die auf ihr bekannt und in der Welt gemessen sind.</translation>
     </message>
     <message>
-        <source>6 or more points of the plate, measured by robot tip, laser tracker or total station.</source>
-        <translation>6 oder mehr Punkte der Platte, gemessen mit Roboterspitze, Lasertracker oder Tachymeter.</translation>
+        <source>A board on the plate and the calibrated sensor on the robot: every capture gives its outer corners.</source>
+        <translation>Ein Schachbrett auf der Platte und der kalibrierte Sensor am Roboter: jede Aufnahme liefert dessen äußere Ecken.</translation>
     </message>
     <message>
-        <source>Points far apart and not on one line.</source>
-        <translation>Punkte weit auseinander und nicht auf einer Linie.</translation>
+        <source>Or 6 or more points measured by robot tip, laser tracker or total station, from a file: far apart and not on one line.</source>
+        <translation>Oder 6 und mehr Punkte, gemessen mit Roboterspitze, Lasertracker oder Tachymeter, aus einer Datei: weit auseinander und nicht auf einer Linie.</translation>
     </message>
     <message>
         <source>JSON with points on the plate and in the world</source>
@@ -4390,6 +4394,10 @@ ausgelassen</translation>
 </context>
 <context>
     <name>seamwright::SceneView</name>
+    <message>
+        <source>next pose</source>
+        <translation>nächste Pose</translation>
+    </message>
     <message>
         <source>%1 (off)</source>
         <translation>%1 (aus)</translation>

@@ -38,22 +38,25 @@ struct Texts {
         if (id == "laser-plane")
             return {tr("Laser plane (triangular body)"),
                     tr("Finds the laser plane in a known camera, from the apex of a triangular body."),
-                    {tr("A triangular body on a stage, its apex seen in the picture and in the sensor's "
-                        "profile."),
+                    {tr("A triangular body square to the sensor, its apex seen in the picture."),
+                     tr("A sensor that gives profiles in millimetres; or the robot as the stage: it shifts "
+                        "the sensor along its own X and Z alone and never turns it."),
                      tr("10 or more positions spread over the field, not on one line.")},
                     tr("JSON with pairs of pixel and laser point")};
         if (id == "lut")
             return {tr("Look-up table"),
                     tr("Maps pixels to millimetres directly, from a target at known places."),
-                    {tr("A target on a stage whose places are known better than the wanted accuracy."),
+                    {tr("A triangular body square to the sensor, and the robot that shifts the sensor along "
+                        "its own X "
+                        "and Z alone; or pairs measured on a stage, from a file."),
                      tr("25 or more places over the whole field; what lies outside is not measured later.")},
                     tr("JSON with pairs of pixel and known place")};
         if (id == "static")
             return {
                 tr("Static one-shot for several sensors"),
                 tr("Puts all sensors of a gripper into one frame, from one picture each of a known plate."),
-                {tr("A plate whose place in the world is known, seen by every camera."),
-                 tr("The laser plane in each camera, and where the reference stands in the world.")},
+                {tr("A plate whose place is known (\"Plate in the world\"), seen by the camera."),
+                 tr("The laser plane in the camera; the robot tells where the flange stands.")},
                 tr("JSON with the chain of poses of each sensor")};
         if (id == "lens")
             return {tr("Lens"),
@@ -65,8 +68,11 @@ struct Texts {
             return {
                 tr("Plate in the world"),
                 tr("Finds where a plate stands, from points known on it and measured in the world."),
-                {tr("6 or more points of the plate, measured by robot tip, laser tracker or total station."),
-                 tr("Points far apart and not on one line.")},
+                {tr("A board on the plate and the calibrated sensor on the robot: every capture gives its "
+                    "outer "
+                    "corners."),
+                 tr("Or 6 or more points measured by robot tip, laser tracker or total station, from a file: "
+                    "far apart and not on one line.")},
                 tr("JSON with points on the plate and in the world")};
         if (id == "drift")
             return {tr("Does the calibration still hold?"),

@@ -185,9 +185,34 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
     return edited(session_->set_settings(std::move(settings)), tr("Mounting from the drawing"), before);
 }
 
+Expected<nlohmann::json> CalibrationDesk::capture_settings() const {
+    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    // What captures are measured from goes with them.
+    if (settings && session_->state().captures.empty()) {
+        settings->erase("anchor");
+        if (session_->method().capture == CaptureKind::board_chain) settings->erase("reference_from_world");
+    }
+    // The plate's newest place.
+    if (settings && session_->method().id == "static")
+        for (const Calibration& c : desk_.project().calibrations)
+            if (c.method == "plate" && c.result.contains("world_from_plate") &&
+                c.result["world_from_plate"].is_object()) {
+                nlohmann::json link{{"pose", c.result["world_from_plate"]}};
+                if (c.result.contains("covariance_pose")) link["covariance"] = c.result["covariance_pose"];
+                (*settings)["world_from_plate"] = std::move(link);
+            }
+    return settings;
+}
+
+std::optional<Pose> CalibrationDesk::robot_pose() const {
+    for (const RobotState& r : desk_.station().robots)
+        if (r.id == session_->robot_id()) return r.base_from_flange;
+    return std::nullopt;
+}
+
 void CalibrationDesk::capture(bool verification) {
     if (!session_ || busy()) return;
-    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    auto settings = capture_settings();
     if (!settings) return emit refused(shown_error(settings.error()));
     const CaptureKind kind = session_->method().capture;
     waiting_for_shot_ = true;
@@ -200,7 +225,7 @@ void CalibrationDesk::capture(bool verification) {
                        std::any_of(robots.begin(), robots.end(),
                                    [&](const RobotState& r) { return r.id == session_->robot_id(); });
     desk_.worker().take_shot(session_->sensor_id(), robot ? session_->robot_id() : std::string(),
-                             kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose);
+                             shows_board(kind));
 }
 
 void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
@@ -211,7 +236,7 @@ void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
     std::optional<Calibration> used;
     if (base()) used = *base();
     const auto id = session_->free_id();
-    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    auto settings = capture_settings();
     if (!settings) {
         set_doing({});
         return emit refused(shown_error(settings.error()));
@@ -256,7 +281,7 @@ void CalibrationDesk::load(const std::filesystem::path& path) {
     if (!session_ || busy()) return;
     std::optional<Calibration> used;
     if (base()) used = *base();
-    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    auto settings = capture_settings();
     set_doing(tr("Reading"));
     const auto& chosen = settings ? *settings : session_->state().settings;
     post([this, path, used, settings = chosen, method = &session_->method(),
@@ -353,24 +378,19 @@ void CalibrationDesk::look() {
     const auto snapshot = desk_.live().latest(session_->sensor_id());
     if (!sensor || !snapshot || !snapshot->frame || snapshot->number == looked_number_) return;
     looked_number_ = snapshot->number;
-    const CaptureKind kind = session_->method().capture;
-    if ((kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose) && switches_laser()) {
-        // Looking in vain for a board in the dark takes long, and a capture would wait for it.
-        live_ = {};
-        live_.frame = snapshot->frame;
-        return emit looked();
-    }
     look_pending_ = true;
+    // Where the robot stands does not matter to a target that is only looked for.
+    std::optional<Pose> at = robot_pose();
+    if (!at && session_->method().robot) at = Pose::Identity();
     std::optional<Calibration> used;
     if (base()) used = *base();
-    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
-    post([this, frame = snapshot->frame, used, sensor = *sensor, method = &session_->method(),
+    auto settings = capture_settings();
+    post([this, frame = snapshot->frame, used, at, sensor = *sensor, method = &session_->method(),
           settings = settings ? *settings : session_->state().settings,
           generation = generation_](const std::stop_token&) {
         auto live = std::make_shared<LiveTarget>();
         live->frame = frame;
-        auto taken = capture_shot(*method, settings, sensor, used ? &*used : nullptr, *frame, nullptr,
-                                  Pose::Identity());
+        auto taken = capture_shot(*method, settings, sensor, used ? &*used : nullptr, *frame, nullptr, at);
         if (taken) {
             live->seen = true;
             live->picture = entry_picture(*method, taken->settings, taken->capture.entry);
@@ -388,9 +408,7 @@ void CalibrationDesk::look() {
 
 void CalibrationDesk::watch_robot() {
     if (!session_ || !automatic_) return;
-    std::optional<Pose> at;
-    for (const RobotState& r : desk_.station().robots)
-        if (r.id == session_->robot_id()) at = r.base_from_flange;
+    const std::optional<Pose> at = robot_pose();
     if (!at) {
         last_pose_.reset();
         stillness_ = 0;
@@ -410,8 +428,7 @@ void CalibrationDesk::watch_robot() {
                      : std::min(1.0, static_cast<double>(still_since_.elapsed()) / (1000 * kStillSeconds));
     emit still_changed();
     // A board is looked for with the laser off when it is captured; all other targets must be seen before.
-    const bool seen = live_.seen || session_->method().capture == CaptureKind::board_and_stripe ||
-                      session_->method().capture == CaptureKind::board_pose;
+    const bool seen = live_.seen || shows_board(session_->method().capture);
     if (stillness_ >= 1 && seen && !busy() && !desk_.worker().busy()) {
         still_since_.start();
         capture(false);

@@ -97,6 +97,8 @@ class CalibrationDesk : public QObject {
                        const QString& text);
     void solve_when_due();
     void look();
+    std::optional<Pose> robot_pose() const;  // of the session's robot, as last told
+    Expected<nlohmann::json> capture_settings() const;
     void watch_robot();
     void set_doing(const QString& what);
     Expected<void> edited(Expected<void> done, const QString& text, const SessionState& before);

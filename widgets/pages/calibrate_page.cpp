@@ -69,6 +69,14 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
         overview_->show();
         if (isVisible()) refresh();
     });
+    connect(guided_, &GuidedPage::proposed, this, [this](const std::optional<Pose>& base_from_flange) {
+        if (!base_from_flange) return views_.scene->set_next_robot(std::nullopt);
+        SceneRobot next;
+        next.workobject_from_flange = desk_.project().part.base_from_workobject.inverse() * *base_from_flange;
+        next.workobject_from_sensor =
+            next.workobject_from_flange * guided_->calibration().mounting().value_or(Pose::Identity());
+        views_.scene->set_next_robot(next);
+    });
     box().addStretch(1);
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) refresh();

@@ -62,7 +62,10 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk) {
     connect(&desk_, &Desk::project_changed, this, [this] {
         if (isVisible() && calibration_.is_open()) refresh();
     });
-    connect(&desk_, &Desk::opened, this, [this] { emit left(); });
+    connect(&desk_, &Desk::opened, this, [this] {
+        propose(std::nullopt);
+        emit left();
+    });
 }
 
 bool GuidedPage::done(const Expected<void>& result) {
@@ -93,7 +96,15 @@ void GuidedPage::leave() {
     if (target_set_) desk_.worker().set_sensor_parameter(calibration_.session().sensor_id(), "scene", 0);
     calibration_.set_looking(false);
     calibration_.close();
+    propose(std::nullopt);
     emit left();
+}
+
+void GuidedPage::propose(const std::optional<Pose>& base_from_flange) {
+    const bool same = proposed_.has_value() == base_from_flange.has_value() &&
+                      (!proposed_ || proposed_->isApprox(*base_from_flange, 1e-12));
+    proposed_ = base_from_flange;
+    if (!same) emit proposed(proposed_);
 }
 
 void GuidedPage::showEvent(QShowEvent* event) {
@@ -108,6 +119,7 @@ void GuidedPage::hideEvent(QHideEvent* event) {
     QWidget::hideEvent(event);
     calibration_.set_looking(false);
     calibration_.set_automatic(false);
+    propose(std::nullopt);
 }
 
 bool GuidedPage::simulated_sensor() const {
@@ -148,6 +160,7 @@ void GuidedPage::set_target() {
                     desk_.worker().set_sensor_parameter(sensor->id, "scene",
                                                         static_cast<double>(at - p.choices.begin()));
                     target_set_ = true;
+                    mark_next();
                 }
 }
 

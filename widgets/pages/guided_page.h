@@ -28,6 +28,8 @@ class GuidedPage : public QWidget {
 
   signals:
     void left();  // back to the overview
+    // Where the robot is to go next; nullopt: nowhere, or no calibration is shown.
+    void proposed(std::optional<seamwright::Pose> base_from_flange);
 
   protected:
     void showEvent(QShowEvent* event) override;
@@ -59,6 +61,8 @@ class GuidedPage : public QWidget {
     void set_target();
     void go_there();
     void leave();
+    void mark_next();  // the one key of this page that leads on
+    void propose(const std::optional<Pose>& base_from_flange);
     bool simulated_sensor() const;
     bool simulated_robot() const;
     bool stored() const;
@@ -83,6 +87,7 @@ class GuidedPage : public QWidget {
     QProgressBar* progress_;
     std::string shown_method_;
     std::map<std::shared_ptr<const CalibrationCapture>, std::pair<EntryPicture, QIcon>> pictures_;
+    std::optional<Pose> proposed_;
     bool needs_shown_ = true, target_set_ = false;
 };
 

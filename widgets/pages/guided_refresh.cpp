@@ -1,5 +1,6 @@
 // What a guided page shows, derived from the session.
 
+#include <QStyle>
 #include <algorithm>
 #include <cmath>
 
@@ -241,15 +242,17 @@ void GuidedPage::refresh_coverage() {
 
 void GuidedPage::refresh_next() {
     const CalibrationSession& s = calibration_.session();
-    if (s.method().capture == CaptureKind::files) return;
+    if (s.method().capture == CaptureKind::files) return propose(std::nullopt);
     const std::optional<Pose> pose = target_pose();
+    propose(isVisible() ? pose : std::nullopt);
     const RobotSetup* robot = find_robot(desk_.project(), s.robot_id());
     copy_next_->setVisible(pose.has_value());
     set_target_->setVisible(simulated_sensor());
     go_there_->setVisible(simulated_robot() && pose);
     if (!pose) {
         next_->setText(
-            s.state().captures.empty()
+            std::none_of(s.state().captures.begin(), s.state().captures.end(),
+                         [](const SessionCapture& c) { return c.taken->base_from_flange.has_value(); })
                 ? tr("Jog the sensor until the target is outlined, then capture. The next poses follow from "
                      "the first one.")
                 : tr("No further pose is proposed: every view has been taken."));
@@ -402,6 +405,45 @@ void GuidedPage::refresh_busy() {
         !busy && (s.stage() == SessionStage::use || (s.stage() == SessionStage::used && !stored()));
     use_->setEnabled(ready);
     keep_->setEnabled(ready);
+    mark_next();
+}
+
+void GuidedPage::mark_next() {
+    const CalibrationSession& s = calibration_.session();
+    const bool live = s.method().capture != CaptureKind::files && desk_.station().connected;
+    // A simulated target is set up and the robot sent there before anything can be captured.
+    const auto at = flange(), to = target_pose();
+    const bool there = !to || (at && distance_mm(*at, *to) < kWordMm);
+    const auto take = [&](QPushButton* capture) {
+        if (!live) return load_;
+        if (simulated_sensor() && !target_set_) return set_target_;
+        return simulated_robot() && !there ? go_there_ : capture;
+    };
+    QPushButton* next = nullptr;
+    switch (s.stage()) {
+        case SessionStage::prepare:
+        case SessionStage::capture:
+            next = take(capture_);
+            break;
+        case SessionStage::solve:
+            next = solve_;
+            break;
+        case SessionStage::verify:
+            next = live ? take(verify_) : verification_;
+            break;
+        case SessionStage::use:
+            next = s.method().use == AnswerUse::sensor ? use_ : keep_;
+            break;
+        case SessionStage::used:
+            break;
+    }
+    for (QPushButton* b :
+         {capture_, load_, set_target_, go_there_, solve_, verify_, verification_, use_, keep_}) {
+        if (b->property("next").toBool() == (b == next)) continue;
+        b->setProperty("next", b == next);
+        b->style()->unpolish(b);
+        b->style()->polish(b);
+    }
 }
 
 void GuidedPage::refresh_live() {
@@ -410,7 +452,7 @@ void GuidedPage::refresh_live() {
     const bool image = live.frame && !live.frame->image.empty() &&
                        calibration_.session().method().capture != CaptureKind::sphere_profile;
     const CaptureKind kind = calibration_.session().method().capture;
-    const bool board = kind == CaptureKind::board_and_stripe || kind == CaptureKind::board_pose;
+    const bool board = shows_board(kind);
     QString words = live.seen ? tr("target seen") : live.words;
     if (!live.seen && board && calibration_.switches_laser())
         words = tr("The board is looked for with the laser off, at the capture.");

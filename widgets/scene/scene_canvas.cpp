@@ -175,6 +175,13 @@ void SceneCanvas::show_view(SceneView::View view) {
     request_render();
 }
 
+void SceneCanvas::fit(vtkActor& actor) {
+    double box[6];
+    actor.GetBounds(box);
+    if (box[0] <= box[1]) renderer_->ResetCamera(box);
+    request_render();
+}
+
 Eigen::Vector3d SceneCanvas::project(const Eigen::Vector3d& point) const {
     auto* renderer = const_cast<vtkRenderer*>(renderer_.GetPointer());
     const double aspect = width() / static_cast<double>(std::max(1, height()));

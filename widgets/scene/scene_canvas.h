@@ -35,6 +35,7 @@ class SceneCanvas : public QWidget {
     void request_render();    // within a sixtieth of a second, as soon as the widget is seen
     const QImage& picture();  // of the scene as it is; null when the driver refuses
     void show_view(SceneView::View view);
+    void fit(vtkActor& actor);                                    // from the present direction
     Eigen::Vector3d project(const Eigen::Vector3d& point) const;  // x, y in this widget, depth 0..1 in front
     // Where the ray through a pixel meets the actor.
     std::optional<Eigen::Vector3d> pick(const QPointF& at, vtkActor& actor);

@@ -14,6 +14,14 @@
 #include "widgets/style.h"
 
 namespace seamwright {
+namespace {
+
+QColor faded(QColor colour, int alpha) {
+    colour.setAlpha(alpha);
+    return colour;
+}
+
+}  // namespace
 
 ScenePainter::ScenePainter() : data_(vtkSmartPointer<vtkPolyData>::New()) {
     data_->SetPoints(vtkSmartPointer<vtkPoints>::New());
@@ -67,11 +75,11 @@ void ScenePainter::arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     }
 }
 
-void ScenePainter::axes(const Pose& pose, double length, double thickness) {
+void ScenePainter::axes(const Pose& pose, double length, double thickness, int alpha) {
     const QRgb colours[3] = {style::kVermilion, style::kBluishGreen, style::kBlue};  // x, y, z
     for (int i = 0; i < 3; ++i)
         arrow(pose.translation(), pose * Eigen::Vector3d(length * Eigen::Vector3d::Unit(i)), thickness,
-              QColor::fromRgb(colours[i]));
+              faded(QColor::fromRgb(colours[i]), alpha));
 }
 
 void ScenePainter::ball(const Eigen::Vector3d& centre, double radius, const QColor& with) {
@@ -167,11 +175,6 @@ std::optional<Eigen::Vector3d> lifted_centre(const SceneRegion& region, const st
     centre /= count;
     if (up.norm() > 1e-6) centre += kLift_mm * up.normalized();
     return centre;
-}
-
-QColor faded(QColor colour, int alpha) {
-    colour.setAlpha(alpha);
-    return colour;
 }
 
 }  // namespace
@@ -301,18 +304,21 @@ vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, cons
     return painter.take();
 }
 
-vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot, const QPalette& palette) {
+vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot,
+                                        const std::optional<SceneRobot>& next, const QPalette& palette) {
     ScenePainter painter;
-    if (!robot) return painter.take();
-    painter.axes(robot->workobject_from_flange, 90, 5);
-    painter.line(robot->workobject_from_flange.translation(), robot->workobject_from_sensor.translation(),
-                 style::axis(palette));
-    painter.axes(robot->workobject_from_sensor, 60, 4);
-    const QColor body = faded(style::text(palette), 90);
-    painter.box(robot->workobject_from_flange, Eigen::Vector3d(-40, -40, -14), Eigen::Vector3d(40, 40, 0),
-                body);
-    painter.box(robot->workobject_from_sensor, Eigen::Vector3d(-45, -22, 300), Eigen::Vector3d(45, 60, 350),
-                body);
+    const auto stand = [&](const SceneRobot& at, const QColor& line, const QColor& body, int alpha) {
+        painter.axes(at.workobject_from_flange, 90, 5, alpha);
+        painter.line(at.workobject_from_flange.translation(), at.workobject_from_sensor.translation(), line);
+        painter.axes(at.workobject_from_sensor, 60, 4, alpha);
+        painter.box(at.workobject_from_flange, Eigen::Vector3d(-40, -40, -14), Eigen::Vector3d(40, 40, 0),
+                    body);
+        painter.box(at.workobject_from_sensor, Eigen::Vector3d(-45, -22, 300), Eigen::Vector3d(45, 60, 350),
+                    body);
+    };
+    if (robot) stand(*robot, style::axis(palette), faded(style::text(palette), 90), 255);
+    const QColor blue = style::selection(palette);
+    if (next) stand(*next, faded(blue, 130), faded(blue, 90), 130);
     return painter.take();
 }
 

@@ -24,7 +24,7 @@ class ScenePainter {
     // A shaft with a four-sided head, `thickness` across the shaft.
     void arrow(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double thickness,
                const QColor& colour);
-    void axes(const Pose& pose, double length, double thickness);
+    void axes(const Pose& pose, double length, double thickness, int alpha = 255);
     void ball(const Eigen::Vector3d& centre, double radius, const QColor& colour);
     void box(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const QColor& colour);
     vtkSmartPointer<vtkPolyData> take();
@@ -60,7 +60,8 @@ vtkSmartPointer<vtkPolyData> draw_regions(const std::vector<SceneRegion>& region
 vtkSmartPointer<vtkPolyData> draw_corrections(const std::vector<SceneSpot>& spots, double scale,
                                               const QPalette& palette);
 vtkSmartPointer<vtkPolyData> draw_path(const ScenePath& path, double scale, const QPalette& palette);
-vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot, const QPalette& palette);
+vtkSmartPointer<vtkPolyData> draw_robot(const std::optional<SceneRobot>& robot,
+                                        const std::optional<SceneRobot>& next, const QPalette& palette);
 // Where a region's weak direction arrow stands: centroid of its spots' references, and half the arrow's
 // length.
 struct WeakArrow {

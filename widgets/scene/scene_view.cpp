@@ -112,7 +112,7 @@ struct SceneView::Impl {
     std::vector<SceneSpot> spots;
     std::vector<SceneRegion> regions;
     ScenePath path;
-    std::optional<SceneRobot> robot;
+    std::optional<SceneRobot> robot, next_robot;
     Pose part_shift = Pose::Identity();
     std::string spot, region;
     double scale = 20;
@@ -190,7 +190,7 @@ void SceneView::Impl::redraw(Layer layer) {
             one->set(draw_path(path, scale, palette));
             break;
         case Layer::robot:
-            one->set(draw_robot(robot, palette));
+            one->set(draw_robot(robot, next_robot, palette));
             break;
         case Layer::labels:
             break;
@@ -218,6 +218,12 @@ SceneLabels SceneView::Impl::words() const {
             const bool chosen = one.id == spot;
             words.labels.push_back(
                 {{at.x(), at.y()}, text, chosen ? style::selection(palette) : style::text(palette), chosen});
+        }
+        if (next_robot && shown.at(Layer::robot)) {
+            const Eigen::Vector3d at = canvas->project(next_robot->workobject_from_flange.translation());
+            if (at.z() <= 1)
+                words.labels.push_back(
+                    {{at.x(), at.y()}, SceneView::tr("next pose"), style::selection(palette), true});
         }
         if (shown.at(Layer::regions))
             for (const SceneRegion& one : regions) {
@@ -389,6 +395,14 @@ void SceneView::set_robot(const std::optional<SceneRobot>& robot) {
     if (same(impl_->robot, robot)) return;
     impl_->robot = robot;
     impl_->redraw(Layer::robot);
+}
+
+void SceneView::set_next_robot(const std::optional<SceneRobot>& next) {
+    const bool appears = next && !impl_->next_robot, goes = !next && impl_->next_robot;
+    impl_->next_robot = next;
+    impl_->redraw(Layer::robot);
+    if (goes) show_view(View::fit);
+    if (appears && impl_->canvas) impl_->canvas->fit(impl_->manager(Layer::robot)->actor());
 }
 
 void SceneView::set_correction_scale(double factor) {

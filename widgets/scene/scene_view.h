@@ -77,6 +77,9 @@ class SceneView : public QWidget {
     void set_regions(const std::vector<SceneRegion>& regions);
     void set_path(const ScenePath& path);
     void set_robot(const std::optional<SceneRobot>& robot);
+    // Where the robot is to go next, half transparent beside where it stands; belongs to the robot's layer.
+    // When one appears, the picture is fitted to both; when it goes, to the part again.
+    void set_next_robot(const std::optional<SceneRobot>& next);
     void set_correction_scale(double factor);  // drawn length / true length, 1..1000; default 20
 
     // From outside; "" selects nothing. No signal is sent for it.

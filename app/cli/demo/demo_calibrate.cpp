@@ -24,7 +24,7 @@ Expected<FramePtr> snap(ProfileSource& sensor) {
 }
 
 Expected<FramePtr> look(const SimulatedCell& cell, ProfileSource& sensor, RobotLink& robot,
-                        const TargetView& view, Pose& base_from_flange) {
+                        const TargetPlace& view, Pose& base_from_flange) {
     if (auto there = robot.move_to(cell.settings().base_from_target * target_from_sensor(view) *
                                    cell.flange_from_sensor().inverse());
         !there)
@@ -126,7 +126,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     LensData lens;
     lens.width = cell.settings().optics.width;
     lens.height = cell.settings().optics.height;
-    for (const TargetView& view : line_views()) {
+    for (const TargetPlace& view : line_views()) {
         Pose base_from_flange;
         auto image = look(cell, sensor, robot, view, base_from_flange);
         if (!image) return tl::unexpected(image.error());

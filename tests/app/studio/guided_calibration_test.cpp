@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
-#include <tuple>
 
 #include "app/studio/studio.h"
 #include "devices/exchange/pose_json.h"
@@ -19,6 +18,7 @@
 #include "projects/calibrate/guide.h"
 #include "projects/simulated_truth.h"
 #include "tests/app/studio/person.h"
+#include "widgets/calibrate/target_view.h"
 
 namespace seamwright {
 namespace {
@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kFolder = "SEAMWRIGHT_GUIDED_FOLDER";
+constexpr const char *kFolder = "SEAMWRIGHT_GUIDED_FOLDER", *kMethod = "SEAMWRIGHT_GUIDED_METHOD";
 
 class Guided : public testing::Test {
   protected:
@@ -106,6 +106,44 @@ class Guided : public testing::Test {
             return cancel && !cancel->isVisible() && me.text_of("calibration_verdict") != "not solved yet";
         });
     }
+    // The studio as a process of its own captures until it has so many, and is then killed.
+    void capture_until_killed(const QString& method, int poses) const {
+        QProcess child;
+        auto environment = QProcessEnvironment::systemEnvironment();
+        environment.insert(kFolder, QString::fromStdString(folder.string()));
+        environment.insert(kMethod, method);
+        child.setProcessEnvironment(environment);
+        child.start(
+            QCoreApplication::applicationFilePath(),
+            {"--gtest_filter=Guided.DISABLED_CapturesUntilKilled", "--gtest_also_run_disabled_tests"});
+        ASSERT_TRUE(child.waitForStarted());
+        const auto count = [&] {
+            int n = 0;
+            std::ifstream(folder / "count") >> n;
+            return n;
+        };
+        ASSERT_TRUE(QTest::qWaitFor([&] { return count() >= poses || child.state() == QProcess::NotRunning; },
+                                    6 * kPatienceMs));
+        ASSERT_EQ(child.state(), QProcess::Running) << child.readAll().toStdString();
+        ::kill(static_cast<pid_t>(child.processId()), SIGKILL);
+        ASSERT_TRUE(child.waitForFinished());
+    }
+    // The line of the list with the largest number in this column.
+    static int worst_row(const QTableWidget& table, int column) {
+        int worst = 0;
+        for (int r = 0; r < table.rowCount(); ++r)
+            if (table.item(r, column)->text().toDouble() > table.item(worst, column)->text().toDouble())
+                worst = r;
+        return worst;
+    }
+    // The tick box of a line, by keyboard.
+    static void press_space(const Person& me, QTableWidget* table, int row) {
+        me.look_at(table);
+        table->scrollToItem(table->item(row, 0));
+        table->setCurrentCell(row, 0);
+        table->setFocus();
+        QTest::keyClick(table, Qt::Key_Space);
+    }
     // A pose that somebody typed wrong: the profile is of another place than the pose says.
     fs::path wrong_pose(const CalibrationSession& s) const {
         CellSettings cell_settings = parse_cell_settings(settings).value();
@@ -134,7 +172,7 @@ TEST_F(Guided, DISABLED_CapturesUntilKilled) {
     studio.window().resize(1280, 800);
     studio.window().show();
     Person me(studio.window());
-    go_to_page(me, studio.desk(), "tcp-sphere");
+    go_to_page(me, studio.desk(), std::getenv(kMethod));
     me.click("calibration_set_target");
     for (int i = 0; i < 100; ++i) {
         capture(me, studio.desk());
@@ -145,27 +183,8 @@ TEST_F(Guided, DISABLED_CapturesUntilKilled) {
 
 TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     make_project();
-    {
-        QProcess child;
-        auto environment = QProcessEnvironment::systemEnvironment();
-        environment.insert(kFolder, QString::fromStdString(folder.string()));
-        child.setProcessEnvironment(environment);
-        child.start(
-            QCoreApplication::applicationFilePath(),
-            {"--gtest_filter=Guided.DISABLED_CapturesUntilKilled", "--gtest_also_run_disabled_tests"});
-        ASSERT_TRUE(child.waitForStarted());
-        const auto count = [&] {
-            int n = 0;
-            std::ifstream(folder / "count") >> n;
-            return n;
-        };
-        ASSERT_TRUE(
-            QTest::qWaitFor([&] { return count() >= 4 || child.state() == QProcess::NotRunning; }, 60000));
-        ASSERT_EQ(child.state(), QProcess::Running) << child.readAll().toStdString();
-        ::kill(static_cast<pid_t>(child.processId()), SIGKILL);
-        ASSERT_TRUE(child.waitForFinished());
-    }
-
+    capture_until_killed("tcp-sphere", 4);
+    ASSERT_FALSE(HasFailure());
     Studio studio(*qApp, options());
     MainWindow& window = studio.window();
     window.resize(1280, 800);
@@ -191,19 +210,13 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     ASSERT_TRUE(solved(me, window));
     me.picture("guided_2_bad_pose");
     auto* table = me.find<QTableWidget>("captures");
-    int worst = 0;
-    for (int r = 0; r < table->rowCount(); ++r)
-        if (table->item(r, 1)->text().toDouble() > table->item(worst, 1)->text().toDouble()) worst = r;
+    const int worst = worst_row(*table, 1);
     EXPECT_EQ(table->item(worst, 0)->text(), "typed");
     EXPECT_TRUE(table->item(worst, 4)->text() == "contradicts the others" ||
                 table->item(worst, 4)->text() == "stands out")
         << table->item(worst, 4)->text().toStdString();
     const double bad_mm = table->item(worst, 1)->text().toDouble();
-    me.look_at(table);
-    table->scrollToItem(table->item(worst, 0));
-    table->setCurrentCell(worst, 0);
-    table->setFocus();
-    QTest::keyClick(table, Qt::Key_Space);  // the tick box of the chosen line
+    press_space(me, table, worst);
     ASSERT_TRUE(me.wait([&] { return table->item(worst, 4)->text() == "left out"; }));
     ASSERT_TRUE(solved(me, window));
     const QString verdict = me.text_of("calibration_verdict");
@@ -241,6 +254,244 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     EXPECT_EQ(desk.project().calibrations.size(), 1U);
     EXPECT_TRUE(me.wait([&] { return me.find<QPushButton>("calibration_use")->isEnabled(); }));
 }
+
+// Every method that captures a picture live: from the first capture over a kill and a bad pose to the stored
+// calibration. `column`: of the list, where the bad pose stands out.
+struct LiveMethod {
+    const char* id;
+    int poses, column;
+    bool used;
+};
+class GuidedLive : public Guided, public testing::WithParamInterface<LiveMethod> {
+  protected:
+    // The session's newest capture once more, with its pose mistyped, or taken over an edge of the plate.
+    fs::path bad_entry(const CalibrationSession& s) const {
+        json data = s.state().settings, entry = s.state().captures.back().taken->entry;
+        if (entry.contains("base_from_flange")) {
+            Pose pose = parse_pose(entry["base_from_flange"], "base_from_flange").value();
+            pose.translation() += Eigen::Vector3d(6, -9, 3);
+            entry["base_from_flange"] = pose_json(pose);
+            entry["id"] = "typed";
+        } else if (entry.contains("points")) {
+            for (json& p : entry["points"]) p["world"][1] = p["world"][1].get<double>() + 8;
+            entry["id"] = "typed";
+        } else if (entry.is_object()) {
+            entry["pixel"][1] = entry["pixel"][1].get<double>() + 12;  // on the flank beside the apex
+            entry["id"] = "typed";
+        } else {
+            for (std::size_t i = entry.size() / 2; i < entry.size(); ++i)
+                entry[i][1] = entry[i][1].get<double>() + 25;
+        }
+        data[s.method().entries] = json::array({entry});
+        const fs::path path = folder / "bad.json";
+        std::ofstream(path) << data;
+        return path;
+    }
+};
+
+TEST_P(GuidedLive, FromTheFirstCaptureToTheStoredCalibration) {
+    const auto [method, poses, column, used] = GetParam();
+    make_project();
+    capture_until_killed(method, 3);
+    ASSERT_FALSE(HasFailure());
+    Studio studio(*qApp, options());
+    MainWindow& window = studio.window();
+    window.resize(1280, 800);
+    window.show();
+    Person me(window);
+    Desk& desk = studio.desk();
+    me.step(2);
+    EXPECT_EQ(me.find<QPushButton>(QString("begin_") + method)->text(), "Go on");
+    go_to_page(me, desk, method);
+    ASSERT_GE(captures(me), 3) << "what was captured before the kill is there";
+    me.click("calibration_set_target");
+    for (int i = captures(me); i < poses; ++i) {
+        capture(me, desk);
+        ASSERT_FALSE(HasFailure());
+    }
+    ASSERT_TRUE(solved(me, window));
+
+    // One more, which comes back from a file with its pose mistyped.
+    capture(me, desk);
+    ASSERT_FALSE(HasFailure());
+    const auto session = CalibrationSession::open(file, method, "A", "R1").value();
+    me.find<QTableWidget>("captures")->setCurrentCell(poses, 0);
+    me.click("calibration_remove");
+    ASSERT_TRUE(me.wait([&] { return captures(me) == poses; }));
+    me.answer_file_dialog(QString::fromStdString(bad_entry(session).string()));
+    me.click("calibration_load");
+    ASSERT_TRUE(me.wait([&] { return captures(me) == poses + 1; }))
+        << me.text_of("calibration_said").toStdString();
+    ASSERT_TRUE(solved(me, window));
+    me.picture(QString("guided_%1_bad").arg(method));
+    auto* table = me.find<QTableWidget>("captures");
+    const int worst = worst_row(*table, column);
+    EXPECT_EQ(worst, poses);
+    EXPECT_TRUE(table->item(worst, 4)->text() == "contradicts the others" ||
+                table->item(worst, 4)->text() == "stands out")
+        << table->item(worst, 4)->text().toStdString();
+    press_space(me, table, worst);
+    ASSERT_TRUE(me.wait([&] { return table->item(worst, 4)->text() == "left out"; }));
+    ASSERT_TRUE(solved(me, window));
+
+    EXPECT_FALSE(me.find<QPushButton>(used ? "calibration_use" : "calibration_keep")->isEnabled());
+    capture(me, desk, "calibration_verify");
+    ASSERT_TRUE(solved(me, window));
+    me.picture(QString("guided_%1").arg(method));
+    const QString verdict = me.text_of("calibration_verdict");
+    EXPECT_TRUE(verdict == "good" || verdict == "usable") << me.text_of("calibration_reason").toStdString();
+    EXPECT_TRUE(me.text_of("calibration_verified").startsWith("confirmed"))
+        << me.text_of("calibration_verified").toStdString();
+    me.click(used ? "calibration_use" : "calibration_keep");
+    ASSERT_EQ(desk.project().calibrations.size(), 2U) << window_text(me);
+    const Calibration& made = desk.project().calibrations.back();
+    EXPECT_EQ(made.method, method);
+    EXPECT_EQ(desk.project().sensors.at(0).calibration_id == made.id, used);
+    if (used) {
+        EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 1.0)
+            << "over the whole field";
+    }
+    me.click("calibration_back");
+}
+INSTANTIATE_TEST_SUITE_P(Methods, GuidedLive,
+                         testing::Values(LiveMethod{"stripe-camera", 10, 1, true},
+                                         LiveMethod{"hand-eye", 8, 1, true}, LiveMethod{"lens", 9, 3, false},
+                                         LiveMethod{"laser-plane", 10, 3, true},
+                                         LiveMethod{"lut", 23, 1, true}, LiveMethod{"plate", 6, 1, false}),
+                         [](const auto& one) {
+                             std::string name = one.param.id;
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+// The plate found by the page before, then one shot of it: the sensor's place on the flange.
+TEST_F(Guided, StaticOneShotOfAPlateFoundBefore) {
+    make_project();
+    Studio studio(*qApp, options());
+    studio.window().resize(1280, 800);
+    studio.window().show();
+    Person me(studio.window());
+    Desk& desk = studio.desk();
+    go_to_page(me, desk, "static");
+    me.click("calibration_set_target");
+    me.click("calibration_go");
+    ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+    me.click("calibration_capture");
+    ASSERT_TRUE(me.wait([&] { return window_text(me).find("where the plate stands") != std::string::npos; }))
+        << window_text(me);
+    me.click("calibration_back");
+
+    go_to_page(me, desk, "plate");
+    me.click("calibration_set_target");
+    for (int i = 0; i < 4; ++i) {
+        capture(me, desk, i < 3 ? "calibration_capture" : "calibration_verify");
+        ASSERT_FALSE(HasFailure());
+    }
+    ASSERT_TRUE(solved(me, studio.window()));
+    me.click("calibration_keep");
+    ASSERT_EQ(desk.project().calibrations.size(), 2U) << window_text(me);
+    me.click("calibration_back");
+
+    go_to_page(me, desk, "static");
+    me.click("calibration_set_target");
+    capture(me, desk);
+    ASSERT_FALSE(HasFailure());
+    ASSERT_TRUE(solved(me, studio.window()));
+    me.picture("guided_static_live");
+    me.click("calibration_use");
+    ASSERT_EQ(desk.project().calibrations.size(), 3U) << window_text(me);
+    const Calibration& made = desk.project().calibrations.back();
+    EXPECT_EQ(desk.project().sensors.at(0).calibration_id, made.id);
+    EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 1.0)
+        << "over the whole field";
+}
+
+// Every page in German on the small and the large screen, dark: what is to be done next is on it without
+// scrolling sideways.
+TEST_F(Guided, EveryPageFitsTheScreenInGerman) {
+    make_project();
+    StudioOptions german = options();
+    german.language = "de";
+    german.theme = "dark";
+    Studio studio(*qApp, german);
+    MainWindow& window = studio.window();
+    window.resize(1280, 800);
+    window.show();
+    Person me(window);
+    Desk& desk = studio.desk();
+    for (const CalibrationMethod& method : calibration_methods()) {
+        if (method.id == "drift") continue;  // needs a calibration made with the sphere
+        const QString id = QString::fromStdString(method.id);
+        go_to_page(me, desk, id);
+        me.click("calibration_set_target");
+        me.click("calibration_go");
+        ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+        if (method.id != "static") {  // which asks for the plate's place first
+            EXPECT_TRUE(me.wait([&] { return me.find<TargetView>("target_view")->seen(); })) << method.id;
+        }
+        for (const QSize size : {QSize(1280, 800), QSize(1920, 1080)}) {
+            window.resize(size);
+            QTest::qWait(300);
+            me.look_at(me.find<QPushButton>("calibration_capture"));
+            for (auto* area : window.findChildren<QScrollArea*>())
+                if (area->isVisible() && area->isAncestorOf(me.find<QLabel>("guided_title"))) {
+                    EXPECT_LE(area->widget()->minimumSizeHint().width(), area->viewport()->width())
+                        << method.id;
+                }
+            me.picture(QString("guided_page_%1_%2").arg(id).arg(size.width()));
+        }
+        window.resize(1280, 800);
+        me.click("calibration_back");
+    }
+}
+
+// The calibration in use is checked with the sphere it was made with: it holds; after a blow to the sensor it
+// does not, and the page says by how much.
+class GuidedDrift : public Guided, public testing::WithParamInterface<bool> {
+  protected:
+    // The calibration in use, as the sphere's page leaves it: it knows where the sphere stands. `struck`:
+    // what the file says of the sensor's place is no longer where it is.
+    void make_checked_project(bool struck) const {
+        make_project();
+        auto opened = ProjectFile::open(file);
+        ASSERT_TRUE(opened) << opened.error().sentence();
+        Project p = opened->load().value();
+        Calibration& c = p.calibrations.at(0);
+        const CellSettings cell = parse_cell_settings(settings).value();
+        const Eigen::Vector3d centre = cell.base_from_target.translation();
+        c.result["centre_base_mm"] = {centre.x(), centre.y(), centre.z()};
+        c.result["radius_mm"] = cell.sphere_radius_mm;
+        if (struck) c.flange_from_sensor.translation() += Eigen::Vector3d(0.8, -0.5, 0.4);
+        ASSERT_TRUE(opened->save(p));
+    }
+};
+
+TEST_P(GuidedDrift, OnTheSimulatedCell) {
+    make_checked_project(GetParam());
+    ASSERT_FALSE(HasFailure());
+    Studio studio(*qApp, options());
+    studio.window().resize(1280, 800);
+    studio.window().show();
+    Person me(studio.window());
+    go_to_page(me, studio.desk(), "drift");
+    me.click("calibration_set_target");
+    for (int i = 0; i < 4; ++i) {
+        capture(me, studio.desk());
+        ASSERT_FALSE(HasFailure());
+    }
+    ASSERT_TRUE(solved(me, studio.window()));
+    me.picture(GetParam() ? "guided_drift_struck" : "guided_drift");
+    const auto session = CalibrationSession::open(file, "drift", "A", "R1").value();
+    ASSERT_TRUE(session.result());
+    EXPECT_EQ(session.result()->value("status", ""), GetParam() ? "drifted" : "holds")
+        << me.text_of("calibration_reason").toStdString();
+    if (GetParam()) {
+        EXPECT_NEAR((*session.result())["change_mm"].get<double>(), std::sqrt(0.64 + 0.25 + 0.16), 0.3);
+    }
+    me.click("calibration_back");
+}
+INSTANTIATE_TEST_SUITE_P(Blow, GuidedDrift, testing::Values(false, true),
+                         [](const auto& one) { return one.param ? "struck" : "unharmed"; });
 
 // Every method whose data are measured elsewhere, from its file to the stored calibration; one entry of each
 // is wrong, is seen in the list and left out.
@@ -308,13 +559,6 @@ TEST_P(GuidedFile, FromItsFile) {
     ASSERT_TRUE(me.wait([&] { return captures(me) > 0; })) << me.text_of("calibration_said").toStdString();
     ASSERT_TRUE(solved(me, window));
     auto* table = me.find<QTableWidget>("captures");
-    const auto press_space = [&](int row) {
-        me.look_at(table);
-        table->scrollToItem(table->item(row, 0));
-        table->setCurrentCell(row, 0);
-        table->setFocus();
-        QTest::keyClick(table, Qt::Key_Space);
-    };
     if (method != "static") {
         const QString wrong = method == "plate" ? "5" : "14";
         int row = -1;
@@ -322,7 +566,7 @@ TEST_P(GuidedFile, FromItsFile) {
             if (table->item(r, 0)->text() == wrong) row = r;
         ASSERT_GE(row, 0);
         EXPECT_EQ(table->item(row, 4)->text(), "contradicts the others");
-        press_space(row);
+        press_space(me, table, row);
         ASSERT_TRUE(me.wait([&] { return table->item(row, 4)->text() == "left out"; }));
         ASSERT_TRUE(solved(me, window));
         EXPECT_FALSE(me.find<QPushButton>("calibration_keep")->isEnabled()) << "not verified yet";

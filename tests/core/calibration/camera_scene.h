@@ -23,7 +23,7 @@ inline std::vector<Eigen::Vector3d> plate(int columns, int rows, double pitch) {
 }
 
 // Plate in front of the camera, tilted up to `tilt_deg`, all points inside the image.
-inline CameraView view_of(const CameraModel& camera, const std::vector<Eigen::Vector3d>& object,
+inline CameraPoints view_of(const CameraModel& camera, const std::vector<Eigen::Vector3d>& object,
                           std::mt19937& random, double tilt_deg, double distance, double noise_px,
                           const std::string& id, Pose* truth = nullptr) {
     std::uniform_real_distribution<double> u(-1, 1);
@@ -37,7 +37,7 @@ inline CameraView view_of(const CameraModel& camera, const std::vector<Eigen::Ve
         const double z = distance * (1 + 0.25 * u(random));
         const Eigen::Vector3d at(0.35 * z * u(random), 0.28 * z * u(random), z);
         const Pose pose = make_pose(r, at - r * middle);
-        CameraView v;
+        CameraPoints v;
         v.id = id;
         bool inside = true;
         for (const auto& p : object) {

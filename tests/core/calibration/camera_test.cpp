@@ -121,7 +121,7 @@ TEST(CameraCalibration, ParallelPlatesAreUndetermined) {
     data.width = 640, data.height = 480;
     std::normal_distribution<double> n(0, 0.1);
     for (int i = 0; i < 6; ++i) {
-        CameraView v;
+        CameraPoints v;
         v.id = std::to_string(i);
         const Pose pose = make_pose(Eigen::Matrix3d::Identity(), {-100.0 + 4 * i, -60, 400.0 + 5 * i});
         for (const auto& p : plate(9, 6, 25)) {

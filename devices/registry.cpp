@@ -74,9 +74,9 @@ const std::vector<ControllerDriver>& controller_drivers() {
 
 const std::vector<ProgramWriter>& program_writers() {
     static const std::vector<ProgramWriter> writers = {
-        {"kuka", "KRL for EthernetKRL", &write_kuka_program},
-        {"abb", "RAPID with a server task", &write_abb_program},
-        {"ur", "URScript for RTDE", &write_ur_program},
+        {"kuka", "KRL for EthernetKRL", &write_kuka_program, &write_kuka_path},
+        {"abb", "RAPID with a server task", &write_abb_program, &write_abb_path},
+        {"ur", "URScript for RTDE", &write_ur_program, &write_ur_path},
     };
     return writers;
 }
@@ -115,6 +115,11 @@ Expected<std::unique_ptr<SimulatedController>> start_controller(const std::strin
 Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
                                                        const ProgramRequest& request) {
     return call(program_writers(), "robot brand", brand, &ProgramWriter::write, request);
+}
+
+Expected<std::vector<ProgramFile>> write_robot_path(const std::string& brand,
+                                                    const PathProgramRequest& request) {
+    return call(program_writers(), "robot brand", brand, &ProgramWriter::write_path, request);
 }
 
 }  // namespace seamwright

@@ -37,6 +37,7 @@ struct ControllerDriver {
 struct ProgramWriter {
     std::string_view name, help;  // "kuka", "abb", "ur"
     Expected<std::vector<ProgramFile>> (*write)(const ProgramRequest& request);
+    Expected<std::vector<ProgramFile>> (*write_path)(const PathProgramRequest& request);
 };
 const std::vector<SensorDriver>& sensor_drivers();
 const std::vector<RobotDriver>& robot_drivers();
@@ -54,5 +55,7 @@ Expected<std::unique_ptr<SimulatedController>> start_controller(const std::strin
                                                                 const nlohmann::json& settings);
 Expected<std::vector<ProgramFile>> write_robot_program(const std::string& brand,
                                                        const ProgramRequest& request);
+Expected<std::vector<ProgramFile>> write_robot_path(const std::string& brand,
+                                                    const PathProgramRequest& request);
 
 }  // namespace seamwright

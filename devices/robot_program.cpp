@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace seamwright {
@@ -22,6 +23,38 @@ std::string program_signature(const std::vector<MeasuringMove>& moves) {
         }
     }
     return fmt::format("SW-{:016X}", hash);
+}
+
+Expected<void> check_path_program(const PathProgramRequest& request) {
+    const std::string& name = request.name;
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    if (name.empty() || name.size() > 20 || !letter(name.front()) ||
+        !std::all_of(name.begin(), name.end(),
+                     [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; }))
+        return input_error("\"" + name + "\" is no name of a program", "name",
+                           "use a letter, then letters, digits and _, at most 20");
+    if (request.frame_from_tool.empty() || request.frame_from_tool.size() > kMostPathPoints)
+        return input_error(fmt::format("{} points make no path program", request.frame_from_tool.size()),
+                           name, fmt::format("give 1 to {}", kMostPathPoints));
+    if (!(request.speed_mm_s > 0 && request.speed_mm_s <= 2000))
+        return input_error(fmt::format("{} mm/s is no speed of a path", request.speed_mm_s), name,
+                           "give up to 2000 mm/s");
+    if (!(request.rounding_mm >= 0 && request.rounding_mm <= 100))
+        return input_error(fmt::format("{} mm is no distance for rounding off", request.rounding_mm), name,
+                           "give 0 to 100 mm");
+    const auto bad = [](const Pose& pose) {
+        return !pose.matrix().allFinite() || pose.translation().cwiseAbs().maxCoeff() > 1e5;
+    };
+    if (bad(request.base_from_frame) ||
+        std::any_of(request.frame_from_tool.begin(), request.frame_from_tool.end(), bad))
+        return input_error("a pose is not finite or beyond 100 m", name);
+    return {};
+}
+
+std::string program_comment(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return text.substr(0, 79);
 }
 
 }  // namespace seamwright

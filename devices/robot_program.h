@@ -28,6 +28,23 @@ struct ProgramFile {
     std::string text;
 };
 
+// A path of linear motions, to be called by the application with its own tool active.
+struct PathProgramRequest {
+    std::string name = "seamwright_path";     // of the program and its file
+    std::string comment;                      // one line: what it is
+    Pose base_from_frame = Pose::Identity();  // the points' frame
+    std::vector<Pose> frame_from_tool;        // in the order of the path
+    double speed_mm_s = 100;
+    double rounding_mm =
+        2;  // how far from a point the robot may begin to round it off; 0 = exactly through it
+};
+// Error (input): a name that is no identifier of up to 20 letters, digits and _ in every brand's language, no
+// point or more than kMostPathPoints, poses that are not finite or beyond 100 m, a speed over 2 m/s.
+inline constexpr std::size_t kMostPathPoints = 5000;
+Expected<void> check_path_program(const PathProgramRequest& request);
+// `text` as a comment may hold it: one line of ASCII.
+std::string program_comment(std::string text);
+
 // Tells one measuring program from another: names, order and poses (to 0.001 mm and 0.0001 degree) of its
 // spots, as "SW-" and 16 hexadecimal digits. The controller holds the one of its program and compares it at
 // the start of measuring.

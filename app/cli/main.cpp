@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     add_correct(line);
     add_plan(line);
     add_panel(line);
+    add_path(line);
     add_evaluate(line);
     add_filter(line);
     add_feature(line);

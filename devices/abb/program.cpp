@@ -126,4 +126,29 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
         {"SeamwrightSpots.mod", spots}};
 }
 
+Expected<std::vector<ProgramFile>> write_abb_path(const PathProgramRequest& request) {
+    if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
+    const std::size_t count = request.frame_from_tool.size();
+    std::string points;
+    for (std::size_t i = 0; i < count; ++i)
+        points += fmt::format("        [{},[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]]{}\n",
+                              rapid_pose(request.frame_from_tool[i]), i + 1 < count ? "," : "];");
+    const double zone = request.rounding_mm;
+    const std::string rounding = zone > 0
+                                     ? fmt::format("[FALSE,{0:.2f},{1:.2f},{1:.2f},{2:.3f},{1:.2f},{2:.3f}]",
+                                                   zone, 1.5 * zone, 0.15 * zone)
+                                     : "[FALSE,0.3,0.3,0.3,0.03,0.3,0.03]";
+    const std::string text = fmt::format(
+        "MODULE {0}\n    ! {1}\n    LOCAL PERS wobjdata frame:=[FALSE,TRUE,\"\",[{2}],\n        "
+        "[[0,0,0],[1,0,0,0]]];\n    LOCAL CONST speeddata speed:=[{3:.3f},100,5000,1000];\n    LOCAL CONST "
+        "zonedata rounding:={4};\n    LOCAL CONST robtarget point{{{5}}}:=[\n{6}    ! bring the robot before "
+        "the first point\n    PROC {0}_run(PERS tooldata tool)\n        ConfL\\Off;\n        FOR i FROM 1 TO "
+        "{7} DO\n            MoveL point{{i}},speed,rounding,tool\\WObj:=frame;\n        ENDFOR\n        "
+        "MoveL "
+        "point{{{5}}},speed,fine,tool\\WObj:=frame;\n        ConfL\\On;\n    ENDPROC\nENDMODULE\n",
+        request.name, program_comment(request.comment), rapid_pose(request.base_from_frame),
+        request.speed_mm_s, rounding, count, points, count - 1);
+    return std::vector<ProgramFile>{{request.name + ".mod", text}};
+}
+
 }  // namespace seamwright

@@ -14,4 +14,7 @@ namespace seamwright {
 // speed over 2 m/s, a pose that is not finite or beyond 100 m.
 Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request);
 
+// NAME.mod: PROC NAME_run(tool) along the points in a work object of its own.
+Expected<std::vector<ProgramFile>> write_abb_path(const PathProgramRequest& request);
+
 }  // namespace seamwright

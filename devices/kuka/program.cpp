@@ -126,4 +126,19 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
                                     {"seamwright_spots.src", program}};
 }
 
+Expected<std::vector<ProgramFile>> write_kuka_path(const PathProgramRequest& request) {
+    if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
+    std::string text = fmt::format(
+        "&ACCESS RVO1\n&COMMENT {}\nDEF {}()\n; poses of the caller's $TOOL; bring the robot before the "
+        "first "
+        "point\n$BASE={}\n$VEL.CP={:.4f}\n$APO.CDIS={:.2f}\n",
+        program_comment(request.comment).substr(0, 60), request.name, krl_frame(request.base_from_frame),
+        request.speed_mm_s / 1000, request.rounding_mm);
+    for (std::size_t i = 0; i < request.frame_from_tool.size(); ++i)
+        text +=
+            fmt::format("LIN {}{}\n", krl_frame(request.frame_from_tool[i]),
+                        request.rounding_mm > 0 && i + 1 < request.frame_from_tool.size() ? " C_DIS" : "");
+    return std::vector<ProgramFile>{{request.name + ".src", text + "END\n"}};
+}
+
 }  // namespace seamwright

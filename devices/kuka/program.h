@@ -17,4 +17,8 @@ namespace seamwright {
 // Error (input): more than 64 spots or 32 frames, names that KRL cannot hold, a speed over 2 m/s.
 Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request);
 
+// NAME.src: sets $BASE to the points' frame, $VEL.CP and $APO.CDIS, and runs along the points. $TOOL is the
+// caller's.
+Expected<std::vector<ProgramFile>> write_kuka_path(const PathProgramRequest& request);
+
 }  // namespace seamwright

@@ -108,4 +108,24 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
                                                {"MODULE", std::to_string(ur::kModuleVersion)}})}};
 }
 
+Expected<std::vector<ProgramFile>> write_ur_path(const PathProgramRequest& request) {
+    if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
+    const std::vector<Pose>& points = request.frame_from_tool;
+    std::string text = fmt::format(
+        "# {}\n# the TCP is the caller's; bring the robot before the first point\n"
+        "def {}():\n  local frame = {}\n  local v = {:.4f}\n",
+        program_comment(request.comment), request.name, script_pose(request.base_from_frame),
+        request.speed_mm_s / 1000);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        // Blends that overlap are refused by the controller.
+        double radius = 0;
+        if (i > 0 && i + 1 < points.size())
+            radius = std::min({request.rounding_mm, 0.4 * distance_mm(points[i - 1], points[i]),
+                               0.4 * distance_mm(points[i], points[i + 1])});
+        text += fmt::format("  movel(pose_trans(frame, {}), a=1.2, v=v, r={:.5f})\n", script_pose(points[i]),
+                            radius / 1000);
+    }
+    return std::vector<ProgramFile>{{request.name + ".script", text + "end\n"}};
+}
+
 }  // namespace seamwright

@@ -14,4 +14,7 @@ namespace seamwright {
 // over 2 m/s, a pose that is not finite or beyond 100 m.
 Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& request);
 
+// NAME.script: def NAME() along the points; the TCP is the caller's.
+Expected<std::vector<ProgramFile>> write_ur_path(const PathProgramRequest& request);
+
 }  // namespace seamwright

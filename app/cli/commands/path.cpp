@@ -1,0 +1,254 @@
+// seamwright path: the application path corrected point by point by a run of the project.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "app/cli/command.h"
+#include "devices/exchange/files.h"
+#include "devices/registry.h"
+#include "projects/path.h"
+#include "projects/project_file.h"
+#include "projects/report/html.h"
+#include "projects/report/svg_plot.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Arguments {
+    std::string file, path, brand, frame = "base", name = "seamwright_path", report;
+    std::filesystem::path folder;
+    std::int64_t run = 0;
+    PathBlendOptions blend;
+    double speed_mm_s = 100, rounding_mm = 2;
+};
+
+json step_json(const PathStep& s) {
+    return {{"from_point", s.from + 1}, {"mm", s.mm}, {"deg", s.deg}};
+}
+
+json answer_json(const PathAnswer& a, std::int64_t run) {
+    json regions = json::array(), refusals = json::array();
+    for (const std::string& id : a.region_ids) {
+        int inside = 0, blended = 0;
+        for (const PathCorrection& p : a.corrected.points) {
+            const bool whole = p.share <= 0 || p.share >= 1;
+            const auto r = static_cast<std::size_t>(p.share >= 1 ? p.next : p.region);
+            inside += whole && a.region_ids[r] == id;
+            blended += !whole && (a.region_ids[static_cast<std::size_t>(p.region)] == id ||
+                                  a.region_ids[static_cast<std::size_t>(p.next)] == id);
+        }
+        regions.push_back({{"id", id}, {"points", inside}, {"blended_points", blended}});
+    }
+    for (const PathRefusal& r : a.refusals)
+        refusals.push_back({{"region", r.region_id},
+                            {"first_point", r.points > 0 ? json(r.point + 1) : json()},
+                            {"points", r.points},
+                            {"reason", r.reason}});
+    double sigma = 0, shift = 0;
+    for (std::size_t i = 0; i < a.corrected.points.size(); ++i) {
+        const PathCorrection& p = a.corrected.points[i];
+        const Eigen::Vector3d moved = p.workobject_from_tool.translation();
+        const Eigen::Vector3d taught = p.displacement.workobject_from_movedworkobject.inverse() * moved;
+        sigma = std::max(sigma, p.sigma_mm);
+        shift = std::max(shift, (moved - taught).norm());
+    }
+    return {{"status", a.ok() ? "ok" : "refused"},
+            {"run", run},
+            {"points", a.corrected.points.size()},
+            {"length_mm", a.corrected.length_mm},
+            {"largest_shift_mm", shift},
+            {"largest_step_mm", step_json(a.corrected.largest_mm)},
+            {"largest_step_deg", step_json(a.corrected.largest_deg)},
+            {"unblended_step_mm", a.corrected.unblended_mm},
+            {"curvature_change_per_m", a.corrected.curvature_change_per_m},
+            {"curvature_change_at_point", a.corrected.curvature_point + 1},
+            {"curvature_per_m", a.corrected.curvature_per_m},
+            {"largest_sigma_mm", sigma},
+            {"regions", regions},
+            {"refusals", refusals},
+            {"remarks", a.corrected.remarks},
+            {"files", json::array()}};
+}
+
+std::string answer_text(const json& a) {
+    std::string text = fmt::format("{}: {} points, {:.1f} mm, corrected by run {}\n",
+                                   a["status"].get<std::string>(), a["points"].get<std::size_t>(),
+                                   a["length_mm"].get<double>(), a["run"].get<std::int64_t>());
+    text += fmt::format(
+        "largest shift {:.3f} mm; largest step between neighbours {:.4f} mm (at point {}) and {:.5f} "
+        "degrees; "
+        "without blending it were {:.3f} mm\n",
+        a["largest_shift_mm"].get<double>(), a["largest_step_mm"]["mm"].get<double>(),
+        a["largest_step_mm"]["from_point"].get<std::size_t>(), a["largest_step_deg"]["deg"].get<double>(),
+        a["unblended_step_mm"].get<double>());
+    text += fmt::format(
+        "curvature changes by at most {:.4f} per m (at point {}; the path's own is up to {:.4f} per m)\n"
+        "largest sigma at the path {:.4f} mm\n",
+        a["curvature_change_per_m"].get<double>(), a["curvature_change_at_point"].get<std::size_t>(),
+        a["curvature_per_m"].get<double>(), a["largest_sigma_mm"].get<double>());
+    for (const json& r : a["regions"])
+        text += fmt::format("  {:<12} {} points, {} in transitions\n", r["id"].get<std::string>(),
+                            r["points"].get<int>(), r["blended_points"].get<int>());
+    for (const json& r : a["refusals"])
+        text += fmt::format("refused: region {}{}: {}\n", r["region"].get<std::string>(),
+                            r["points"].get<int>() > 0
+                                ? fmt::format(", {} points from point {} on", r["points"].get<int>(),
+                                              r["first_point"].get<std::size_t>())
+                                : "",
+                            r["reason"].get<std::string>());
+    for (const json& r : a["remarks"]) text += r.get<std::string>() + "\n";
+    for (const json& f : a["files"]) text += f.get<std::string>() + "\n";
+    return text;
+}
+
+std::string report_html(const PathAnswer& a, const json& figures, const std::string& project) {
+    report::Page page("Corrected path: " + project);
+    page.verdict(a.ok() ? "ok" : "refused", a.ok() ? report::Tone::good : report::Tone::alarm,
+                 a.ok() ? "Run it in the taught frame: the correction is in its points."
+                        : "The path was not written.");
+    page.paragraph(answer_text(figures));
+    const char* colours[3] = {report::colour::kBlue, report::colour::kVermilion, report::colour::kGreen};
+    report::Plot shift, step, sigma;
+    shift.title = "Shift of the path's points";
+    shift.x_label = step.x_label = sigma.x_label = "path length (mm)";
+    shift.y_label = "shift (mm, work object)";
+    for (int axis = 0; axis < 3; ++axis)
+        shift.series.push_back({std::string(1, "XYZ"[axis]), {}, {}, report::Mark::line, colours[axis]});
+    step.title = "Step of the correction to the next point";
+    step.y_label = "step (mm)";
+    step.series.push_back({"step", {}, {}, report::Mark::line, report::colour::kBlue});
+    sigma.title = "Sigma at the path, bound";
+    sigma.y_label = "sigma (mm)";
+    sigma.series.push_back({"sigma", {}, {}, report::Mark::line, report::colour::kPurple});
+    const auto& points = a.corrected.points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Pose& d = points[i].displacement.workobject_from_movedworkobject;
+        const Eigen::Vector3d moved = points[i].workobject_from_tool.translation();
+        const Eigen::Vector3d taught = d.inverse() * moved;
+        for (int axis = 0; axis < 3; ++axis) {
+            auto& series = shift.series[static_cast<std::size_t>(axis)];
+            series.x.push_back(points[i].length_mm);
+            series.y.push_back(moved[axis] - taught[axis]);
+        }
+        if (i + 1 < points.size()) {
+            const Pose& next = points[i + 1].displacement.workobject_from_movedworkobject;
+            step.series[0].x.push_back(points[i].length_mm);
+            step.series[0].y.push_back((next * taught - d * taught).norm());
+        }
+        sigma.series[0].x.push_back(points[i].length_mm);
+        sigma.series[0].y.push_back(points[i].sigma_mm);
+    }
+    page.figure(report::svg(shift));
+    page.figures({report::svg(step), report::svg(sigma)});
+    return page.html();
+}
+
+Expected<std::vector<ProgramFile>> files_of(const Arguments& a, const PathAnswer& answer,
+                                            PathNotation notation, PathFrame frame, const Project& setup,
+                                            std::int64_t run) {
+    std::vector<ProgramFile> files{{a.name + ".csv", path_csv(answer.path, notation)}};
+    PathProgramRequest request;
+    request.name = a.name;
+    request.comment = fmt::format("{}: path corrected by run {}", setup.name, run);
+    if (frame == PathFrame::workobject) request.base_from_frame = setup.part.base_from_workobject;
+    request.speed_mm_s = a.speed_mm_s;
+    request.rounding_mm = a.rounding_mm;
+    for (const ApplicationPoint& p : answer.path.points) request.frame_from_tool.push_back(p.frame_from_tool);
+    if (a.blend.closed) request.frame_from_tool.push_back(request.frame_from_tool.front());
+    auto program = write_robot_path(a.brand, request);
+    if (!program) return tl::unexpected(program.error());
+    files.insert(files.end(), program->begin(), program->end());
+    return files;
+}
+
+Expected<Answer> correct(const Arguments& a) {
+    const auto notation = path_notation_from(a.brand);
+    if (!notation) return tl::unexpected(notation.error());
+    auto path = read_path_csv(a.path, *notation);
+    if (!path) return tl::unexpected(path.error());
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    std::int64_t number = a.run;
+    if (number == 0) {
+        auto runs = file->runs();
+        if (!runs) return tl::unexpected(runs.error());
+        if (runs->empty())
+            return input_error("the project has no run to correct the path by", a.file,
+                               "measure with `seamwright run` first");
+        number = runs->back().number;
+    }
+    auto run = file->load_run(number, false);
+    if (!run) return tl::unexpected(run.error());
+    auto setup = file->load_run_setup(number);
+    if (!setup) return tl::unexpected(setup.error());
+    const PathFrame frame = a.frame == "base" ? PathFrame::base : PathFrame::workobject;
+    auto answer = correct_application_path(*setup, *run, *path, frame, a.blend);
+    if (!answer) return tl::unexpected(answer.error());
+
+    Answer out;
+    out.json = answer_json(*answer, number);
+    out.exit_code = answer->ok() ? kExitOk : kExitVerdict;
+    if (answer->ok() && !a.folder.empty()) {
+        auto files = files_of(a, *answer, *notation, frame, *setup, number);
+        if (!files) return tl::unexpected(files.error());
+        std::error_code failed;
+        std::filesystem::create_directories(a.folder, failed);
+        if (failed) return file_error("the folder cannot be made: " + failed.message(), a.folder.string());
+        for (const ProgramFile& f : *files) {
+            const auto target = a.folder / f.name;
+            if (auto written = write_text_file(target, f.text); !written)
+                return tl::unexpected(written.error());
+            out.json["files"].push_back(target.string());
+        }
+    }
+    if (!a.report.empty())
+        if (auto written = write_text_file(a.report, report_html(*answer, out.json, setup->name)); !written)
+            return tl::unexpected(written.error());
+    out.text = answer_text(out.json);
+    return out;
+}
+
+}  // namespace
+
+void add_path(CommandLine& line) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = line.add(
+        "path",
+        "The application path corrected point by point by a run: between regions the correction goes over "
+        "without a\nstep. Written in the robot's notation, as CSV and as a program, to be run in the taught "
+        "frame; nothing is\nwritten unless the safety gate passed every region and every point keeps its "
+        "limits.",
+        "seamwright path door_left.seam --path bead.csv --brand kuka --out corrected\n"
+        "  bead.csv: x_mm,y_mm,z_mm,a_deg,b_deg,c_deg[,region]   (abb: x_mm,y_mm,z_mm,q1,q2,q3,q4; ur: "
+        "x_m,y_m,z_m,rx_rad,ry_rad,rz_rad)");
+    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    command->add_option("--path", a->path, "Taught path, one point a row")->required()->type_name("P.csv");
+    command->add_option("--brand", a->brand, "Notation of path and program: kuka | abb | ur")->required();
+    command->add_option("--out", a->folder, "Folder for NAME.csv and the program")->type_name("DIR");
+    command->add_option("--run", a->run, "Which run (default: the last)")->check(CLI::PositiveNumber);
+    command->add_option("--frame", a->frame, "What the points are expressed in")
+        ->check(CLI::IsMember({"base", "workobject"}))
+        ->capture_default_str();
+    command
+        ->add_option("--blend-mm", a->blend.blend_mm,
+                     "Transition where two regions meet without points between")
+        ->check(CLI::Range(1e-3, 1e5))
+        ->capture_default_str();
+    command->add_flag("--closed", a->blend.closed, "The path goes on from its last point to its first");
+    command->add_option("--name", a->name, "Of files and program")->capture_default_str();
+    command->add_option("--speed-mm-s", a->speed_mm_s, "Of the program")
+        ->check(CLI::Range(0.1, 2000.0))
+        ->capture_default_str();
+    command->add_option("--rounding-mm", a->rounding_mm, "How far from a point the robot may round it off")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    command->add_option("--report", a->report, "HTML with curves of shift, step and sigma")
+        ->type_name("FILE.html");
+    line.on(command, [a] { return correct(*a); });
+}
+
+}  // namespace seamwright::cli

@@ -178,5 +178,39 @@ TEST(EvaluationReport, BrokenPromisesAreNotKept) {
     for (const EvaluationCheck& c : evaluation_checks(r)) EXPECT_TRUE(c.kept) << c.promise;
 }
 
+TEST(Evaluation, OnlineFollowsWhatOfflineCannotAndFallsBehindWithoutLookAhead) {
+    std::atomic<std::size_t> profiles{0};
+    const auto r = online_experiment(settings(kOnline), profiles);
+    ASSERT_TRUE(r) << r.error().sentence();
+    const auto way = [&](bool online, bool bent, double speed = 100,
+                         double delay = 60) -> const OnlineResult& {
+        for (const OnlineResult& o : r->results)
+            if (o.way.online == online && o.bent == bent &&
+                (!online || (o.way.speed_mm_s == speed && o.way.delay_ms == delay)))
+                return o;
+        ADD_FAILURE() << "no such way";
+        return r->results.front();
+    };
+    // Noise alone is left where the measures are known in time, at any delay, bent or not.
+    for (const double delay : {20.0, 60.0, 150.0}) {
+        const OnlineResult& o = way(true, false, 100, delay);
+        EXPECT_TRUE(o.way.in_time());
+        EXPECT_EQ(o.alarms, 0);
+        EXPECT_GT(o.error.three_sigma, 0.8 * 3 * o.sigma_mm);
+        EXPECT_LT(o.error.three_sigma, 1.4 * 3 * o.sigma_mm);
+        EXPECT_LT(std::abs(o.error.mean), 0.01);
+    }
+    EXPECT_NEAR(way(true, true).error.three_sigma, way(true, false).error.three_sigma, 0.01);
+    EXPECT_LT(way(true, true).error.three_sigma, 0.8 * way(false, true).error.three_sigma);
+    EXPECT_GT(way(false, true).error.three_sigma, 1.15 * way(false, false).error.three_sigma);
+    // Not known in time: the following error is that of the path run since.
+    EXPECT_FALSE(way(true, false, 200, 150).way.in_time());
+    EXPECT_GT(way(true, false, 200, 150).error.three_sigma, 3 * way(true, false, 200, 60).error.three_sigma);
+    // Known in time but held back by the ramp.
+    EXPECT_TRUE(way(true, false, 400, 20).way.in_time());
+    EXPECT_GT(way(true, false, 400, 20).behind_share, way(true, false, 100, 20).behind_share);
+    EXPECT_GT(way(true, false, 400, 20).error.three_sigma, 2 * way(true, false, 200, 20).error.three_sigma);
+}
+
 }  // namespace
 }  // namespace seamwright::cli

@@ -69,6 +69,40 @@ TEST_F(Record, ARunIsMeasuredAgainFromItsCapture) {
         EXPECT_EQ(replayed["regions"][i]["correction"], run["regions"][i]["correction"]) << "bit for bit";
 }
 
+TEST_F(Record, ThePathIsCorrectedByARun) {
+    const std::string bead = (folder / "out" / "bead.csv").string(), out = (folder / "krc").string();
+    const json path =
+        answer_of({"path", project, "--path", bead, "--brand", "kuka", "--closed", "--out", out});
+    EXPECT_EQ(path["status"], "ok");
+    EXPECT_EQ(path["regions"].size(), 4u);
+    ASSERT_EQ(path["files"].size(), 2u);
+    EXPECT_LT(path["largest_step_mm"]["mm"].get<double>(), 0.6 * path["unblended_step_mm"].get<double>());
+    // Inside a region a point moves as the pushed frame does.
+    const json info = answer_of({"export", project, "--out", (folder / "p.json").string()});
+    const json document = json::parse(std::ifstream(folder / "p.json"));
+    const json& run = document["runs"].back();
+    EXPECT_EQ(run["number"], path["run"]);
+    const auto lines = [](const std::filesystem::path& file) {
+        std::ifstream in(file);
+        std::vector<std::string> all;
+        for (std::string line; std::getline(in, line);) all.push_back(line);
+        return all;
+    };
+    const auto taught = lines(bead), moved = lines(std::filesystem::path(out) / "seamwright_path.csv");
+    ASSERT_EQ(taught.size(), moved.size());
+    EXPECT_EQ(taught[0], moved[0]);
+    const auto krl = lines(std::filesystem::path(out) / "seamwright_path.src");
+    EXPECT_EQ(
+        std::count_if(krl.begin(), krl.end(), [](const std::string& l) { return l.starts_with("LIN "); }),
+        static_cast<std::ptrdiff_t>(taught.size()))
+        << "closed: back to the first point";
+    // A wrong notation and a run that is not there.
+    EXPECT_EQ(run_program({"path", project, "--path", bead, "--brand", "abb"}, folder).exit_code, 2);
+    EXPECT_EQ(
+        run_program({"path", project, "--path", bead, "--brand", "kuka", "--run", "99"}, folder).exit_code,
+        2);
+}
+
 TEST_F(Record, RefusesAnExistingFileAndUnknownDevices) {
     const std::string capture = (folder / "there").string();
     std::ofstream(capture) << "mine";

@@ -7,6 +7,7 @@
 
 #include <random>
 
+#include "core/geometry/notation.h"
 #include "devices/registry.h"
 
 namespace seamwright {
@@ -103,9 +104,9 @@ TEST(PathProgram, HoldsEveryPointInTheBrandsNumbers) {
     EXPECT_THAT(krl, HasSubstr("DEF bead()"));
     EXPECT_THAT(krl, HasSubstr("$BASE={X 1.0000,Y 2.0000,Z 3.0000,A 0.00000"));
     EXPECT_THAT(krl,
-                HasSubstr("LIN {X 100.5000,Y -20.0000,Z 30.0000,A 90.00000,B 0.00000,C 0.00000} C_DIS\n"));
+                HasSubstr("LIN {X 100.5000,Y -20.0000,Z 30.0000,A 90.00000,B -0.00000,C 0.00000} C_DIS\n"));
     EXPECT_THAT(krl,
-                HasSubstr("LIN {X 120.5000,Y -20.0000,Z 30.0000,A 90.00000,B 0.00000,C 0.00000}\nEND\n"));
+                HasSubstr("LIN {X 120.5000,Y -20.0000,Z 30.0000,A 90.00000,B -0.00000,C 0.00000}\nEND\n"));
     EXPECT_THAT(krl, testing::Not(HasSubstr("\nEND\n$")));
     const auto abb = write_robot_path("abb", request);
     ASSERT_TRUE(abb);

@@ -21,7 +21,10 @@ struct Setting {
     ApplicationPath path;  // along X in base, 10 mm apart
     Setting() {
         project.part.base_from_workobject = make_pose(rotation_exp({0.2, -0.1, 1.3}), {1500, 200, 700});
-        project.sensors.push_back({.id = "A", .calibration_id = "C"});
+        SensorSetup sensor;
+        sensor.id = "A";
+        sensor.calibration_id = "C";
+        project.sensors.push_back(sensor);
         Calibration c;
         c.id = "C";
         c.sensor_id = "A";

@@ -54,8 +54,10 @@ void add_evaluate(CommandLine& line) {
         std::string experiment = "all", report;
     };
     auto a = std::make_shared<Arguments>();
-    command->add_option("--experiment", a->experiment, "1 to 5, all, or panel (single step against servoing)")
-        ->check(CLI::IsMember({"1", "2", "3", "4", "5", "all", "panel"}));
+    command
+        ->add_option("--experiment", a->experiment,
+                     "1 to 5, online (against offline), all, or panel (single step against servoing)")
+        ->check(CLI::IsMember({"1", "2", "3", "4", "5", "online", "all", "panel"}));
     command->add_option("--trials", a->settings.trials, "Trials of efficiency and NEES [2000]")
         ->check(CLI::Range(10, 1000000));
     command->add_option("--seed", a->settings.seed, "Of every random number [1]");
@@ -70,7 +72,9 @@ void add_evaluate(CommandLine& line) {
         ->type_name("FILE.html");
     line.on(command, [a]() -> Expected<Answer> {
         if (a->experiment == "panel") return panel_answer(a->settings.trials, a->settings.seed);
-        a->settings.experiment = a->experiment == "all" ? 0 : a->experiment[0] - '0';
+        a->settings.experiment = a->experiment == "all"      ? 0
+                                 : a->experiment == "online" ? kOnline
+                                                             : a->experiment[0] - '0';
         auto result = evaluate(a->settings, [](const std::string& s) { fmt::print(stderr, "{}\n", s); });
         if (!result) return tl::unexpected(result.error());
         if (!a->report.empty())

@@ -7,6 +7,7 @@
 
 #include "devices/cell_server.h"
 #include "devices/exchange/files.h"
+#include "devices/exchange/path_csv.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/door.h"
 #include "projects/acquire.h"
@@ -122,6 +123,22 @@ Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLin
         }
     }
     return {};
+}
+
+// The bead as the application was taught it, for `seamwright path`: tool Z into the sheet, X along the path.
+std::string taught_bead(const SimulatedCell& cell) {
+    const std::vector<Eigen::Vector3d> bead = door_bead_path(10);
+    ApplicationPath path;
+    path.regions_named = true;
+    for (std::size_t i = 0; i < bead.size(); ++i) {
+        Eigen::Matrix3d axes;
+        axes.col(0) = (bead[(i + 1) % bead.size()] - bead[(i + bead.size() - 1) % bead.size()]).normalized();
+        axes.col(2) = -Eigen::Vector3d::UnitZ();
+        axes.col(1) = axes.col(2).cross(axes.col(0));
+        path.points.push_back(
+            {cell.base_from_workobject() * make_pose(axes, bead[i]), door_side_of(bead[i])});
+    }
+    return path_csv(path, PathNotation::kuka);
 }
 
 // Restores the taught frames, as the controller does between two parts.
@@ -289,6 +306,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
                 {0, {}, 0, frozen_contour(spot.id, spot.alignment, spot.judged_by)}, project);
             !kept)
             return tl::unexpected(kept.error());
+    if (auto written = write_text_file(options.folder / "bead.csv", taught_bead(world)); !written)
+        return tl::unexpected(written.error());
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     for (const Region& region : project.regions) {
         auto plan = plan_region(planned_observations(project, region), {});

@@ -20,8 +20,10 @@
 
 namespace seamwright::cli {
 
+inline constexpr int kOnline = 6;  // the online correction, simulated (online.h)
+
 struct EvaluationSettings {
-    int experiment = 0;  // 1..5, 0 = all
+    int experiment = 0;  // 1..5, kOnline, 0 = all
     int trials = 2000;   // of the efficiency and NEES trials
     std::uint64_t seed = 1;
     int jobs = 0;                    // threads; 0 = all cores

@@ -45,6 +45,7 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
         std::array<std::vector<double>, 2> across;  // straight, learnt; per spot
         std::array<std::vector<Eigen::Vector3d>, 2> deviation;
         std::array<int, 2> solved{};
+        std::vector<double> squares;  // of the learnt one; per spot
     };
     spread_out(settings.jobs, out.steps.size(), [&] {
         return [&, finders = std::make_shared<Finders>(make_finders(spots)),
@@ -57,6 +58,7 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
             truth.translation().x() = e;
             Sums sums;
             for (auto& a : sums.across) a.assign(spots.size(), 0);
+            sums.squares.assign(spots.size(), 0);
             for (auto& d : sums.deviation) d.assign(spots.size(), Eigen::Vector3d::Zero());
             for (int k = 0; k < kRepeats; ++k) {
                 std::vector<SpotObservation> observed;
@@ -64,7 +66,9 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
                     auto o = measure_spot(cell, method, spots[n], n, *(*finders)[n], truth, random, *profile);
                     if (!o) continue;
                     sums.across[0][n] += across_mm(*o, truth, false) / kRepeats;
-                    sums.across[1][n] += across_mm(*o, truth, true) / kRepeats;
+                    const double learnt = across_mm(*o, truth, true);
+                    sums.across[1][n] += learnt / kRepeats;
+                    sums.squares[n] += learnt * learnt / kRepeats;
                     observed.push_back(std::move(*o));
                 }
                 for (const std::size_t way : {1, 0}) {  // learnt first: the curve is dropped for the other
@@ -83,6 +87,7 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
                 }
             }
             int along = 0;
+            double variance = 0;  // of the sum over the spots
             for (std::size_t n = 0; n < spots.size(); ++n) {
                 const Pose& w = spots[n].observation.workobject_from_sensor;
                 if (std::abs(w.linear()(0, 1)) < 0.5) continue;  // its contour runs along Y
@@ -91,10 +96,12 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
                 const double sense = spots[n].observation.curve->x_coefficients[1] >= 0 ? -1 : 1;
                 step.straight_mm += sense * sums.across[0][n];
                 step.learnt_mm += sense * sums.across[1][n];
+                variance += (sums.squares[n] - sums.across[1][n] * sums.across[1][n]) / (kRepeats - 1);
                 step.learnt_worst_mm = std::max(step.learnt_worst_mm, std::abs(sums.across[1][n]));
             }
             step.straight_mm /= along;
             step.learnt_mm /= along;
+            step.sigma_mm = std::sqrt(std::max(0.0, variance)) / along;
             step.region_straight_mm = largest_deviation(spots, sums.deviation[0], sums.solved[0]);
             step.region_learnt_mm = largest_deviation(spots, sums.deviation[1], sums.solved[1]);
         };

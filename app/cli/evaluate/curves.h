@@ -17,6 +17,7 @@ struct CurveStep {
     // Error of the model at those six spots: residual across the contour at the true displacement, mean over
     // the spots in the sense in which their contour bends.
     double straight_mm = 0, learnt_mm = 0;
+    double sigma_mm = 0;         // standard error of both means, from the scatter of the repeats
     double learnt_worst_mm = 0;  // largest of a single spot: the noise of its teaching is in it
     // Of the region: largest mean deviation of a spot after the correction.
     double region_straight_mm = 0, region_learnt_mm = 0;

@@ -47,6 +47,12 @@ void judge(const std::vector<TaughtSpot>& spots, const RegionCorrection& solved,
         for (double v : off) trial.deviations_mm.push_back(v);
     }
     trial.nees = nees(difference(found, truth), solved.covariance);
+    for (const TaughtSpot& s : spots) {
+        Eigen::Matrix<double, 3, 6> j;
+        j << Eigen::Matrix3d::Identity(), -skew(found.linear() * s.landmark);
+        trial.stated_variance_mm2 +=
+            (j * solved.covariance * j.transpose()).trace() / (3 * static_cast<double>(spots.size()));
+    }
 }
 
 void run_trial(const Cell& cell, const Method& method, const std::vector<TaughtSpot>& spots,
@@ -78,6 +84,13 @@ Summary summary_of(const std::vector<EvaluationTrial>& trials) {
     for (const EvaluationTrial& t : trials)
         all.insert(all.end(), t.deviations_mm.begin(), t.deviations_mm.end());
     return summarise(all);
+}
+
+double stated_three_sigma(const std::vector<EvaluationTrial>& trials) {
+    double sum = 0, count = 0;
+    for (const EvaluationTrial& t : trials)
+        if (t.ok) sum += t.stated_variance_mm2, ++count;
+    return count > 0 ? 3 * std::sqrt(sum / count) : 0;
 }
 
 int refused_of(const std::vector<EvaluationTrial>& trials) {
@@ -120,6 +133,7 @@ void summarise_experiment(ExperimentResult& r) {
     double sum = 0, count = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         r.summary[c] = summary_of(r.trials[c]);
+        r.stated_three_sigma[c] = stated_three_sigma(r.trials[c]);
         r.refused[c] = refused_of(r.trials[c]);
         for (const EvaluationTrial& t : r.trials[c])
             if (t.ok) sum += t.nees, ++count;
@@ -309,7 +323,7 @@ Expected<std::vector<BudgetLine>> error_budget(const EvaluationSettings& s, cons
         } else {
             run_column(cell, method, spots, 2, trials);
         }
-        BudgetLine line{source.name, summary_of(trials).three_sigma, 0};
+        BudgetLine line{source.name, summary_of(trials).three_sigma, stated_three_sigma(trials), 0};
         if (lines.empty()) nothing = line.three_sigma_mm;
         line.adds_mm =
             lines.empty()
@@ -318,7 +332,8 @@ Expected<std::vector<BudgetLine>> error_budget(const EvaluationSettings& s, cons
         squares += line.adds_mm * line.adds_mm;
         lines.push_back(std::move(line));
     }
-    lines.push_back({"all of them, root of the sum of squares", std::sqrt(squares), std::sqrt(squares)});
+    lines.push_back(
+        {"all of them, root of the sum of squares", std::sqrt(squares), std::nan(""), std::sqrt(squares)});
     return lines;
 }
 
@@ -381,6 +396,12 @@ Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
             if (!curved) return tl::unexpected(curved.error());
             out.curved.push_back(std::move(*curved));
         }
+    }
+    if (settings.experiment == 0 || settings.experiment == kOnline) {
+        progress("online correction against the offline method");
+        auto online = online_experiment(out.settings, profiles);
+        if (!online) return tl::unexpected(online.error());
+        out.online = std::move(*online);
     }
     out.profiles = profiles;
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -12,11 +12,13 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/evaluate/cell.h"
 #include "app/cli/evaluate/curves.h"
+#include "app/cli/evaluate/online.h"
 #include "core/evaluation/statistics.h"
 
 namespace seamwright::cli {
@@ -28,6 +30,8 @@ struct EvaluationTrial {
     double mean_abs_mm = 0;             // mean length of the deviations at the spots
     std::vector<double> deviations_mm;  // 3 per spot
     double nees = 0;
+    double stated_variance_mm2 =
+        0;  // of a deviation's coordinate by the stated covariance, mean over the spots
 };
 
 // Deviation of the translation column against the displacement d along one axis: a + b d, every coordinate of
@@ -45,6 +49,8 @@ struct ExperimentResult {
     Method method;
     std::array<std::vector<EvaluationTrial>, 3> trials;  // translation, rotation, both
     std::array<Summary, 3> summary;
+    // 3 sigma of a deviation's coordinate as the stated covariances have it, rms over the trials.
+    std::array<double, 3> stated_three_sigma{};
     std::array<int, 3> refused{};  // trials without a correction
     double sigma_mm = 0;           // of a measured coordinate, rms over the spots, from the teaching's spread
     double nees = 0;               // mean over the trials of the table
@@ -70,6 +76,7 @@ struct StraightTrials {
 struct BudgetLine {
     std::string name;
     double three_sigma_mm = 0;  // of experiment 3's "both" column with this source alone
+    double stated_mm = 0;       // 3 sigma as the covariances of these trials state it
     double adds_mm = 0;         // above what noise-free measures of the same door leave
 };
 
@@ -80,6 +87,7 @@ struct EvaluationResult {
     StraightTrials straight;
     std::vector<BudgetLine> budget;
     std::vector<CurvedContour> curved;
+    std::optional<OnlineExperiment> online;
     double seconds = 0;
     std::size_t profiles = 0;
 };

@@ -40,14 +40,15 @@ std::string conditions(const EvaluationResult& r) {
 }
 
 Rows table(const EvaluationResult& r) {
-    Rows rows{
-        {"experiment", "column", "mean", "min", "max", "variance", "3 sigma", "thesis 3 sigma", "refused"}};
+    Rows rows{{"experiment", "column", "mean", "min", "max", "variance", "3 sigma", "stated 3 sigma",
+               "thesis 3 sigma", "refused"}};
     for (const ExperimentResult& e : r.experiments)
         for (std::size_t c = 0; c < 3; ++c) {
             const Summary& s = e.summary[c];
             rows.push_back({std::to_string(e.method.number), kColumns[c], fmt::format("{:.4f}", s.mean),
                             fmt::format("{:.4f}", s.minimum), fmt::format("{:.4f}", s.maximum),
                             fmt::format("{:.5f}", s.variance), fmt::format("{:.4f}", s.three_sigma),
+                            fmt::format("{:.4f}", e.stated_three_sigma[c]),
                             fmt::format("{:.4f}", kThesis[e.method.number - 1][c]),
                             std::to_string(e.refused[c])});
         }
@@ -55,9 +56,11 @@ Rows table(const EvaluationResult& r) {
 }
 
 Rows budget_table(const EvaluationResult& r) {
-    Rows rows{{"source", "3 sigma alone", "adds"}};
+    Rows rows{{"source", "3 sigma alone", "stated 3 sigma", "adds"}};
     for (const BudgetLine& b : r.budget)
-        rows.push_back({b.name, fmt::format("{:.4f}", b.three_sigma_mm), fmt::format("{:.4f}", b.adds_mm)});
+        rows.push_back({b.name, fmt::format("{:.4f}", b.three_sigma_mm),
+                        std::isfinite(b.stated_mm) ? fmt::format("{:.4f}", b.stated_mm) : "-",
+                        fmt::format("{:.4f}", b.adds_mm)});
     return rows;
 }
 
@@ -68,13 +71,13 @@ const CurveStep* step_at(const CurvedContour& c, double displacement_mm) {
 }
 
 Rows curve_table(const EvaluationResult& r) {
-    Rows rows{{"radius", "line errs by (5.1)", "straight line", "learnt curve", "learnt, worst spot",
+    Rows rows{{"radius", "line errs by (5.1)", "straight line", "learnt curve", "sigma", "learnt, worst spot",
                "region, straight", "region, learnt"}};
     for (const CurvedContour& c : r.curved)
         if (const CurveStep* s = step_at(c, kSlideMm))
             rows.push_back({fmt::format("{:g}", c.radius_mm), fmt::format("{:.4f}", s->expected_mm),
                             fmt::format("{:.4f}", s->straight_mm), fmt::format("{:.4f}", s->learnt_mm),
-                            fmt::format("{:.4f}", s->learnt_worst_mm),
+                            fmt::format("{:.4f}", s->sigma_mm), fmt::format("{:.4f}", s->learnt_worst_mm),
                             fmt::format("{:.4f}", s->region_straight_mm),
                             fmt::format("{:.4f}", s->region_learnt_mm)});
     return rows;
@@ -166,7 +169,8 @@ std::string budget_caption() {
 std::string curve_caption() {
     return "Curved contours: bias in mm when the part slides by 10 mm along six of twelve contours, means "
            "over "
-           "noisy measures. Opposite sides bend the same way, so that the region cannot average it out";
+           "noisy measures with their standard error sigma. Opposite sides bend the same way, so that the "
+           "region cannot average it out";
 }
 
 std::string aligned(const Rows& rows) {
@@ -232,11 +236,12 @@ std::string histogram(const Summary& s, const std::vector<EvaluationTrial>& tria
 }
 
 std::string deviation_plot(const std::vector<EvaluationTrial>& trials, std::size_t column,
-                           const std::string& title) {
+                           const std::string& title, double stated_three_sigma) {
     report::Plot plot;
     plot.title = title;
     plot.x_label = column == 1 ? "displacement (degree)" : "displacement (mm)";
     plot.y_label = "mean deviation (mm)";
+    plot.bands = {{0, stated_three_sigma, "stated 3 sigma"}};
     const char* colours[3] = {report::colour::kBlue, report::colour::kVermilion, report::colour::kGreen};
     const std::size_t steps = trials.size() / 3;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -287,6 +292,81 @@ std::string budget_plot(const EvaluationResult& r) {
         bars.y.push_back(r.budget[i].adds_mm);
     }
     plot.series = {bars};
+    return report::svg(plot);
+}
+
+std::string online_caption(const OnlineExperiment& o) {
+    const OnlineWay way;
+    return fmt::format(
+        "Online correction against the offline method, simulated: once round the contour of {:.0f} mm, parts "
+        "displaced by up to {:g} mm and {:g} degrees per axis, bent ones by {:g} mm and twisted by {:g} mm. "
+        "Sensor "
+        "{:g} mm ahead of the tool, {:g} profiles/s; corrections every {:g} ms, followed with a lag of {:g} "
+        "ms, at "
+        "most {:g} mm/s and {:g} mm/s2. Offline: 12 spots, four regions, path blended between them. Error of "
+        "the "
+        "tool against the part's true contour, across it and in height, mm; the first {:g} mm bring the "
+        "correction onto the path and do not count. \"Stated\" is one coordinate's 3 sigma from the "
+        "covariances: "
+        "measure, reference and robot, nothing of lag, bend and curvature. \"Behind\" is the "
+        "share of cycles in which the ramp was more than {:g} mm from what was known.",
+        o.contour_mm, o.shift_mm, o.turn_deg, o.bend_mm, o.twist_mm, way.look_ahead_mm, way.rate_hz,
+        way.cycle_ms, way.lag_ms, way.limits.speed_mm_s, way.limits.acceleration_mm_s2, kRunInMm, kBehindMm);
+}
+
+Rows online_table(const OnlineExperiment& o) {
+    Rows rows{{"way", "part", "mm/s", "delay ms", "known in time", "behind", "mean", "3 sigma",
+               "stated 3 sigma", "worst", "alarms"}};
+    for (const OnlineResult& r : o.results) {
+        const bool on = r.way.online;
+        rows.push_back(
+            {on ? "online" : "offline", r.bent ? "bent" : "rigid",
+             on ? fmt::format("{:g}", r.way.speed_mm_s) : "-", on ? fmt::format("{:g}", r.way.delay_ms) : "-",
+             on ? (r.way.in_time() ? "yes" : "no") : "-",
+             on ? fmt::format("{:.0f} %", 100 * r.behind_share) : "-", fmt::format("{:.4f}", r.error.mean),
+             fmt::format("{:.4f}", r.error.three_sigma), fmt::format("{:.4f}", 3 * r.sigma_mm),
+             fmt::format("{:.4f}", r.worst_mm), std::to_string(r.alarms)});
+    }
+    return rows;
+}
+
+std::string online_curve(const OnlineExperiment& o, bool bent) {
+    report::Plot plot;
+    plot.title = bent ? "Bent part" : "Rigid part";
+    plot.x_label = "along the contour (mm)";
+    plot.y_label = "error of the tool (mm)";
+    for (const OnlineResult& r : o.results) {
+        const bool shown = !r.way.online || (r.way.speed_mm_s == 100 && r.way.delay_ms == 60);
+        if (r.bent != bent || !shown) continue;
+        plot.series.push_back({r.way.online ? "online, 100 mm/s, 60 ms" : "offline", r.arc_mm, r.length_mm,
+                               r.way.online ? report::Mark::line : report::Mark::dashed,
+                               r.way.online ? report::colour::kBlue : report::colour::kVermilion});
+    }
+    return report::svg(plot);
+}
+
+std::string online_speeds(const OnlineExperiment& o) {
+    report::Plot plot;
+    plot.title = "Following error against delay, rigid part";
+    plot.x_label = "delay (ms)";
+    plot.y_label = "3 sigma (mm)";
+    const char* colours[3] = {report::colour::kBlue, report::colour::kGreen, report::colour::kPurple};
+    std::size_t k = 0;
+    for (const OnlineResult& r : o.results) {
+        if (r.bent || !r.way.online) continue;
+        const std::string name = fmt::format("{:g} mm/s", r.way.speed_mm_s);
+        if (plot.series.empty() || plot.series.back().name != name)
+            plot.series.push_back({name, {}, {}, report::Mark::line, colours[k++ % 3]});
+        plot.series.back().x.push_back(r.way.delay_ms);
+        plot.series.back().y.push_back(r.error.three_sigma);
+    }
+    for (const OnlineResult& r : o.results)
+        if (!r.way.online && !r.bent)
+            plot.series.push_back({"offline",
+                                   {20, 150},
+                                   {r.error.three_sigma, r.error.three_sigma},
+                                   report::Mark::dashed,
+                                   report::colour::kVermilion});
     return report::svg(plot);
 }
 
@@ -368,6 +448,7 @@ json evaluation_json(const EvaluationResult& r) {
                                     {"max_mm", s.maximum},
                                     {"variance_mm2", s.variance},
                                     {"three_sigma_mm", s.three_sigma},
+                                    {"stated_three_sigma_mm", e.stated_three_sigma[c]},
                                     {"thesis_three_sigma_mm", kThesis[e.method.number - 1][c]},
                                     {"refused", e.refused[c]}};
         }
@@ -392,7 +473,10 @@ json evaluation_json(const EvaluationResult& r) {
     }
     json budget = json::array(), curved = json::array(), checks = json::array();
     for (const BudgetLine& b : r.budget)
-        budget.push_back({{"source", b.name}, {"three_sigma_mm", b.three_sigma_mm}, {"adds_mm", b.adds_mm}});
+        budget.push_back({{"source", b.name},
+                          {"three_sigma_mm", b.three_sigma_mm},
+                          {"stated_three_sigma_mm", std::isfinite(b.stated_mm) ? json(b.stated_mm) : json()},
+                          {"adds_mm", b.adds_mm}});
     for (const CurvedContour& c : r.curved) {
         json steps = json::array();
         for (const CurveStep& s : c.steps)
@@ -400,6 +484,7 @@ json evaluation_json(const EvaluationResult& r) {
                              {"expected_mm", s.expected_mm},
                              {"straight_mm", s.straight_mm},
                              {"learnt_mm", s.learnt_mm},
+                             {"sigma_mm", s.sigma_mm},
                              {"learnt_worst_mm", s.learnt_worst_mm},
                              {"region_straight_mm", s.region_straight_mm},
                              {"region_learnt_mm", s.region_learnt_mm}});
@@ -434,13 +519,38 @@ json evaluation_json(const EvaluationResult& r) {
                            {"refused", r.straight.refused}};
         out["curved"] = curved;
     }
+    if (r.online) {
+        json ways = json::array();
+        for (const OnlineResult& o : r.online->results)
+            ways.push_back({{"way", o.way.online ? "online" : "offline"},
+                            {"bent", o.bent},
+                            {"speed_mm_s", o.way.online ? json(o.way.speed_mm_s) : json()},
+                            {"delay_ms", o.way.online ? json(o.way.delay_ms) : json()},
+                            {"known_in_time", o.way.in_time()},
+                            {"behind_share", o.behind_share},
+                            {"parts", o.parts},
+                            {"alarms", o.alarms},
+                            {"mean_mm", o.error.mean},
+                            {"three_sigma_mm", o.error.three_sigma},
+                            {"stated_three_sigma_mm", 3 * o.sigma_mm},
+                            {"worst_mm", o.worst_mm}});
+        const OnlineWay way;
+        out["online"] = {{"contour_mm", r.online->contour_mm},
+                         {"look_ahead_mm", way.look_ahead_mm},
+                         {"rate_hz", way.rate_hz},
+                         {"cycle_ms", way.cycle_ms},
+                         {"lag_ms", way.lag_ms},
+                         {"speed_limit_mm_s", way.limits.speed_mm_s},
+                         {"acceleration_limit_mm_s2", way.limits.acceleration_mm_s2},
+                         {"ways", ways}};
+    }
     return out;
 }
 
 std::string evaluation_html(const EvaluationResult& r) {
     report::Page page("Evaluation: the thesis's five experiments, simulated");
     page.paragraph(conditions(r));
-    page.table(table(r), "Deviations at the spots after correction, mm");
+    if (!r.experiments.empty()) page.table(table(r), "Deviations at the spots after correction, mm");
     Rows kept{{"promised", "found", "kept"}};
     for (const EvaluationCheck& c : evaluation_checks(r))
         kept.push_back({c.promise, c.found, c.kept ? "yes" : "no"});
@@ -450,7 +560,7 @@ std::string evaluation_html(const EvaluationResult& r) {
         page.paragraph(remark(r, e));
         std::vector<std::string> curves, histograms;
         for (std::size_t c = 0; c < 3; ++c) {
-            curves.push_back(deviation_plot(e.trials[c], c, kColumns[c]));
+            curves.push_back(deviation_plot(e.trials[c], c, kColumns[c], e.stated_three_sigma[c]));
             histograms.push_back(histogram(e.summary[c], e.trials[c], kColumns[c]));
         }
         page.figures(curves, "Mean deviation at the spots against displacement");
@@ -467,15 +577,24 @@ std::string evaluation_html(const EvaluationResult& r) {
         page.figures({curve_plot(r, false), curve_plot(r, true)},
                      "Bias against displacement along the contour");
     }
+    if (r.online) {
+        page.heading("Online correction, simulated");
+        page.table(online_table(*r.online), online_caption(*r.online));
+        page.figures({online_curve(*r.online, false), online_curve(*r.online, true)},
+                     "Error along the path, one part");
+        page.figure(online_speeds(*r.online));
+    }
     return page.html();
 }
 
 std::string evaluation_text(const EvaluationResult& r) {
-    std::string text = wrapped(conditions(r)) + "\n" + aligned(table(r)) + "\n";
+    std::string text = wrapped(conditions(r)) + "\n";
+    if (!r.experiments.empty()) text += aligned(table(r)) + "\n";
     for (const ExperimentResult& e : r.experiments) text += wrapped(remark(r, e));
     if (r.straight.trials > 0)
         text += "\n" + wrapped(straight_text(r)) + "\n" + wrapped(budget_caption()) +
                 aligned(budget_table(r)) + "\n" + wrapped(curve_caption()) + aligned(curve_table(r));
+    if (r.online) text += "\n" + wrapped(online_caption(*r.online)) + aligned(online_table(*r.online));
     Rows kept;
     for (const EvaluationCheck& c : evaluation_checks(r))
         kept.push_back({c.promise, c.kept ? "kept" : "NOT KEPT", c.found});

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
 
@@ -111,8 +112,12 @@ TEST(PathBlend, EqualsTheRegionsOutsideOfTransitions) {
                                                      .displacement.workobject_from_movedworkobject.matrix();
         const std::size_t from_border = std::min(i % 100, 99 - i % 100);
         // Points are 5.5 to 7.9 mm apart.
-        if (from_border >= 6) EXPECT_TRUE(whole) << i;
-        if (from_border < 3) EXPECT_FALSE(whole) << i;
+        if (from_border >= 6) {
+            EXPECT_TRUE(whole) << i;
+        }
+        if (from_border < 3) {
+            EXPECT_FALSE(whole) << i;
+        }
     }
 }
 
@@ -125,7 +130,9 @@ TEST(PathBlend, IsContinuousAndHalvesItsStepWithThePoints) {
         ASSERT_TRUE(r);
         EXPECT_TRUE(r->remarks.empty());
         EXPECT_GT(r->unblended_mm, 5);
-        if (before > 0) EXPECT_NEAR(r->largest_mm.mm / before, 0.5, 0.03);
+        if (before > 0) {
+            EXPECT_NEAR(r->largest_mm.mm / before, 0.5, 0.03);
+        }
         before = r->largest_mm.mm;
         // Nowhere steeper than the pace's 15/8 of the whole over the transition, with 10 % for what the screw
         // adds and for uneven points.
@@ -151,9 +158,10 @@ TEST(PathBlend, CurvatureGoesOverWithoutAJump) {
     for (const std::size_t n : {600u, 3000u}) {
         const auto r = correct_path(straight(n), all, names, {});
         ASSERT_TRUE(r);
-        // max |h''| = 10 / sqrt(3) over L^2, L = 1000/3 mm, times 5 mm, per m.
-        const double expected = 1000 * 5 * 10 / std::sqrt(3.0) / std::pow(1000.0 / 3, 2);
-        EXPECT_NEAR(r->curvature_change_per_m, expected, 0.02 * expected);
+        // max |h''| = 10 / sqrt(3) over L^2 times 5 mm, per m; L from the last point of a to the first of b.
+        const double length = 1000.0 / 3 + 2 * 1000.0 / static_cast<double>(n);
+        const double expected = 1000 * 5 * 10 / std::sqrt(3.0) / (length * length);
+        EXPECT_NEAR(r->curvature_change_per_m, expected, 0.005 * expected);
         EXPECT_LT(r->curvature_per_m, 1e-6);
         // At the transition's ends the second difference is small against the largest.
         const auto y = [&](std::size_t i) { return r->points[i].workobject_from_tool.translation().y(); };
@@ -249,7 +257,9 @@ TEST(PathBlend, SigmaIsABoundForEveryCorrelation) {
             const double worst = std::sqrt(scatter[i].eigenvalues().real().maxCoeff());
             // 400 trials scatter by 3.5 %, the worst of 80 points by three times that.
             EXPECT_LT(worst, 1.12 * truth->points[i].sigma_mm) << i;
-            if (path[i].region >= 0) EXPECT_GT(worst, 0.85 * truth->points[i].sigma_mm) << i;
+            if (path[i].region >= 0) {
+                EXPECT_GT(worst, 0.85 * truth->points[i].sigma_mm) << i;
+            }
         }
     }
 }

@@ -247,7 +247,7 @@ TEST_F(Furniture, ADistanceIsMeasuredOnTheProfile) {
 }
 
 TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
-    CameraPoints* view = window().views().camera;
+    CameraView* view = window().views().camera;
     dock("dock_camera")->show();
     dock("dock_camera")->raise();
     QTest::qWait(50);
@@ -260,7 +260,7 @@ TEST_F(Furniture, ARegionOfInterestIsDraggedOnTheCameraImage) {
     image.bit_depth = 8;
     view->set_frame(image, nullptr);
     view->fit();
-    QSignalSpy dragged(view, &CameraPoints::region_dragged);
+    QSignalSpy dragged(view, &CameraView::region_dragged);
     QWidget* surface = view->focusProxy();
     const auto at = [&](int u, int v) {
         return surface->mapFrom(view, view->to_screen(QPointF(u, v))).toPoint();

@@ -13,7 +13,7 @@ constexpr double kBendShare = 0.006;  // of the extent: what departs less is str
 constexpr double kFlankShare = 0.05;  // of the extent: the least length of a flank
 constexpr double kReachShare = 0.15;  // of the extent: beyond it a lens bends a straight flank
 constexpr double kEndShare = 0.12;    // of a flank that is left out at both of its ends
-constexpr double kLeastAngle = 0.35, kLargestAngle = 2.62;  // rad
+constexpr double kLeastAngle = 0.35, kLargestAngle = 2.27;  // rad
 constexpr std::size_t kLeastPoints = 40;
 
 }  // namespace

@@ -22,8 +22,10 @@ struct Apex {
     double sigma = 0;                                 // of the point, the worse direction
 };
 
-// `points` run along the stripe. nullopt: fewer than 40 points, no bend between 20 and 150 degrees with
-// flanks of at least a twentieth of the contour's extent, or flanks that are not straight.
+// `points` run along the stripe. nullopt: fewer than 40 points, no bend between 20 and 130 degrees with
+// flanks of at least a twentieth of the contour's extent, or flanks that are not straight. The foot of a body
+// is flatter than that unless its flanks rise by more than 50 degrees; the foot of such a steep body would be
+// taken for the apex while that is out of sight.
 std::optional<Apex> find_apex(const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace seamwright

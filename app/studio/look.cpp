@@ -25,7 +25,7 @@ void apply_look(QApplication& application, bool dark) {
         QPushButton:focus, QLineEdit:focus, QPlainTextEdit:focus, QToolButton:focus,
         QTableView:focus, QTreeView:focus, QListView:focus, QCheckBox:focus { border: 2px solid %1; }
         QPushButton#next_step { font-weight: bold; border: 2px solid %1; text-align: left; min-height: 40px; }
-        QPushButton[next="true"] { font-weight: bold; border: 3px solid %1; }
+        QPushButton[next="true"] { font-weight: bold; border: 2px solid %1; }
         QPushButton#rail { text-align: left; border: none; background: transparent; padding: 0 6px; }
         QPushButton#rail:hover { background: %3; }
         QPushButton#rail:focus { border: 2px solid %1; }

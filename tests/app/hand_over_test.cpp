@@ -54,6 +54,13 @@ class HandOverCommands : public testing::Test {
         Project stored = opened.load().value();
         stored.spots = project.spots;
         ASSERT_TRUE(opened.save(stored));
+        for (const Spot& spot : stored.spots) {
+            FrozenContour frozen;
+            frozen.spot_id = spot.id;
+            frozen.status = AlignmentStatus::frozen;
+            frozen.jitter_mm = spot.jitter_mm;
+            ASSERT_TRUE(opened.append_evidence({0, {}, 0, frozen}, stored));
+        }
     }
     ~HandOverCommands() override { fs::remove_all(folder); }
     ProgramResult run(const std::vector<std::string>& arguments) const {

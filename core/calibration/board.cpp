@@ -201,6 +201,59 @@ void refine_corners(const cv::Mat& image, Corners& corners, int columns, int row
         }
 }
 
+// A corner whose neighbours say that it lies elsewhere (the sub-pixel search got stuck on an edge, or the
+// rough corner was one of the next square's) is looked for again where they say. What lies right is found at
+// the same place again.
+void mend_corners(const cv::Mat& image, Corners& corners, int columns, int rows) {
+    std::vector<Eigen::Vector2d> grid, found;
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) {
+            const auto& p = corners[static_cast<std::size_t>(r * columns + c)];
+            grid.emplace_back(c, r);
+            found.emplace_back(p.x, p.y);
+        }
+    const auto h = homography_dlt(grid, found);
+    if (!h) return;
+    // Off the plane's homography the lens bends smoothly: what a corner departs more than those around it.
+    std::vector<Eigen::Vector2d> plane, off;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        plane.push_back((*h * grid[i].homogeneous()).hnormalized());
+        off.push_back(found[i] - plane[i]);
+    }
+    const auto around = [&](std::size_t i) {
+        const int c = static_cast<int>(i) % columns, r = static_cast<int>(i) / columns;
+        std::vector<double> u, v;
+        for (int dr = -1; dr <= 1; ++dr)
+            for (int dc = -1; dc <= 1; ++dc) {
+                if ((dr == 0 && dc == 0) || c + dc < 0 || c + dc >= columns || r + dr < 0 || r + dr >= rows)
+                    continue;
+                const auto& o = off[static_cast<std::size_t>((r + dr) * columns + c + dc)];
+                u.push_back(o.x());
+                v.push_back(o.y());
+            }
+        const auto middle = [](std::vector<double>& x) {
+            const auto at = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+            std::nth_element(x.begin(), at, x.end());
+            return *at;
+        };
+        return Eigen::Vector2d(middle(u), middle(v));
+    };
+    const double limit = std::max(1.5, 0.04 * smallest_spacing(corners, columns, rows));
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        const Eigen::Vector2d expected = plane[i] + around(i);
+        if ((found[i] - expected).norm() <= limit) continue;
+        Corners one{{static_cast<float>(expected.x()), static_cast<float>(expected.y())}};
+        if (!cv::Rect2f(0, 0, static_cast<float>(image.cols), static_cast<float>(image.rows))
+                 .contains(one[0]))
+            continue;
+        const int window = std::clamp(static_cast<int>(limit), 2, 5);
+        cv::cornerSubPix(image, one, {window, window}, {-1, -1},
+                         {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-4});
+        if ((Eigen::Vector2d(one[0].x, one[0].y) - expected).norm() < (found[i] - expected).norm())
+            corners[i] = one[0];
+    }
+}
+
 // Mean grey of the middle of square (c, r) (between corners c, c+1 and r, r+1).
 double square_grey(const cv::Mat& image, const Corners& corners, int columns, int c, int r) {
     const auto at = [&](int i, int j) { return corners[static_cast<std::size_t>(j * columns + i)]; };
@@ -341,6 +394,7 @@ std::optional<FoundBoard> find_chessboard(const cv::Mat& grey, const BoardSpec& 
         cv::GaussianBlur(a.plain ? grey : clean, soft, {}, 0.8);
         const Corners rough = *corners;
         refine_corners(soft, *corners, spec.columns, spec.rows);
+        mend_corners(soft, *corners, spec.columns, spec.rows);
         const double spacing = smallest_spacing(*corners, spec.columns, spec.rows);
         bool walked = false;
         for (std::size_t i = 0; i < rough.size(); ++i)

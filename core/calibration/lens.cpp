@@ -161,14 +161,14 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     result.k1_px = k(4) / (half * half);
     result.k2_px = k(5) / std::pow(half, 4);
     result.straightness_after_px = std::sqrt(r.squaredNorm() / static_cast<double>(points));
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i < data.lines.size(); ++i)
-        if (used[i]) {
-            const auto m = static_cast<Eigen::Index>(data.lines[i].size());
-            result.report.poses[i].rms_px =
-                std::sqrt(r.segment(at, m).squaredNorm() / static_cast<double>(m));
-            at += m;
-        }
+    // Lines that took no part judge the lens as well.
+    for (std::size_t i = 0; i < data.lines.size(); ++i) {
+        std::vector<char> only(data.lines.size(), 0);
+        only[i] = 1;
+        Eigen::VectorXd line(static_cast<Eigen::Index>(data.lines[i].size()));
+        if (residuals(data, only, k, line))
+            result.report.poses[i].rms_px = std::sqrt(line.squaredNorm() / static_cast<double>(line.size()));
+    }
     static constexpr const char* names[] = {"", "", "centre_u", "centre_v", "k1", "k2", "p1", "p2", "k3"};
     auto& report = result.report;
     for (const int p : free) report.parameters.push_back({names[p], k(p), p < 4 ? "px" : "1", 0});

@@ -500,13 +500,12 @@ class Solver {
             f.corner_rms_px = std::sqrt(
                 accumulate_view(state_.intrinsics, f.camera_from_target, bent, {}, nullptr, nullptr) /
                 static_cast<double>(bent.pixel.size()));
-            if (has_robot() && bundle_.base_from_flange[k]) {
-                const Pose target =
-                    *bundle_.base_from_flange[k] * *state_.flange_from_camera * f.camera_from_target;
-                f.robot_used = true;
+            if (const auto& at = observations_[view_frame_[k]].base_from_flange; has_robot() && at) {
+                const Pose target = *at * *state_.flange_from_camera * f.camera_from_target;
+                f.robot_used = bundle_.base_from_flange[k].has_value();
                 f.robot_mm = distance_mm(target, *state_.base_from_target);
                 f.robot_deg = deg_from_rad(angle_rad(target, *state_.base_from_target));
-                origins.push_back(target.translation());
+                if (f.robot_used) origins.push_back(target.translation());
             }
             if (!state_.plane || choice_[k] >= lines_[k].size()) continue;
             const auto& line = lines_[k][choice_[k]];
@@ -635,9 +634,8 @@ class Solver {
             p.used = f.used;
             p.note = f.note;
             if (f.used) p.rms_px = f.corner_rms_px;
-            p.rms_mm = f.robot_mm;
-            p.deg = f.robot_deg;
-            p.contradicts = f.used && !f.robot_used && std::isfinite(f.robot_mm);
+            if (f.robot_used || f.robot_mm > 0) p.rms_mm = f.robot_mm, p.deg = f.robot_deg;
+            p.contradicts = f.used && !f.robot_used && f.robot_mm > 0;
             report.poses.push_back(std::move(p));
         }
         report.judgement = verdict();

@@ -62,6 +62,16 @@ TEST(Lens, OneCornerIsNotTheField) {
     EXPECT_EQ(r->report.covariance.size(), 0);
 }
 
+TEST(Lens, ALineLeftOutIsStillJudged) {
+    auto d = bent_lines(-0.2, 0.05, 0.1, 1);
+    for (std::size_t i = 30; i < d.lines[3].size(); ++i) d.lines[3][i].y() += 4;  // over an edge of the plate
+    const auto r = calibrate_lens(d, {.exclude = {3, 5}});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_FALSE(r->report.poses[3].used);
+    EXPECT_GT(r->report.poses[3].rms_px, 0.5);
+    EXPECT_NEAR(r->report.poses[5].rms_px, 0.1, 0.03) << "it took no part and fits";
+}
+
 TEST(Lens, RefusesBadLines) {
     auto d = bent_lines(-0.1, 0, 0.1, 4);
     d.lines[2][3].x() = std::nan("");

@@ -117,15 +117,10 @@ void GuidedPage::refresh_settings() {
         settings_holder_->property("method").toString() != text(s.method().id)) {
         settings_holder_->setProperty("method", text(s.method().id));
         while (QLayoutItem* item = settings_box_->takeAt(0)) {
-            // A field is a row of its name and its editor.
-            if (QLayout* row = item->layout())
-                while (QLayoutItem* part = row->takeAt(0)) {
-                    if (part->widget()) {
-                        part->widget()->setParent(nullptr);
-                        part->widget()->deleteLater();
-                    }
-                    delete part;
-                }
+            if (item->widget()) {
+                item->widget()->setParent(nullptr);
+                item->widget()->deleteLater();
+            }
             delete item;
         }
         for (const MethodSetting& one : s.method().settings) {
@@ -133,8 +128,8 @@ void GuidedPage::refresh_settings() {
             editor->setObjectName("calibration_" + text(one.info.name));
             connect(editor, &ParameterEditor::committed, this,
                     [this, name = one.info.name](double value) { done(calibration_.set(name, value)); });
-            add_field(*settings_box_, setting_name(text(one.info.name)), editor,
-                      setting_name(text(one.info.name)));
+            editor->set_name(setting_name(text(one.info.name)));
+            settings_box_->addWidget(editor);
             editor->set_value(setting(one, s.state().settings));
         }
     } else {

@@ -45,7 +45,7 @@ class HandOver : public testing::Test {
     }
 };
 
-TEST_F(HandOver, HoldsWhatTheIssueAsksFor) {
+TEST_F(HandOver, HoldsAllThatAHandOverNeeds) {
     auto file = ProjectFile::create(folder / "door.seam", project).value();
     FrozenContour frozen;
     frozen.spot_id = "S1";

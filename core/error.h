@@ -1,8 +1,8 @@
 #pragma once
 // How every fallible function of the house answers.
 //
-// A bug asserts. Bad input or environment is an Error inside tl::expected. A numerical outcome ("did not converge",
-// "under-determined") is no Error but a status inside the result.
+// A bug asserts. Bad input or environment is an Error inside tl::expected. A numerical outcome ("did not
+// converge", "under-determined") is no Error but a status inside the result.
 
 #include <string>
 #include <tl/expected.hpp>

@@ -10,13 +10,15 @@ namespace seamwright {
 namespace {
 
 const ParameterInfo* find(const std::vector<ParameterInfo>& infos, const std::string& name) {
-    auto it = std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& p) { return p.name == name; });
+    auto it =
+        std::find_if(infos.begin(), infos.end(), [&](const ParameterInfo& p) { return p.name == name; });
     return it == infos.end() ? nullptr : &*it;
 }
 
 }  // namespace
 
-double parameter(const ParameterValues& values, const std::vector<ParameterInfo>& infos, const std::string& name) {
+double parameter(const ParameterValues& values, const std::vector<ParameterInfo>& infos,
+                 const std::string& name) {
     const ParameterInfo* info = find(infos, name);
     assert(info && "parameter is not described");
     auto it = values.find(name);

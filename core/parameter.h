@@ -15,7 +15,8 @@ struct ParameterInfo {
     double minimum = 0, maximum = 0, default_value = 0;
     int decimals = 3;
     std::string help;  // one sentence
-    // A choice by name ("left", "right"): the value is the index, minimum 0 and maximum size - 1. Empty: a number.
+    // A choice by name ("left", "right"): the value is the index, minimum 0 and maximum size - 1. Empty: a
+    // number.
     std::vector<std::string> choices = {};
 };
 
@@ -23,7 +24,8 @@ struct ParameterInfo {
 using ParameterValues = std::map<std::string, double>;
 
 // The value or its default. Precondition (asserted): `name` is described in `infos`.
-double parameter(const ParameterValues& values, const std::vector<ParameterInfo>& infos, const std::string& name);
+double parameter(const ParameterValues& values, const std::vector<ParameterInfo>& infos,
+                 const std::string& name);
 
 // Refuses unknown names, non-finite values and values out of range, naming parameter, range and unit.
 Expected<void> validate(const ParameterValues& values, const std::vector<ParameterInfo>& infos,

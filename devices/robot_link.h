@@ -90,7 +90,8 @@ class RobotLink {
     virtual Expected<void> confirm(PartVerdict verdict, const std::string& text);
     // Teaching: goes to `base_from_flange` and stands still there. An Error unless the driver can move.
     virtual Expected<void> move_to(const Pose& base_from_flange);
-    // What the link has to tell since the last call beside its answers, a sentence each: peers that it refused.
+    // What the link has to tell since the last call beside its answers, a sentence each: peers that it
+    // refused.
     virtual std::vector<std::string> take_notices() { return {}; }
 };
 

@@ -57,7 +57,7 @@ void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, import
 void add_run(CommandLine& line);
 void add_record(CommandLine& line);
-void add_proof(CommandLine& line);  // zero-shift, known-shift
+void add_proof(CommandLine& line);      // zero-shift, known-shift
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);

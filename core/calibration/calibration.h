@@ -50,7 +50,7 @@ struct PoseResidual {
     double rms_px = std::numeric_limits<double>::quiet_NaN();
     bool used = true;
     bool contradicts = false;  // used, but for a part that was found wrong (the note says which)
-    std::string note;  // why it is not used, or what is odd about it; empty when nothing is
+    std::string note;          // why it is not used, or what is odd about it; empty when nothing is
 };
 
 // Leave-k-out verification: the data are split into folds, each fold is predicted by the solution of the

@@ -9,7 +9,8 @@ namespace seamwright {
 
 const std::vector<FeatureKind>& feature_kinds() {
     static const std::vector<FeatureKind> kinds{
-        contour_end_kind(), corner_kind(), circle_kind(), extremum_kind(), template_kind(), sensor_point_kind(),
+        contour_end_kind(), corner_kind(),   circle_kind(),
+        extremum_kind(),    template_kind(), sensor_point_kind(),
     };
     return kinds;
 }

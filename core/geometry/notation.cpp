@@ -7,11 +7,18 @@
 namespace seamwright {
 namespace {
 
-Eigen::Matrix3d rot_x(double rad) { return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX()).toRotationMatrix(); }
-Eigen::Matrix3d rot_y(double rad) { return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitY()).toRotationMatrix(); }
-Eigen::Matrix3d rot_z(double rad) { return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitZ()).toRotationMatrix(); }
+Eigen::Matrix3d rot_x(double rad) {
+    return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+}
+Eigen::Matrix3d rot_y(double rad) {
+    return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+}
+Eigen::Matrix3d rot_z(double rad) {
+    return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
 
-// Below this cosine (sine for ZYZ) the two outer axes are parallel to within rounding and only their sum is known.
+// Below this cosine (sine for ZYZ) the two outer axes are parallel to within rounding and only their sum is
+// known.
 constexpr double kLock = 1e-9;
 
 }  // namespace
@@ -24,7 +31,8 @@ KukaAbc kuka_from_rotation(const Eigen::Matrix3d& r) {
     const double cos_b = std::hypot(r(0, 0), r(1, 0));
     const double b = std::atan2(-r(2, 0), cos_b);
     if (cos_b < kLock) return {deg_from_rad(std::atan2(-r(0, 1), r(1, 1))), deg_from_rad(b), 0.0};
-    return {deg_from_rad(std::atan2(r(1, 0), r(0, 0))), deg_from_rad(b), deg_from_rad(std::atan2(r(2, 1), r(2, 2)))};
+    return {deg_from_rad(std::atan2(r(1, 0), r(0, 0))), deg_from_rad(b),
+            deg_from_rad(std::atan2(r(2, 1), r(2, 2)))};
 }
 
 Eigen::Matrix3d kuka_jacobian(const Eigen::Matrix3d& r) {
@@ -63,8 +71,12 @@ AbbQuaternion abb_from_rotation(const Eigen::Matrix3d& r) {
     return {q.w(), q.x(), q.y(), q.z()};
 }
 
-Eigen::Matrix3d rotation_from_ur(const Eigen::Vector3d& rotvec_rad) { return rotation_exp(rotvec_rad); }
-Eigen::Vector3d ur_from_rotation(const Eigen::Matrix3d& r) { return rotation_log(r); }
+Eigen::Matrix3d rotation_from_ur(const Eigen::Vector3d& rotvec_rad) {
+    return rotation_exp(rotvec_rad);
+}
+Eigen::Vector3d ur_from_rotation(const Eigen::Matrix3d& r) {
+    return rotation_log(r);
+}
 
 Eigen::Matrix3d rotation_from_zyz(const Zyz& zyz) {
     return rot_z(rad_from_deg(zyz.z1_deg)) * rot_y(rad_from_deg(zyz.y_deg)) * rot_z(rad_from_deg(zyz.z2_deg));
@@ -73,9 +85,11 @@ Eigen::Matrix3d rotation_from_zyz(const Zyz& zyz) {
 Zyz zyz_from_rotation(const Eigen::Matrix3d& r) {
     const double sin_y = std::hypot(r(0, 2), r(1, 2));
     const double y = std::atan2(sin_y, r(2, 2));
-    // At y = 0 or 180 degrees both outer axes fall together: R = Rz(z1) diag(c, 1, c), column 1 = (-sin z1, cos z1, 0).
+    // At y = 0 or 180 degrees both outer axes fall together: R = Rz(z1) diag(c, 1, c), column 1 = (-sin z1,
+    // cos z1, 0).
     if (sin_y < kLock) return {deg_from_rad(std::atan2(-r(0, 1), r(1, 1))), deg_from_rad(y), 0.0};
-    return {deg_from_rad(std::atan2(r(1, 2), r(0, 2))), deg_from_rad(y), deg_from_rad(std::atan2(r(2, 1), -r(2, 0)))};
+    return {deg_from_rad(std::atan2(r(1, 2), r(0, 2))), deg_from_rad(y),
+            deg_from_rad(std::atan2(r(2, 1), -r(2, 0)))};
 }
 
 }  // namespace seamwright

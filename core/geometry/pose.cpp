@@ -102,7 +102,9 @@ Pose interpolate(const Pose& a, const Pose& b, double s) {
     return a * make_pose(rotation_exp(s * w), left_jacobian(s * w) * (s * v));
 }
 
-double distance_mm(const Pose& a, const Pose& b) { return (a.translation() - b.translation()).norm(); }
+double distance_mm(const Pose& a, const Pose& b) {
+    return (a.translation() - b.translation()).norm();
+}
 
 double angle_rad(const Pose& a, const Pose& b) {
     return rotation_log(a.linear() * b.linear().transpose()).norm();

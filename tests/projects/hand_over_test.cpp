@@ -87,7 +87,8 @@ TEST_F(HandOver, HoldsAllThatAHandOverNeeds) {
                              "Signature",
                              "pushed and read back"})
         EXPECT_THAT(html, HasSubstr(part));
-    for (const char* outside : {"src=", "href=", "url(", "<script"}) EXPECT_THAT(html, Not(HasSubstr(outside)));
+    for (const char* outside : {"src=", "href=", "url(", "<script"})
+        EXPECT_THAT(html, Not(HasSubstr(outside)));
 }
 
 TEST_F(HandOver, SaysWhatIsMissingAndWhatIsStale) {

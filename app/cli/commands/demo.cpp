@@ -62,8 +62,7 @@ Expected<Answer> demo(const DemoOptions& options) {
         fmt::format("calibrated chain against the cell's truth: {:.3f} mm\n", outcome->calibration.truth_mm);
     answer.text += fmt::format("{} of {} parts corrected and pushed\n", pushed, outcome->parts.size());
     for (const DemoPart& part : outcome->parts)
-        if (!part.pushed())
-            answer.text += fmt::format("  {}: {}\n", part.run.part_id, part.run.message);
+        if (!part.pushed()) answer.text += fmt::format("  {}: {}\n", part.run.part_id, part.run.message);
     if (pushed > 0) {
         answer.text += statistic_text("deviation at the spots, pushed parts", spots);
         answer.text += statistic_text("deviation along the bead, pushed parts", path);

@@ -24,8 +24,8 @@ inline std::vector<Eigen::Vector3d> plate(int columns, int rows, double pitch) {
 
 // Plate in front of the camera, tilted up to `tilt_deg`, all points inside the image.
 inline CameraPoints view_of(const CameraModel& camera, const std::vector<Eigen::Vector3d>& object,
-                          std::mt19937& random, double tilt_deg, double distance, double noise_px,
-                          const std::string& id, Pose* truth = nullptr) {
+                            std::mt19937& random, double tilt_deg, double distance, double noise_px,
+                            const std::string& id, Pose* truth = nullptr) {
     std::uniform_real_distribution<double> u(-1, 1);
     std::normal_distribution<double> n(0, 1);
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();

@@ -19,7 +19,9 @@ std::vector<Eigen::Matrix3d> rotations() {
     return r;
 }
 
-double apart(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) { return (a - b).cwiseAbs().maxCoeff(); }
+double apart(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+    return (a - b).cwiseAbs().maxCoeff();
+}
 
 TEST(Notation, EveryBrandRoundTripsAtEveryRotation) {
     for (const Eigen::Matrix3d& r : rotations()) {
@@ -46,7 +48,8 @@ TEST(Notation, KnownValues) {
 }
 
 TEST(Notation, AbbRefusesWhatIsNoUnitQuaternion) {
-    for (const AbbQuaternion& q : {AbbQuaternion{0, 0, 0, 0}, AbbQuaternion{2, 0, 0, 0}, AbbQuaternion{std::nan(""), 0, 0, 1}})
+    for (const AbbQuaternion& q :
+         {AbbQuaternion{0, 0, 0, 0}, AbbQuaternion{2, 0, 0, 0}, AbbQuaternion{std::nan(""), 0, 0, 1}})
         EXPECT_FALSE(rotation_from_abb(q, "pose").has_value());
 }
 
@@ -57,10 +60,10 @@ TEST(Notation, KukaJacobianAgreesWithNumericDifferentiation) {
             const double h = 1e-6;
             const KukaAbc plus = kuka_from_rotation(rotation_exp(h * Eigen::Vector3d::Unit(k)) * r);
             const KukaAbc minus = kuka_from_rotation(rotation_exp(-h * Eigen::Vector3d::Unit(k)) * r);
-            const Eigen::Vector3d numeric =
-                Eigen::Vector3d(rad_from_deg(plus.a_deg - minus.a_deg), rad_from_deg(plus.b_deg - minus.b_deg),
-                                rad_from_deg(plus.c_deg - minus.c_deg)) /
-                (2 * h);
+            const Eigen::Vector3d numeric = Eigen::Vector3d(rad_from_deg(plus.a_deg - minus.a_deg),
+                                                            rad_from_deg(plus.b_deg - minus.b_deg),
+                                                            rad_from_deg(plus.c_deg - minus.c_deg)) /
+                                            (2 * h);
             EXPECT_LT((j.col(k) - numeric).norm(), 1e-7);
         }
     }

@@ -23,7 +23,7 @@ struct Scenery {
     double missing_share = 0.04;  // stretches without stripe
     double clutter_share = 0.1;   // single false candidates
     bool shuffled = true;
-    int jumps = 0;                // steps of the stripe, which its reflection takes too
+    int jumps = 0;  // steps of the stripe, which its reflection takes too
 };
 
 struct Scene {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/cli/evaluate/online_report.h"
 #include "app/cli/evaluate/report.h"
 
 namespace seamwright::cli {
@@ -210,6 +211,13 @@ TEST(Evaluation, OnlineFollowsWhatOfflineCannotAndFallsBehindWithoutLookAhead) {
     EXPECT_TRUE(way(true, false, 400, 20).way.in_time());
     EXPECT_GT(way(true, false, 400, 20).behind_share, way(true, false, 100, 20).behind_share);
     EXPECT_GT(way(true, false, 400, 20).error.three_sigma, 2 * way(true, false, 200, 20).error.three_sigma);
+    // Said in words, with the ways by name: no alarm tells.
+    const std::string verdict = online_verdict(*r);
+    const auto blind = verdict.substr(0, verdict.find("Known in time"));
+    EXPECT_THAT(blind, testing::HasSubstr("400 mm/s with 150 ms"));
+    EXPECT_THAT(blind, testing::HasSubstr("200 mm/s with 150 ms"));
+    EXPECT_THAT(blind, testing::Not(testing::HasSubstr("100 mm/s with")));
+    EXPECT_THAT(verdict.substr(blind.size()), testing::HasSubstr("400 mm/s with 20 ms"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/cli/evaluate/online_report.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 
@@ -295,81 +296,6 @@ std::string budget_plot(const EvaluationResult& r) {
     return report::svg(plot);
 }
 
-std::string online_caption(const OnlineExperiment& o) {
-    const OnlineWay way;
-    return fmt::format(
-        "Online correction against the offline method, simulated: once round the contour of {:.0f} mm, parts "
-        "displaced by up to {:g} mm and {:g} degrees per axis, bent ones by {:g} mm and twisted by {:g} mm. "
-        "Sensor "
-        "{:g} mm ahead of the tool, {:g} profiles/s; corrections every {:g} ms, followed with a lag of {:g} "
-        "ms, at "
-        "most {:g} mm/s and {:g} mm/s2. Offline: 12 spots, four regions, path blended between them. Error of "
-        "the "
-        "tool against the part's true contour, across it and in height, mm; the first {:g} mm bring the "
-        "correction onto the path and do not count. \"Stated\" is one coordinate's 3 sigma from the "
-        "covariances: "
-        "measure, reference and robot, nothing of lag, bend and curvature. \"Behind\" is the "
-        "share of cycles in which the ramp was more than {:g} mm from what was known.",
-        o.contour_mm, o.shift_mm, o.turn_deg, o.bend_mm, o.twist_mm, way.look_ahead_mm, way.rate_hz,
-        way.cycle_ms, way.lag_ms, way.limits.speed_mm_s, way.limits.acceleration_mm_s2, kRunInMm, kBehindMm);
-}
-
-Rows online_table(const OnlineExperiment& o) {
-    Rows rows{{"way", "part", "mm/s", "delay ms", "known in time", "behind", "mean", "3 sigma",
-               "stated 3 sigma", "worst", "alarms"}};
-    for (const OnlineResult& r : o.results) {
-        const bool on = r.way.online;
-        rows.push_back(
-            {on ? "online" : "offline", r.bent ? "bent" : "rigid",
-             on ? fmt::format("{:g}", r.way.speed_mm_s) : "-", on ? fmt::format("{:g}", r.way.delay_ms) : "-",
-             on ? (r.way.in_time() ? "yes" : "no") : "-",
-             on ? fmt::format("{:.0f} %", 100 * r.behind_share) : "-", fmt::format("{:.4f}", r.error.mean),
-             fmt::format("{:.4f}", r.error.three_sigma), fmt::format("{:.4f}", 3 * r.sigma_mm),
-             fmt::format("{:.4f}", r.worst_mm), std::to_string(r.alarms)});
-    }
-    return rows;
-}
-
-std::string online_curve(const OnlineExperiment& o, bool bent) {
-    report::Plot plot;
-    plot.title = bent ? "Bent part" : "Rigid part";
-    plot.x_label = "along the contour (mm)";
-    plot.y_label = "error of the tool (mm)";
-    for (const OnlineResult& r : o.results) {
-        const bool shown = !r.way.online || (r.way.speed_mm_s == 100 && r.way.delay_ms == 60);
-        if (r.bent != bent || !shown) continue;
-        plot.series.push_back({r.way.online ? "online, 100 mm/s, 60 ms" : "offline", r.arc_mm, r.length_mm,
-                               r.way.online ? report::Mark::line : report::Mark::dashed,
-                               r.way.online ? report::colour::kBlue : report::colour::kVermilion});
-    }
-    return report::svg(plot);
-}
-
-std::string online_speeds(const OnlineExperiment& o) {
-    report::Plot plot;
-    plot.title = "Following error against delay, rigid part";
-    plot.x_label = "delay (ms)";
-    plot.y_label = "3 sigma (mm)";
-    const char* colours[3] = {report::colour::kBlue, report::colour::kGreen, report::colour::kPurple};
-    std::size_t k = 0;
-    for (const OnlineResult& r : o.results) {
-        if (r.bent || !r.way.online) continue;
-        const std::string name = fmt::format("{:g} mm/s", r.way.speed_mm_s);
-        if (plot.series.empty() || plot.series.back().name != name)
-            plot.series.push_back({name, {}, {}, report::Mark::line, colours[k++ % 3]});
-        plot.series.back().x.push_back(r.way.delay_ms);
-        plot.series.back().y.push_back(r.error.three_sigma);
-    }
-    for (const OnlineResult& r : o.results)
-        if (!r.way.online && !r.bent)
-            plot.series.push_back({"offline",
-                                   {20, 150},
-                                   {r.error.three_sigma, r.error.three_sigma},
-                                   report::Mark::dashed,
-                                   report::colour::kVermilion});
-    return report::svg(plot);
-}
-
 const ExperimentResult* find(const EvaluationResult& r, int number) {
     for (const ExperimentResult& e : r.experiments)
         if (e.method.number == number) return &e;
@@ -519,31 +445,7 @@ json evaluation_json(const EvaluationResult& r) {
                            {"refused", r.straight.refused}};
         out["curved"] = curved;
     }
-    if (r.online) {
-        json ways = json::array();
-        for (const OnlineResult& o : r.online->results)
-            ways.push_back({{"way", o.way.online ? "online" : "offline"},
-                            {"bent", o.bent},
-                            {"speed_mm_s", o.way.online ? json(o.way.speed_mm_s) : json()},
-                            {"delay_ms", o.way.online ? json(o.way.delay_ms) : json()},
-                            {"known_in_time", o.way.in_time()},
-                            {"behind_share", o.behind_share},
-                            {"parts", o.parts},
-                            {"alarms", o.alarms},
-                            {"mean_mm", o.error.mean},
-                            {"three_sigma_mm", o.error.three_sigma},
-                            {"stated_three_sigma_mm", 3 * o.sigma_mm},
-                            {"worst_mm", o.worst_mm}});
-        const OnlineWay way;
-        out["online"] = {{"contour_mm", r.online->contour_mm},
-                         {"look_ahead_mm", way.look_ahead_mm},
-                         {"rate_hz", way.rate_hz},
-                         {"cycle_ms", way.cycle_ms},
-                         {"lag_ms", way.lag_ms},
-                         {"speed_limit_mm_s", way.limits.speed_mm_s},
-                         {"acceleration_limit_mm_s2", way.limits.acceleration_mm_s2},
-                         {"ways", ways}};
-    }
+    if (r.online) out["online"] = online_json(*r.online);
     return out;
 }
 
@@ -580,6 +482,7 @@ std::string evaluation_html(const EvaluationResult& r) {
     if (r.online) {
         page.heading("Online correction, simulated");
         page.table(online_table(*r.online), online_caption(*r.online));
+        page.paragraph(online_verdict(*r.online));
         page.figures({online_curve(*r.online, false), online_curve(*r.online, true)},
                      "Error along the path, one part");
         page.figure(online_speeds(*r.online));
@@ -594,7 +497,9 @@ std::string evaluation_text(const EvaluationResult& r) {
     if (r.straight.trials > 0)
         text += "\n" + wrapped(straight_text(r)) + "\n" + wrapped(budget_caption()) +
                 aligned(budget_table(r)) + "\n" + wrapped(curve_caption()) + aligned(curve_table(r));
-    if (r.online) text += "\n" + wrapped(online_caption(*r.online)) + aligned(online_table(*r.online));
+    if (r.online)
+        text += "\n" + wrapped(online_caption(*r.online)) + aligned(online_table(*r.online)) +
+                wrapped(online_verdict(*r.online));
     Rows kept;
     for (const EvaluationCheck& c : evaluation_checks(r))
         kept.push_back({c.promise, c.kept ? "kept" : "NOT KEPT", c.found});

@@ -106,6 +106,44 @@ TEST(PanelFit, StatedSigmaHoldsForEveryDegreeOfFreedom) {
     EXPECT_NEAR(nees / kTrials, 6.0, 4 * std::sqrt(12.0 / kTrials));
 }
 
+// Six of the 2 N coordinates' variances are left at the spots, of panel and body both, wherever they stand.
+TEST(PanelFit, SpreadAtTheSpotsIsSixOfTwoNAtAnyDisplacement) {
+    constexpr double kSigma = 0.03;
+    constexpr int kTrials = 1500;
+    PanelOptions options;
+    options.reject_outliers = false;
+    for (const double reach : {0.0, 0.01, 1.0}) {
+        Dice dice(9);
+        auto clean = rim(dice, 8);
+        for (PanelSpot& s : clean) s.sigma_mm = kSigma;
+        const auto shorter = [&](const Pose& m) {
+            return make_pose(rotation_exp(reach * rotation_log(m.linear())), reach * m.translation());
+        };
+        double squares = 0;
+        for (int trial = 0; trial < kTrials; ++trial) {
+            const Pose p = shorter(dice.displacement()), b = shorter(dice.displacement());
+            auto spots = clean;
+            measure(spots, p, b, true);
+            for (PanelSpot& s : spots)
+                for (int i : {0, 2}) {
+                    s.panel.measured_mm[i] += dice.normal(kSigma);
+                    s.body.measured_mm[i] += dice.normal(kSigma);
+                }
+            const auto fit = fit_panel(spots, options);
+            ASSERT_TRUE(fit);
+            ASSERT_EQ(fit->status, CorrectionStatus::ok) << fit->message;
+            const Pose left = b.inverse() * fit->gripper_motion * p;
+            for (const PanelSpot& s : spots) {
+                const Eigen::Vector3d at = s.gripper_from_sensor * s.panel.reference_mm;
+                const Eigen::Vector3d off = s.gripper_from_sensor.linear().transpose() * (left * at - at);
+                squares += off.x() * off.x() + off.z() * off.z();
+            }
+        }
+        const double mean = squares / (16.0 * kTrials) / (2 * kSigma * kSigma);
+        EXPECT_NEAR(mean, 6.0 / 16, 0.03) << "reach " << reach;
+    }
+}
+
 TEST(PanelFit, ResidualIsTheDeformationThatNoMotionRemoves) {
     Dice dice(11);
     auto spots = rim(dice, 8);

@@ -1,10 +1,14 @@
 #include "projects/simulated_truth.h"
 
+#include <fmt/format.h>
+
 #include "devices/capture/capture.h"
+#include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/gripper_cell.h"
+#include "devices/simulated/mesh_file.h"
 
 namespace seamwright {
 
@@ -89,6 +93,54 @@ Expected<Project> simulated_panel_project(const nlohmann::json& given) {
         job.places.push_back(std::move(out));
     }
     p.panel_jobs.push_back(std::move(job));
+    return p;
+}
+
+Expected<Project> simulated_gap_project(nlohmann::json settings, const std::vector<GapStation>& gap,
+                                        const std::filesystem::path& mesh_file) {
+    std::error_code failed;
+    if (std::filesystem::exists(mesh_file, failed))
+        return input_error("it is there already", mesh_file.string(), "give the project another name");
+    Project p;
+    p.name = "simulated gap";
+    p.part.name = "two sheets with a gap";
+    p.part.mesh_ply = ply_bytes(gap_part_mesh(gap));
+    const std::string_view ply(reinterpret_cast<const char*>(p.part.mesh_ply.data()), p.part.mesh_ply.size());
+    if (auto written = write_text_file(mesh_file, ply); !written) return tl::unexpected(written.error());
+    settings["mesh"] = std::filesystem::absolute(mesh_file).string();
+    settings["mesh_unit"] = "mm";
+    auto cell = SimulatedCell::open(settings);
+    if (!cell) return tl::unexpected(cell.error());
+    p.part.base_from_workobject = (*cell)->base_from_workobject();
+    SensorSetup sensor;
+    sensor.id = "A";
+    sensor.driver = "simulated";
+    sensor.settings = settings;
+    sensor.identity = make_simulated_sensor(*cell)->identity();
+    RobotSetup robot;
+    robot.id = "R1";
+    robot.driver = "simulated";
+    robot.settings = settings;
+    robot.identity = *make_simulated_robot(*cell)->identity();
+    auto truth = simulated_truth(sensor, robot);
+    if (!truth) return tl::unexpected(truth.error());
+    sensor.calibration_id = truth->id;
+    constexpr double kShares[] = {0.05, 0.4, 0.6, 0.95};
+    for (const double share : kShares) {
+        const double y = gap.front().y_mm + share * (gap.back().y_mm - gap.front().y_mm);
+        Spot spot;
+        spot.id = fmt::format("S{}", p.spots.size() + 1);
+        spot.sensor_id = sensor.id;
+        spot.robot_id = robot.id;
+        spot.base_from_flange =
+            (*cell)->flange_for(make_pose(Eigen::Matrix3d::Identity(), {0, y, gap_at(gap, y).flush_mm / 2}));
+        spot.feature.kind = "contour-end";
+        spot.feature.parameters = {{"side", 1}};
+        p.spots.push_back(std::move(spot));
+    }
+    p.sensors = {std::move(sensor)};
+    p.robots = {std::move(robot)};
+    p.calibrations = {std::move(*truth)};
     return p;
 }
 

@@ -46,6 +46,7 @@ void add_correct(CommandLine& line);
 void add_plan(CommandLine& line);
 void add_panel(CommandLine& line);
 void add_path(CommandLine& line);
+void add_gap(CommandLine& line);
 void add_evaluate(CommandLine& line);
 void add_filter(CommandLine& line);
 void add_feature(CommandLine& line);

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     add_plan(line);
     add_panel(line);
     add_path(line);
+    add_gap(line);
     add_evaluate(line);
     add_filter(line);
     add_feature(line);

@@ -8,8 +8,29 @@
 namespace seamwright {
 
 namespace {
+
 constexpr double kFoldBreak_mm = 1;
+
+// Two sheets in flush with nothing seen between them are one contour to the filter: the second goes on where
+// the first points to. The widest stretch without returns is the gap.
+bool split_at_hole(const FeaturePoints& points, const FeaturePoints::Piece& whole, int least,
+                   FeaturePoints::Piece& before, FeaturePoints::Piece& after) {
+    const int end = whole.first + whole.count;
+    int behind = 0;
+    double widest = 0;
+    for (int i = whole.first + least; i + least <= end; ++i) {
+        const double dx = points.x[i] - points.x[i - 1], dz = points.z[i] - points.z[i - 1];
+        if (!points.pitch.is_gap(dx, dz) || std::hypot(dx, dz) <= widest) continue;
+        widest = std::hypot(dx, dz);
+        behind = i;
+    }
+    if (behind == 0) return false;
+    before = {whole.first, behind - whole.first, whole.cut_before, false};
+    after = {behind, end - behind, false, whole.cut_after};
+    return true;
 }
+
+}  // namespace
 
 std::string_view to_string(GapFlushStatus status) {
     switch (status) {
@@ -98,8 +119,9 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
     GapFlush result;
     points_.gather(profile, settings_.window);
     const FeaturePoints::Piece *first = nullptr, *second = nullptr;
+    const int least = std::max(settings_.minimum_points, 4);
     for (const auto& piece : points_.pieces) {
-        if (piece.count < std::max(settings_.minimum_points, 4)) continue;
+        if (piece.count < least) continue;
         if (!first || piece.count > first->count) {
             second = first;
             first = &piece;
@@ -112,9 +134,14 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
         result.message = "no surface in the window";
         return result;
     }
+    FeaturePoints::Piece before, after;
     if (!second) {
-        result.message = "only one surface in the window: the contour is not broken by a gap";
-        return result;
+        if (!split_at_hole(points_, *first, least, before, after)) {
+            result.message = "only one surface in the window: the contour is not broken by a gap";
+            return result;
+        }
+        first = &before;
+        second = &after;
     }
     const auto mean_x = [&](const FeaturePoints::Piece& p) {
         double sum = 0;

@@ -63,10 +63,10 @@ struct GapFlush {
     std::string message;                               // empty when ok
 };
 
-// Buffers live in the object: nothing is allocated after the first calls; one thread per object. The two
-// sides are the two pieces with most points in the window, each with the shorter pieces that go on within 1
-// mm of its end towards the other (a fold that the filter cut off). `profile` as for features. Precondition:
-// check() has nothing against the settings.
+// Allocates nothing after the first calls; one thread per object. `profile` as for features; settings as
+// check() passes them. Sides: the two pieces with most points in the window, each with the shorter ones that
+// go on within 1 mm of its end towards the other (a fold that the filter cut off). Of a single piece (sheets
+// in flush over a dark gap) what lies before and behind its widest hole of more than six pitches.
 class GapFlushGauge {
   public:
     explicit GapFlushGauge(const GapFlushSettings& settings) : settings_(settings) {}

@@ -210,12 +210,51 @@ TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     for (const char* command :
          {"demo",    "new",   "info",     "check",    "run",           "replay",  "export", "import",
           "correct", "plan",  "filter",   "feature",  "match",         "extract", "align",  "calibrate",
-          "devices", "panel", "evaluate", "sim-cell", "robot-program", "path"}) {
+          "devices", "panel", "evaluate", "sim-cell", "robot-program", "path",    "gap"}) {
         const ProgramResult r = run({command, "--help"});
         EXPECT_EQ(r.exit_code, 0) << command;
         EXPECT_THAT(r.out, HasSubstr("Example:")) << command;
         EXPECT_THAT(r.out, HasSubstr("--json")) << command;
     }
+}
+
+TEST_F(Cli, GapNamesWhereTheNozzleDoesNotPass) {
+    const std::string project = (folder / "gap.seam").string(), pass = (folder / "pass.seam").string(),
+                      csv = (folder / "gap.csv").string();
+    const json driven = answer({"gap", project, "--simulated", "--nozzle-mm", "2.5", "--clearance-mm", "0.4",
+                                "--step-mm", "5", "--record", pass, "--out", csv},
+                               1);
+    EXPECT_EQ(driven["status"], "does_not_pass");
+    EXPECT_NEAR(driven["length_mm"].get<double>(), 270, 0.1);
+    EXPECT_EQ(driven["points"].size(), driven["frames"].get<std::size_t>());
+    bool narrow = false;
+    for (const json& s : driven["stretches"]) {
+        if (s["verdict"] != "too_narrow" || s["narrowest_mm"] < 2) continue;
+        narrow = true;
+        // The part by construction: 2.6 mm wide at y = 60, 5 mm again 40 mm before and behind it.
+        EXPECT_NEAR(s["narrowest_mm"].get<double>(), 2.6, 0.4);
+        EXPECT_NEAR(s["workobject_mm"][1].get<double>(), 60, 5);
+        EXPECT_EQ(s["where"], "between S3 and S4");
+    }
+    EXPECT_TRUE(narrow) << driven["stretches"].dump(1);
+    std::ifstream table(csv);
+    std::string header;
+    std::getline(table, header);
+    EXPECT_EQ(header, "path_mm,verdict,width_mm,sigma_mm,flush_mm,yaw_deg,tilt_deg,x_mm,y_mm,z_mm");
+    EXPECT_EQ(static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(table), {}, '\n')),
+              driven["points"].size());
+
+    const json again =
+        answer({"gap", project, "--capture", pass, "--nozzle-mm", "2.5", "--clearance-mm", "0.4"}, 1);
+    EXPECT_EQ(again["points"], driven["points"]) << "the recording is measured as on the day";
+
+    expect_refused({"gap", project, "--nozzle-mm", "2"}, "no pass to check");
+    expect_refused({"gap", project, "--capture", pass, "--nozzle-mm", "0"}, "nozzle_mm");
+    expect_refused({"gap", project, "--capture", pass, "--nozzle-mm", "nan"}, "nozzle_mm");
+    expect_refused({"gap", project, "--capture", project, "--nozzle-mm", "2"}, "project", 3);
+    expect_refused({"gap", project, "--capture", pass, "--nozzle-mm", "2", "--sensor", "Z"}, "no sensor");
+    expect_refused({"gap", project, "--spots", "S1,S7", "--nozzle-mm", "2"}, "no spot \"S7\"");
+    expect_refused({"gap", project, "--simulated", "--nozzle-mm", "2"}, "already");
 }
 
 TEST_F(Cli, PlanPredictsWhatCorrectStates) {

@@ -226,6 +226,32 @@ TEST(GapFlush, KnownGapEitherReference) {
     EXPECT_EQ(GapFlushGauge({}).measure(sample(line, 0.05)).status, GapFlushStatus::not_found);
 }
 
+TEST(GapFlush, DarkGapBetweenSheetsInFlushIsFound) {
+    // The filter gives both sheets one segment, and another hole, narrower than the gap, lies in the left
+    // one.
+    Profile p;
+    for (int i = 0; i < 600; ++i) {
+        const double x = -15 + 0.05 * i;
+        const bool dark = (x > -2.01 && x < 1.01) || (x > -9 && x < -8);
+        p.x_mm.push_back(x);
+        p.z_mm.push_back(dark ? std::numeric_limits<double>::quiet_NaN() : 0.1 * x);
+        p.segment.push_back(dark ? kOutlier : 0);
+    }
+    const GapFlush g = GapFlushGauge({}).measure(p);
+    ASSERT_EQ(g.status, GapFlushStatus::ok) << g.message;
+    // Returns end at -2.05 and begin at 1.05; half a pitch more at either edge.
+    EXPECT_NEAR(g.gap_mm, (3.1 - 0.05) * std::hypot(1, 0.1), 1e-6);
+    EXPECT_NEAR(g.flush_mm, 0, 1e-9);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (p.x_mm[i] > -2.01 && p.x_mm[i] < 0.85) {
+            p.z_mm[i] = 0.1 * p.x_mm[i];
+            p.segment[i] = 0;
+        }
+    GapFlushSettings near;
+    near.window.x_min = -5;
+    EXPECT_EQ(GapFlushGauge(near).measure(p).status, GapFlushStatus::not_found) << "a few missing returns";
+}
+
 TEST(GapFlush, EdgeDistanceIsAsSureAsItSays) {
     std::mt19937_64 engine(9);
     std::normal_distribution<double> noise(0, 0.02);

@@ -1,0 +1,334 @@
+// seamwright gap: where a nozzle would not pass, from a pass along the gap.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/cli/command.h"
+#include "app/cli/recording.h"
+#include "app/cli/signal_watch.h"
+#include "devices/exchange/files.h"
+#include "projects/gap_check.h"
+#include "projects/report/html.h"
+#include "projects/report/svg_plot.h"
+#include "projects/simulated_truth.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+struct Arguments {
+    std::string file, capture, record, out, report;
+    RecordedGapPass recorded;
+    DrivenGapPass driven;
+    bool simulated = false;
+    std::shared_ptr<Recorder> recorder;
+    std::uint64_t seed = 1;
+    std::string reference = "left";
+    std::map<std::string, double> values;  // every parameter, by name
+};
+
+json vector_of(const Eigen::Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+json number_if(bool there, double value) {
+    return there ? json(value) : json();
+}
+
+json stretch_json(const GapCheck& c, const GapStretch& s) {
+    const bool width = has_width(s.verdict);
+    return {{"verdict", to_string(s.verdict)},
+            {"from_mm", s.from_mm},
+            {"to_mm", s.to_mm},
+            {"where", c.where((s.from_mm + s.to_mm) / 2)},
+            {"profiles", s.sections},
+            {"narrowest_mm", number_if(width, s.narrowest_mm)},
+            {"sigma_mm", number_if(width, s.sigma_mm)},
+            {"at_mm", number_if(width, s.at_mm)},
+            {"workobject_mm", vector_of(s.place_mm)},
+            {"reason", s.message}};
+}
+
+json point_json(const GapPoint& p) {
+    const bool width = has_width(p.verdict);
+    return {{"path_mm", p.path_mm},
+            {"verdict", to_string(p.verdict)},
+            {"width_mm", number_if(width, p.width_mm)},
+            {"sigma_mm", number_if(width, p.sigma_mm)},
+            {"flush_mm", number_if(width, p.flush_mm)},
+            {"yaw_deg", number_if(width, p.yaw_deg)},
+            {"tilt_deg", number_if(width, p.tilt_deg)},
+            {"workobject_mm", vector_of(p.middle_mm)},
+            {"across", width ? vector_of(p.across) : json()},
+            {"along", width ? vector_of(p.along) : json()},
+            {"reason", p.message}};
+}
+
+json check_json(const GapPass& pass, const GapCheck& c, const GapScanOptions& o) {
+    json stretches = json::array(), points = json::array(), spots = json::array();
+    for (const GapStretch& s : c.scan.stretches) stretches.push_back(stretch_json(c, s));
+    for (const GapPoint& p : c.scan.points) points.push_back(point_json(p));
+    for (const auto& [id, path] : c.spots) spots.push_back({{"id", id}, {"path_mm", path}});
+    const bool any = c.scan.measured > 0;
+    return {{"status", c.scan.passes() ? "ok" : "does_not_pass"},
+            {"sensor", pass.sensor_id},
+            {"nozzle_mm", o.nozzle_mm},
+            {"clearance_mm", o.clearance_mm},
+            {"need_mm", o.need_mm()},
+            {"frames", pass.frames},
+            {"damaged", pass.damaged},
+            {"without_pose", pass.without_pose},
+            {"without_profile", pass.without_profile},
+            {"measured", c.scan.measured},
+            {"length_mm", c.scan.length_mm},
+            {"narrowest_mm", number_if(any, c.scan.narrowest_mm)},
+            {"widest_mm", number_if(any, c.scan.widest_mm)},
+            {"largest_yaw_deg", number_if(any, c.scan.largest_yaw_deg)},
+            {"spots", spots},
+            {"stretches", stretches},
+            {"points", points}};
+}
+
+std::string stretch_text(const GapCheck& c, const GapStretch& s) {
+    const std::string between = c.where((s.from_mm + s.to_mm) / 2);
+    std::string text = fmt::format("  {:7.1f} .. {:.1f} mm{}: ", s.from_mm, s.to_mm,
+                                   between.empty() ? "" : " (" + between + ")");
+    switch (s.verdict) {
+        case GapVerdict::too_narrow:
+            text += fmt::format("too narrow, {:.3f} mm", s.narrowest_mm);
+            break;
+        case GapVerdict::doubtful:
+            text += fmt::format("doubtful, {:.3f} mm", s.narrowest_mm);
+            break;
+        case GapVerdict::closed:
+            text += "closed";
+            break;
+        default:
+            text += "not measured";
+    }
+    if (has_width(s.verdict))
+        text += fmt::format(" (sigma {:.3f}) at {:.1f} mm", s.sigma_mm, s.at_mm);
+    else if (!s.message.empty())
+        text += ", " + s.message;
+    return text + fmt::format("; work object X {:.1f} Y {:.1f} Z {:.1f}\n", s.place_mm.x(), s.place_mm.y(),
+                              s.place_mm.z());
+}
+
+std::string check_text(const GapPass& pass, const GapCheck& c, const GapScanOptions& o) {
+    const GapScan& scan = c.scan;
+    std::string text = fmt::format("{}: {} of {} profiles measured along {:.1f} mm",
+                                   scan.passes() ? "the nozzle passes" : "the nozzle does not pass",
+                                   scan.measured, pass.frames, scan.length_mm);
+    if (scan.measured > 0)
+        text += fmt::format("; gap {:.3f} .. {:.3f} mm, cut up to {:.1f} degrees off square",
+                            scan.narrowest_mm, scan.widest_mm, scan.largest_yaw_deg);
+    text += fmt::format("\nneeded {:.3f} mm: nozzle {:g}, {:g} left on either side, with 3 sigma\n",
+                        o.need_mm(), o.nozzle_mm, o.clearance_mm);
+    if (pass.damaged + pass.without_pose + pass.without_profile > 0)
+        text += fmt::format("{} frames damaged, {} without pose, {} without profile\n", pass.damaged,
+                            pass.without_pose, pass.without_profile);
+    for (const GapStretch& s : scan.stretches) text += stretch_text(c, s);
+    return text;
+}
+
+std::string check_csv(const GapScan& scan) {
+    std::string text = "path_mm,verdict,width_mm,sigma_mm,flush_mm,yaw_deg,tilt_deg,x_mm,y_mm,z_mm\n";
+    for (const GapPoint& p : scan.points) {
+        text += fmt::format("{:.4f},{},", p.path_mm, to_string(p.verdict));
+        text += has_width(p.verdict) ? fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},", p.width_mm,
+                                                   p.sigma_mm, p.flush_mm, p.yaw_deg, p.tilt_deg)
+                                     : ",,,,,";
+        text += fmt::format("{:.4f},{:.4f},{:.4f}\n", p.middle_mm.x(), p.middle_mm.y(), p.middle_mm.z());
+    }
+    return text;
+}
+
+std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOptions& o,
+                       const std::string& project) {
+    report::Page page("Gap check: " + project);
+    page.verdict(c.scan.passes() ? "ok" : "does not pass",
+                 c.scan.passes() ? report::Tone::good : report::Tone::alarm,
+                 c.scan.passes() ? "The nozzle passes everywhere." : "The nozzle does not pass everywhere.");
+    page.paragraph(check_text(pass, c, o));
+    report::Plot width, flush, turn;
+    width.title = "Gap width along the path";
+    width.x_label = flush.x_label = turn.x_label = "path (mm)";
+    width.y_label = "width (mm)";
+    width.bands = {{0, o.need_mm(), "nozzle and clearance"}};
+    width.y_min = std::min(0.0, c.scan.narrowest_mm);
+    flush.title = "Flush along the path";
+    flush.y_label = "flush (mm)";
+    turn.title = "Orientation: cut against the gap, surface in the cut";
+    turn.y_label = "angle (degree)";
+    report::Series w{"width", {}, {}, report::Mark::line, report::colour::kBlue},
+        low{"width - 3 sigma", {}, {}, report::Mark::dashed, report::colour::kGrey},
+        bad{"does not pass", {}, {}, report::Mark::crosses, report::colour::kVermilion},
+        step{"flush", {}, {}, report::Mark::line, report::colour::kBlue},
+        yaw{"yaw", {}, {}, report::Mark::line, report::colour::kGreen},
+        tilt{"tilt", {}, {}, report::Mark::dashed, report::colour::kPurple};
+    for (const GapPoint& p : c.scan.points) {
+        const bool there = has_width(p.verdict);
+        const auto put = [&](report::Series& s, double v) {
+            s.x.push_back(p.path_mm);
+            s.y.push_back(there ? v : std::nan(""));
+        };
+        put(w, p.width_mm);
+        put(low, p.width_mm - 3 * p.sigma_mm);
+        if (there && p.verdict != GapVerdict::passes) put(bad, p.width_mm);
+        put(step, p.flush_mm);
+        put(yaw, p.yaw_deg);
+        put(tilt, p.tilt_deg);
+    }
+    width.series = {w, low};
+    if (!bad.x.empty()) width.series.push_back(bad);
+    flush.series = {step};
+    turn.series = {yaw, tilt};
+    page.figure(report::svg(width));
+    page.figures({report::svg(flush), report::svg(turn)});
+    if (!c.scan.stretches.empty()) {
+        report::Rows rows{{"verdict", "where", "from", "to", "narrowest", "sigma", "at"}};
+        for (const GapStretch& s : c.scan.stretches) {
+            const bool there = has_width(s.verdict);
+            const auto shown = [&](double v, int decimals) {
+                return there ? fmt::format("{:.{}f}", v, decimals) : std::string("-");
+            };
+            rows.push_back({std::string(to_string(s.verdict)), c.where((s.from_mm + s.to_mm) / 2),
+                            fmt::format("{:.1f}", s.from_mm), fmt::format("{:.1f}", s.to_mm),
+                            shown(s.narrowest_mm, 3), shown(s.sigma_mm, 3), shown(s.at_mm, 1)});
+        }
+        page.table(rows, "Where the nozzle does not pass, mm along the path");
+    }
+    return page.html();
+}
+
+// The pass, with the project it was made with.
+Expected<std::pair<Project, GapPass>> pass_of(Arguments& a) {
+    if (a.simulated) {
+        auto project = simulated_gap_project({{"seed", a.seed}}, default_gap_stations(),
+                                             std::filesystem::path(a.file).replace_extension(".ply"));
+        if (!project) return tl::unexpected(project.error());
+        if (a.driven.spot_ids.empty() && a.capture.empty())
+            for (const Spot& spot : project->spots) a.driven.spot_ids.push_back(spot.id);
+        auto file = ProjectFile::create(a.file, *project);
+        if (!file) return tl::unexpected(file.error());
+    }
+    if (!a.capture.empty()) {
+        auto file = ProjectFile::open(a.file, FileAccess::read_only);
+        if (!file) return tl::unexpected(file.error());
+        auto project = file->load();
+        if (!project) return tl::unexpected(project.error());
+        auto capture = CaptureReader::open(a.capture);
+        if (!capture) return tl::unexpected(capture.error());
+        auto pass = gap_pass(*project, *capture, a.recorded);
+        if (!pass) return tl::unexpected(pass.error());
+        return std::pair{std::move(*project), std::move(*pass)};
+    }
+    if (a.driven.spot_ids.empty())
+        return usage_error("there is no pass to check", a.file,
+                           "give a recorded one with --capture, or the spots to go along with --spots");
+    auto station = Station::open(a.file);
+    if (!station) return tl::unexpected(station.error());
+    auto recorder = open_recorder(a.record, {.images = true});
+    if (!recorder) return tl::unexpected(recorder.error());
+    a.recorder = *recorder;
+    station->record_to(a.recorder);
+    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    a.driven.cancel = stop_on_signal();
+    a.driven.progress = [](const RunProgress& p) {
+        if (p.done == p.total || p.done % 50 == 0) fmt::print(stderr, "[{}/{}]\n", p.done, p.total);
+    };
+    auto pass = gap_pass(*station, a.driven);
+    if (!pass) return tl::unexpected(pass.error());
+    return std::pair{station->project(), std::move(*pass)};
+}
+
+Expected<Answer> check(Arguments& a) {
+    GapScanOptions defaults;
+    defaults.gauge.reference =
+        a.reference == "left" ? GapFlushSettings::Reference::left : GapFlushSettings::Reference::right;
+    const auto options = with_values(defaults, a.values);
+    if (!options) return tl::unexpected(options.error());
+    auto made = pass_of(a);
+    if (!made) return tl::unexpected(made.error());
+    const auto& [project, pass] = *made;
+    auto found = check_gap(project, pass, *options);
+    if (!found) return tl::unexpected(found.error());
+    if (!a.out.empty())
+        if (auto written = write_text_file(a.out, check_csv(found->scan)); !written)
+            return tl::unexpected(written.error());
+    if (!a.report.empty())
+        if (auto written = write_text_file(a.report, check_html(pass, *found, *options, project.name));
+            !written)
+            return tl::unexpected(written.error());
+    Answer answer{check_json(pass, *found, *options), check_text(pass, *found, *options),
+                  found->scan.passes() ? kExitOk : kExitVerdict};
+    if (auto told = tell_recording(a.recorder.get(), a.record, answer); !told)
+        return tl::unexpected(told.error());
+    return answer;
+}
+
+}  // namespace
+
+void add_gap(CommandLine& line) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = line.add(
+        "gap",
+        "Width, flush and orientation of a gap along a pass, and the places where the nozzle would not pass, "
+        "named\nbefore the application runs. The pass is a capture (`seamwright record` while the robot "
+        "travels along the\ncontour), or the robot goes straight from spot to spot, step by step: keep its "
+        "way clear. Exit 1 where the\nnozzle does not pass: too narrow, doubtful (within 3 sigma), closed, "
+        "or "
+        "not measured.",
+        "seamwright gap door_left.seam --capture pass.seam --nozzle-mm 3 --clearance-mm 0.5 --report "
+        "gap.html\n"
+        "  seamwright gap door_left.seam --spots T1,T2,T3 --nozzle-mm 3 --out gap.csv\n"
+        "  seamwright gap try.seam --simulated --nozzle-mm 3");
+    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    auto* capture = command->add_option("--capture", a->capture, "A recorded pass: profiles and robot poses");
+    capture->type_name("PASS.seam");
+    auto* spots =
+        command->add_option("--spots", a->driven.spot_ids, "Spots that the robot goes along, in order");
+    spots->delimiter(',')->type_name("S1,S2,...")->excludes(capture);
+    command->add_option("--step-mm", a->driven.step_mm, "Of the robot, from profile to profile")
+        ->check(CLI::Range(0.05, 100.0))
+        ->capture_default_str()
+        ->excludes(capture);
+    command->add_option("--record", a->record, "Keep the pass, to be checked again with --capture")
+        ->type_name("PASS.seam")
+        ->excludes(capture);
+    for (const ParameterInfo& info : gap_scan_parameters()) {
+        std::string flag = "--" + info.name;
+        std::replace(flag.begin(), flag.end(), '_', '-');
+        auto* option = command->add_option_function<double>(
+            flag, [a, name = info.name](double value) { a->values[name] = value; },
+            fmt::format("{} {:g} to {:g} {}", info.help, info.minimum, info.maximum, info.unit));
+        if (info.name == "nozzle_mm")
+            option->required();
+        else
+            option->default_str(fmt::format("{:g}", info.default_value));
+    }
+    command->add_option("--reference", a->reference, "The side whose surface gives the directions")
+        ->check(CLI::IsMember({"left", "right"}))
+        ->capture_default_str();
+    command->add_option("--sensor", a->recorded.sensor_id, "Which one, when the capture has several")
+        ->needs(capture)
+        ->type_name("ID");
+    command->add_option("--robot", a->recorded.robot_id, "Whose poses, when the capture has several")
+        ->needs(capture)
+        ->type_name("ID");
+    command->add_option("--out", a->out, "One row a profile")->type_name("FILE.csv");
+    command->add_option("--report", a->report, "HTML with curves of width, flush and orientation")
+        ->type_name("FILE.html");
+    auto* simulated =
+        command->add_flag("--simulated", a->simulated,
+                          "Make FILE.seam first: the simulated cell before two sheets whose gap "
+                          "narrows and closes");
+    simulated->excludes(capture);
+    command->add_option("--seed", a->seed, "With --simulated: every random number follows from it")
+        ->needs(simulated);
+    line.on(command, [a] { return check(*a); });
+}
+
+}  // namespace seamwright::cli

@@ -11,6 +11,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kBusyMs = 5000;
+constexpr std::size_t kMostFree = 64;  // statements kept; our files need some thirty
 constexpr int kMaxValueBytes =
     512 << 20;  // a mesh or an image is smaller; a forged length is refused before memory is taken
 
@@ -45,6 +46,21 @@ tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& pat
 }
 
 }  // namespace
+
+sqlite3_stmt* FreeStatements::take(std::string_view sql) {
+    const auto it = by_sql_.find(sql);
+    if (it == by_sql_.end()) return nullptr;
+    sqlite3_stmt* statement = it->second.release();
+    by_sql_.erase(it);
+    return statement;
+}
+
+void FreeStatements::put(sqlite3_stmt* statement) {
+    std::unique_ptr<sqlite3_stmt, Finalize> owned(statement);
+    sqlite3_reset(statement);
+    sqlite3_clear_bindings(statement);
+    if (by_sql_.size() < kMostFree) by_sql_.try_emplace(sqlite3_sql(statement), std::move(owned));
+}
 
 void Statement::bind(int index, std::int64_t value) {
     sqlite3_bind_int64(stmt_.get(), index, value);
@@ -154,13 +170,16 @@ Expected<void> Database::execute(const std::string& sql) {
 }
 
 Expected<Statement> Database::prepare(std::string_view sql) {
+    sqlite3_stmt* raw = free_->take(sql);
+    if (!raw) {
+        const int code = sqlite3_prepare_v3(db_.get(), sql.data(), static_cast<int>(sql.size()),
+                                            SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
+        if (code != SQLITE_OK) return sqlite_error(db_.get(), code, path_, kind_);
+    }
     Statement s;
-    sqlite3_stmt* raw = nullptr;
-    const int code = sqlite3_prepare_v2(db_.get(), sql.data(), static_cast<int>(sql.size()), &raw, nullptr);
-    s.stmt_.reset(raw);
+    s.stmt_ = {raw, {free_}};
     s.where_ = path_;
     s.kind_ = kind_;
-    if (code != SQLITE_OK) return sqlite_error(db_.get(), code, path_, kind_);
     return s;
 }
 

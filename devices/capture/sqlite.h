@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -23,6 +25,20 @@ inline constexpr std::int32_t kProjectApplicationId = 0x5365616D;  // "Seam"
 inline constexpr std::int32_t kCaptureApplicationId = 0x53656143;  // "SeaC"
 
 class Database;
+
+// Prepared statements that are free to be used again, by their SQL: to prepare one costs more than to run it.
+// They outlive neither the connection nor a change of the schema (SQLite prepares them anew then).
+class FreeStatements {
+  public:
+    sqlite3_stmt* take(std::string_view sql);  // nullptr: none
+    void put(sqlite3_stmt* statement);         // reset, without bindings
+
+  private:
+    struct Finalize {
+        void operator()(sqlite3_stmt* s) const { sqlite3_finalize(s); }
+    };
+    std::map<std::string, std::unique_ptr<sqlite3_stmt, Finalize>, std::less<>> by_sql_;
+};
 
 // A prepared statement. bind() counts from 1, column() from 0. After step() answered false (done) or an Error
 // the statement is reset and can be run again with new bindings.
@@ -48,11 +64,12 @@ class Statement {
 
   private:
     friend class Database;
-    struct Finalize {
-        void operator()(sqlite3_stmt* s) const { sqlite3_finalize(s); }
+    struct GiveBack {
+        std::shared_ptr<FreeStatements> to;
+        void operator()(sqlite3_stmt* s) const { to->put(s); }
     };
     bool is(int column, int type);
-    std::unique_ptr<sqlite3_stmt, Finalize> stmt_;
+    std::unique_ptr<sqlite3_stmt, GiveBack> stmt_;
     std::string where_, kind_;
     bool type_error_ = false;
 };
@@ -87,6 +104,7 @@ class Database {
         void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
     };
     std::unique_ptr<sqlite3, Close> db_;
+    std::shared_ptr<FreeStatements> free_ = std::make_shared<FreeStatements>();  // goes before db_
     std::string path_, kind_;
 };
 

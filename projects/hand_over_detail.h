@@ -1,5 +1,5 @@
 #pragma once
-// Shared by the chapters of the hand-over report (hand_over.cpp, hand_over_proof.cpp).
+// Shared by the chapters of the hand-over report (hand_over.cpp, hand_over_panel.cpp, hand_over_proof.cpp).
 
 #include <cmath>
 
@@ -43,5 +43,7 @@ void regions_chapter(HandOverWriter& w);
 void zero_shift_chapter(HandOverWriter& w);
 void known_shift_chapter(HandOverWriter& w);
 void headless_chapter(HandOverWriter& w);
+// Panel jobs as taught, and each one's last panel. Error: the file.
+Expected<void> panels_chapter(HandOverWriter& w, const ProjectFile& file);
 
 }  // namespace seamwright

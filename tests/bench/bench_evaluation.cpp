@@ -4,8 +4,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
 #include "app/cli/evaluate/cell.h"
@@ -88,9 +90,11 @@ void print_scaling() {
     }
     std::nth_element(ratio.begin(), ratio.begin() + 3, ratio.end());
     std::nth_element(one.begin(), one.begin() + 3, one.end());
-    std::printf("evaluation: %.1f runs per second on one core (12 profiles each), %u cores here\n",
-                static_cast<double>(kRuns) / one[3], std::thread::hardware_concurrency());
-    std::printf("ratio evaluation 2 cores / 1 core: %.2f\n", ratio[3]);
+    const auto per_second = [](double took) { return static_cast<double>(kRuns) / took; };
+    std::printf(
+        "ratio evaluation 2 cores / 1 core: %.2f (%.1f and %.1f runs per second, 12 profiles a run; %u cores "
+        "here)\n",
+        ratio[3], per_second(one[3]), ratio[3] * per_second(one[3]), std::thread::hardware_concurrency());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/gripper_cell.h"
 #include "projects/exchange.h"
+#include "projects/hand_over.h"
 #include "projects/panel_measure.h"
 #include "projects/replay.h"
 #include "projects/simulated_truth.h"
@@ -87,6 +88,61 @@ TEST(PanelStation, TeachesGapAndFlushAsTheyAre) {
         EXPECT_GT(place.reference_profile.size(), 100u);
     }
     EXPECT_TRUE(check(bench.station.project()).empty());
+}
+
+// The hand-over report's table row of a place, its cells joined by '|'.
+std::string report_row(const std::string& html, const std::string& caption, const std::string& place) {
+    const auto table = html.find(caption);
+    if (table == std::string::npos) return "no table";
+    const auto row = html.find("<td>" + place + "</td>", table);
+    if (row == std::string::npos) return "no row";
+    std::string text = html.substr(row, html.find("</tr>", row) - row);
+    for (std::size_t at; (at = text.find("</td>")) != std::string::npos;) text.replace(at, 5, "|");
+    for (std::size_t at; (at = text.find("<td")) != std::string::npos;)
+        text.erase(at, text.find('>', at) + 1 - at);
+    return text;
+}
+
+TEST(PanelStation, HandOverReportShowsTheLastPanel) {
+    Bench bench;
+    const auto report = [&](Language language) {
+        Facts facts;
+        EXPECT_TRUE(gather(bench.station.file(), facts));
+        HandOverOptions options;
+        options.language = language;
+        auto page = hand_over_report(bench.station.file(), bench.station.project(), facts, options);
+        EXPECT_TRUE(page) << page.error().sentence();
+        return page ? page->html() : std::string();
+    };
+    EXPECT_THAT(report(Language::english), HasSubstr("no panel was measured"));
+    bench.displace();
+    bench.run(false);
+    EXPECT_THAT(report(Language::english), HasSubstr("not moved"));
+    const RunRecord run = bench.run();
+    ASSERT_TRUE(run.panel && run.panel->fit);
+    const std::string html = report(Language::english);
+    const PanelJob& job = bench.station.project().panel_jobs[0];
+    for (std::size_t i = 0; i < job.places.size(); ++i) {
+        const PanelPlace& place = job.places[i];
+        const PanelMeasurement &before = run.panel->before[i], &after = run.panel->after[i];
+        const GapFlushValue& left = run.panel->fit->spots[i].remaining;
+        EXPECT_THAT(report_row(html, "Gap and flush of the last panel", place.id),
+                    HasSubstr(fmt::format(
+                        "{}|{:.3f}|{:.3f}|{:.3f}|{:.3f}|{:.3f}|{:.3f}|{:.3f}|{:.3f}|in tolerance|", place.id,
+                        before.gap_mm, before.flush_mm, left.gap_mm, left.flush_mm, after.gap_mm,
+                        after.flush_mm, after.gap_mm - place.gap_mm, after.flush_mm - place.flush_mm)));
+        EXPECT_THAT(report_row(html, "zero position", place.id),
+                    HasSubstr(fmt::format("|yes|{:.3f}|{:.3f}|", place.gap_mm, place.flush_mm)));
+    }
+    EXPECT_EQ(html.find("not moved"), std::string::npos) << "the newest run, not the dry one before";
+    const std::string german = report(Language::german);
+    EXPECT_THAT(german, HasSubstr("in Toleranz"));
+    EXPECT_EQ(german.find("zero position"), std::string::npos);
+    // A tolerance that was changed afterwards makes it stale.
+    Project changed = bench.station.project();
+    changed.panel_jobs[0].gap_tolerance_mm /= 2;
+    ASSERT_TRUE(bench.station.edit(changed));
+    EXPECT_THAT(report(Language::english), HasSubstr("the project was changed since"));
 }
 
 TEST(PanelStation, MovesThePanelInOneStepAndProvesIt) {

@@ -7,8 +7,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "app/cli/evaluate/cell.h"
 
@@ -75,26 +77,39 @@ BENCHMARK(runs_per_second)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 
-// Turn about, so that a busy machine hits both alike; the median of the pairs.
+// Turn about, so that a busy machine hits both alike; the median of the pairs. The cores that the process got
+// (its processor time by the wall's) tell whether the machine was free.
 void print_scaling() {
     using Clock = std::chrono::steady_clock;
-    const auto seconds = [](int jobs) {
-        const auto start = Clock::now();
-        taught().run(jobs);
-        return std::chrono::duration<double>(Clock::now() - start).count();
+    struct Took {
+        double seconds, cores;
     };
-    std::vector<double> ratio, one;
-    for (int k = 0; k < 7; ++k) {
-        one.push_back(seconds(1));
-        ratio.push_back(one.back() / seconds(2));
+    const auto took = [](int jobs) {
+        const auto start = Clock::now();
+        const std::clock_t cpu = std::clock();
+        taught().run(jobs);
+        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        return Took{seconds, static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC / seconds};
+    };
+    const auto median = [](std::vector<double> values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    std::vector<double> ratio, rate[2], cores[2];
+    for (int k = 0; k < 5; ++k) {
+        const Took one = took(1), two = took(2);
+        ratio.push_back(one.seconds / two.seconds);
+        rate[0].push_back(static_cast<double>(kRuns) / one.seconds);
+        rate[1].push_back(static_cast<double>(kRuns) / two.seconds);
+        cores[0].push_back(one.cores);
+        cores[1].push_back(two.cores);
     }
-    std::nth_element(ratio.begin(), ratio.begin() + 3, ratio.end());
-    std::nth_element(one.begin(), one.begin() + 3, one.end());
-    const auto per_second = [](double took) { return static_cast<double>(kRuns) / took; };
     std::printf(
-        "ratio evaluation 2 cores / 1 core: %.2f (%.1f and %.1f runs per second, 12 profiles a run; %u cores "
-        "here)\n",
-        ratio[3], per_second(one[3]), ratio[3] * per_second(one[3]), std::thread::hardware_concurrency());
+        "ratio evaluation 2 cores / 1 core: %.2f (%.1f and %.1f runs per second of 12 profiles each; the "
+        "process got %.2f and %.2f cores of %u)\n",
+        median(ratio), median(rate[0]), median(rate[1]), median(cores[0]), median(cores[1]),
+        std::thread::hardware_concurrency());
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/panel/double_head.h"
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/project.h"
@@ -225,16 +224,9 @@ void check_panel_job(const Project& project, const PanelJob& job, Findings& find
     }
     findings.unless(enabled >= 3, where, fmt::format("{} enabled places do not determine a motion", enabled),
                     "measure at three or more places in different orientations");
-    findings.unless(positive(job.limits.translation_mm) && job.limits.translation_mm <= 1000 &&
-                        positive(job.limits.rotation_deg) && job.limits.rotation_deg <= 45,
-                    where, "the limits of the motion are not plausible (0..1000 mm, 0..45 degrees)");
-    findings.unless(positive(job.sigma_limit_mm) && positive(job.sigma_limit_deg), where,
-                    "the limits of sigma must be positive");
-    findings.unless(positive(job.gap_tolerance_mm) && positive(job.flush_tolerance_mm), where,
-                    "the tolerances of gap and flush must be positive");
-    findings.unless(positive(job.head_limit_mm) && job.head_limit_mm < kSameSurfaceMm, where,
-                    fmt::format("a double head's limit of {} mm is not plausible (0..{})", job.head_limit_mm,
-                                kSameSurfaceMm));
+    for (const Field<PanelJob>& f : panel_fields())
+        if (auto valid = validate({{f.info.name, f.get(job)}}, {f.info}, where); !valid)
+            findings.list.push_back(valid.error());
     findings.unless(!job.frame_name.empty(), where,
                     "it names no frame on the controller, nothing can be moved");
     findings.rigid(job.base_from_gripper, where + ".base_from_gripper");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/panel/double_head.h"
+
 namespace seamwright {
 namespace {
 
@@ -79,6 +81,36 @@ const std::vector<Field<Region>>& region_fields() {
     return fields;
 }
 
+const std::vector<Field<PanelJob>>& panel_fields() {
+    static const std::vector<Field<PanelJob>> fields = {
+        {{"limit_translation_mm", "mm", 0.01, 1000, 25, 2, "Larger motions of the gripper are refused."},
+         [](const PanelJob& j) { return j.limits.translation_mm; },
+         [](PanelJob& j, double v) { j.limits.translation_mm = v; }},
+        {{"limit_rotation_deg", "deg", 0.001, 45, 3, 3, "Larger turns of the gripper are refused."},
+         [](const PanelJob& j) { return j.limits.rotation_deg; },
+         [](PanelJob& j, double v) { j.limits.rotation_deg = v; }},
+        {{"sigma_limit_mm", "mm", 0.001, 10, 0.1, 3, "A motion less sure than this is refused."},
+         [](const PanelJob& j) { return j.sigma_limit_mm; },
+         [](PanelJob& j, double v) { j.sigma_limit_mm = v; }},
+        {{"sigma_limit_deg", "deg", 0.0001, 10, 0.05, 4, "A turn less sure than this is refused."},
+         [](const PanelJob& j) { return j.sigma_limit_deg; },
+         [](PanelJob& j, double v) { j.sigma_limit_deg = v; }},
+        {{"gap_tolerance_mm", "mm", 0.01, 20, 0.5, 2, "How far the gap may be off the taught one anywhere."},
+         [](const PanelJob& j) { return j.gap_tolerance_mm; },
+         [](PanelJob& j, double v) { j.gap_tolerance_mm = v; }},
+        {{"flush_tolerance_mm", "mm", 0.01, 20, 0.5, 2,
+          "How far the flush may be off the taught one anywhere."},
+         [](const PanelJob& j) { return j.flush_tolerance_mm; },
+         [](PanelJob& j, double v) { j.flush_tolerance_mm = v; }},
+        // Farther apart than kSameSurfaceMm two heads do not see one surface (double_head.h).
+        {{"head_limit_mm", "mm", 0.005, 0.99 * kSameSurfaceMm, 0.15, 3,
+          "Largest disagreement of the two sensors of a double head."},
+         [](const PanelJob& j) { return j.head_limit_mm; },
+         [](PanelJob& j, double v) { j.head_limit_mm = v; }},
+    };
+    return fields;
+}
+
 const std::vector<Field<Requirements>>& requirement_fields() {
     static const std::vector<Field<Requirements>> fields = {
         {{"sigma3_mm", "mm", 0.001, 10, 0.3, 3,
@@ -108,6 +140,10 @@ Expected<void> set_field(Region& region, std::string_view name, double value) {
     return set_in(region_fields(), region, name, value, "region " + region.id);
 }
 
+Expected<void> set_field(PanelJob& job, std::string_view name, double value) {
+    return set_in(panel_fields(), job, name, value, "panel job " + job.id);
+}
+
 Expected<void> set_field(Requirements& requirements, std::string_view name, double value) {
     return set_in(requirement_fields(), requirements, name, value, "requirements");
 }
@@ -121,6 +157,10 @@ Expected<void> validate_fields(const Spot& spot) {
 }
 Expected<void> validate_fields(const Region& region) {
     return validate_in(region_fields(), region, "region " + region.id);
+}
+
+Expected<void> validate_fields(const PanelJob& job) {
+    return validate_in(panel_fields(), job, "panel job " + job.id);
 }
 
 Expected<void> validate_fields(const Requirements& requirements) {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/gripper_cell.h"
 #include "projects/exchange.h"
+#include "projects/fields.h"
 #include "projects/hand_over.h"
 #include "projects/panel_measure.h"
 #include "projects/replay.h"
@@ -324,6 +326,24 @@ TEST(PanelStation, RefusesJobsThatCannotRun) {
     project.panel_jobs[0].places[0].gauge.minimum_points = 1;
     project.panel_jobs[0].gap_tolerance_mm = 0;
     EXPECT_EQ(check(project).size(), 3u);
+}
+
+TEST(PanelFields, DescribeEveryLimitAndTolerance) {
+    PanelJob job;
+    std::set<std::string> names;
+    for (const Field<PanelJob>& f : panel_fields()) {
+        EXPECT_TRUE(names.insert(f.info.name).second) << f.info.name;
+        EXPECT_EQ(f.get(job), f.info.default_value) << f.info.name;
+        EXPECT_FALSE(f.info.unit.empty());
+        EXPECT_TRUE(set_field(job, f.info.name, f.info.minimum)) << f.info.name;
+        EXPECT_EQ(f.get(job), f.info.minimum) << f.info.name << " is set where it is read";
+        for (const double bad : {f.info.minimum - 1e-6, f.info.maximum + 1e-6, std::nan("")})
+            EXPECT_THAT(set_field(job, f.info.name, bad).error().sentence(), HasSubstr(f.info.unit));
+    }
+    EXPECT_TRUE(names.count("gap_tolerance_mm") && names.count("flush_tolerance_mm"));
+    EXPECT_TRUE(validate_fields(job));
+    job.flush_tolerance_mm = 0;
+    EXPECT_THAT(validate_fields(job).error().sentence(), HasSubstr("flush_tolerance_mm"));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/random.h"
+#include "projects/fields.h"
 #include "projects/panel_station.h"
 #include "projects/simulated_truth.h"
 
@@ -125,6 +126,7 @@ struct Arguments {
     bool push = false, dry_run = false, keep_images = false, simulated = false;
     int teach = 0;
     std::uint64_t seed = 1;
+    std::vector<std::pair<std::string, double>> settings;
 };
 
 bool is_project(const Arguments& a) {
@@ -174,6 +176,35 @@ Expected<void> teach(Station& station, const std::string& id, const Arguments& a
     return station.edit(project);
 }
 
+// Limits and tolerances of the job, by name.
+Expected<Answer> set(Station& station, const std::string& id, const Arguments& a) {
+    Project project = station.project();
+    const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
+                                  [&](const PanelJob& j) { return j.id == id; });
+    if (job == project.panel_jobs.end())
+        return input_error(fmt::format("there is no panel job \"{}\"", id), a.file);
+    for (const auto& [name, value] : a.settings) {
+        std::string known;
+        bool described = false;
+        for (const Field<PanelJob>& f : panel_fields()) {
+            known += (known.empty() ? "" : ", ") + f.info.name;
+            described = described || f.info.name == name;
+        }
+        if (!described)
+            return usage_error("a panel job has no setting \"" + name + "\"", "--set", "known are " + known);
+        if (auto good = set_field(*job, name, value); !good) return tl::unexpected(good.error());
+    }
+    if (auto kept = station.edit(project); !kept) return tl::unexpected(kept.error());
+    Answer answer;
+    answer.json = {{"status", "set"}, {"job", id}};
+    for (const Field<PanelJob>& f : panel_fields()) {
+        answer.json["settings"][f.info.name] = f.get(*job);
+        answer.text +=
+            fmt::format("{:<22}{:10.{}f} {}\n", f.info.name, f.get(*job), f.info.decimals, f.info.unit);
+    }
+    return answer;
+}
+
 // Panel or body somewhere off: 3 mm across, as much within the opening as the gap leaves to both.
 nlohmann::json somewhere(Random& random) {
     const double x = random.uniform(-0.5, 0.5), y = random.uniform(-0.5, 0.5), z = random.uniform(-3, 3);
@@ -212,6 +243,7 @@ Expected<Answer> panel_on_devices(const Arguments& a) {
     if (!station) return tl::unexpected(station.error());
     auto id = job_of(station->project(), a);
     if (!id) return tl::unexpected(id.error());
+    if (!a.settings.empty()) return set(*station, *id, a);
     if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
     Answer answer;
     if (a.teach > 0 && !a.simulated) {
@@ -265,6 +297,7 @@ void add_panel(CommandLine& line) {
         "seamwright panel job.json --json -\n"
         "  seamwright panel fender.seam --part CAR-0815 --push\n"
         "  seamwright panel try.seam --simulated --push\n"
+        "  seamwright panel fender.seam --set gap_tolerance_mm 0.3 --set flush_tolerance_mm 0.2\n"
         "  job.json: "
         "{\"spots\":[{\"id\":\"S1\",\"gripper_from_sensor\":{\"xyz\":[500,0,900],\"abc\":[0,0,0]},\n"
         "             \"panel\":{\"reference\":[0,0,0],\"measured\":[0.3,0,0.1]},\n"
@@ -287,12 +320,21 @@ void add_panel(CommandLine& line) {
                      "Instead of a run: the panel is in its zero position, measure it so often and keep that")
         ->check(CLI::Range(1, 1000))
         ->excludes(push);
+    auto* settings = command->add_option("--set", a->settings,
+                                         "Instead of a run: a limit or tolerance of the job, e.g. "
+                                         "gap_tolerance_mm 0.3");
+    settings->type_name("NAME VALUE")->excludes(push)->excludes(command->get_option("--teach"));
     auto* simulated =
         command->add_flag("--simulated", a->simulated,
                           "Make FILE.seam first: a simulated gripper, taught, then panel and body displaced");
     command->add_option("--seed", a->seed, "With --simulated: every random number follows from it")
         ->needs(simulated);
-    line.on(command, [a] { return is_project(*a) ? panel_on_devices(*a) : panel(a->file); });
+    settings->excludes(simulated);
+    line.on(command, [a]() -> Expected<Answer> {
+        if (is_project(*a)) return panel_on_devices(*a);
+        if (!a->settings.empty()) return usage_error("--set is for a project's panel job", a->file);
+        return panel(a->file);
+    });
 }
 
 }  // namespace seamwright::cli

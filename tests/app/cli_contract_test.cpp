@@ -218,6 +218,25 @@ TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     }
 }
 
+TEST_F(Cli, PanelSettingsAreSetWithinTheirRanges) {
+    const std::string project = (folder / "panel.seam").string();
+    const json made = answer({"panel", project, "--simulated", "--teach", "1"}, 0);
+    EXPECT_EQ(made["panel"]["job"], "panel");
+    const json set = answer(
+        {"panel", project, "--set", "gap_tolerance_mm", "0.31", "--set", "limit_rotation_deg", "1.5"}, 0);
+    EXPECT_EQ(set["settings"]["gap_tolerance_mm"], 0.31);
+    EXPECT_EQ(set["settings"]["limit_rotation_deg"], 1.5);
+    EXPECT_EQ(
+        answer({"panel", project, "--set", "flush_tolerance_mm", "0.2"}, 0)["settings"]["gap_tolerance_mm"],
+        0.31)
+        << "kept in the file";
+    expect_refused({"panel", project, "--set", "gap_tolerance_mm", "0"}, "give 0.01 to 20 mm");
+    expect_refused({"panel", project, "--set", "gap_tolerance_mm", "nan"}, "out of range");
+    expect_refused({"panel", project, "--set", "gap", "1"}, "known are");
+    expect_refused({"panel", project, "--job", "other", "--set", "gap_tolerance_mm", "1"}, "other");
+    expect_refused({"panel", write("job.json", "{}"), "--set", "gap_tolerance_mm", "1"}, "project");
+}
+
 TEST_F(Cli, GapNamesWhereTheNozzleDoesNotPass) {
     const std::string project = (folder / "gap.seam").string(), pass = (folder / "pass.seam").string(),
                       csv = (folder / "gap.csv").string();

@@ -157,7 +157,8 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
     width.x_label = flush.x_label = turn.x_label = "path (mm)";
     width.y_label = "width (mm)";
     width.bands = {{0, o.need_mm(), "nozzle and clearance"}};
-    width.y_min = std::min(0.0, c.scan.narrowest_mm);
+    const double floor = std::min(0.0, c.scan.narrowest_mm);
+    width.y_min = floor;
     flush.title = "Flush along the path";
     flush.y_label = "flush (mm)";
     turn.title = "Orientation: cut against the gap, surface in the cut";
@@ -175,7 +176,7 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
             s.y.push_back(there ? v : std::nan(""));
         };
         put(w, p.width_mm);
-        put(low, p.width_mm - 3 * p.sigma_mm);
+        put(low, std::max(floor, p.width_mm - 3 * p.sigma_mm));
         if (there && p.verdict != GapVerdict::passes) put(bad, p.width_mm);
         put(step, p.flush_mm);
         put(yaw, p.yaw_deg);

@@ -1,51 +1,19 @@
 #include "projects/file_use.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <optional>
 
+#include "tests/projects/other_program.h"
 #include "tests/projects/sample_project.h"
 
 namespace seamwright {
 namespace {
 
-// Another program that has the file; killed at its end, as a crash would.
-class Other {
-  public:
-    Other(const std::filesystem::path& file, FileUse::For what) {
-        int ready[2];
-        EXPECT_EQ(::pipe(ready), 0);
-        pid_ = ::fork();
-        if (pid_ == 0) {
-            const auto use = FileUse::take(file, what);
-            const char sign = use ? 'y' : 'n';
-            (void)!::write(ready[1], &sign, 1);
-            for (;;) ::pause();
-        }
-        char sign = 0;
-        EXPECT_EQ(::read(ready[0], &sign, 1), 1);
-        has_it = sign == 'y';
-        ::close(ready[0]);
-        ::close(ready[1]);
-    }
-    ~Other() {
-        ::kill(pid_, SIGKILL);
-        ::waitpid(pid_, nullptr, 0);
-    }
-    pid_t pid() const { return pid_; }
-    bool has_it = false;
-
-  private:
-    pid_t pid_ = 0;
-};
-
 TEST(FileUse, ASecondProgramIsToldWhoHasIt) {
     const TemporaryFolder folder;
     const auto file = folder / "door.seam";
-    std::optional<Other> other(std::in_place, file, FileUse::For::desk);
+    std::optional<OtherProgram> other(std::in_place, file, FileUse::For::desk);
     ASSERT_TRUE(other->has_it);
     const auto refused = FileUse::take(file, FileUse::For::desk);
     ASSERT_FALSE(refused);

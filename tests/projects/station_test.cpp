@@ -7,6 +7,7 @@
 #include "projects/replay.h"
 #include "projects/safety_gate.h"
 #include "tests/projects/fake_cell.h"
+#include "tests/projects/other_program.h"
 #include "tests/projects/sample_project.h"
 
 namespace seamwright {
@@ -342,6 +343,40 @@ TEST_F(StationRun, UnknownDriverIsAnError) {
     ASSERT_FALSE(connected);
     EXPECT_THAT(connected.error().sentence(), HasSubstr("fake"));
     EXPECT_FALSE(opened->connected());
+}
+
+TEST_F(StationRun, DevicesThatAnotherProgramHasAreRefusedInOneSentence) {
+    const auto path = folder / "cell.seam";
+    std::optional<OtherProgram> other(std::in_place, path, FileUse::For::devices);
+    ASSERT_TRUE(other->has_it);
+    auto second = Station::open(path);
+    ASSERT_TRUE(second) << second.error().sentence();
+    const auto refused = second->connect();
+    ASSERT_FALSE(refused);
+    const std::string sentence = refused.error().sentence();
+    EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+    EXPECT_THAT(sentence, testing::StartsWith(path.string() + ": the devices of the project are in use"));
+    EXPECT_THAT(sentence, HasSubstr("process " + std::to_string(other->pid())));
+    EXPECT_THAT(sentence, HasSubstr("; disconnect them there"));
+    EXPECT_THAT(sentence, testing::Not(HasSubstr("\n")));
+    EXPECT_FALSE(second->connected());
+    EXPECT_FALSE(second->run({})) << "nothing is commanded";
+
+    // Simulated devices are each program's own.
+    Project simulated = second->project();
+    for (SensorSetup& sensor : simulated.sensors) sensor.driver = "simulated", sensor.settings = {};
+    for (RobotSetup& robot : simulated.robots) robot.driver = "simulated", robot.settings = {};
+    second->use(simulated);
+    EXPECT_TRUE(second->connect());
+    second->disconnect();
+
+    other.reset();
+    second = Station::open(path);
+    ASSERT_TRUE(second);
+    const auto free = second->connect();
+    ASSERT_FALSE(free) << "this one fails at its first device";
+    EXPECT_THAT(free.error().sentence(), HasSubstr("\"fake\""));
+    EXPECT_TRUE(FileUse::take(path, FileUse::For::devices)) << "a station that gave up holds nothing";
 }
 
 TEST_F(StationRun, PlausibleProjectHasNoFindings) {

@@ -8,14 +8,17 @@ using Clock = std::chrono::steady_clock;
 
 struct LiveFeed::Lane {
     ProfileSource* source = nullptr;
-    LiveRecipe recipe;
+    std::shared_ptr<const LiveRecipe> recipe = std::make_shared<LiveRecipe>();
     bool recipe_changed = true;
     std::unique_ptr<FeatureFinder> finder;
+    std::optional<Feature> feature;  // last found
     std::uint64_t last_sequence = 0;
     std::int64_t last_time_ns = -1;
     std::uint64_t number = 0;
     double rate_hz = 0;
     Clock::time_point last_seen, asked;  // converted; by a view
+    Clock::time_point search_due;        // not before
+    bool search_owed = false;            // the newest snapshot carries the feature of an older one
     ProfileCandidates candidates;
     std::shared_ptr<const LiveSnapshot> newest;
 };
@@ -44,6 +47,15 @@ std::string convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandida
 
 }  // namespace
 
+void LiveFeed::search(Lane& lane, const Profile& profile) {
+    const auto start = Clock::now();
+    lane.feature = lane.finder->find(profile);
+    const auto end = Clock::now();
+    const auto rest = std::chrono::duration_cast<Clock::duration>((end - start) * (1 / kSearchShare - 1));
+    lane.search_due = end + std::min<Clock::duration>(rest, kSearchAtLeast);
+    lane.search_owed = false;
+}
+
 LiveFeed::LiveFeed(QObject* parent)
     : QObject(parent), thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
@@ -59,7 +71,8 @@ void LiveFeed::attach(const std::map<std::string, ProfileSource*>& sources) {
     for (auto& [id, source] : sources) {
         auto lane = std::make_shared<Lane>();
         lane->source = source;
-        if (const auto it = recipes_.find(id); it != recipes_.end()) lane->recipe = it->second;
+        if (const auto it = recipes_.find(id); it != recipes_.end())
+            lane->recipe = std::make_shared<LiveRecipe>(it->second);
         lanes_[id] = std::move(lane);
     }
 }
@@ -74,7 +87,7 @@ void LiveFeed::set_recipe(const std::string& sensor_id, const LiveRecipe& recipe
     const std::lock_guard lock(mutex_);
     recipes_[sensor_id] = recipe;
     if (const auto it = lanes_.find(sensor_id); it != lanes_.end()) {
-        it->second->recipe = recipe;
+        it->second->recipe = std::make_shared<LiveRecipe>(recipe);
         it->second->recipe_changed = true;
     }
 }
@@ -108,6 +121,7 @@ void LiveFeed::work(const std::stop_token& stop) {
         for (auto& [id, lane] : lanes) {
             FramePtr frame;
             SourceCounters counters;
+            bool owed = false;
             {
                 const std::lock_guard use(use_mutex_);
                 {
@@ -119,23 +133,46 @@ void LiveFeed::work(const std::stop_token& stop) {
                 }
                 frame = lane->source->latest();
                 if (!frame ||
-                    (frame->sequence == lane->last_sequence && frame->host_time_ns == lane->last_time_ns))
-                    continue;
-                counters = lane->source->counters();
+                    (frame->sequence == lane->last_sequence && frame->host_time_ns == lane->last_time_ns)) {
+                    if (lane->search_owed && Clock::now() >= lane->search_due) owed = true;
+                    if (!owed) continue;
+                } else {
+                    counters = lane->source->counters();
+                }
+            }
+            if (owed) {
+                std::shared_ptr<LiveSnapshot> again;
+                {
+                    const std::lock_guard lock(mutex_);
+                    lane->search_owed = false;
+                    if (lane->newest && lane->finder && !lane->recipe_changed)
+                        again = std::make_shared<LiveSnapshot>(*lane->newest);
+                }
+                if (!again) continue;
+                again->number = ++lane->number;
+                search(*lane, again->profile);
+                again->feature = lane->feature;
+                const std::lock_guard lock(mutex_);
+                lane->newest = std::move(again);
+                fresh = true;
+                continue;
             }
             const std::uint64_t frames =
                 frame->sequence > lane->last_sequence ? frame->sequence - lane->last_sequence : 1;
             lane->last_sequence = frame->sequence;
             lane->last_time_ns = frame->host_time_ns;
-            LiveRecipe recipe;
+            std::shared_ptr<const LiveRecipe> recipe;
             {
                 const std::lock_guard lock(mutex_);
                 recipe = lane->recipe;
                 if (lane->recipe_changed) {
                     lane->recipe_changed = false;
+                    lane->search_due = {};
+                    lane->feature.reset();
                     lane->finder.reset();
-                    if (recipe.feature)
-                        if (auto made = make_feature_finder(*recipe.feature)) lane->finder = std::move(*made);
+                    if (recipe->feature)
+                        if (auto made = make_feature_finder(*recipe->feature))
+                            lane->finder = std::move(*made);
                 }
             }
             auto snapshot = std::make_shared<LiveSnapshot>();
@@ -143,9 +180,18 @@ void LiveFeed::work(const std::stop_token& stop) {
             snapshot->number = ++lane->number;
             snapshot->frame = frame;
             snapshot->counters = counters;
-            snapshot->trouble = convert(*frame, recipe, lane->candidates, *snapshot);
-            if (snapshot->trouble.empty() && lane->finder)
-                snapshot->feature = lane->finder->find(snapshot->profile);
+            snapshot->trouble = convert(*frame, *recipe, lane->candidates, *snapshot);
+            if (!snapshot->trouble.empty()) {
+                lane->feature.reset();
+                lane->search_due = {};
+                lane->search_owed = false;
+            } else if (lane->finder) {
+                if (Clock::now() >= lane->search_due)
+                    search(*lane, snapshot->profile);
+                else
+                    lane->search_owed = true;
+                snapshot->feature = lane->feature;
+            }
             const auto now = Clock::now();
             if (lane->number > 1) {
                 const double seconds = std::chrono::duration<double>(now - lane->last_seen).count();

@@ -3,7 +3,8 @@
 // thread of its own. Whoever triggers the sensors (StationWorker when nothing runs, a run, a free-running
 // sensor) does not wait for it and is not waited for. A sensor whose snapshots nobody has asked for within
 // kShownFor is looked at twice a second only: filtering what no view shows would cost a core with eight
-// sensors.
+// sensors. Looking for the feature may take kSearchShare of a core per sensor: one that takes longer than the
+// frames leave is looked for in every so many of them, at least every kSearchAtLeast, and in the last one.
 
 #include <QObject>
 #include <atomic>
@@ -36,7 +37,7 @@ struct LiveSnapshot {
     std::string sensor_id;
     std::uint64_t number = 0;        // counts snapshots of the sensor
     Profile profile;                 // filtered; empty when the frame shows no stripe
-    std::optional<Feature> feature;  // of LiveRecipe::feature
+    std::optional<Feature> feature;  // of LiveRecipe::feature; of a frame shortly before where it takes long
     FramePtr frame;                  // raw image where the sensor gives one
     StripePeaks peaks;               // of the image
     double rate_hz = 0;              // frames of the source, by their numbers
@@ -44,7 +45,8 @@ struct LiveSnapshot {
     std::string trouble;  // why there is no profile; empty when there is one
 };
 
-inline constexpr std::chrono::milliseconds kShownFor{1000}, kHiddenPeriod{500};
+inline constexpr std::chrono::milliseconds kShownFor{1000}, kHiddenPeriod{500}, kSearchAtLeast{200};
+inline constexpr double kSearchShare = 0.04;
 
 class LiveFeed : public QObject {
     Q_OBJECT
@@ -69,6 +71,7 @@ class LiveFeed : public QObject {
   private:
     struct Lane;
     void work(const std::stop_token& stop);
+    static void search(Lane& lane, const Profile& profile);
     mutable std::mutex mutex_;  // sources, recipes, snapshots
     std::mutex use_mutex_;      // held while a source is asked
     std::map<std::string, std::shared_ptr<Lane>> lanes_;

@@ -18,6 +18,8 @@ Pose workobject_from_sensor(const Project& project, const Spot& spot) {
            (calibration ? calibration->flange_from_sensor : Pose::Identity());
 }
 
+static constexpr int kCaption_ms = 250;
+
 // Docks behind others in a tab group are visible to Qt; nothing of them is on the screen.
 static bool seen(const QWidget* view) {
     return view->isVisible() && !view->visibleRegion().isEmpty();
@@ -91,7 +93,14 @@ void ViewFeeder::live() {
                           .arg(std::lround(snapshot->rate_hz))
                           .arg(dropped);
     if (!snapshot->trouble.empty()) caption += "   " + QString::fromStdString(snapshot->trouble);
-    if (caption != caption_) {
+    // A rate that flickers by one is not worth laying the head of the plot out sixty times a second.
+    const bool same_but_rate = sensor == captioned_sensor_ && dropped == captioned_dropped_ &&
+                               snapshot->trouble == captioned_trouble_ && caption_age_.isValid();
+    if (caption != caption_ && !(same_but_rate && caption_age_.elapsed() < kCaption_ms)) {
+        caption_age_.start();
+        captioned_sensor_ = sensor;
+        captioned_dropped_ = dropped;
+        captioned_trouble_ = snapshot->trouble;
         caption_ = caption;
         views_.profile->set_caption(caption);
         views_.camera->set_caption(caption);

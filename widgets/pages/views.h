@@ -2,6 +2,7 @@
 // The views beside the pages, and what fills them whatever page is shown: the live feed into plot and camera,
 // the project into the scene.
 
+#include <QElapsedTimer>
 #include <QObject>
 #include <functional>
 #include <map>
@@ -56,6 +57,9 @@ class ViewFeeder : public QObject {
     std::uint64_t last_number_ = 0;
     std::string last_sensor_;
     QString caption_;
+    QElapsedTimer caption_age_;
+    std::string captioned_sensor_, captioned_trouble_;
+    std::uint64_t captioned_dropped_ = 0;
 };
 
 }  // namespace seamwright

@@ -1,7 +1,7 @@
 #pragma once
-// What the layers below refuse, as the person at the desk reads it: cause and cure in the language of the
-// window where the list in errors.cpp has them (what a day at the desk meets: files, connecting, teaching,
-// measuring, editing), in English where a device or a library speaks.
+// What the layers below refuse, as the person at the desk reads it: place, cause and cure in the language of
+// the window where the lists of error_texts.h have them (everything that a day at the desk meets), in English
+// where a library or another maker's device speaks. Callable from every thread.
 
 #include <QString>
 

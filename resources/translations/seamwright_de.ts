@@ -509,6 +509,3826 @@
         <source>give the spot another robot first</source>
         <translation>der Messstelle zuerst einen anderen Roboter geben</translation>
     </message>
+    <message>
+        <source>there are no profiles</source>
+        <translation>es gibt keine Profile</translation>
+    </message>
+    <message>
+        <source>record the pass from entry to exit</source>
+        <translation>Durchfahrt vom Einlauf bis zum Auslauf aufnehmen</translation>
+    </message>
+    <message>
+        <source>jitter, tolerance and window must be positive numbers</source>
+        <translation>Jitter, Toleranz und Fenster müssen positive Zahlen sein</translation>
+    </message>
+    <message>
+        <source>give millimetres above 0</source>
+        <translation>Millimeter über 0 angeben</translation>
+    </message>
+    <message>
+        <source>the reference point is not finite</source>
+        <translation>der Referenzpunkt ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>give x and z in millimetres</source>
+        <translation>x und z in Millimetern angeben</translation>
+    </message>
+    <message>
+        <source>x and z have different numbers of points</source>
+        <translation>x und z haben verschieden viele Punkte</translation>
+    </message>
+    <message>
+        <source>give one x and one z a point</source>
+        <translation>je Punkt ein x und ein z angeben</translation>
+    </message>
+    <message>
+        <source>a board of %1x%2 points is not possible</source>
+        <translation>eine Tafel mit %1x%2 Punkten ist nicht möglich</translation>
+    </message>
+    <message>
+        <source>give columns x rows between 3 and 200, e.g. 7x6</source>
+        <translation>Spalten x Zeilen zwischen 3 und 200 angeben, z. B. 7x6</translation>
+    </message>
+    <message>
+        <source>the pitch must be a positive number of millimetres</source>
+        <translation>die Teilung muss eine positive Zahl von Millimetern sein</translation>
+    </message>
+    <message>
+        <source>give e.g. 10</source>
+        <translation>z. B. 10 angeben</translation>
+    </message>
+    <message>
+        <source>a pitch of %1 mm looks like metres</source>
+        <translation>eine Teilung von %1 mm sieht nach Metern aus</translation>
+    </message>
+    <message>
+        <source>give the pitch in millimetres (0.01 m = 10 mm)</source>
+        <translation>Teilung in Millimetern angeben (0,01 m = 10 mm)</translation>
+    </message>
+    <message>
+        <source>a pitch beyond one metre looks like micrometres</source>
+        <translation>eine Teilung über einem Meter sieht nach Mikrometern aus</translation>
+    </message>
+    <message>
+        <source>give the pitch in millimetres</source>
+        <translation>Teilung in Millimetern angeben</translation>
+    </message>
+    <message>
+        <source>the marker must be smaller than its square</source>
+        <translation>die Marke muss kleiner sein als ihr Feld</translation>
+    </message>
+    <message>
+        <source>give e.g. 0.75 of the pitch</source>
+        <translation>z. B. 0.75 der Teilung angeben</translation>
+    </message>
+    <message>
+        <source>there is no camera %1</source>
+        <translation>es gibt keine Kamera %1</translation>
+    </message>
+    <message>
+        <source>cameras count from 0</source>
+        <translation>Kameras zählen ab 0</translation>
+    </message>
+    <message>
+        <source>the weight must be 0 or positive</source>
+        <translation>das Gewicht muss 0 oder positiv sein</translation>
+    </message>
+    <message>
+        <source>give 1 for an ordinary feature, 0 for none</source>
+        <translation>1 für ein gewöhnliches Merkmal, 0 für keines angeben</translation>
+    </message>
+    <message>
+        <source>the feature is not made of finite numbers</source>
+        <translation>das Merkmal besteht nicht aus endlichen Zahlen</translation>
+    </message>
+    <message>
+        <source>give it the weight 0</source>
+        <translation>ihm das Gewicht 0 geben</translation>
+    </message>
+    <message>
+        <source>fewer than three features were seen</source>
+        <translation>es wurden weniger als drei Merkmale gesehen</translation>
+    </message>
+    <message>
+        <source>give three or more</source>
+        <translation>drei oder mehr angeben</translation>
+    </message>
+    <message>
+        <source>a feature lies behind its camera at the start</source>
+        <translation>ein Merkmal liegt zu Beginn hinter seiner Kamera</translation>
+    </message>
+    <message>
+        <source>give a better start</source>
+        <translation>einen besseren Anfang angeben</translation>
+    </message>
+    <message>
+        <source>an image of %1x%2 pixels is not possible</source>
+        <translation>ein Bild von %1x%2 Pixeln ist nicht möglich</translation>
+    </message>
+    <message>
+        <source>give width and height of the images in pixels</source>
+        <translation>Breite und Höhe der Bilder in Pixeln angeben</translation>
+    </message>
+    <message>
+        <source>there is no view</source>
+        <translation>es gibt keine Ansicht</translation>
+    </message>
+    <message>
+        <source>give at least 3 views of the plate</source>
+        <translation>mindestens 3 Ansichten der Platte angeben</translation>
+    </message>
+    <message>
+        <source>%1 points but %2 pixels</source>
+        <translation>%1 Punkte, aber %2 Pixel</translation>
+    </message>
+    <message>
+        <source>give one pixel per point</source>
+        <translation>je Punkt ein Pixel angeben</translation>
+    </message>
+    <message>
+        <source>%1 points are too few for a pose, 4 are needed</source>
+        <translation>%1 Punkte sind zu wenige für eine Pose, 4 sind nötig</translation>
+    </message>
+    <message>
+        <source>leave the view out or give more points</source>
+        <translation>Ansicht weglassen oder mehr Punkte angeben</translation>
+    </message>
+    <message>
+        <source>point %1 is not a finite number of millimetres and pixels</source>
+        <translation>Punkt %1 besteht nicht aus endlichen Millimetern und Pixeln</translation>
+    </message>
+    <message>
+        <source>leave it out</source>
+        <translation>weglassen</translation>
+    </message>
+    <message>
+        <source>pixel %1 (%2, %3) lies outside the image of %4x%5</source>
+        <translation>Pixel %1 (%2, %3) liegt außerhalb des Bilds von %4x%5</translation>
+    </message>
+    <message>
+        <source>check the image size; all views must have the same</source>
+        <translation>Bildgröße prüfen; sie muss für alle Ansichten gleich sein</translation>
+    </message>
+    <message>
+        <source>the points lie on one line</source>
+        <translation>die Punkte liegen auf einer Geraden</translation>
+    </message>
+    <message>
+        <source>give points that span a plane</source>
+        <translation>Punkte angeben, die eine Ebene aufspannen</translation>
+    </message>
+    <message>
+        <source>the target is %1 mm across, which looks like metres</source>
+        <translation>das Ziel misst %1 mm, das sieht nach Metern aus</translation>
+    </message>
+    <message>
+        <source>give its points in millimetres</source>
+        <translation>seine Punkte in Millimetern angeben</translation>
+    </message>
+    <message>
+        <source>%1 different view(s) of a plate are too few</source>
+        <translation>%1 verschiedene Ansicht(en) einer Platte sind zu wenige</translation>
+    </message>
+    <message>
+        <source>give at least 3, better 10, views with the plate tilted in different directions</source>
+        <translation>mindestens 3, besser 10 Ansichten mit verschieden geneigter Platte angeben</translation>
+    </message>
+    <message>
+        <source>no camera explains any of the views</source>
+        <translation>keine Kamera erklärt auch nur eine der Ansichten</translation>
+    </message>
+    <message>
+        <source>check the order of the points and the size of the plate</source>
+        <translation>Reihenfolge der Punkte und Größe der Platte prüfen</translation>
+    </message>
+    <message>
+        <source>a pose needs at least 4 points, each with a pixel</source>
+        <translation>eine Pose braucht mindestens 4 Punkte, jeden mit einem Pixel</translation>
+    </message>
+    <message>
+        <source>give more points</source>
+        <translation>mehr Punkte angeben</translation>
+    </message>
+    <message>
+        <source>point %1 is not a finite number</source>
+        <translation>Punkt %1 ist keine endliche Zahl</translation>
+    </message>
+    <message>
+        <source>no pose of the target in front of the camera explains its points</source>
+        <translation>keine Pose des Ziels vor der Kamera erklärt seine Punkte</translation>
+    </message>
+    <message>
+        <source>check the order of the points and the camera</source>
+        <translation>Reihenfolge der Punkte und Kamera prüfen</translation>
+    </message>
+    <message>
+        <source>the sphere&apos;s radius is not a positive number</source>
+        <translation>der Radius der Kugel ist keine positive Zahl</translation>
+    </message>
+    <message>
+        <source>the profile has different numbers of x and z</source>
+        <translation>das Profil hat verschieden viele x und z</translation>
+    </message>
+    <message>
+        <source>the profile shows no circle of a sphere with radius %1 mm</source>
+        <translation>das Profil zeigt keinen Kreis einer Kugel mit Radius %1 mm</translation>
+    </message>
+    <message>
+        <source>let the laser cut the sphere</source>
+        <translation>den Laser die Kugel schneiden lassen</translation>
+    </message>
+    <message>
+        <source>there is no measurement</source>
+        <translation>es gibt keine Messung</translation>
+    </message>
+    <message>
+        <source>measure two or three spheres</source>
+        <translation>zwei oder drei Kugeln messen</translation>
+    </message>
+    <message>
+        <source>a value is not a finite number</source>
+        <translation>ein Wert ist keine endliche Zahl</translation>
+    </message>
+    <message>
+        <source>the covariance is not symmetric and positive definite</source>
+        <translation>die Kovarianz ist nicht symmetrisch und positiv definit</translation>
+    </message>
+    <message>
+        <source>the limits of the drift check are not positive</source>
+        <translation>die Grenzen der Driftprüfung sind nicht positiv</translation>
+    </message>
+    <message>
+        <source>give at least %1 different poses, better eight or more</source>
+        <translation>mindestens %1 verschiedene Posen angeben, besser acht oder mehr</translation>
+    </message>
+    <message>
+        <source>the pair is not made of finite numbers</source>
+        <translation>das Paar besteht nicht aus endlichen Zahlen</translation>
+    </message>
+    <message>
+        <source>%1 pairs are too few, at least 4 are needed</source>
+        <translation>%1 Paare sind zu wenige, mindestens 4 sind nötig</translation>
+    </message>
+    <message>
+        <source>place the body in 10 or more positions over the whole field of view</source>
+        <translation>den Körper an 10 oder mehr Stellen über das ganze Messfeld setzen</translation>
+    </message>
+    <message>
+        <source>the laser points span %1 mm, which looks like metres</source>
+        <translation>die Laserpunkte erstrecken sich über %1 mm, das sieht nach Metern aus</translation>
+    </message>
+    <message>
+        <source>give [width, height] in pixels</source>
+        <translation>[Breite, Höhe] in Pixeln angeben</translation>
+    </message>
+    <message>
+        <source>there is no line %1 to exclude</source>
+        <translation>es gibt keine Linie %1, die auszuschließen wäre</translation>
+    </message>
+    <message>
+        <source>lines count from 0</source>
+        <translation>Linien zählen ab 0</translation>
+    </message>
+    <message>
+        <source>%1 points are too few for a line</source>
+        <translation>%1 Punkte sind zu wenige für eine Linie</translation>
+    </message>
+    <message>
+        <source>give at least 5</source>
+        <translation>mindestens 5 angeben</translation>
+    </message>
+    <message>
+        <source>a point is not finite or lies outside the image</source>
+        <translation>ein Punkt ist nicht endlich oder liegt außerhalb des Bilds</translation>
+    </message>
+    <message>
+        <source>all points of the line are the same</source>
+        <translation>alle Punkte der Linie sind derselbe</translation>
+    </message>
+    <message>
+        <source>there is no line</source>
+        <translation>es gibt keine Linie</translation>
+    </message>
+    <message>
+        <source>give 5 or more lines over the whole image</source>
+        <translation>5 oder mehr Linien über das ganze Bild angeben</translation>
+    </message>
+    <message>
+        <source>the lines cannot be undistorted</source>
+        <translation>die Linien lassen sich nicht entzerren</translation>
+    </message>
+    <message>
+        <source>check the points</source>
+        <translation>Punkte prüfen</translation>
+    </message>
+    <message>
+        <source>a step of %1 px is not possible for %2x%3 pixels</source>
+        <translation>eine Schrittweite von %1 px ist für %2x%3 Pixel nicht möglich</translation>
+    </message>
+    <message>
+        <source>give e.g. 8</source>
+        <translation>z. B. 8 angeben</translation>
+    </message>
+    <message>
+        <source>%1 pairs are too many</source>
+        <translation>%1 Paare sind zu viele</translation>
+    </message>
+    <message>
+        <source>thin them out to 100000 or fewer</source>
+        <translation>auf 100000 oder weniger ausdünnen</translation>
+    </message>
+    <message>
+        <source>the pixel (%1, %2) lies outside the image of %3x%4</source>
+        <translation>das Pixel (%1, %2) liegt außerhalb des Bilds von %3x%4</translation>
+    </message>
+    <message>
+        <source>check the size and the order [u, v]</source>
+        <translation>Größe und Reihenfolge [u, v] prüfen</translation>
+    </message>
+    <message>
+        <source>%1 pairs are too few, at least 6 are needed</source>
+        <translation>%1 Paare sind zu wenige, mindestens 6 sind nötig</translation>
+    </message>
+    <message>
+        <source>measure 25 or more positions over the whole field of view</source>
+        <translation>25 oder mehr Stellen über das ganze Messfeld messen</translation>
+    </message>
+    <message>
+        <source>a coordinate is not a finite number</source>
+        <translation>eine Koordinate ist keine endliche Zahl</translation>
+    </message>
+    <message>
+        <source>a coordinate is beyond 100 m on the plate or 1 km in the world</source>
+        <translation>eine Koordinate liegt über 100 m auf der Platte oder 1 km in der Welt</translation>
+    </message>
+    <message>
+        <source>give millimetres</source>
+        <translation>Millimeter angeben</translation>
+    </message>
+    <message>
+        <source>sigma_mm is not a positive number</source>
+        <translation>sigma_mm ist keine positive Zahl</translation>
+    </message>
+    <message>
+        <source>%1 points are too few</source>
+        <translation>%1 Punkte sind zu wenige</translation>
+    </message>
+    <message>
+        <source>give at least three, better five or more</source>
+        <translation>mindestens drei, besser fünf oder mehr angeben</translation>
+    </message>
+    <message>
+        <source>the plate measures %1 only: its points look like metres, not millimetres</source>
+        <translation>die Platte misst nur %1: ihre Punkte sehen nach Metern aus, nicht nach Millimetern</translation>
+    </message>
+    <message>
+        <source>give millimetres (times 1000)</source>
+        <translation>Millimeter angeben (mal 1000)</translation>
+    </message>
+    <message>
+        <source>the world points are a thousandth of the plate&apos;s size: they look like metres, not millimetres</source>
+        <translation>die Weltpunkte sind ein Tausendstel der Plattengröße: sie sehen nach Metern aus, nicht nach Millimetern</translation>
+    </message>
+    <message>
+        <source>the plate points are a thousandth of the world&apos;s size: they look like metres, not millimetres</source>
+        <translation>die Plattenpunkte sind ein Tausendstel der Weltgröße: sie sehen nach Metern aus, nicht nach Millimetern</translation>
+    </message>
+    <message>
+        <source>&apos;%1&apos; and &apos;%2&apos; are the same point of the plate</source>
+        <translation>„%1“ und „%2“ sind derselbe Punkt der Platte</translation>
+    </message>
+    <message>
+        <source>give different points, or their mean once</source>
+        <translation>verschiedene Punkte angeben oder einmal ihr Mittel</translation>
+    </message>
+    <message>
+        <source>entry %1 has an empty id</source>
+        <translation>Eintrag %1 hat eine leere Kennung</translation>
+    </message>
+    <message>
+        <source>give every entry a name</source>
+        <translation>jedem Eintrag einen Namen geben</translation>
+    </message>
+    <message>
+        <source>the id &apos;%1&apos; occurs twice</source>
+        <translation>die Kennung „%1“ kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>give every entry a name of its own</source>
+        <translation>jedem Eintrag einen eigenen Namen geben</translation>
+    </message>
+    <message>
+        <source>there is no entry &apos;%1&apos; to exclude</source>
+        <translation>es gibt keinen Eintrag „%1“, der auszuschließen wäre</translation>
+    </message>
+    <message>
+        <source>name ids that occur in the data</source>
+        <translation>Kennungen nennen, die in den Daten vorkommen</translation>
+    </message>
+    <message>
+        <source>no pose is farther than %1 from its base: these look like metres, not millimetres</source>
+        <translation>keine Pose ist weiter als %1 von ihrer Basis: das sieht nach Metern aus, nicht nach Millimetern</translation>
+    </message>
+    <message>
+        <source>give translations in millimetres (times 1000)</source>
+        <translation>Verschiebungen in Millimetern angeben (mal 1000)</translation>
+    </message>
+    <message>
+        <source>the covariance holds a value that is not a finite number</source>
+        <translation>die Kovarianz enthält einen Wert, der keine endliche Zahl ist</translation>
+    </message>
+    <message>
+        <source>the covariance is not symmetric</source>
+        <translation>die Kovarianz ist nicht symmetrisch</translation>
+    </message>
+    <message>
+        <source>the covariance is not positive (a variance below zero or a correlation above one)</source>
+        <translation>die Kovarianz ist nicht positiv (eine Varianz unter null oder eine Korrelation über eins)</translation>
+    </message>
+    <message>
+        <source>the covariance couples a value that has no variance</source>
+        <translation>die Kovarianz verknüpft einen Wert, der keine Varianz hat</translation>
+    </message>
+    <message>
+        <source>there is no sensor</source>
+        <translation>es gibt keinen Sensor</translation>
+    </message>
+    <message>
+        <source>give at least one</source>
+        <translation>mindestens einen angeben</translation>
+    </message>
+    <message>
+        <source>the working point is not finite</source>
+        <translation>der Arbeitspunkt ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>every sensor is excluded</source>
+        <translation>alle Sensoren sind ausgeschlossen</translation>
+    </message>
+    <message>
+        <source>the frame id &apos;%1&apos; occurs twice</source>
+        <translation>die Bildkennung „%1“ kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>name frames apart</source>
+        <translation>Bilder verschieden benennen</translation>
+    </message>
+    <message>
+        <source>the images have different sizes (%1x%2 and %3x%4)</source>
+        <translation>die Bilder sind verschieden groß (%1x%2 und %3x%4)</translation>
+    </message>
+    <message>
+        <source>give frames of one camera at one resolution</source>
+        <translation>Bilder einer Kamera mit einer Auflösung angeben</translation>
+    </message>
+    <message>
+        <source>there is no frame &apos;%1&apos; to exclude</source>
+        <translation>es gibt kein Bild „%1“, das auszuschließen wäre</translation>
+    </message>
+    <message>
+        <source>name a frame of the set</source>
+        <translation>ein Bild der Reihe nennen</translation>
+    </message>
+    <message>
+        <source>there is no frame</source>
+        <translation>es gibt kein Bild</translation>
+    </message>
+    <message>
+        <source>give at least 5 frames that show the plate</source>
+        <translation>mindestens 5 Bilder angeben, die die Platte zeigen</translation>
+    </message>
+    <message>
+        <source>no board of %1x%2 points was found in any of %3 images</source>
+        <translation>in keinem von %3 Bildern wurde eine Tafel mit %1x%2 Punkten gefunden</translation>
+    </message>
+    <message>
+        <source>check the number of inner corners, the light and the focus</source>
+        <translation>Zahl der inneren Ecken, Licht und Schärfe prüfen</translation>
+    </message>
+    <message>
+        <source>only %1 different frames show the board, at least 3 are needed</source>
+        <translation>nur %1 verschiedene Bilder zeigen die Tafel, mindestens 3 sind nötig</translation>
+    </message>
+    <message>
+        <source>take 8 or more frames with the plate tilted in different directions</source>
+        <translation>8 oder mehr Bilder mit verschieden geneigter Platte aufnehmen</translation>
+    </message>
+    <message>
+        <source>no camera explains the boards</source>
+        <translation>keine Kamera erklärt die Tafeln</translation>
+    </message>
+    <message>
+        <source>check the number of inner corners</source>
+        <translation>Zahl der inneren Ecken prüfen</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s motion is %1 times the board&apos;s: metres were given where millimetres were meant</source>
+        <translation>die Bewegung des Roboters ist das %1fache der der Tafel: Meter statt Millimetern angegeben</translation>
+    </message>
+    <message>
+        <source>give both in millimetres</source>
+        <translation>beides in Millimetern angeben</translation>
+    </message>
+    <message>
+        <source>by the robot&apos;s motion the pitch of the board is %1 mm, not %2 mm</source>
+        <translation>nach der Bewegung des Roboters ist die Teilung der Tafel %1 mm, nicht %2 mm</translation>
+    </message>
+    <message>
+        <source>measure the board</source>
+        <translation>Tafel nachmessen</translation>
+    </message>
+    <message>
+        <source>give it in millimetres or null</source>
+        <translation>in Millimetern angeben oder null</translation>
+    </message>
+    <message>
+        <source>%1 poses are too few</source>
+        <translation>%1 Posen sind zu wenige</translation>
+    </message>
+    <message>
+        <source>give at least %1, better nine or more</source>
+        <translation>mindestens %1 angeben, besser neun oder mehr</translation>
+    </message>
+    <message>
+        <source>only %1 of the %2 poses differ from one another</source>
+        <translation>nur %1 der %2 Posen unterscheiden sich</translation>
+    </message>
+    <message>
+        <source>give at least %1 different poses, better nine or more</source>
+        <translation>mindestens %1 verschiedene Posen angeben, besser neun oder mehr</translation>
+    </message>
+    <message>
+        <source>no profile holds a single point</source>
+        <translation>kein Profil enthält auch nur einen Punkt</translation>
+    </message>
+    <message>
+        <source>all profile points lie within %1 in x: these look like metres, not millimetres</source>
+        <translation>alle Profilpunkte liegen innerhalb von %1 in x: das sieht nach Metern aus, nicht nach Millimetern</translation>
+    </message>
+    <message>
+        <source>give profile points in millimetres (times 1000)</source>
+        <translation>Profilpunkte in Millimetern angeben (mal 1000)</translation>
+    </message>
+    <message>
+        <source>a radius of %1 mm looks like metres</source>
+        <translation>ein Radius von %1 mm sieht nach Metern aus</translation>
+    </message>
+    <message>
+        <source>give it in millimetres (times 1000)</source>
+        <translation>in Millimetern angeben (mal 1000)</translation>
+    </message>
+    <message>
+        <source>the limits of the radius are empty</source>
+        <translation>die Grenzen des Radius sind leer</translation>
+    </message>
+    <message>
+        <source>give a minimum below the maximum</source>
+        <translation>ein Minimum unter dem Maximum angeben</translation>
+    </message>
+    <message>
+        <source>a range of x for the corner&apos;s lines is empty</source>
+        <translation>ein x-Bereich für die Geraden der Ecke ist leer</translation>
+    </message>
+    <message>
+        <source>give each range a beginning below its end</source>
+        <translation>jedem Bereich einen Anfang unter seinem Ende geben</translation>
+    </message>
+    <message>
+        <source>side_length_mm = %1 leaves no points outside of blend_mm = %2</source>
+        <translation>side_length_mm = %1 lässt keine Punkte außerhalb von blend_mm = %2</translation>
+    </message>
+    <message>
+        <source>give a longer side</source>
+        <translation>eine längere Seite angeben</translation>
+    </message>
+    <message>
+        <source>the window from x = %1 to %2 mm is empty</source>
+        <translation>das Fenster von x = %1 bis %2 mm ist leer</translation>
+    </message>
+    <message>
+        <source>the window from z = %1 to %2 mm is empty</source>
+        <translation>das Fenster von z = %1 bis %2 mm ist leer</translation>
+    </message>
+    <message>
+        <source>unknown kind of feature &quot;%1&quot;</source>
+        <translation>unbekannte Merkmalsart „%1“</translation>
+    </message>
+    <message>
+        <source>known are: %1</source>
+        <translation>bekannt sind: %1</translation>
+    </message>
+    <message>
+        <source>the window of gap and flush is empty</source>
+        <translation>das Fenster von Spalt und Bündigkeit ist leer</translation>
+    </message>
+    <message>
+        <source>a surface of %1 mm, %2 mm beside the edge, gives no line</source>
+        <translation>eine Fläche von %1 mm, %2 mm neben der Kante, ergibt keine Gerade</translation>
+    </message>
+    <message>
+        <source>give 0.1 to 1000 mm of surface and 0 to 100 mm beside the edge</source>
+        <translation>0.1 bis 1000 mm Fläche und 0 bis 100 mm neben der Kante angeben</translation>
+    </message>
+    <message>
+        <source>%1 points are no surface</source>
+        <translation>%1 Punkte sind keine Fläche</translation>
+    </message>
+    <message>
+        <source>give at least 4</source>
+        <translation>mindestens 4 angeben</translation>
+    </message>
+    <message>
+        <source>the template has unequal numbers of x and z</source>
+        <translation>die Vorlage hat verschieden viele x und z</translation>
+    </message>
+    <message>
+        <source>the template&apos;s reference point is not finite</source>
+        <translation>der Referenzpunkt der Vorlage ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>give two numbers in mm</source>
+        <translation>zwei Zahlen in mm angeben</translation>
+    </message>
+    <message>
+        <source>the template has fewer than 5 usable points</source>
+        <translation>die Vorlage hat weniger als 5 brauchbare Punkte</translation>
+    </message>
+    <message>
+        <source>take a longer piece of contour</source>
+        <translation>ein längeres Stück Kontur nehmen</translation>
+    </message>
+    <message>
+        <source>the template has no extent: its points do not form a contour</source>
+        <translation>die Vorlage hat keine Ausdehnung: ihre Punkte bilden keine Kontur</translation>
+    </message>
+    <message>
+        <source>take a piece of contour some millimetres long</source>
+        <translation>ein Stück Kontur von einigen Millimetern nehmen</translation>
+    </message>
+    <message>
+        <source>the template has no connected piece of contour</source>
+        <translation>die Vorlage enthält kein zusammenhängendes Stück Kontur</translation>
+    </message>
+    <message>
+        <source>take points in sensor order</source>
+        <translation>Punkte in der Reihenfolge des Sensors nehmen</translation>
+    </message>
+    <message>
+        <source>the noise is not a length</source>
+        <translation>das Rauschen ist keine Länge</translation>
+    </message>
+    <message>
+        <source>give 0 (estimate it) or a positive number</source>
+        <translation>0 (schätzen) oder eine positive Zahl angeben</translation>
+    </message>
+    <message>
+        <source>the acceptance band is out of range</source>
+        <translation>das Annahmeband liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give 1 to 20 standard deviations</source>
+        <translation>1 bis 20 Standardabweichungen angeben</translation>
+    </message>
+    <message>
+        <source>the lookahead is out of range</source>
+        <translation>die Vorausschau liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give 1 to 50 points</source>
+        <translation>1 bis 50 Punkte angeben</translation>
+    </message>
+    <message>
+        <source>the weight of the moving average is out of range</source>
+        <translation>das Gewicht des gleitenden Mittels liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give a number above 0, at most 1</source>
+        <translation>eine Zahl über 0, höchstens 1 angeben</translation>
+    </message>
+    <message>
+        <source>the initial sigma of the spacing is out of range</source>
+        <translation>das Anfangs-Sigma des Punktabstands liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give a number above 0, at most 2</source>
+        <translation>eine Zahl über 0, höchstens 2 angeben</translation>
+    </message>
+    <message>
+        <source>the shortest segment has no point</source>
+        <translation>das kürzeste Segment hat keinen Punkt</translation>
+    </message>
+    <message>
+        <source>give 1 or more</source>
+        <translation>1 oder mehr angeben</translation>
+    </message>
+    <message>
+        <source>the columns of the profile differ in length</source>
+        <translation>die Spalten des Profils sind verschieden lang</translation>
+    </message>
+    <message>
+        <source>give one x, one z and, if any, one intensity per point</source>
+        <translation>je Punkt ein x, ein z und gegebenenfalls eine Helligkeit angeben</translation>
+    </message>
+    <message>
+        <source>the image is empty</source>
+        <translation>das Bild ist leer</translation>
+    </message>
+    <message>
+        <source>give a frame with at least one pixel</source>
+        <translation>ein Bild mit mindestens einem Pixel angeben</translation>
+    </message>
+    <message>
+        <source>the bit depth %1 is not supported</source>
+        <translation>die Bittiefe %1 wird nicht unterstützt</translation>
+    </message>
+    <message>
+        <source>deliver 8, 10, 12 or 16 bit</source>
+        <translation>8, 10, 12 oder 16 Bit liefern</translation>
+    </message>
+    <message>
+        <source>a row of %1 bytes is shorter than %2 pixels</source>
+        <translation>eine Zeile von %1 Bytes ist kürzer als %2 Pixel</translation>
+    </message>
+    <message>
+        <source>give the distance between rows in bytes</source>
+        <translation>den Zeilenabstand in Bytes angeben</translation>
+    </message>
+    <message>
+        <source>the 16-bit rows begin at odd addresses</source>
+        <translation>die 16-Bit-Zeilen beginnen an ungeraden Adressen</translation>
+    </message>
+    <message>
+        <source>align the rows to 2 bytes</source>
+        <translation>Zeilen auf 2 Bytes ausrichten</translation>
+    </message>
+    <message>
+        <source>the number of peaks a line is out of range</source>
+        <translation>die Zahl der Maxima je Linie liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give 1 to 64</source>
+        <translation>1 bis 64 angeben</translation>
+    </message>
+    <message>
+        <source>the threshold is out of range</source>
+        <translation>die Schwelle liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give 0 (automatic) to %1 grey values</source>
+        <translation>0 (automatisch) bis %1 Grauwerte angeben</translation>
+    </message>
+    <message>
+        <source>the widths are out of range</source>
+        <translation>die Breiten liegen außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give 0 &lt;= min &lt;= max</source>
+        <translation>0 &lt;= min &lt;= max angeben</translation>
+    </message>
+    <message>
+        <source>the smoothing is out of range</source>
+        <translation>die Glättung liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>give 0.5 to 20</source>
+        <translation>0.5 bis 20 angeben</translation>
+    </message>
+    <message>
+        <source>the candidates have no lines or no room per line</source>
+        <translation>die Kandidaten haben keine Linien oder keinen Platz je Linie</translation>
+    </message>
+    <message>
+        <source>give lines &gt;= 0 and per_line &gt;= 1</source>
+        <translation>lines &gt;= 0 und per_line &gt;= 1 angeben</translation>
+    </message>
+    <message>
+        <source>the arrays of the candidates differ in length</source>
+        <translation>die Felder der Kandidaten sind verschieden lang</translation>
+    </message>
+    <message>
+        <source>give lines counts and lines * per_line values</source>
+        <translation>je Linie eine Anzahl und lines * per_line Werte angeben</translation>
+    </message>
+    <message>
+        <source>a line has more candidates than room</source>
+        <translation>eine Linie hat mehr Kandidaten als Platz</translation>
+    </message>
+    <message>
+        <source>raise per_line</source>
+        <translation>per_line erhöhen</translation>
+    </message>
+    <message>
+        <source>the spot id &quot;%1&quot; occurs twice</source>
+        <translation>die Kennung der Messstelle „%1“ kommt zweimal vor</translation>
+    </message>
+    <message>
+        <source>give every spot its own id</source>
+        <translation>jeder Messstelle eine eigene Kennung geben</translation>
+    </message>
+    <message>
+        <source>the pose %1</source>
+        <translation>die Pose %1</translation>
+    </message>
+    <message>
+        <source>give finite numbers in millimetres</source>
+        <translation>endliche Zahlen in Millimetern angeben</translation>
+    </message>
+    <message>
+        <source>the rotation is not orthonormal</source>
+        <translation>die Drehung ist nicht orthonormal</translation>
+    </message>
+    <message>
+        <source>give a rotation without scale, shear or mirroring</source>
+        <translation>eine Drehung ohne Maßstab, Scherung oder Spiegelung angeben</translation>
+    </message>
+    <message>
+        <source>the reference point %1</source>
+        <translation>der Referenzpunkt %1</translation>
+    </message>
+    <message>
+        <source>the measured point %1</source>
+        <translation>der gemessene Punkt %1</translation>
+    </message>
+    <message>
+        <source>leave spots that were not measured out of the list</source>
+        <translation>nicht gemessene Messstellen weglassen</translation>
+    </message>
+    <message>
+        <source>a weight is negative, not finite or above 1e6</source>
+        <translation>ein Gewicht ist negativ, nicht endlich oder über 1e6</translation>
+    </message>
+    <message>
+        <source>use 0 for an axis that is not observed, else 1 or a share of it</source>
+        <translation>0 für eine nicht beobachtete Achse angeben, sonst 1 oder einen Anteil davon</translation>
+    </message>
+    <message>
+        <source>a weight lies between 0 and 1e-6</source>
+        <translation>ein Gewicht liegt zwischen 0 und 1e-6</translation>
+    </message>
+    <message>
+        <source>use 0 for &quot;not observed&quot;</source>
+        <translation>0 für „nicht beobachtet“ angeben</translation>
+    </message>
+    <message>
+        <source>sigma is not a positive number of millimetres</source>
+        <translation>Sigma ist keine positive Zahl von Millimetern</translation>
+    </message>
+    <message>
+        <source>give the standard deviation of a measured coordinate, e.g. 0.05</source>
+        <translation>die Standardabweichung einer gemessenen Koordinate angeben, z. B. 0.05</translation>
+    </message>
+    <message>
+        <source>the covariance is not a symmetric, positive definite 2 x 2 matrix in mm^2</source>
+        <translation>die Kovarianz ist keine symmetrische, positiv definite 2-x-2-Matrix in mm^2</translation>
+    </message>
+    <message>
+        <source>give that of the measured x and z, or sigma_mm alone</source>
+        <translation>die der gemessenen x und z angeben oder nur sigma_mm</translation>
+    </message>
+    <message>
+        <source>a covariance is given, but the weights of x and z differ</source>
+        <translation>es ist eine Kovarianz angegeben, aber die Gewichte von x und z sind verschieden</translation>
+    </message>
+    <message>
+        <source>give both the same weight, or sigma_mm alone</source>
+        <translation>beiden dasselbe Gewicht geben oder nur sigma_mm angeben</translation>
+    </message>
+    <message>
+        <source>the contour curve is not finite or its range is reversed</source>
+        <translation>die Konturkurve ist nicht endlich oder ihr Bereich ist verkehrt herum</translation>
+    </message>
+    <message>
+        <source>learn it again from the profiles of the pass</source>
+        <translation>neu aus den Profilen der Durchfahrt lernen</translation>
+    </message>
+    <message>
+        <source>there are no spots</source>
+        <translation>es gibt keine Messstellen</translation>
+    </message>
+    <message>
+        <source>give at least three in different orientations</source>
+        <translation>mindestens drei in verschiedenen Richtungen angeben</translation>
+    </message>
+    <message>
+        <source>name at least one of x, y, z, a, b, c</source>
+        <translation>mindestens eines von x, y, z, a, b, c nennen</translation>
+    </message>
+    <message>
+        <source>a limit is negative or not a number</source>
+        <translation>eine Grenze ist negativ oder keine Zahl</translation>
+    </message>
+    <message>
+        <source>give limits of at least 0</source>
+        <translation>Grenzen von mindestens 0 angeben</translation>
+    </message>
+    <message>
+        <source>a sigma limit is not positive</source>
+        <translation>eine Sigma-Grenze ist nicht positiv</translation>
+    </message>
+    <message>
+        <source>give millimetres and degrees above 0</source>
+        <translation>Millimeter und Grad über 0 angeben</translation>
+    </message>
+    <message>
+        <source>the outlier significance is not between 0 and 1</source>
+        <translation>die Ausreißer-Signifikanz liegt nicht zwischen 0 und 1</translation>
+    </message>
+    <message>
+        <source>use e.g. 0.001</source>
+        <translation>z. B. 0.001 verwenden</translation>
+    </message>
+    <message>
+        <source>at least one iteration is needed</source>
+        <translation>mindestens eine Iteration ist nötig</translation>
+    </message>
+    <message>
+        <source>use e.g. 50</source>
+        <translation>z. B. 50 verwenden</translation>
+    </message>
+    <message>
+        <source>only %1 reference points of the pass are usable</source>
+        <translation>nur %1 Referenzpunkte der Durchfahrt sind brauchbar</translation>
+    </message>
+    <message>
+        <source>record at least 5 profiles between entry and exit</source>
+        <translation>mindestens 5 Profile zwischen Einlauf und Auslauf aufnehmen</translation>
+    </message>
+    <message>
+        <source>the pass covers only %1 mm of travel</source>
+        <translation>die Durchfahrt deckt nur %1 mm Weg ab</translation>
+    </message>
+    <message>
+        <source>record profiles over about 20 mm before and after the trigger position</source>
+        <translation>Profile über etwa 20 mm vor und nach der Triggerposition aufnehmen</translation>
+    </message>
+    <message>
+        <source>the reference points do not lie on a curve over the travel</source>
+        <translation>die Referenzpunkte liegen nicht auf einer Kurve über dem Weg</translation>
+    </message>
+    <message>
+        <source>record profiles at several different travels</source>
+        <translation>Profile an mehreren verschiedenen Wegstellen aufnehmen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is not an IP address</source>
+        <translation>„%1“ ist keine IP-Adresse</translation>
+    </message>
+    <message>
+        <source>give it as four numbers, 192.168.1.10</source>
+        <translation>als vier Zahlen angeben, 192.168.1.10</translation>
+    </message>
+    <message>
+        <source>it would be open to every computer of the network</source>
+        <translation>der Anschluss wäre für jeden Rechner im Netz offen</translation>
+    </message>
+    <message>
+        <source>name the controller&apos;s address in &quot;robot_address&quot;</source>
+        <translation>Adresse der Steuerung in &quot;robot_address&quot; nennen</translation>
+    </message>
+    <message>
+        <source>cannot bind: %1</source>
+        <translation>der Port kann nicht belegt werden: %1</translation>
+    </message>
+    <message>
+        <source>a datagram of %1 bytes is longer than %2</source>
+        <translation>ein Datagramm von %1 Bytes ist länger als %2</translation>
+    </message>
+    <message>
+        <source>there is no %1 &quot;%2&quot;</source>
+        <translation>%1 „%2“ gibt es nicht</translation>
+    </message>
+    <message>
+        <source>known are %1</source>
+        <translation>bekannt sind %1</translation>
+    </message>
+    <message>
+        <source>this robot has no start signal</source>
+        <translation>dieser Roboter hat kein Startsignal</translation>
+    </message>
+    <message>
+        <source>start each run by command</source>
+        <translation>jeden Lauf von Hand starten</translation>
+    </message>
+    <message>
+        <source>it has no trigger &quot;%1&quot;</source>
+        <translation>sie hat keinen Trigger „%1“</translation>
+    </message>
+    <message>
+        <source>it offers %1</source>
+        <translation>sie bietet %1</translation>
+    </message>
+    <message>
+        <source>its triggers cannot be switched off</source>
+        <translation>ihre Trigger lassen sich nicht abschalten</translation>
+    </message>
+    <message>
+        <source>the trigger &quot;%1&quot; cannot be set</source>
+        <translation>der Trigger „%1“ lässt sich nicht einstellen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no IPv4 address</source>
+        <translation>„%1“ ist keine IPv4-Adresse</translation>
+    </message>
+    <message>
+        <source>the camera there has serial number %1, not %2</source>
+        <translation>die Kamera dort hat die Seriennummer %1, nicht %2</translation>
+    </message>
+    <message>
+        <source>correct the serial number or the address</source>
+        <translation>Seriennummer oder Adresse berichtigen</translation>
+    </message>
+    <message>
+        <source>no network interface leads to it</source>
+        <translation>keine Netzwerkschnittstelle führt zu ihr</translation>
+    </message>
+    <message>
+        <source>it cannot be opened (%1)</source>
+        <translation>sie lässt sich nicht öffnen (%1)</translation>
+    </message>
+    <message>
+        <source>there is no camera with serial number %1</source>
+        <translation>es gibt keine Kamera mit der Seriennummer %1</translation>
+    </message>
+    <message>
+        <source>no camera answers: check power, cable and network</source>
+        <translation>keine Kamera antwortet: Versorgung, Kabel und Netz prüfen</translation>
+    </message>
+    <message>
+        <source>these answer: %1</source>
+        <translation>es antworten: %1</translation>
+    </message>
+    <message>
+        <source>it has no feature %1</source>
+        <translation>sie hat kein Merkmal %1</translation>
+    </message>
+    <message>
+        <source>the feature %1 cannot be set to %2</source>
+        <translation>das Merkmal %1 lässt sich nicht auf %2 setzen</translation>
+    </message>
+    <message>
+        <source>another program controls the camera</source>
+        <translation>ein anderes Programm steuert die Kamera</translation>
+    </message>
+    <message>
+        <source>close the other program, or wait until its heartbeat has run out</source>
+        <translation>das andere Programm schließen oder warten, bis sein Herzschlag abgelaufen ist</translation>
+    </message>
+    <message>
+        <source>none of its pixel formats can be read</source>
+        <translation>keines ihrer Pixelformate kann gelesen werden</translation>
+    </message>
+    <message>
+        <source>the pixel format &quot;%1&quot; is not offered or cannot be read</source>
+        <translation>das Pixelformat „%1“ wird nicht angeboten oder kann nicht gelesen werden</translation>
+    </message>
+    <message>
+        <source>these can be read: %1</source>
+        <translation>lesbar sind: %1</translation>
+    </message>
+    <message>
+        <source>the pixel format cannot be set</source>
+        <translation>das Pixelformat lässt sich nicht einstellen</translation>
+    </message>
+    <message>
+        <source>its pixel format &quot;%1&quot; cannot be read</source>
+        <translation>ihr Pixelformat „%1“ kann nicht gelesen werden</translation>
+    </message>
+    <message>
+        <source>set pixel_format to one of %1</source>
+        <translation>pixel_format auf eines von %1 setzen</translation>
+    </message>
+    <message>
+        <source>it offers no chunks</source>
+        <translation>sie bietet keine Chunks</translation>
+    </message>
+    <message>
+        <source>the chunks %1 cannot be switched on</source>
+        <translation>die Chunks %1 lassen sich nicht einschalten</translation>
+    </message>
+    <message>
+        <source>the packet size cannot be set</source>
+        <translation>die Paketgröße lässt sich nicht einstellen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no parameter of this camera</source>
+        <translation>„%1“ ist keine Einstellung dieser Kamera</translation>
+    </message>
+    <message>
+        <source>it has %1</source>
+        <translation>sie hat %1</translation>
+    </message>
+    <message>
+        <source>%1 cannot be set to %2</source>
+        <translation>%1 lässt sich nicht auf %2 setzen</translation>
+    </message>
+    <message>
+        <source>its distance unit &quot;%1&quot; is no length</source>
+        <translation>ihre Längeneinheit „%1“ ist keine Länge</translation>
+    </message>
+    <message>
+        <source>give the scale in the settings under &quot;range&quot;</source>
+        <translation>Maßstab in den Einstellungen unter &quot;range&quot; angeben</translation>
+    </message>
+    <message>
+        <source>%1 is out of range %2 to %3</source>
+        <translation>%1 liegt nicht im Bereich %2 bis %3</translation>
+    </message>
+    <message>
+        <source>must be a whole number</source>
+        <translation>muss eine ganze Zahl sein</translation>
+    </message>
+    <message>
+        <source>must hold texts</source>
+        <translation>muss Texte enthalten</translation>
+    </message>
+    <message>
+        <source>must not be 0</source>
+        <translation>darf nicht 0 sein</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; contradicts hardware_trigger</source>
+        <translation>„%1“ widerspricht hardware_trigger</translation>
+    </message>
+    <message>
+        <source>name the camera&apos;s input, e.g. &quot;Line1&quot;</source>
+        <translation>den Eingang der Kamera nennen, z. B. &quot;Line1&quot;</translation>
+    </message>
+    <message>
+        <source>must be a number, a text, true, false or null</source>
+        <translation>muss eine Zahl, ein Text, true, false oder null sein</translation>
+    </message>
+    <message>
+        <source>must be 0 or at least 200 bytes</source>
+        <translation>muss 0 oder mindestens 200 Bytes sein</translation>
+    </message>
+    <message>
+        <source>no camera is named</source>
+        <translation>es ist keine Kamera genannt</translation>
+    </message>
+    <message>
+        <source>give &quot;serial&quot;, &quot;address&quot; or &quot;id&quot;</source>
+        <translation>&quot;serial&quot;, &quot;address&quot; oder &quot;id&quot; angeben</translation>
+    </message>
+    <message>
+        <source>no answer in time: the camera is gone</source>
+        <translation>keine Antwort in der Zeit: die Kamera ist weg</translation>
+    </message>
+    <message>
+        <source>check its power and cable; it is connected again by itself</source>
+        <translation>Versorgung und Kabel prüfen; sie wird von selbst wieder verbunden</translation>
+    </message>
+    <message>
+        <source>set pixel_format</source>
+        <translation>pixel_format einstellen</translation>
+    </message>
+    <message>
+        <source>the size of its images cannot be read (%1)</source>
+        <translation>die Größe ihrer Bilder kann nicht gelesen werden (%1)</translation>
+    </message>
+    <message>
+        <source>no stream can be opened (%1)</source>
+        <translation>es lässt sich kein Datenstrom öffnen (%1)</translation>
+    </message>
+    <message>
+        <source>the acquisition cannot be started (%1)</source>
+        <translation>die Aufnahme lässt sich nicht starten (%1)</translation>
+    </message>
+    <message>
+        <source>it is not triggered by software but by &quot;%1&quot;</source>
+        <translation>sie wird nicht durch Software ausgelöst, sondern durch „%1“</translation>
+    </message>
+    <message>
+        <source>set trigger to &quot;software&quot;</source>
+        <translation>Trigger auf &quot;software&quot; stellen</translation>
+    </message>
+    <message>
+        <source>no answer in time: the trigger before this one has no frame yet</source>
+        <translation>keine Antwort in der Zeit: der vorige Trigger hat noch kein Bild</translation>
+    </message>
+    <message>
+        <source>the trigger was refused (%1)</source>
+        <translation>der Trigger wurde abgelehnt (%1)</translation>
+    </message>
+    <message>
+        <source>no image</source>
+        <translation>kein Bild</translation>
+    </message>
+    <message>
+        <source>the answer is shorter than its header</source>
+        <translation>die Antwort ist kürzer als ihr Kopf</translation>
+    </message>
+    <message>
+        <source>the answer is no DISCOVERY_ACK</source>
+        <translation>die Antwort ist kein DISCOVERY_ACK</translation>
+    </message>
+    <message>
+        <source>the answer is to another question</source>
+        <translation>die Antwort gehört zu einer anderen Frage</translation>
+    </message>
+    <message>
+        <source>the camera answers with error 0x%1</source>
+        <translation>die Kamera antwortet mit Fehler 0x%1</translation>
+    </message>
+    <message>
+        <source>the answer is cut short</source>
+        <translation>die Antwort ist abgeschnitten</translation>
+    </message>
+    <message>
+        <source>check its power and cable</source>
+        <translation>Versorgung und Kabel prüfen</translation>
+    </message>
+    <message>
+        <source>holds coordinates, no grey values</source>
+        <translation>enthält Koordinaten, keine Grauwerte</translation>
+    </message>
+    <message>
+        <source>an image of %1 x %2 pixels cannot be</source>
+        <translation>ein Bild von %1 x %2 Pixeln kann es nicht geben</translation>
+    </message>
+    <message>
+        <source>%1 x %2 pixels need %3 bytes, only %4 came</source>
+        <translation>%1 x %2 Pixel brauchen %3 Bytes, nur %4 kamen</translation>
+    </message>
+    <message>
+        <source>packed values are not read as a range image</source>
+        <translation>gepackte Werte werden nicht als Höhenbild gelesen</translation>
+    </message>
+    <message>
+        <source>set a pixel format of 8, 16 or 32 bit</source>
+        <translation>ein Pixelformat von 8, 16 oder 32 Bit einstellen</translation>
+    </message>
+    <message>
+        <source>there is no row %1 in %2 x %3 points</source>
+        <translation>es gibt keine Zeile %1 in %2 x %3 Punkten</translation>
+    </message>
+    <message>
+        <source>%1 x %2 points need %3 bytes, only %4 came</source>
+        <translation>%1 x %2 Punkte brauchen %3 Bytes, nur %4 kamen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no result of this format</source>
+        <translation>„%1“ ist kein Ergebnis dieses Formats</translation>
+    </message>
+    <message>
+        <source>give the driver the format that is set on the sensor&apos;s Output page</source>
+        <translation>dem Treiber das Format geben, das auf der Output-Seite des Sensors eingestellt ist</translation>
+    </message>
+    <message>
+        <source>delimiter and terminator must not be empty</source>
+        <translation>Trennzeichen und Endezeichen dürfen nicht leer sein</translation>
+    </message>
+    <message>
+        <source>the format holds an unknown placeholder</source>
+        <translation>das Format enthält einen unbekannten Platzhalter</translation>
+    </message>
+    <message>
+        <source>two placeholders of the format stand together</source>
+        <translation>zwei Platzhalter des Formats stehen zusammen</translation>
+    </message>
+    <message>
+        <source>put a delimiter between them, on the sensor too</source>
+        <translation>ein Trennzeichen dazwischen setzen, auch am Sensor</translation>
+    </message>
+    <message>
+        <source>a line of more than %1 bytes</source>
+        <translation>eine Zeile von mehr als %1 Bytes</translation>
+    </message>
+    <message>
+        <source>check the terminator set on the sensor&apos;s Output page</source>
+        <translation>das Endezeichen auf der Output-Seite des Sensors prüfen</translation>
+    </message>
+    <message>
+        <source>a %1 message of %2 bytes is too short for what it says</source>
+        <translation>eine %1-Nachricht von %2 Bytes ist zu kurz für das, was sie sagt</translation>
+    </message>
+    <message>
+        <source>a message says it has %1 bytes</source>
+        <translation>eine Nachricht sagt, sie habe %1 Bytes</translation>
+    </message>
+    <message>
+        <source>check that address and ports are those of a Gocator</source>
+        <translation>prüfen, ob Adresse und Ports die eines Gocators sind</translation>
+    </message>
+    <message>
+        <source>must be pairs of the ids of measurements, X and Z</source>
+        <translation>müssen Paare von Kennungen der Messungen sein, X und Z</translation>
+    </message>
+    <message>
+        <source>as in [[0, 1]]</source>
+        <translation>wie in [[0, 1]]</translation>
+    </message>
+    <message>
+        <source>the address of the sensor is missing</source>
+        <translation>die Adresse des Sensors fehlt</translation>
+    </message>
+    <message>
+        <source>as in &quot;192.168.1.10&quot;</source>
+        <translation>wie in &quot;192.168.1.10&quot;</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no output</source>
+        <translation>„%1“ ist keine Ausgabe</translation>
+    </message>
+    <message>
+        <source>profiles or ascii</source>
+        <translation>profiles oder ascii</translation>
+    </message>
+    <message>
+        <source>tell its serial number</source>
+        <translation>seine Seriennummer zu nennen</translation>
+    </message>
+    <message>
+        <source>the sensor misses its buddy</source>
+        <translation>dem Sensor fehlt sein Partner (Buddy)</translation>
+    </message>
+    <message>
+        <source>connect the second sensor, or remove it on the sensor&apos;s own page</source>
+        <translation>den zweiten Sensor anschließen oder auf der Seite des Sensors entfernen</translation>
+    </message>
+    <message>
+        <source>the sensor with the serial number %1 answers, not %2</source>
+        <translation>es antwortet der Sensor mit der Seriennummer %1, nicht %2</translation>
+    </message>
+    <message>
+        <source>check address and cabling</source>
+        <translation>Adresse und Verkabelung prüfen</translation>
+    </message>
+    <message>
+        <source>the sensor is fired by its digital input</source>
+        <translation>der Sensor wird durch seinen digitalen Eingang ausgelöst</translation>
+    </message>
+    <message>
+        <source>switch hardware_trigger off to fire it from here</source>
+        <translation>hardware_trigger abschalten, um ihn von hier auszulösen</translation>
+    </message>
+    <message>
+        <source>be triggered: is its job set to software triggers?</source>
+        <translation>auszulösen: steht sein Job auf Software-Trigger?</translation>
+    </message>
+    <message>
+        <source>the connection was closed by the other side: it does not answer</source>
+        <translation>die Verbindung wurde von der anderen Seite geschlossen: er antwortet nicht</translation>
+    </message>
+    <message>
+        <source>its job sends no profile of this source: tick it on its Output page</source>
+        <translation>sein Job sendet kein Profil dieser Quelle: auf seiner Output-Seite ankreuzen</translation>
+    </message>
+    <message>
+        <source>there is no parameter &quot;%1&quot;</source>
+        <translation>es gibt keine Einstellung „%1“</translation>
+    </message>
+    <message>
+        <source>set it on the sensor&apos;s own page</source>
+        <translation>auf der Seite des Sensors einstellen</translation>
+    </message>
+    <message>
+        <source>the sensor refuses to %1 (status %2)</source>
+        <translation>der Sensor weigert sich, %1 (Status %2)</translation>
+    </message>
+    <message>
+        <source>start its job</source>
+        <translation>seinen Job zu starten</translation>
+    </message>
+    <message>
+        <source>check power and cable</source>
+        <translation>Versorgung und Kabel prüfen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no name of a frame</source>
+        <translation>„%1“ ist kein Name eines Frames</translation>
+    </message>
+    <message>
+        <source>the frame is not finite or beyond 100 m</source>
+        <translation>der Frame ist nicht endlich oder über 100 m</translation>
+    </message>
+    <message>
+        <source>the pose is not finite</source>
+        <translation>die Pose ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>no answer in time: no robot has connected</source>
+        <translation>keine Antwort in der Zeit: kein Roboter hat sich verbunden</translation>
+    </message>
+    <message>
+        <source>start SEAMWRIGHT_SERVE on the controller</source>
+        <translation>SEAMWRIGHT_SERVE auf der Steuerung starten</translation>
+    </message>
+    <message>
+        <source>the controller reports: %1</source>
+        <translation>die Steuerung meldet: %1</translation>
+    </message>
+    <message>
+        <source>the controller refuses &quot;%1&quot;: %2</source>
+        <translation>die Steuerung lehnt „%1“ ab: %2</translation>
+    </message>
+    <message>
+        <source>another measuring program is loaded than the project&apos;s</source>
+        <translation>geladen ist ein anderes Messprogramm als das des Projekts</translation>
+    </message>
+    <message>
+        <source>load the one that `seamwright robot-program` writes</source>
+        <translation>das laden, das `seamwright robot-program` schreibt</translation>
+    </message>
+    <message>
+        <source>the measuring program runs already</source>
+        <translation>das Messprogramm läuft schon</translation>
+    </message>
+    <message>
+        <source>the controller did not keep the verdict</source>
+        <translation>die Steuerung hat das Ergebnis nicht behalten</translation>
+    </message>
+    <message>
+        <source>moving by command wants T1 with the program SEAMWRIGHT running</source>
+        <translation>Bewegen auf Befehl verlangt T1 und das laufende Programm SEAMWRIGHT</translation>
+    </message>
+    <message>
+        <source>the connection was closed by the other side, the next attempt is due soon</source>
+        <translation>die Verbindung wurde von der anderen Seite geschlossen, der nächste Versuch kommt gleich</translation>
+    </message>
+    <message>
+        <source>check that KUKAVARPROXY runs on the controller</source>
+        <translation>prüfen, ob KUKAVARPROXY auf der Steuerung läuft</translation>
+    </message>
+    <message>
+        <source>the controller refuses to read %1</source>
+        <translation>die Steuerung lehnt es ab, %1 zu lesen</translation>
+    </message>
+    <message>
+        <source>load seamwright.dat on the controller</source>
+        <translation>seamwright.dat auf die Steuerung laden</translation>
+    </message>
+    <message>
+        <source>the controller refuses to write %1</source>
+        <translation>die Steuerung lehnt es ab, %1 zu schreiben</translation>
+    </message>
+    <message>
+        <source>check the operating mode and that the variable is global</source>
+        <translation>Betriebsart prüfen, und ob die Variable global ist</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is not known</source>
+        <translation>„%1“ ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>relative corrections in the tool do not add up</source>
+        <translation>relative Korrekturen im Werkzeug lassen sich nicht aufaddieren</translation>
+    </message>
+    <message>
+        <source>use base, or absolute</source>
+        <translation>base oder absolute verwenden</translation>
+    </message>
+    <message>
+        <source>not a name that XML can hold</source>
+        <translation>kein Name, den XML halten kann</translation>
+    </message>
+    <message>
+        <source>not a whole number from 1 to 9</source>
+        <translation>keine ganze Zahl von 1 bis 9</translation>
+    </message>
+    <message>
+        <source>check that KUKAVARPROXY answers on this port</source>
+        <translation>prüfen, ob KUKAVARPROXY auf diesem Port antwortet</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no frame</source>
+        <translation>„%1“ ist kein Frame</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no number of a frame</source>
+        <translation>„%1“ ist keine Zahl eines Frames</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no position of a robot</source>
+        <translation>„%1“ ist keine Position eines Roboters</translation>
+    </message>
+    <message>
+        <source>the frame has no %1</source>
+        <translation>dem Frame fehlt %1</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is neither TRUE nor FALSE</source>
+        <translation>„%1“ ist weder TRUE noch FALSE</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no whole number</source>
+        <translation>„%1“ ist keine ganze Zahl</translation>
+    </message>
+    <message>
+        <source>is no XML: %1</source>
+        <translation>ist kein XML: %1</translation>
+    </message>
+    <message>
+        <source>the root is not %1</source>
+        <translation>die Wurzel ist nicht %1</translation>
+    </message>
+    <message>
+        <source>load Seamwright.xml of this version on the controller</source>
+        <translation>Seamwright.xml dieser Version auf die Steuerung laden</translation>
+    </message>
+    <message>
+        <source>lacks Kind, Name or Text</source>
+        <translation>es fehlt Kind, Name oder Text</translation>
+    </message>
+    <message>
+        <source>has no number Id</source>
+        <translation>hat keine Nummer Id</translation>
+    </message>
+    <message>
+        <source>has no number Pos/%1</source>
+        <translation>hat keine Zahl Pos/%1</translation>
+    </message>
+    <message>
+        <source>Pos/%1 = %2 is no position of a robot</source>
+        <translation>Pos/%1 = %2 ist keine Position eines Roboters</translation>
+    </message>
+    <message>
+        <source>is longer than %1 bytes</source>
+        <translation>ist länger als %1 Bytes</translation>
+    </message>
+    <message>
+        <source>check that Seamwright&apos;s module talks on this port</source>
+        <translation>prüfen, ob das Modul von Seamwright auf diesem Port spricht</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no operating mode</source>
+        <translation>„%1“ ist keine Betriebsart</translation>
+    </message>
+    <message>
+        <source>an RSI telegram is refused: %1</source>
+        <translation>ein RSI-Telegramm wird abgelehnt: %1</translation>
+    </message>
+    <message>
+        <source>it is too long</source>
+        <translation>es ist zu lang</translation>
+    </message>
+    <message>
+        <source>it has no IPOC of digits</source>
+        <translation>es hat keine IPOC aus Ziffern</translation>
+    </message>
+    <message>
+        <source>known are path, sensor</source>
+        <translation>bekannt sind path, sensor</translation>
+    </message>
+    <message>
+        <source>%1 is not in %2 to %3</source>
+        <translation>%1 liegt nicht in %2 bis %3</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no name for a spot on an ABB controller</source>
+        <translation>„%1“ ist kein Name für eine Messstelle auf einer ABB-Steuerung</translation>
+    </message>
+    <message>
+        <source>use at most 32 characters without blanks, quotes and backslashes</source>
+        <translation>höchstens 32 Zeichen ohne Leerzeichen, Anführungszeichen und Rückstriche verwenden</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no name of a work object</source>
+        <translation>„%1“ ist kein Name eines Werkobjekts</translation>
+    </message>
+    <message>
+        <source>use a letter, then letters, digits and _, at most 32 characters</source>
+        <translation>einen Buchstaben, dann Buchstaben, Ziffern und _ verwenden, höchstens 32 Zeichen</translation>
+    </message>
+    <message>
+        <source>the pose is not finite or beyond 1e5 mm</source>
+        <translation>die Pose ist nicht endlich oder über 1e5 mm</translation>
+    </message>
+    <message>
+        <source>the controller&apos;s module and this program must speak the same version</source>
+        <translation>das Modul der Steuerung und dieses Programm müssen dieselbe Version sprechen</translation>
+    </message>
+    <message>
+        <source>no answer in time: half a message came</source>
+        <translation>keine Antwort in der Zeit: eine halbe Nachricht kam</translation>
+    </message>
+    <message>
+        <source>the controller floods with events</source>
+        <translation>die Steuerung überschüttet mit Ereignissen</translation>
+    </message>
+    <message>
+        <source>an event &quot;%1&quot; without its number came</source>
+        <translation>ein Ereignis „%1“ ohne seine Nummer kam</translation>
+    </message>
+    <message>
+        <source>start signal %1 came after %2</source>
+        <translation>Startsignal %1 kam nach %2</translation>
+    </message>
+    <message>
+        <source>a start signal was lost; the part has to be started again</source>
+        <translation>ein Startsignal ging verloren; das Teil muss neu gestartet werden</translation>
+    </message>
+    <message>
+        <source>the program ended after %1 triggers, of which %2 came</source>
+        <translation>das Programm endete nach %1 Triggern, von denen %2 kamen</translation>
+    </message>
+    <message>
+        <source>a trigger was lost; the part has to be measured again</source>
+        <translation>ein Trigger ging verloren; das Teil muss neu gemessen werden</translation>
+    </message>
+    <message>
+        <source>the controller sent an unknown event &quot;%1&quot;</source>
+        <translation>die Steuerung sandte ein unbekanntes Ereignis „%1“</translation>
+    </message>
+    <message>
+        <source>trigger %1 came instead of %2</source>
+        <translation>Trigger %1 kam statt %2</translation>
+    </message>
+    <message>
+        <source>the controller refuses %1: %2</source>
+        <translation>die Steuerung lehnt %1 ab: %2</translation>
+    </message>
+    <message>
+        <source>an EGM message is refused: %1</source>
+        <translation>eine EGM-Nachricht wird abgelehnt: %1</translation>
+    </message>
+    <message>
+        <source>its type is not DATA</source>
+        <translation>ihre Art ist nicht DATA</translation>
+    </message>
+    <message>
+        <source>its type is not PATH_CORRECTION</source>
+        <translation>ihre Art ist nicht PATH_CORRECTION</translation>
+    </message>
+    <message>
+        <source>the correction is incomplete</source>
+        <translation>die Korrektur ist unvollständig</translation>
+    </message>
+    <message>
+        <source>the correction is not finite</source>
+        <translation>die Korrektur ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>a message of %1 bytes came, they have %2</source>
+        <translation>eine Nachricht von %1 Bytes kam, sie haben %2</translation>
+    </message>
+    <message>
+        <source>line %1 of a message is not 79 printable characters and a line feed</source>
+        <translation>Zeile %1 einer Nachricht sind nicht 79 druckbare Zeichen und ein Zeilenvorschub</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no message: number and word are missing</source>
+        <translation>„%1“ ist keine Nachricht: Nummer und Wort fehlen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no position of three finite numbers</source>
+        <translation>„%1“ ist keine Position aus drei endlichen Zahlen</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no quaternion of four finite numbers</source>
+        <translation>„%1“ ist kein Quaternion aus vier endlichen Zahlen</translation>
+    </message>
+    <message>
+        <source>%1 mm is no position of a robot</source>
+        <translation>%1 mm ist keine Position eines Roboters</translation>
+    </message>
+    <message>
+        <source>a robot reaches less than 1e5 mm</source>
+        <translation>ein Roboter reicht weniger als 1e5 mm weit</translation>
+    </message>
+    <message>
+        <source>start its program on the controller</source>
+        <translation>sein Programm auf der Steuerung starten</translation>
+    </message>
+    <message>
+        <source>check that the controller is on</source>
+        <translation>prüfen, ob die Steuerung eingeschaltet ist</translation>
+    </message>
+    <message>
+        <source>the module seamwright.script does not run</source>
+        <translation>das Modul seamwright.script läuft nicht</translation>
+    </message>
+    <message>
+        <source>load what `seamwright robot-program --brand ur` writes and start the program</source>
+        <translation>laden, was `seamwright robot-program --brand ur` schreibt, und das Programm starten</translation>
+    </message>
+    <message>
+        <source>the controller refuses: %1</source>
+        <translation>die Steuerung lehnt ab: %1</translation>
+    </message>
+    <message>
+        <source>%1 of %2 bytes is no answer of RTDE</source>
+        <translation>%1 von %2 Bytes ist keine RTDE-Antwort</translation>
+    </message>
+    <message>
+        <source>a package of %1 bytes is no answer of RTDE</source>
+        <translation>ein Paket von %1 Bytes ist keine RTDE-Antwort</translation>
+    </message>
+    <message>
+        <source>a package of type %1 is no answer of RTDE</source>
+        <translation>ein Paket der Art %1 ist keine RTDE-Antwort</translation>
+    </message>
+    <message>
+        <source>the answer names an unknown type &quot;%1&quot; for %2</source>
+        <translation>die Antwort nennt für %2 eine unbekannte Art „%1“</translation>
+    </message>
+    <message>
+        <source>the answer has %1 types for %2 variables</source>
+        <translation>die Antwort hat %1 Arten für %2 Variablen</translation>
+    </message>
+    <message>
+        <source>another program already writes %1</source>
+        <translation>ein anderes Programm schreibt schon %1</translation>
+    </message>
+    <message>
+        <source>end it, disable EtherNet/IP and PROFINET on those registers, or choose others by &quot;first_register&quot;</source>
+        <translation>es beenden, EtherNet/IP und PROFINET auf diesen Registern abschalten oder andere mit &quot;first_register&quot; wählen</translation>
+    </message>
+    <message>
+        <source>the controller does not know %1</source>
+        <translation>die Steuerung kennt %1 nicht</translation>
+    </message>
+    <message>
+        <source>its software is too old for this driver (PolyScope 3.4 and later)</source>
+        <translation>ihre Software ist zu alt für diesen Treiber (ab PolyScope 3.4)</translation>
+    </message>
+    <message>
+        <source>data of %1 bytes came for a recipe of %2</source>
+        <translation>Daten von %1 Bytes kamen für ein Rezept von %2</translation>
+    </message>
+    <message>
+        <source>data of another recipe came</source>
+        <translation>Daten eines anderen Rezepts kamen</translation>
+    </message>
+    <message>
+        <source>%1 is neither true nor false</source>
+        <translation>%1 ist weder wahr noch falsch</translation>
+    </message>
+    <message>
+        <source>%1 %2 is no position of a robot</source>
+        <translation>%1 %2 ist keine Position eines Roboters</translation>
+    </message>
+    <message>
+        <source>%1 is not within %2 and %3</source>
+        <translation>%1 liegt nicht zwischen %2 und %3</translation>
+    </message>
+    <message>
+        <source>the settings are no object</source>
+        <translation>die Einstellungen sind kein Objekt</translation>
+    </message>
+    <message>
+        <source>unknown field</source>
+        <translation>unbekanntes Feld</translation>
+    </message>
+    <message>
+        <source>leave it out or correct its name</source>
+        <translation>weglassen oder seinen Namen berichtigen</translation>
+    </message>
+    <message>
+        <source>not a whole number</source>
+        <translation>keine ganze Zahl</translation>
+    </message>
+    <message>
+        <source>not an object of frames</source>
+        <translation>kein Objekt von Frames</translation>
+    </message>
+    <message>
+        <source>a cyclic correction cannot measure</source>
+        <translation>eine zyklische Korrektur kann nicht messen</translation>
+    </message>
+    <message>
+        <source>name the driver that runs the measuring program</source>
+        <translation>den Treiber nennen, der das Messprogramm ausführt</translation>
+    </message>
+    <message>
+        <source>no measuring link can be opened here</source>
+        <translation>hier lässt sich keine Verbindung zum Messen öffnen</translation>
+    </message>
+    <message>
+        <source>the correction is withdrawn; look at the robot</source>
+        <translation>die Korrektur ist zurückgenommen; nach dem Roboter sehen</translation>
+    </message>
+    <message>
+        <source>no answer in time: no cyclic packet came to port %1</source>
+        <translation>keine Antwort in der Zeit: kein zyklisches Paket kam an Port %1</translation>
+    </message>
+    <message>
+        <source>check that the robot&apos;s program has switched the correction on</source>
+        <translation>prüfen, ob das Programm des Roboters die Korrektur eingeschaltet hat</translation>
+    </message>
+    <message>
+        <source>the cyclic packets carry no position</source>
+        <translation>die zyklischen Pakete tragen keine Position</translation>
+    </message>
+    <message>
+        <source>send the Cartesian actual position</source>
+        <translation>die kartesische Istposition senden</translation>
+    </message>
+    <message>
+        <source>a cyclic correction alone cannot measure</source>
+        <translation>eine zyklische Korrektur allein kann nicht messen</translation>
+    </message>
+    <message>
+        <source>name a measuring driver in the settings (&quot;measuring&quot;)</source>
+        <translation>einen messenden Treiber in den Einstellungen nennen (&quot;measuring&quot;)</translation>
+    </message>
+    <message>
+        <source>a cyclic correction alone has no triggers</source>
+        <translation>eine zyklische Korrektur allein hat keine Trigger</translation>
+    </message>
+    <message>
+        <source>no frame of this name is in the settings</source>
+        <translation>kein Frame dieses Namens steht in den Einstellungen</translation>
+    </message>
+    <message>
+        <source>add it under &quot;frames&quot;</source>
+        <translation>unter &quot;frames&quot; hinzufügen</translation>
+    </message>
+    <message>
+        <source>the frame is not finite</source>
+        <translation>der Frame ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>refused: the correction of %1 mm is beyond the limit of %2 mm</source>
+        <translation>abgelehnt: die Korrektur von %1 mm liegt über der Grenze von %2 mm</translation>
+    </message>
+    <message>
+        <source>refused: the correction of %1 degrees is beyond the limit of %2</source>
+        <translation>abgelehnt: die Korrektur von %1 Grad liegt über der Grenze von %2</translation>
+    </message>
+    <message>
+        <source>frames %1 and %2 want different corrections</source>
+        <translation>die Frames %1 und %2 wollen verschiedene Korrekturen</translation>
+    </message>
+    <message>
+        <source>the controller holds one at a time</source>
+        <translation>die Steuerung hält eine zur Zeit</translation>
+    </message>
+    <message>
+        <source>the controller does not take corrections: it is not running</source>
+        <translation>die Steuerung nimmt keine Korrekturen an: sie läuft nicht</translation>
+    </message>
+    <message>
+        <source>start its program</source>
+        <translation>ihr Programm starten</translation>
+    </message>
+    <message>
+        <source>no answer in time: the correction is not in force</source>
+        <translation>keine Antwort in der Zeit: die Korrektur ist nicht in Kraft</translation>
+    </message>
+    <message>
+        <source>no answer in time: the correction could not be led back to zero</source>
+        <translation>keine Antwort in der Zeit: die Korrektur konnte nicht auf null zurückgeführt werden</translation>
+    </message>
+    <message>
+        <source>stop the robot&apos;s program</source>
+        <translation>das Programm des Roboters anhalten</translation>
+    </message>
+    <message>
+        <source>known are exposure_us, gain_db, laser, scene</source>
+        <translation>bekannt sind exposure_us, gain_db, laser, scene</translation>
+    </message>
+    <message>
+        <source>a pose of the move is not finite</source>
+        <translation>eine Pose der Bewegung ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>sensor and robot of the simulated cell have different settings</source>
+        <translation>Sensor und Roboter der simulierten Zelle haben verschiedene Einstellungen</translation>
+    </message>
+    <message>
+        <source>give both the same settings</source>
+        <translation>beiden dieselben Einstellungen geben</translation>
+    </message>
+    <message>
+        <source>holds a vertex that is not finite</source>
+        <translation>enthält eine Ecke, die nicht endlich ist</translation>
+    </message>
+    <message>
+        <source>names a vertex that it does not hold</source>
+        <translation>nennt eine Ecke, die sie nicht enthält</translation>
+    </message>
+    <message>
+        <source>holds only degenerate triangles</source>
+        <translation>enthält nur entartete Dreiecke</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no unit of a mesh</source>
+        <translation>„%1“ ist keine Einheit eines Netzes</translation>
+    </message>
+    <message>
+        <source>give &quot;mm&quot; or &quot;m&quot;</source>
+        <translation>&quot;mm&quot; oder &quot;m&quot; angeben</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no scene</source>
+        <translation>„%1“ ist keine Szene</translation>
+    </message>
+    <message>
+        <source>give part, sphere, plate or triangle</source>
+        <translation>part, sphere, plate oder triangle angeben</translation>
+    </message>
+    <message>
+        <source>must be 8, 10, 12 or 16</source>
+        <translation>muss 8, 10, 12 oder 16 sein</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no mode</source>
+        <translation>„%1“ ist keine Betriebsart</translation>
+    </message>
+    <message>
+        <source>give e.g. &quot;automatic&quot;</source>
+        <translation>z. B. &quot;automatic&quot; angeben</translation>
+    </message>
+    <message>
+        <source>all %1 frame buffers are in use</source>
+        <translation>alle %1 Bildpuffer sind belegt</translation>
+    </message>
+    <message>
+        <source>let go of frames that are no longer needed</source>
+        <translation>nicht mehr benötigte Bilder freigeben</translation>
+    </message>
+    <message>
+        <source>a capture has no parameter &quot;%1&quot;</source>
+        <translation>eine Aufzeichnung hat keine Einstellung „%1“</translation>
+    </message>
+    <message>
+        <source>the recording has not reached a pose</source>
+        <translation>die Aufzeichnung hat noch keine Pose erreicht</translation>
+    </message>
+    <message>
+        <source>the recording has no frame &quot;%1&quot;</source>
+        <translation>die Aufzeichnung hat keinen Frame „%1“</translation>
+    </message>
+    <message>
+        <source>give it in the robot&apos;s settings under &quot;frames&quot;</source>
+        <translation>in den Einstellungen des Roboters unter &quot;frames&quot; angeben</translation>
+    </message>
+    <message>
+        <source>a recording has no controller to write the frame &quot;%1&quot; to</source>
+        <translation>eine Aufzeichnung hat keine Steuerung, auf die der Frame „%1“ zu schreiben wäre</translation>
+    </message>
+    <message>
+        <source>set &quot;accept_frames&quot;: true to keep frames in memory</source>
+        <translation>&quot;accept_frames&quot;: true setzen, um Frames im Speicher zu halten</translation>
+    </message>
+    <message>
+        <source>must be 0 (as fast as frames are asked for) or 0.001 to 1000</source>
+        <translation>muss 0 (so schnell, wie Bilder verlangt werden) oder 0.001 bis 1000 sein</translation>
+    </message>
+    <message>
+        <source>the devices of one capture disagree</source>
+        <translation>die Geräte einer Aufzeichnung widersprechen sich</translation>
+    </message>
+    <message>
+        <source>set them alike</source>
+        <translation>gleich einstellen</translation>
+    </message>
+    <message>
+        <source>must be a whole number, 0 or more</source>
+        <translation>muss eine ganze Zahl ab 0 sein</translation>
+    </message>
+    <message>
+        <source>must be 2 to 4096</source>
+        <translation>muss 2 bis 4096 sein</translation>
+    </message>
+    <message>
+        <source>the capture has no %1</source>
+        <translation>die Aufzeichnung hat keinen: %1</translation>
+    </message>
+    <message>
+        <source>the capture has several %1s</source>
+        <translation>die Aufzeichnung hat mehrere: %1</translation>
+    </message>
+    <message>
+        <source>name one in settings.source: %1</source>
+        <translation>einen in settings.source nennen: %1</translation>
+    </message>
+    <message>
+        <source>the capture has no %1 &quot;%2&quot;</source>
+        <translation>die Aufzeichnung hat nicht: %1 „%2“</translation>
+    </message>
+    <message>
+        <source>two sensors play the same source &quot;%1&quot;</source>
+        <translation>zwei Sensoren spielen dieselbe Quelle „%1“</translation>
+    </message>
+    <message>
+        <source>give each a source of its own</source>
+        <translation>jedem eine eigene Quelle geben</translation>
+    </message>
+    <message>
+        <source>the source &quot;%1&quot; has %2 frames only</source>
+        <translation>die Quelle „%1“ hat nur %2 Bilder</translation>
+    </message>
+    <message>
+        <source>two robots play one capture</source>
+        <translation>zwei Roboter spielen eine Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>the recording has no spot &quot;%1&quot;</source>
+        <translation>die Aufzeichnung hat keine Messstelle „%1“</translation>
+    </message>
+    <message>
+        <source>a measuring move names no spot</source>
+        <translation>eine Messbewegung nennt keine Messstelle</translation>
+    </message>
+    <message>
+        <source>must be the name of a file inside the folder</source>
+        <translation>muss der Name einer Datei im Ordner sein</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is neither a profile (.csv) nor an image</source>
+        <translation>„%1“ ist weder ein Profil (.csv) noch ein Bild</translation>
+    </message>
+    <message>
+        <source>is empty</source>
+        <translation>ist leer</translation>
+    </message>
+    <message>
+        <source>names two poses</source>
+        <translation>nennt zwei Posen</translation>
+    </message>
+    <message>
+        <source>give base_from_flange or pose_file</source>
+        <translation>base_from_flange oder pose_file angeben</translation>
+    </message>
+    <message>
+        <source>is not the header file,spot_id[,pose_file]</source>
+        <translation>ist nicht die Kopfzeile file,spot_id[,pose_file]</translation>
+    </message>
+    <message>
+        <source>has %1 fields where the header names %2</source>
+        <translation>hat %1 Felder, wo die Kopfzeile %2 nennt</translation>
+    </message>
+    <message>
+        <source>holds more than %1 frames</source>
+        <translation>enthält mehr als %1 Bilder</translation>
+    </message>
+    <message>
+        <source>cannot be listed (%1)</source>
+        <translation>kann nicht aufgelistet werden (%1)</translation>
+    </message>
+    <message>
+        <source>holds both profiles (.csv) and images</source>
+        <translation>enthält Profile (.csv) und Bilder</translation>
+    </message>
+    <message>
+        <source>say which with the setting &quot;kind&quot;: &quot;profiles&quot; or &quot;images&quot;, or write a frames.csv</source>
+        <translation>mit der Einstellung &quot;kind&quot;: &quot;profiles&quot; oder &quot;images&quot; sagen, welche, oder eine frames.csv schreiben</translation>
+    </message>
+    <message>
+        <source>is no folder</source>
+        <translation>ist kein Ordner</translation>
+    </message>
+    <message>
+        <source>give the folder that holds the recorded frames</source>
+        <translation>den Ordner mit den aufgezeichneten Bildern angeben</translation>
+    </message>
+    <message>
+        <source>holds no frames</source>
+        <translation>enthält keine Bilder</translation>
+    </message>
+    <message>
+        <source>profiles are .csv, images .png, .bmp, .tiff or .pgm</source>
+        <translation>Profile sind .csv, Bilder .png, .bmp, .tiff oder .pgm</translation>
+    </message>
+    <message>
+        <source>has no pose</source>
+        <translation>hat keine Pose</translation>
+    </message>
+    <message>
+        <source>put its pose beside it, e.g. pose0001.txt for frame0001.png</source>
+        <translation>seine Pose daneben legen, z. B. pose0001.txt zu frame0001.png</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no kind of frame</source>
+        <translation>„%1“ ist keine Bildart</translation>
+    </message>
+    <message>
+        <source>give &quot;profiles&quot; or &quot;images&quot;</source>
+        <translation>&quot;profiles&quot; oder &quot;images&quot; angeben</translation>
+    </message>
+    <message>
+        <source>sensor and robot of one recording disagree</source>
+        <translation>Sensor und Roboter einer Aufzeichnung widersprechen sich</translation>
+    </message>
+    <message>
+        <source>set both alike</source>
+        <translation>beide gleich einstellen</translation>
+    </message>
+    <message>
+        <source>the recording has no poses</source>
+        <translation>die Aufzeichnung hat keine Posen</translation>
+    </message>
+    <message>
+        <source>set require_poses to false</source>
+        <translation>require_poses auf false setzen</translation>
+    </message>
+    <message>
+        <source>the replay has no parameter &quot;%1&quot;</source>
+        <translation>die Wiedergabe hat keine Einstellung „%1“</translation>
+    </message>
+    <message>
+        <source>must be 0 to 10000</source>
+        <translation>muss 0 bis 10000 sein</translation>
+    </message>
+    <message>
+        <source>must be 0 (the file&apos;s own), 8, 10, 12 or 16</source>
+        <translation>muss 0 (das der Datei), 8, 10, 12 oder 16 sein</translation>
+    </message>
+    <message>
+        <source>the capture is damaged (%1)</source>
+        <translation>die Aufzeichnung ist beschädigt (%1)</translation>
+    </message>
+    <message>
+        <source>record it again, or take a copy from the backup</source>
+        <translation>neu aufzeichnen oder eine Kopie aus der Sicherung nehmen</translation>
+    </message>
+    <message>
+        <source>every source of a capture needs a name of its own</source>
+        <translation>jede Quelle einer Aufzeichnung braucht einen eigenen Namen</translation>
+    </message>
+    <message>
+        <source>this is a project, no recorded capture</source>
+        <translation>dies ist ein Projekt, keine Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>choose the file that `seamwright record` wrote</source>
+        <translation>die Datei wählen, die `seamwright record` geschrieben hat</translation>
+    </message>
+    <message>
+        <source>this is another program&apos;s database, no capture</source>
+        <translation>dies ist die Datenbank eines anderen Programms, keine Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>the capture has version %1, this program knows up to %2</source>
+        <translation>die Aufzeichnung hat Version %1, dieses Programm kennt bis %2</translation>
+    </message>
+    <message>
+        <source>open it with a newer Seamwright</source>
+        <translation>mit einem neueren Seamwright öffnen</translation>
+    </message>
+    <message>
+        <source>the capture has no valid version</source>
+        <translation>die Aufzeichnung hat keine gültige Version</translation>
+    </message>
+    <message>
+        <source>the block of frames is gone</source>
+        <translation>der Block mit Bildern ist weg</translation>
+    </message>
+    <message>
+        <source>the block of frames is not whole</source>
+        <translation>der Block mit Bildern ist nicht ganz</translation>
+    </message>
+    <message>
+        <source>the block of frames cannot be unpacked: the file is damaged</source>
+        <translation>der Block mit Bildern lässt sich nicht auspacken: die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the block holds another number of frames than it says</source>
+        <translation>der Block enthält eine andere Zahl von Bildern, als er sagt</translation>
+    </message>
+    <message>
+        <source>there is no frame %1</source>
+        <translation>es gibt kein Bild %1</translation>
+    </message>
+    <message>
+        <source>this is no block of profiles</source>
+        <translation>dies ist kein Block von Profilen</translation>
+    </message>
+    <message>
+        <source>the block of profiles has version %1, known is %2</source>
+        <translation>der Block von Profilen hat Version %1, bekannt ist %2</translation>
+    </message>
+    <message>
+        <source>this is another kind of block</source>
+        <translation>dies ist ein Block anderer Art</translation>
+    </message>
+    <message>
+        <source>the checksum of the profiles is wrong: the file is damaged</source>
+        <translation>die Prüfsumme der Profile stimmt nicht: die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the profile is not whole</source>
+        <translation>das Profil ist nicht ganz</translation>
+    </message>
+    <message>
+        <source>the capture does not fit the file&apos;s format (columns of different length, or too long)</source>
+        <translation>die Aufnahme passt nicht in das Dateiformat (Spalten verschiedener Länge oder zu lang)</translation>
+    </message>
+    <message>
+        <source>the block of profiles is not whole</source>
+        <translation>der Block von Profilen ist nicht ganz</translation>
+    </message>
+    <message>
+        <source>the frame does not fit the file&apos;s format (columns of different length, or too long)</source>
+        <translation>das Bild passt nicht in das Dateiformat (Spalten verschiedener Länge oder zu lang)</translation>
+    </message>
+    <message>
+        <source>must be 4 to 65536 MiB</source>
+        <translation>muss 4 bis 65536 MiB sein</translation>
+    </message>
+    <message>
+        <source>must be 10 to 10000 ms</source>
+        <translation>muss 10 bis 10000 ms sein</translation>
+    </message>
+    <message>
+        <source>this is no %1</source>
+        <translation>dies ist nicht: %1</translation>
+    </message>
+    <message>
+        <source>the %1 is damaged</source>
+        <translation>%1: beschädigt</translation>
+    </message>
+    <message>
+        <source>take the last good copy from the backup</source>
+        <translation>die letzte gute Kopie aus der Sicherung nehmen</translation>
+    </message>
+    <message>
+        <source>another program is writing to the %1</source>
+        <translation>%1: ein anderes Programm schreibt gerade hinein</translation>
+    </message>
+    <message>
+        <source>close it there and try again</source>
+        <translation>dort schließen und noch einmal versuchen</translation>
+    </message>
+    <message>
+        <source>the %1 cannot be written</source>
+        <translation>%1: kann nicht geschrieben werden</translation>
+    </message>
+    <message>
+        <source>check its permissions</source>
+        <translation>seine Zugriffsrechte prüfen</translation>
+    </message>
+    <message>
+        <source>the %1 cannot be opened</source>
+        <translation>%1: kann nicht geöffnet werden</translation>
+    </message>
+    <message>
+        <source>check name and permissions</source>
+        <translation>Name und Zugriffsrechte prüfen</translation>
+    </message>
+    <message>
+        <source>the disk is full</source>
+        <translation>die Festplatte ist voll</translation>
+    </message>
+    <message>
+        <source>make room and try again</source>
+        <translation>Platz schaffen und noch einmal versuchen</translation>
+    </message>
+    <message>
+        <source>the %1 needs more memory than there is</source>
+        <translation>%1: braucht mehr Speicher, als da ist</translation>
+    </message>
+    <message>
+        <source>a value is larger than a %1 holds (512 MiB)</source>
+        <translation>ein Wert ist größer, als hineinpasst (512 MiB): %1</translation>
+    </message>
+    <message>
+        <source>the %1 failed (%2)</source>
+        <translation>%1: fehlgeschlagen (%2)</translation>
+    </message>
+    <message>
+        <source>a column of the %1 holds a value of the wrong type</source>
+        <translation>%1: eine Spalte enthält einen Wert falscher Art</translation>
+    </message>
+    <message>
+        <source>a value is missing in the %1</source>
+        <translation>%1: ein Wert fehlt</translation>
+    </message>
+    <message>
+        <source>the %1 is cut short</source>
+        <translation>%1: abgeschnitten</translation>
+    </message>
+    <message>
+        <source>cannot be opened (%1)</source>
+        <translation>kann nicht geöffnet werden (%1)</translation>
+    </message>
+    <message>
+        <source>is a folder, not a file</source>
+        <translation>ist ein Ordner, keine Datei</translation>
+    </message>
+    <message>
+        <source>is longer than %1 MiB</source>
+        <translation>ist länger als %1 MiB</translation>
+    </message>
+    <message>
+        <source>names no file</source>
+        <translation>nennt keine Datei</translation>
+    </message>
+    <message>
+        <source>give the path of a file</source>
+        <translation>den Pfad einer Datei angeben</translation>
+    </message>
+    <message>
+        <source>cannot be written (%1)</source>
+        <translation>kann nicht geschrieben werden (%1)</translation>
+    </message>
+    <message>
+        <source>check that the folder exists and is writable</source>
+        <translation>prüfen, ob es den Ordner gibt und er beschreibbar ist</translation>
+    </message>
+    <message>
+        <source>a bit depth of %1 is not supported</source>
+        <translation>eine Bittiefe von %1 wird nicht unterstützt</translation>
+    </message>
+    <message>
+        <source>give 8, 10, 12 or 16</source>
+        <translation>8, 10, 12 oder 16 angeben</translation>
+    </message>
+    <message>
+        <source>the image file is empty</source>
+        <translation>die Bilddatei ist leer</translation>
+    </message>
+    <message>
+        <source>is no readable image</source>
+        <translation>ist kein lesbares Bild</translation>
+    </message>
+    <message>
+        <source>give PNG, BMP, TIFF or PGM</source>
+        <translation>PNG, BMP, TIFF oder PGM angeben</translation>
+    </message>
+    <message>
+        <source>the JPEG image is truncated</source>
+        <translation>das JPEG-Bild ist abgeschnitten</translation>
+    </message>
+    <message>
+        <source>the image has neither 8 nor 16 bit</source>
+        <translation>das Bild hat weder 8 noch 16 Bit</translation>
+    </message>
+    <message>
+        <source>the image is too large</source>
+        <translation>das Bild ist zu groß</translation>
+    </message>
+    <message>
+        <source>the image is neither grey nor colour</source>
+        <translation>das Bild ist weder grau noch farbig</translation>
+    </message>
+    <message>
+        <source>the image does not have %1 bit</source>
+        <translation>das Bild hat nicht %1 Bit</translation>
+    </message>
+    <message>
+        <source>the value %1 does not fit %2 bit</source>
+        <translation>der Wert %1 passt nicht in %2 Bit</translation>
+    </message>
+    <message>
+        <source>there is no image to write</source>
+        <translation>es gibt kein Bild zu schreiben</translation>
+    </message>
+    <message>
+        <source>the image cannot be encoded</source>
+        <translation>das Bild lässt sich nicht kodieren</translation>
+    </message>
+    <message>
+        <source>name it .png, .tiff or .pgm</source>
+        <translation>es .png, .tiff oder .pgm nennen</translation>
+    </message>
+    <message>
+        <source>the JSON is nested deeper than %1</source>
+        <translation>das JSON ist tiefer geschachtelt als %1</translation>
+    </message>
+    <message>
+        <source>the key &quot;%1&quot; is given twice in one object</source>
+        <translation>der Schlüssel „%1“ steht zweimal in einem Objekt</translation>
+    </message>
+    <message>
+        <source>is no JSON (%1)</source>
+        <translation>ist kein JSON (%1)</translation>
+    </message>
+    <message>
+        <source>must be an object, not %1</source>
+        <translation>muss ein Objekt sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>is not a known field</source>
+        <translation>ist kein bekanntes Feld</translation>
+    </message>
+    <message>
+        <source>must be a number, not %1</source>
+        <translation>muss eine Zahl sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>must be finite</source>
+        <translation>muss endlich sein</translation>
+    </message>
+    <message>
+        <source>is missing</source>
+        <translation>fehlt</translation>
+    </message>
+    <message>
+        <source>must be an array, not %1</source>
+        <translation>muss eine Liste sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>must be a text, not %1</source>
+        <translation>muss ein Text sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>must be true or false, not %1</source>
+        <translation>muss true oder false sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>must be an array of numbers, not %1</source>
+        <translation>muss eine Liste von Zahlen sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>has %1 entries instead of %2</source>
+        <translation>hat %1 Einträge statt %2</translation>
+    </message>
+    <message>
+        <source>a table of %1x%2 nodes is not possible</source>
+        <translation>eine Tabelle mit %1x%2 Knoten ist nicht möglich</translation>
+    </message>
+    <message>
+        <source>2x2 to 16 million nodes in all</source>
+        <translation>2x2 bis zu 16 Millionen Knoten insgesamt</translation>
+    </message>
+    <message>
+        <source>the table&apos;s grid is not made of finite numbers with steps above 0</source>
+        <translation>das Gitter der Tabelle besteht nicht aus endlichen Zahlen mit Schritten über 0</translation>
+    </message>
+    <message>
+        <source>the table holds %1 and %2 numbers for %3 nodes</source>
+        <translation>die Tabelle enthält %1 und %2 Zahlen für %3 Knoten</translation>
+    </message>
+    <message>
+        <source>node %1 is infinite</source>
+        <translation>Knoten %1 ist unendlich</translation>
+    </message>
+    <message>
+        <source>node %1 is half a hole: only one of x and z is a number</source>
+        <translation>Knoten %1 ist ein halbes Loch: nur eines von x und z ist eine Zahl</translation>
+    </message>
+    <message>
+        <source>this is no look-up table: its first line is missing</source>
+        <translation>dies ist keine Nachschlagetabelle: ihre erste Zeile fehlt</translation>
+    </message>
+    <message>
+        <source>give a file that calibrate lut has written</source>
+        <translation>eine Datei angeben, die calibrate lut geschrieben hat</translation>
+    </message>
+    <message>
+        <source>this is no look-up table but &apos;%1&apos;</source>
+        <translation>dies ist keine Nachschlagetabelle, sondern „%1“</translation>
+    </message>
+    <message>
+        <source>version %1 of the look-up table is not known</source>
+        <translation>Version %1 der Nachschlagetabelle ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>version 1 can be read</source>
+        <translation>Version 1 kann gelesen werden</translation>
+    </message>
+    <message>
+        <source>the table has more than 16 million nodes</source>
+        <translation>die Tabelle hat mehr als 16 Millionen Knoten</translation>
+    </message>
+    <message>
+        <source>the file has %1 bytes instead of %2</source>
+        <translation>die Datei hat %1 Bytes statt %2</translation>
+    </message>
+    <message>
+        <source>it was cut off or added to: take the original</source>
+        <translation>sie wurde abgeschnitten oder verlängert: das Original nehmen</translation>
+    </message>
+    <message>
+        <source>the check sum does not fit: the file is damaged</source>
+        <translation>die Prüfsumme stimmt nicht: die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>take the original</source>
+        <translation>das Original nehmen</translation>
+    </message>
+    <message>
+        <source>the text is UTF-16</source>
+        <translation>der Text ist UTF-16</translation>
+    </message>
+    <message>
+        <source>save it as UTF-8 or plain ASCII</source>
+        <translation>als UTF-8 oder reines ASCII speichern</translation>
+    </message>
+    <message>
+        <source>the first line must be %1</source>
+        <translation>die erste Zeile muss %1 sein</translation>
+    </message>
+    <message>
+        <source>the columns are separated by %1</source>
+        <translation>die Spalten sind getrennt durch %1</translation>
+    </message>
+    <message>
+        <source>separate them by commas and write decimal points, not decimal commas</source>
+        <translation>durch Kommas trennen und Dezimalpunkte schreiben, keine Dezimalkommas</translation>
+    </message>
+    <message>
+        <source>the column %1 is named twice</source>
+        <translation>die Spalte %1 ist zweimal genannt</translation>
+    </message>
+    <message>
+        <source>the header &quot;%1&quot; has no column %2</source>
+        <translation>die Kopfzeile „%1“ hat keine Spalte %2</translation>
+    </message>
+    <message>
+        <source>the line is blank</source>
+        <translation>die Zeile ist leer</translation>
+    </message>
+    <message>
+        <source>a point without return is a line with empty fields</source>
+        <translation>ein Punkt ohne Rückgabe ist eine Zeile mit leeren Feldern</translation>
+    </message>
+    <message>
+        <source>%1 = &quot;%2&quot; does not fit a number</source>
+        <translation>%1 = „%2“ passt in keine Zahl</translation>
+    </message>
+    <message>
+        <source>%1 = &quot;%2&quot; is no number</source>
+        <translation>%1 = „%2“ ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>separate the columns by commas and write decimal points</source>
+        <translation>Spalten durch Kommas trennen und Dezimalpunkte schreiben</translation>
+    </message>
+    <message>
+        <source>%1 is infinite</source>
+        <translation>%1 ist unendlich</translation>
+    </message>
+    <message>
+        <source>%1 = %2 mm is beyond 1 km</source>
+        <translation>%1 = %2 mm liegt über 1 km</translation>
+    </message>
+    <message>
+        <source>has %1 rows instead of 4</source>
+        <translation>hat %1 Zeilen statt 4</translation>
+    </message>
+    <message>
+        <source>an angle exceeds 720</source>
+        <translation>ein Winkel übersteigt 720</translation>
+    </message>
+    <message>
+        <source>give degrees</source>
+        <translation>Grad angeben</translation>
+    </message>
+    <message>
+        <source>a number is not finite</source>
+        <translation>eine Zahl ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>the translation is %1 m long, but this format is in metres</source>
+        <translation>die Verschiebung ist %1 m lang, dieses Format ist aber in Metern</translation>
+    </message>
+    <message>
+        <source>convert millimetres to metres or use a .json pose file</source>
+        <translation>Millimeter in Meter umrechnen oder eine .json-Posendatei verwenden</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no number</source>
+        <translation>„%1“ ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>mixes several forms of a pose</source>
+        <translation>mischt mehrere Schreibweisen einer Pose</translation>
+    </message>
+    <message>
+        <source>give xyz with one of abc, quat_wxyz, rotvec_rad, or matrix alone</source>
+        <translation>xyz mit einem von abc, quat_wxyz, rotvec_rad angeben, oder nur matrix</translation>
+    </message>
+    <message>
+        <source>has no rotation</source>
+        <translation>hat keine Drehung</translation>
+    </message>
+    <message>
+        <source>has no translation</source>
+        <translation>hat keine Verschiebung</translation>
+    </message>
+    <message>
+        <source>the translation exceeds 100 m</source>
+        <translation>die Verschiebung übersteigt 100 m</translation>
+    </message>
+    <message>
+        <source>xyz and abc contradict matrix</source>
+        <translation>xyz und abc widersprechen matrix</translation>
+    </message>
+    <message>
+        <source>give one form only</source>
+        <translation>nur eine Schreibweise angeben</translation>
+    </message>
+    <message>
+        <source>the rotation vector is longer than one turn</source>
+        <translation>der Drehvektor ist länger als eine Umdrehung</translation>
+    </message>
+    <message>
+        <source>give radian</source>
+        <translation>Radiant angeben</translation>
+    </message>
+    <message>
+        <source>holds more than 7 numbers</source>
+        <translation>enthält mehr als 7 Zahlen</translation>
+    </message>
+    <message>
+        <source>write ((x, y, z), (qx, qy, qz, qw))</source>
+        <translation>((x, y, z), (qx, qy, qz, qw)) schreiben</translation>
+    </message>
+    <message>
+        <source>holds %1 numbers instead of 7</source>
+        <translation>enthält %1 Zahlen statt 7</translation>
+    </message>
+    <message>
+        <source>write ((x, y, z), (qx, qy, qz, qw)) in metres</source>
+        <translation>((x, y, z), (qx, qy, qz, qw)) in Metern schreiben</translation>
+    </message>
+    <message>
+        <source>is no `key: number`</source>
+        <translation>ist kein `Schlüssel: Zahl`</translation>
+    </message>
+    <message>
+        <source>is not one of x, y, z, qx, qy, qz, qw</source>
+        <translation>ist keines von x, y, z, qx, qy, qz, qw</translation>
+    </message>
+    <message>
+        <source>%1 is given twice</source>
+        <translation>%1 ist zweimal angegeben</translation>
+    </message>
+    <message>
+        <source>%1 is missing</source>
+        <translation>%1 fehlt</translation>
+    </message>
+    <message>
+        <source>is no known kind of pose file</source>
+        <translation>ist keine bekannte Art einer Posendatei</translation>
+    </message>
+    <message>
+        <source>known are .txt, .yaml and .json</source>
+        <translation>bekannt sind .txt, .yaml und .json</translation>
+    </message>
+    <message>
+        <source>there are more than %1 points</source>
+        <translation>es sind mehr als %1 Punkte</translation>
+    </message>
+    <message>
+        <source>valid must be 0 or 1</source>
+        <translation>valid muss 0 oder 1 sein</translation>
+    </message>
+    <message>
+        <source>segment must be a whole number from -1 on</source>
+        <translation>segment muss eine ganze Zahl ab -1 sein</translation>
+    </message>
+    <message>
+        <source>valid = %1 contradicts segment = %2</source>
+        <translation>valid = %1 widerspricht segment = %2</translation>
+    </message>
+    <message>
+        <source>a point without return cannot belong to a segment</source>
+        <translation>ein Punkt ohne Rückgabe kann zu keinem Segment gehören</translation>
+    </message>
+    <message>
+        <source>a point without return cannot be valid</source>
+        <translation>ein Punkt ohne Rückgabe kann nicht gültig sein</translation>
+    </message>
+    <message>
+        <source>the profile has no points</source>
+        <translation>das Profil hat keine Punkte</translation>
+    </message>
+    <message>
+        <source>travel_mm is missing</source>
+        <translation>travel_mm fehlt</translation>
+    </message>
+    <message>
+        <source>profile_index must be a whole number from 0 on</source>
+        <translation>profile_index muss eine ganze Zahl ab 0 sein</translation>
+    </message>
+    <message>
+        <source>profile %1 comes back after another one</source>
+        <translation>Profil %1 kommt nach einem anderen noch einmal</translation>
+    </message>
+    <message>
+        <source>keep the rows of a profile together</source>
+        <translation>die Zeilen eines Profils zusammenhalten</translation>
+    </message>
+    <message>
+        <source>travel_mm changes within profile %1</source>
+        <translation>travel_mm ändert sich innerhalb von Profil %1</translation>
+    </message>
+    <message>
+        <source>%1 is not known</source>
+        <translation>%1: nicht bekannt</translation>
+    </message>
+    <message>
+        <source>calibrate camera and laser plane first</source>
+        <translation>zuerst Kamera und Laserebene kalibrieren</translation>
+    </message>
+    <message>
+        <source>the solution is undetermined: %1</source>
+        <translation>die Lösung ist unterbestimmt: %1</translation>
+    </message>
+    <message>
+        <source>the frames give no laser plane</source>
+        <translation>die Bilder ergeben keine Laserebene</translation>
+    </message>
+    <message>
+        <source>the camera does not ride on the flange</source>
+        <translation>die Kamera fährt nicht auf dem Flansch mit</translation>
+    </message>
+    <message>
+        <source>a sensor beside the robot is kept as a record</source>
+        <translation>ein Sensor neben dem Roboter wird als Nachweis aufbewahrt</translation>
+    </message>
+    <message>
+        <source>there is no solution yet</source>
+        <translation>es gibt noch keine Lösung</translation>
+    </message>
+    <message>
+        <source>solve first</source>
+        <translation>zuerst lösen</translation>
+    </message>
+    <message>
+        <source>the project has no such sensor</source>
+        <translation>das Projekt hat diesen Sensor nicht</translation>
+    </message>
+    <message>
+        <source>the chain holds no sensor %1</source>
+        <translation>die Kette enthält keinen Sensor %1</translation>
+    </message>
+    <message>
+        <source>name the sensors in the data as in the project</source>
+        <translation>die Sensoren in den Daten wie im Projekt nennen</translation>
+    </message>
+    <message>
+        <source>the chain ends in the world, not on the flange</source>
+        <translation>die Kette endet in der Welt, nicht am Flansch</translation>
+    </message>
+    <message>
+        <source>give reference_from_world with the flange as reference</source>
+        <translation>reference_from_world mit dem Flansch als Bezug angeben</translation>
+    </message>
+    <message>
+        <source>how far the body has moved is not known</source>
+        <translation>wie weit der Körper sich bewegt hat, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>connect the robot that shifts the sensor, or load measured pairs</source>
+        <translation>den Roboter verbinden, der den Sensor verschiebt, oder gemessene Paare laden</translation>
+    </message>
+    <message>
+        <source>where the sensor sits on the flange is not known</source>
+        <translation>wo der Sensor am Flansch sitzt, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>calibrate the sensor on the flange first, or load measured pairs</source>
+        <translation>zuerst den Sensor am Flansch kalibrieren oder gemessene Paare laden</translation>
+    </message>
+    <message>
+        <source>the sensor was turned by %1 degrees since the first capture</source>
+        <translation>der Sensor wurde seit der ersten Aufnahme um %1 Grad gedreht</translation>
+    </message>
+    <message>
+        <source>only shift it, along its own X and Z</source>
+        <translation>nur verschieben, entlang seines X und Z</translation>
+    </message>
+    <message>
+        <source>the sensor was shifted by %1 mm along its Y</source>
+        <translation>der Sensor wurde um %1 mm entlang seines Y verschoben</translation>
+    </message>
+    <message>
+        <source>only shift it along its own X and Z</source>
+        <translation>nur entlang seines X und Z verschieben</translation>
+    </message>
+    <message>
+        <source>a focal length must be positive</source>
+        <translation>eine Brennweite muss positiv sein</translation>
+    </message>
+    <message>
+        <source>give fx and fy in pixels</source>
+        <translation>fx und fy in Pixeln angeben</translation>
+    </message>
+    <message>
+        <source>the data is not a JSON object</source>
+        <translation>die Daten sind kein JSON-Objekt</translation>
+    </message>
+    <message>
+        <source>see calibrate camera --help</source>
+        <translation>siehe calibrate camera --help</translation>
+    </message>
+    <message>
+        <source>this is no image size</source>
+        <translation>dies ist keine Bildgröße</translation>
+    </message>
+    <message>
+        <source>the image cannot be read: %1</source>
+        <translation>das Bild kann nicht gelesen werden: %1</translation>
+    </message>
+    <message>
+        <source>exclude it with --exclude %1</source>
+        <translation>mit --exclude %1 ausschließen</translation>
+    </message>
+    <message>
+        <source>the images have different sizes</source>
+        <translation>die Bilder sind verschieden groß</translation>
+    </message>
+    <message>
+        <source>give images of one camera at one resolution</source>
+        <translation>Bilder einer Kamera mit einer Auflösung angeben</translation>
+    </message>
+    <message>
+        <source>no board of %1 points was found in any of %2 images</source>
+        <translation>in keinem von %2 Bildern wurde eine Tafel mit %1 Punkten gefunden</translation>
+    </message>
+    <message>
+        <source>check --board, --pattern, light and focus</source>
+        <translation>--board, --pattern, Licht und Schärfe prüfen</translation>
+    </message>
+    <message>
+        <source>bring the stripe onto the sphere</source>
+        <translation>den Laserstreifen auf die Kugel bringen</translation>
+    </message>
+    <message>
+        <source>no circle of the sphere is seen in the profile</source>
+        <translation>im Profil ist kein Kreis der Kugel zu sehen</translation>
+    </message>
+    <message>
+        <source>bring the stripe onto the sphere, a little off its middle, and check its radius</source>
+        <translation>den Laserstreifen auf die Kugel bringen, etwas neben ihre Mitte, und ihren Radius prüfen</translation>
+    </message>
+    <message>
+        <source>the camera is not known</source>
+        <translation>die Kamera ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s pose is missing</source>
+        <translation>die Pose des Roboters fehlt</translation>
+    </message>
+    <message>
+        <source>connect the robot, or put its pose file beside the image</source>
+        <translation>den Roboter verbinden oder seine Posendatei neben das Bild legen</translation>
+    </message>
+    <message>
+        <source>where the camera sits on the flange is not known</source>
+        <translation>wo die Kamera am Flansch sitzt, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>calibrate hand-eye or with the sphere first, or load measured points</source>
+        <translation>zuerst Hand-Auge oder mit der Kugel kalibrieren oder gemessene Punkte laden</translation>
+    </message>
+    <message>
+        <source>where the plate stands is not known</source>
+        <translation>wo die Platte steht, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>find it with &quot;Plate in the world&quot; first, or load the chain</source>
+        <translation>sie zuerst mit „Platte in der Welt“ finden oder die Kette laden</translation>
+    </message>
+    <message>
+        <source>the robot has moved since the first shot</source>
+        <translation>der Roboter hat sich seit der ersten Aufnahme bewegt</translation>
+    </message>
+    <message>
+        <source>one shot is enough: remove the first to take another from here</source>
+        <translation>eine Aufnahme genügt: die erste entfernen, um von hier eine andere zu machen</translation>
+    </message>
+    <message>
+        <source>the image has another size than those before</source>
+        <translation>das Bild hat eine andere Größe als die davor</translation>
+    </message>
+    <message>
+        <source>use one camera at one resolution</source>
+        <translation>eine Kamera mit einer Auflösung verwenden</translation>
+    </message>
+    <message>
+        <source>only %1 points of the stripe lie on one line</source>
+        <translation>nur %1 Punkte des Streifens liegen auf einer Geraden</translation>
+    </message>
+    <message>
+        <source>hold the sensor over a flat plate that fills the view</source>
+        <translation>den Sensor über eine ebene Platte halten, die das Messfeld füllt</translation>
+    </message>
+    <message>
+        <source>there is no calibration in use to check</source>
+        <translation>es ist keine Kalibrierung in Gebrauch, die zu prüfen wäre</translation>
+    </message>
+    <message>
+        <source>calibrate first</source>
+        <translation>zuerst kalibrieren</translation>
+    </message>
+    <message>
+        <source>where the sphere stands is not known</source>
+        <translation>wo die Kugel steht, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>check a calibration that was made with the sphere, or load measured data</source>
+        <translation>eine mit der Kugel gemachte Kalibrierung prüfen oder gemessene Daten laden</translation>
+    </message>
+    <message>
+        <source>the frame is incomplete</source>
+        <translation>das Bild ist unvollständig</translation>
+    </message>
+    <message>
+        <source>the frame is corrupt</source>
+        <translation>das Bild ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the frame is late</source>
+        <translation>das Bild kam zu spät</translation>
+    </message>
+    <message>
+        <source>take it again</source>
+        <translation>noch einmal aufnehmen</translation>
+    </message>
+    <message>
+        <source>the sensor gives no image</source>
+        <translation>der Sensor liefert kein Bild</translation>
+    </message>
+    <message>
+        <source>switch its raw image on</source>
+        <translation>sein Rohbild einschalten</translation>
+    </message>
+    <message>
+        <source>the robot does not tell its pose</source>
+        <translation>der Roboter sagt seine Pose nicht</translation>
+    </message>
+    <message>
+        <source>connect the robot</source>
+        <translation>den Roboter verbinden</translation>
+    </message>
+    <message>
+        <source>the data of this method are loaded from a file</source>
+        <translation>die Daten dieses Verfahrens werden aus einer Datei geladen</translation>
+    </message>
+    <message>
+        <source>this method reads no images</source>
+        <translation>dieses Verfahren liest keine Bilder</translation>
+    </message>
+    <message>
+        <source>give its JSON file</source>
+        <translation>seine JSON-Datei angeben</translation>
+    </message>
+    <message>
+        <source>nothing was read</source>
+        <translation>nichts wurde gelesen</translation>
+    </message>
+    <message>
+        <source>a sigma is negative</source>
+        <translation>ein Sigma ist negativ</translation>
+    </message>
+    <message>
+        <source>the sigma is not positive</source>
+        <translation>das Sigma ist nicht positiv</translation>
+    </message>
+    <message>
+        <source>see calibrate drift --help</source>
+        <translation>siehe calibrate drift --help</translation>
+    </message>
+    <message>
+        <source>see calibrate hand-eye --help</source>
+        <translation>siehe calibrate hand-eye --help</translation>
+    </message>
+    <message>
+        <source>the mount &apos;%1&apos; is unknown</source>
+        <translation>die Anordnung „%1“ ist unbekannt</translation>
+    </message>
+    <message>
+        <source>write eye_in_hand or eye_to_hand</source>
+        <translation>eye_in_hand oder eye_to_hand schreiben</translation>
+    </message>
+    <message>
+        <source>see calibrate laser-plane --help</source>
+        <translation>siehe calibrate laser-plane --help</translation>
+    </message>
+    <message>
+        <source>see calibrate lens --help</source>
+        <translation>siehe calibrate lens --help</translation>
+    </message>
+    <message>
+        <source>this is not a list of points</source>
+        <translation>dies ist keine Liste von Punkten</translation>
+    </message>
+    <message>
+        <source>write [[u,v],..]</source>
+        <translation>[[u,v],..] schreiben</translation>
+    </message>
+    <message>
+        <source>&apos;%1&apos; is no line number</source>
+        <translation>„%1“ ist keine Liniennummer</translation>
+    </message>
+    <message>
+        <source>see calibrate lut --help</source>
+        <translation>siehe calibrate lut --help</translation>
+    </message>
+    <message>
+        <source>the step is not above 0</source>
+        <translation>der Schritt ist nicht über 0</translation>
+    </message>
+    <message>
+        <source>there is no setting &quot;%1&quot;</source>
+        <translation>es gibt keine Einstellung „%1“</translation>
+    </message>
+    <message>
+        <source>see calibrate plate --help</source>
+        <translation>siehe calibrate plate --help</translation>
+    </message>
+    <message>
+        <source>there is no point</source>
+        <translation>es gibt keinen Punkt</translation>
+    </message>
+    <message>
+        <source>&apos;%1&apos; is no board</source>
+        <translation>„%1“ ist keine Tafel</translation>
+    </message>
+    <message>
+        <source>write columns x rows, e.g. 7x6</source>
+        <translation>Spalten x Zeilen schreiben, z. B. 7x6</translation>
+    </message>
+    <message>
+        <source>the pattern &apos;%1&apos; is unknown</source>
+        <translation>das Muster „%1“ ist unbekannt</translation>
+    </message>
+    <message>
+        <source>write chessboard, circles or charuco</source>
+        <translation>chessboard, circles oder charuco schreiben</translation>
+    </message>
+    <message>
+        <source>this is no folder</source>
+        <translation>dies ist kein Ordner</translation>
+    </message>
+    <message>
+        <source>give a folder of images</source>
+        <translation>einen Ordner mit Bildern angeben</translation>
+    </message>
+    <message>
+        <source>two images are named &apos;%1&apos;</source>
+        <translation>zwei Bilder heißen „%1“</translation>
+    </message>
+    <message>
+        <source>keep one of them</source>
+        <translation>eines davon behalten</translation>
+    </message>
+    <message>
+        <source>the folder cannot be read: %1</source>
+        <translation>der Ordner kann nicht gelesen werden: %1</translation>
+    </message>
+    <message>
+        <source>there is no image in the folder</source>
+        <translation>im Ordner ist kein Bild</translation>
+    </message>
+    <message>
+        <source>give a folder of PNG, TIFF, PGM, BMP or JPEG images</source>
+        <translation>einen Ordner mit PNG-, TIFF-, PGM-, BMP- oder JPEG-Bildern angeben</translation>
+    </message>
+    <message>
+        <source>there is no image &apos;%1&apos; to exclude</source>
+        <translation>es gibt kein Bild „%1“, das auszuschließen wäre</translation>
+    </message>
+    <message>
+        <source>name images without their extension</source>
+        <translation>Bilder ohne ihre Endung nennen</translation>
+    </message>
+    <message>
+        <source>this is not an object</source>
+        <translation>dies ist kein Objekt</translation>
+    </message>
+    <message>
+        <source>the id is neither text nor number</source>
+        <translation>die Kennung ist weder Text noch Zahl</translation>
+    </message>
+    <message>
+        <source>the folder cannot be made: %1</source>
+        <translation>der Ordner kann nicht angelegt werden: %1</translation>
+    </message>
+    <message>
+        <source>the folder cannot be moved: %1</source>
+        <translation>der Ordner kann nicht verschoben werden: %1</translation>
+    </message>
+    <message>
+        <source>the calibration sessions cannot be copied: %1</source>
+        <translation>die Kalibriersitzungen können nicht kopiert werden: %1</translation>
+    </message>
+    <message>
+        <source>the calibration method &apos;%1&apos; is unknown</source>
+        <translation>das Kalibrierverfahren „%1“ ist unbekannt</translation>
+    </message>
+    <message>
+        <source>this is no calibration session of %1</source>
+        <translation>dies ist keine Kalibriersitzung von %1</translation>
+    </message>
+    <message>
+        <source>a newer Seamwright has written this session</source>
+        <translation>ein neueres Seamwright hat diese Sitzung geschrieben</translation>
+    </message>
+    <message>
+        <source>use that one</source>
+        <translation>jenes verwenden</translation>
+    </message>
+    <message>
+        <source>there is no capture %1</source>
+        <translation>es gibt keine Aufnahme %1</translation>
+    </message>
+    <message>
+        <source>%1 captures are too few, at least %2 are needed</source>
+        <translation>%1 Aufnahmen sind zu wenige, mindestens %2 sind nötig</translation>
+    </message>
+    <message>
+        <source>take more</source>
+        <translation>mehr aufnehmen</translation>
+    </message>
+    <message>
+        <source>covariance and sigma are both given</source>
+        <translation>Kovarianz und Sigma sind beide angegeben</translation>
+    </message>
+    <message>
+        <source>give one of them</source>
+        <translation>eines davon angeben</translation>
+    </message>
+    <message>
+        <source>the covariance has not six rows</source>
+        <translation>die Kovarianz hat nicht sechs Zeilen</translation>
+    </message>
+    <message>
+        <source>plate_from_camera and camera_from_plate are both given</source>
+        <translation>plate_from_camera und camera_from_plate sind beide angegeben</translation>
+    </message>
+    <message>
+        <source>see calibrate static --help</source>
+        <translation>siehe calibrate static --help</translation>
+    </message>
+    <message>
+        <source>this is no corner of the board</source>
+        <translation>dies ist keine Ecke der Tafel</translation>
+    </message>
+    <message>
+        <source>pixel and index have different lengths</source>
+        <translation>pixel und index sind verschieden lang</translation>
+    </message>
+    <message>
+        <source>the scan &apos;%1&apos; is unknown</source>
+        <translation>die Abtastung „%1“ ist unbekannt</translation>
+    </message>
+    <message>
+        <source>write rows or columns</source>
+        <translation>rows oder columns schreiben</translation>
+    </message>
+    <message>
+        <source>this is no count</source>
+        <translation>dies ist keine Anzahl</translation>
+    </message>
+    <message>
+        <source>see calibrate stripe-camera --help</source>
+        <translation>siehe calibrate stripe-camera --help</translation>
+    </message>
+    <message>
+        <source>a point is not [x, z]</source>
+        <translation>ein Punkt ist nicht [x, z]</translation>
+    </message>
+    <message>
+        <source>write two numbers, null for no return</source>
+        <translation>zwei Zahlen schreiben, null für keine Rückgabe</translation>
+    </message>
+    <message>
+        <source>a coordinate is no number</source>
+        <translation>eine Koordinate ist keine Zahl</translation>
+    </message>
+    <message>
+        <source>see calibrate tcp-sphere --help</source>
+        <translation>siehe calibrate tcp-sphere --help</translation>
+    </message>
+    <message>
+        <source>the sphere&apos;s radius is missing</source>
+        <translation>der Radius der Kugel fehlt</translation>
+    </message>
+    <message>
+        <source>give it in millimetres, or null to solve for it</source>
+        <translation>in Millimetern angeben, oder null, um ihn mitzulösen</translation>
+    </message>
+    <message>
+        <source>the frame is of spot %1</source>
+        <translation>das Bild gehört zu Messstelle %1</translation>
+    </message>
+    <message>
+        <source>frame %1 came where frame %2 was due</source>
+        <translation>Bild %1 kam, wo Bild %2 an der Reihe war</translation>
+    </message>
+    <message>
+        <source>the sensor restarted in the middle of the run; measure again</source>
+        <translation>der Sensor ist mitten im Lauf neu gestartet; noch einmal messen</translation>
+    </message>
+    <message>
+        <source>frame %1 came %2 s before the trigger of spot %3</source>
+        <translation>Bild %1 kam %2 s vor dem Trigger von Messstelle %3</translation>
+    </message>
+    <message>
+        <source>frame %1 came %2 s after the trigger of spot %3</source>
+        <translation>Bild %1 kam %2 s nach dem Trigger von Messstelle %3</translation>
+    </message>
+    <message>
+        <source>this is no exported project</source>
+        <translation>dies ist kein exportiertes Projekt</translation>
+    </message>
+    <message>
+        <source>give what `seamwright export` wrote</source>
+        <translation>angeben, was `seamwright export` geschrieben hat</translation>
+    </message>
+    <message>
+        <source>the export has no version</source>
+        <translation>der Export hat keine Version</translation>
+    </message>
+    <message>
+        <source>the export is newer than this program (version %1)</source>
+        <translation>der Export ist neuer als dieses Programm (Version %1)</translation>
+    </message>
+    <message>
+        <source>import it with a newer Seamwright</source>
+        <translation>mit einem neueren Seamwright importieren</translation>
+    </message>
+    <message>
+        <source>the folder cannot be made</source>
+        <translation>der Ordner kann nicht angelegt werden</translation>
+    </message>
+    <message>
+        <source>check its name and permissions</source>
+        <translation>Name und Zugriffsrechte prüfen</translation>
+    </message>
+    <message>
+        <source>nothing is written to a robot whose base is shifted for a proof</source>
+        <translation>einem Roboter, dessen Basis für einen Nachweis verschoben ist, wird nichts geschrieben</translation>
+    </message>
+    <message>
+        <source>no region has a calibrated spot</source>
+        <translation>kein Korrekturbereich hat eine kalibrierte Messstelle</translation>
+    </message>
+    <message>
+        <source>teach spots and make a region first</source>
+        <translation>zuerst Messstellen einlernen und einen Korrekturbereich anlegen</translation>
+    </message>
+    <message>
+        <source>nobody is there to displace the part</source>
+        <translation>niemand ist da, um das Teil zu verschieben</translation>
+    </message>
+    <message>
+        <source>run it at a terminal</source>
+        <translation>an einem Terminal ausführen</translation>
+    </message>
+    <message>
+        <source>only a simulated cell can move its part</source>
+        <translation>nur eine simulierte Zelle kann ihr Teil bewegen</translation>
+    </message>
+    <message>
+        <source>shift the robot&apos;s base instead</source>
+        <translation>stattdessen die Basis des Roboters verschieben</translation>
+    </message>
+    <message>
+        <source>a range of %1 %2 in steps of %3 %4</source>
+        <translation>ein Bereich von %1 %2 in Schritten von %3 %4</translation>
+    </message>
+    <message>
+        <source>give a positive range and a step not above it</source>
+        <translation>einen positiven Bereich und einen Schritt nicht darüber angeben</translation>
+    </message>
+    <message>
+        <source>%1 displacements are too many</source>
+        <translation>%1 Verschiebungen sind zu viele</translation>
+    </message>
+    <message>
+        <source>give larger steps</source>
+        <translation>größere Schritte angeben</translation>
+    </message>
+    <message>
+        <source>cancelled after %1 of %2 displacements</source>
+        <translation>abgebrochen nach %1 von %2 Verschiebungen</translation>
+    </message>
+    <message>
+        <source>start it again</source>
+        <translation>noch einmal starten</translation>
+    </message>
+    <message>
+        <source>the mirror plane is not understood</source>
+        <translation>die Spiegelebene ist nicht verständlich</translation>
+    </message>
+    <message>
+        <source>give x, y, z or a normal such as 0.1,1,0</source>
+        <translation>x, y, z oder eine Normale wie 0.1,1,0 angeben</translation>
+    </message>
+    <message>
+        <source>the feature kind is not known</source>
+        <translation>die Merkmalsart ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>choose a known one</source>
+        <translation>eine bekannte wählen</translation>
+    </message>
+    <message>
+        <source>how this feature kind is mirrored is not known</source>
+        <translation>wie diese Merkmalsart gespiegelt wird, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>teach the spot with another kind</source>
+        <translation>die Messstelle mit einer anderen Art einlernen</translation>
+    </message>
+    <message>
+        <source>the mirror plane has no unit normal</source>
+        <translation>die Spiegelebene hat keine Einheitsnormale</translation>
+    </message>
+    <message>
+        <source>give x, y, z or a normal</source>
+        <translation>x, y, z oder eine Normale angeben</translation>
+    </message>
+    <message>
+        <source>a gripper with its sensors has no mirror image that is only taught differently</source>
+        <translation>ein Greifer mit seinen Sensoren hat kein Spiegelbild, das nur anders eingelernt wäre</translation>
+    </message>
+    <message>
+        <source>teach the panel job of the other side; mirror the project without it</source>
+        <translation>die Greiferaufgabe der anderen Seite einlernen; das Projekt ohne sie spiegeln</translation>
+    </message>
+    <message>
+        <source>the sensor has no calibration in use, its pose on the part is unknown</source>
+        <translation>der Sensor hat keine Kalibrierung in Gebrauch, seine Pose am Teil ist unbekannt</translation>
+    </message>
+    <message>
+        <source>calibrate the sensor first</source>
+        <translation>zuerst den Sensor kalibrieren</translation>
+    </message>
+    <message>
+        <source>an oblique plane mixes its free and fixed degrees of freedom</source>
+        <translation>eine schräge Ebene vermischt seine freien und festen Freiheitsgrade</translation>
+    </message>
+    <message>
+        <source>mirror about x, y or z, or free all translations and rotations</source>
+        <translation>an x, y oder z spiegeln oder alle Verschiebungen und Drehungen freigeben</translation>
+    </message>
+    <message>
+        <source>a %1 has no id</source>
+        <translation>%1: ohne Kennung</translation>
+    </message>
+    <message>
+        <source>give every one a name</source>
+        <translation>jedem einen Namen geben</translation>
+    </message>
+    <message>
+        <source>two %1s are called &quot;%2&quot;</source>
+        <translation>zwei heißen „%2“ (%1)</translation>
+    </message>
+    <message>
+        <source>rename one</source>
+        <translation>einen umbenennen</translation>
+    </message>
+    <message>
+        <source>an entry stands under another&apos;s id</source>
+        <translation>ein Eintrag steht unter der Kennung eines anderen</translation>
+    </message>
+    <message>
+        <source>the image&apos;s pixels do not fill its size</source>
+        <translation>die Pixel des Bilds füllen seine Größe nicht</translation>
+    </message>
+    <message>
+        <source>a block holds another number of profiles than it says</source>
+        <translation>ein Block enthält eine andere Zahl von Profilen, als er sagt</translation>
+    </message>
+    <message>
+        <source>an image does not fit its description</source>
+        <translation>ein Bild passt nicht zu seiner Beschreibung</translation>
+    </message>
+    <message>
+        <source>the checksum of an image is wrong: the file is damaged</source>
+        <translation>die Prüfsumme eines Bilds stimmt nicht: die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>there is no run %1</source>
+        <translation>es gibt keinen Lauf %1</translation>
+    </message>
+    <message>
+        <source>an evidence is of unknown kind</source>
+        <translation>ein Nachweis ist von unbekannter Art</translation>
+    </message>
+    <message>
+        <source>a run has an unknown status</source>
+        <translation>ein Lauf hat einen unbekannten Zustand</translation>
+    </message>
+    <message>
+        <source>the run has an unknown status</source>
+        <translation>der Lauf hat einen unbekannten Zustand</translation>
+    </message>
+    <message>
+        <source>setup %1 is missing</source>
+        <translation>Einrichtung %1 fehlt</translation>
+    </message>
+    <message>
+        <source>an event has an unknown kind</source>
+        <translation>ein Ereignis hat eine unbekannte Art</translation>
+    </message>
+    <message>
+        <source>it is not in the project</source>
+        <translation>ist nicht im Projekt</translation>
+    </message>
+    <message>
+        <source>its spots were taught without a calibration, so that nobody knows where it stood</source>
+        <translation>seine Messstellen wurden ohne Kalibrierung eingelernt, sodass niemand weiß, wo er stand</translation>
+    </message>
+    <message>
+        <source>teach them again</source>
+        <translation>neu einlernen</translation>
+    </message>
+    <message>
+        <source>there is no calibration &quot;%1&quot;</source>
+        <translation>es gibt keine Kalibrierung „%1“</translation>
+    </message>
+    <message>
+        <source>calibrate the new sensor first</source>
+        <translation>zuerst den neuen Sensor kalibrieren</translation>
+    </message>
+    <message>
+        <source>calibration %1 belongs to sensor %2</source>
+        <translation>Kalibrierung %1 gehört zu Sensor %2</translation>
+    </message>
+    <message>
+        <source>choose one of this sensor</source>
+        <translation>eine dieses Sensors wählen</translation>
+    </message>
+    <message>
+        <source>calibration %1 is %2</source>
+        <translation>Kalibrierung %1: %2</translation>
+    </message>
+    <message>
+        <source>calibrate again</source>
+        <translation>noch einmal kalibrieren</translation>
+    </message>
+    <message>
+        <source>spot %1 is measured by another sensor and would stay behind</source>
+        <translation>Messstelle %1 wird von einem anderen Sensor gemessen und bliebe zurück</translation>
+    </message>
+    <message>
+        <source>exchange one robot of a project with a single sensor</source>
+        <translation>einen Roboter eines Projekts mit einem einzigen Sensor tauschen</translation>
+    </message>
+    <message>
+        <source>this is a recorded capture, no project</source>
+        <translation>dies ist eine Aufzeichnung, kein Projekt</translation>
+    </message>
+    <message>
+        <source>name it in the settings of a sensor of driver &quot;replay&quot;: {&quot;file&quot;: ...}</source>
+        <translation>sie in den Einstellungen eines Sensors mit Treiber &quot;replay&quot; nennen: {&quot;file&quot;: ...}</translation>
+    </message>
+    <message>
+        <source>this is another program&apos;s database, no project file</source>
+        <translation>dies ist die Datenbank eines anderen Programms, keine Projektdatei</translation>
+    </message>
+    <message>
+        <source>the project file has version %1, this program knows up to %2</source>
+        <translation>die Projektdatei hat Version %1, dieses Programm kennt bis %2</translation>
+    </message>
+    <message>
+        <source>the project file has no valid version</source>
+        <translation>die Projektdatei hat keine gültige Version</translation>
+    </message>
+    <message>
+        <source>the project file is damaged (%1)</source>
+        <translation>die Projektdatei ist beschädigt (%1)</translation>
+    </message>
+    <message>
+        <source>only a simulated cell knows its own calibration</source>
+        <translation>nur eine simulierte Zelle kennt ihre eigene Kalibrierung</translation>
+    </message>
+    <message>
+        <source>calibrate the sensor</source>
+        <translation>den Sensor kalibrieren</translation>
+    </message>
+    <message>
+        <source>teach a spot, or run its panel job (seamwright panel)</source>
+        <translation>eine Messstelle einlernen oder seine Greiferaufgabe ausführen (seamwright panel)</translation>
+    </message>
+    <message>
+        <source>%1 repeats</source>
+        <translation>%1 Wiederholungen</translation>
+    </message>
+    <message>
+        <source>give 1 to 1000</source>
+        <translation>1 bis 1000 angeben</translation>
+    </message>
+    <message>
+        <source>a step of %1 mm</source>
+        <translation>eine Schrittweite von %1 mm</translation>
+    </message>
+    <message>
+        <source>give 0.05 mm or more</source>
+        <translation>0.05 mm oder mehr angeben</translation>
+    </message>
+    <message>
+        <source>%1 runs</source>
+        <translation>%1 Läufe</translation>
+    </message>
+    <message>
+        <source>give 2 to 1000</source>
+        <translation>2 bis 1000 angeben</translation>
+    </message>
+    <message>
+        <source>cancelled after %1 runs</source>
+        <translation>abgebrochen nach %1 Läufen</translation>
+    </message>
+    <message>
+        <source>the capture of spot %1 is missing</source>
+        <translation>die Aufnahme von Messstelle %1 fehlt</translation>
+    </message>
+    <message>
+        <source>the setup of the run has no panel job %1</source>
+        <translation>die Einrichtung des Laufs hat keine Greiferaufgabe %1</translation>
+    </message>
+    <message>
+        <source>the capture of place %1 is missing</source>
+        <translation>die Aufnahme von Stelle %1 fehlt</translation>
+    </message>
+    <message>
+        <source>the setup of the run has no place %1</source>
+        <translation>die Einrichtung des Laufs hat keine Stelle %1</translation>
+    </message>
+    <message>
+        <source>%1 jobs are not possible</source>
+        <translation>%1 gleichzeitige Aufgaben sind nicht möglich</translation>
+    </message>
+    <message>
+        <source>give 1 to 256</source>
+        <translation>1 bis 256 angeben</translation>
+    </message>
+    <message>
+        <source>%1 was expected, this is %2</source>
+        <translation>%1 wurde erwartet, dies ist %2</translation>
+    </message>
+    <message>
+        <source>the number is too large</source>
+        <translation>die Zahl ist zu groß</translation>
+    </message>
+    <message>
+        <source>%1 entries were expected, there are %2</source>
+        <translation>%1 Einträge wurden erwartet, es sind %2</translation>
+    </message>
+    <message>
+        <source>the word is not known here</source>
+        <translation>das Wort ist hier nicht bekannt</translation>
+    </message>
+    <message>
+        <source>the number is out of range</source>
+        <translation>die Zahl liegt außerhalb des Bereichs</translation>
+    </message>
+    <message>
+        <source>an entry of the project file cannot be read</source>
+        <translation>ein Eintrag der Projektdatei kann nicht gelesen werden</translation>
+    </message>
+    <message>
+        <source>sensor %1</source>
+        <translation>Sensor %1</translation>
+    </message>
+    <message>
+        <source>robot %1</source>
+        <translation>Roboter %1</translation>
+    </message>
+    <message>
+        <source>spot %1</source>
+        <translation>Messstelle %1</translation>
+    </message>
+    <message>
+        <source>region %1</source>
+        <translation>Korrekturbereich %1</translation>
+    </message>
+    <message>
+        <source>camera %1</source>
+        <translation>Kamera %1</translation>
+    </message>
+    <message>
+        <source>camera</source>
+        <translation>Kamera</translation>
+    </message>
+    <message>
+        <source>run %1</source>
+        <translation>Lauf %1</translation>
+    </message>
+    <message>
+        <source>frame %1</source>
+        <translation>Bild %1</translation>
+    </message>
+    <message>
+        <source>robot</source>
+        <translation>Roboter</translation>
+    </message>
+    <message>
+        <source>sensor &quot;%1&quot;</source>
+        <translation>Sensor „%1“</translation>
+    </message>
+    <message>
+        <source>source &quot;%1&quot;</source>
+        <translation>Quelle „%1“</translation>
+    </message>
+    <message>
+        <source>simulated sensor</source>
+        <translation>simulierter Sensor</translation>
+    </message>
+    <message>
+        <source>simulated robot</source>
+        <translation>simulierter Roboter</translation>
+    </message>
+    <message>
+        <source>simulated</source>
+        <translation>simuliert</translation>
+    </message>
+    <message>
+        <source>replay</source>
+        <translation>Wiedergabe</translation>
+    </message>
+    <message>
+        <source>alignment pass</source>
+        <translation>Durchfahrt</translation>
+    </message>
+    <message>
+        <source>alignment options</source>
+        <translation>Einstellungen der Durchfahrt</translation>
+    </message>
+    <message>
+        <source>profile %1 of the pass</source>
+        <translation>Profil %1 der Durchfahrt</translation>
+    </message>
+    <message>
+        <source>capture of spot %1</source>
+        <translation>Aufnahme von Messstelle %1</translation>
+    </message>
+    <message>
+        <source>zero shift</source>
+        <translation>Nullverschiebung</translation>
+    </message>
+    <message>
+        <source>known shift</source>
+        <translation>bekannte Verschiebung</translation>
+    </message>
+    <message>
+        <source>contour curve</source>
+        <translation>Konturkurve</translation>
+    </message>
+    <message>
+        <source>panel job %1</source>
+        <translation>Greiferaufgabe %1</translation>
+    </message>
+    <message>
+        <source>work object</source>
+        <translation>Werkobjekt</translation>
+    </message>
+    <message>
+        <source>pairs</source>
+        <translation>Paare</translation>
+    </message>
+    <message>
+        <source>views</source>
+        <translation>Ansichten</translation>
+    </message>
+    <message>
+        <source>points</source>
+        <translation>Punkte</translation>
+    </message>
+    <message>
+        <source>poses</source>
+        <translation>Posen</translation>
+    </message>
+    <message>
+        <source>images</source>
+        <translation>Bilder</translation>
+    </message>
+    <message>
+        <source>lines</source>
+        <translation>Linien</translation>
+    </message>
+    <message>
+        <source>measurements</source>
+        <translation>Messungen</translation>
+    </message>
+    <message>
+        <source>observations</source>
+        <translation>Beobachtungen</translation>
+    </message>
+    <message>
+        <source>observation &apos;%1&apos;</source>
+        <translation>Beobachtung „%1“</translation>
+    </message>
+    <message>
+        <source>point &apos;%1&apos;</source>
+        <translation>Punkt „%1“</translation>
+    </message>
+    <message>
+        <source>board</source>
+        <translation>Tafel</translation>
+    </message>
+    <message>
+        <source>sensors</source>
+        <translation>Sensoren</translation>
+    </message>
+    <message>
+        <source>spots</source>
+        <translation>Messstellen</translation>
+    </message>
+    <message>
+        <source>template</source>
+        <translation>Vorlage</translation>
+    </message>
+    <message>
+        <source>image</source>
+        <translation>Bild</translation>
+    </message>
+    <message>
+        <source>plane</source>
+        <translation>Ebene</translation>
+    </message>
+    <message>
+        <source>limits</source>
+        <translation>Grenzen</translation>
+    </message>
+    <message>
+        <source>window</source>
+        <translation>Fenster</translation>
+    </message>
+    <message>
+        <source>a telegram of the robot</source>
+        <translation>ein Telegramm des Roboters</translation>
+    </message>
+    <message>
+        <source>damaged frame: %1</source>
+        <translation>beschädigtes Bild: %1</translation>
+    </message>
+    <message>
+        <source>the frame is empty</source>
+        <translation>das Bild ist leer</translation>
+    </message>
+    <message>
+        <source>no calibration: the image has no millimetres</source>
+        <translation>keine Kalibrierung: das Bild hat keine Millimeter</translation>
+    </message>
+    <message>
+        <source>the part has to be started again</source>
+        <translation>das Teil muss neu gestartet werden</translation>
+    </message>
+    <message>
+        <source>the window holds fewer than 20 points of the contour</source>
+        <translation>das Fenster enthält weniger als 20 Punkte der Kontur</translation>
+    </message>
+    <message>
+        <source>drag a larger one</source>
+        <translation>ein größeres ziehen</translation>
+    </message>
+    <message>
+        <source>project</source>
+        <translation>Projekt</translation>
+    </message>
+    <message>
+        <source>project file</source>
+        <translation>Projektdatei</translation>
+    </message>
+    <message>
+        <source>capture</source>
+        <translation>Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>spot</source>
+        <translation>Messstelle</translation>
+    </message>
+    <message>
+        <source>region</source>
+        <translation>Korrekturbereich</translation>
+    </message>
+    <message>
+        <source>sensor</source>
+        <translation>Sensor</translation>
+    </message>
+    <message>
+        <source>calibration</source>
+        <translation>Kalibrierung</translation>
+    </message>
+    <message>
+        <source>an object</source>
+        <translation>ein Objekt</translation>
+    </message>
+    <message>
+        <source>an array</source>
+        <translation>eine Liste</translation>
+    </message>
+    <message>
+        <source>a number</source>
+        <translation>eine Zahl</translation>
+    </message>
+    <message>
+        <source>a text</source>
+        <translation>ein Text</translation>
+    </message>
+    <message>
+        <source>corrupt</source>
+        <translation>beschädigt</translation>
+    </message>
+    <message>
+        <source>late</source>
+        <translation>verspätet</translation>
+    </message>
+    <message>
+        <source>incomplete</source>
+        <translation>unvollständig</translation>
+    </message>
+    <message>
+        <source>camera and laser plane</source>
+        <translation>Kamera und Laserebene</translation>
+    </message>
+    <message>
+        <source>only %1 of the %2 robot poses differ from one another</source>
+        <translation>nur %1 der %2 Roboterposen unterscheiden sich</translation>
+    </message>
+    <message>
+        <source>a text is not UTF-8</source>
+        <translation>ein Text ist nicht UTF-8</translation>
+    </message>
+    <message>
+        <source>use plain letters in names</source>
+        <translation>in Namen einfache Buchstaben verwenden</translation>
+    </message>
+    <message>
+        <source>the feature kind &quot;%1&quot; is not known</source>
+        <translation>die Merkmalsart „%1“ ist nicht bekannt</translation>
+    </message>
 </context>
 <context>
     <name>MethodText</name>

@@ -1,6 +1,7 @@
 #include "widgets/desk/live_feed.h"
 
 #include "core/features/feature.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 
@@ -28,20 +29,21 @@ namespace {
 // Frame -> peaks -> candidates -> tracked profile; the reason when there is none.
 std::string convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandidates& candidates,
                     LiveSnapshot& snapshot) {
-    if (frame.status != FrameStatus::ok) return "damaged frame: " + std::string(to_string(frame.status));
+    if (frame.status != FrameStatus::ok)
+        return shown_cause("damaged frame: " + std::string(to_string(frame.status))).toStdString();
     if (frame.profile.size() > 0) {
         snapshot.profile = frame.profile;
         if (auto filtered = filter_profile(snapshot.profile, recipe.filter); !filtered)
-            return filtered.error().sentence();
+            return shown_error(filtered.error()).toStdString();
         return {};
     }
-    if (frame.image.empty()) return "the frame is empty";
+    if (frame.image.empty()) return shown_cause("the frame is empty").toStdString();
     if (auto found = find_peaks(frame.image, recipe.peaks, snapshot.peaks); !found)
-        return found.error().sentence();
-    if (!recipe.model) return "no calibration: the image has no millimetres";
+        return shown_error(found.error()).toStdString();
+    if (!recipe.model) return shown_cause("no calibration: the image has no millimetres").toStdString();
     to_millimetres(snapshot.peaks, *recipe.model, candidates);
     if (auto tracked = track_stripe(candidates, recipe.filter, snapshot.profile); !tracked)
-        return tracked.error().sentence();
+        return shown_error(tracked.error()).toStdString();
     return {};
 }
 

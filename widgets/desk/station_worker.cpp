@@ -114,7 +114,7 @@ void StationWorker::connect_devices() {
         connect_trouble_.clear();
         auto connected = station.connect();
         if (!connected) {
-            connect_trouble_ = connected.error().sentence();
+            connect_trouble_ = shown_error(connected.error()).toStdString();
             emit failed(shown_error(tr("The devices were not connected."), connected.error()));
         } else {
             // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
@@ -419,7 +419,7 @@ void StationWorker::publish(Station& station) {
         if (auto mode = robot->mode())
             r.mode = *mode;
         else
-            r.trouble = mode.error().sentence();
+            r.trouble = shown_error(mode.error()).toStdString();
         if (r.trouble.empty())
             if (auto at = robot->base_from_flange()) r.base_from_flange = *at;
         state->robots.push_back(std::move(r));
@@ -448,14 +448,14 @@ void StationWorker::idle(Station& station) {
     for (auto& [id, sensor] : live_->sensors) {
         if (sensor.ended) continue;
         if (auto fired = sensor.source->trigger(""); !fired) {
-            sensor.trouble = fired.error().sentence();
+            sensor.trouble = shown_error(fired.error()).toStdString();
             continue;
         }
         auto frame = sensor.source->wait_next(kLiveFrame);
         if (frame) {
             sensor.trouble.clear();
         } else {
-            sensor.trouble = frame.error().sentence();
+            sensor.trouble = shown_error(frame.error()).toStdString();
             sensor.ended = frame.error().what == kEndOfRecording;
         }
     }

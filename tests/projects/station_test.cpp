@@ -364,10 +364,13 @@ TEST_F(StationRun, DevicesThatAnotherProgramHasAreRefusedInOneSentence) {
 
     // Simulated devices are each program's own.
     Project simulated = second->project();
-    for (SensorSetup& sensor : simulated.sensors) sensor.driver = "simulated", sensor.settings = {};
-    for (RobotSetup& robot : simulated.robots) robot.driver = "simulated", robot.settings = {};
+    for (SensorSetup& setup : simulated.sensors)
+        setup.driver = "simulated", setup.settings = nlohmann::json::object();
+    for (RobotSetup& setup : simulated.robots)
+        setup.driver = "simulated", setup.settings = nlohmann::json::object();
     second->use(simulated);
-    EXPECT_TRUE(second->connect());
+    const auto own = second->connect();
+    EXPECT_TRUE(own) << own.error().sentence();
     second->disconnect();
 
     other.reset();

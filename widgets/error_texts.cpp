@@ -113,6 +113,8 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors", "a text is not UTF-8"),
     QT_TRANSLATE_NOOP("Errors", "use plain letters in names"),
     QT_TRANSLATE_NOOP("Errors", "the feature kind \"%1\" is not known"),
+    QT_TRANSLATE_NOOP("Errors", "it is there already"),
+    QT_TRANSLATE_NOOP("Errors", "give the project another name"),
     // settings, features, calibration, drivers, files
     QT_TRANSLATE_NOOP("Errors", "there are no profiles"),
     QT_TRANSLATE_NOOP("Errors", "record the pass from entry to exit"),

@@ -4329,6 +4329,14 @@
         <source>the feature kind &quot;%1&quot; is not known</source>
         <translation>die Merkmalsart „%1“ ist nicht bekannt</translation>
     </message>
+    <message>
+        <source>it is there already</source>
+        <translation>ist schon da</translation>
+    </message>
+    <message>
+        <source>give the project another name</source>
+        <translation>dem Projekt einen anderen Namen geben</translation>
+    </message>
 </context>
 <context>
     <name>MethodText</name>

@@ -156,7 +156,7 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
     width.title = "Gap width along the path";
     width.x_label = flush.x_label = turn.x_label = "path (mm)";
     width.y_label = "width (mm)";
-    width.bands = {{0, o.need_mm(), "nozzle and clearance"}};
+    width.bands = {{o.need_mm(), std::max(c.scan.widest_mm, o.need_mm() + 0.5), "wide enough"}};
     const double floor = std::min(0.0, c.scan.narrowest_mm);
     width.y_min = floor;
     flush.title = "Flush along the path";
@@ -178,6 +178,10 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
         put(w, p.width_mm);
         put(low, std::max(floor, p.width_mm - 3 * p.sigma_mm));
         if (there && p.verdict != GapVerdict::passes) put(bad, p.width_mm);
+        if (p.verdict == GapVerdict::closed) {
+            bad.x.push_back(p.path_mm);
+            bad.y.push_back(0);
+        }
         put(step, p.flush_mm);
         put(yaw, p.yaw_deg);
         put(tilt, p.tilt_deg);

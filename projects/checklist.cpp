@@ -57,7 +57,8 @@ CheckItem check_sensors(const Project& p, const Facts& facts) {
                                   s.identity.serial));
     }
     return done(kStep,
-                Phrase(facts.sensors ? "{} sensors answer" : "{} sensors answered last", p.sensors.size()),
+                Phrase(facts.sensors ? "all sensors answer ({})" : "all sensors answered last ({})",
+                       p.sensors.size()),
                 std::move(evidence));
 }
 
@@ -77,8 +78,10 @@ CheckItem check_robots(const Project& p, const Facts& facts) {
         evidence.push_back(Phrase("robot {}: {} {}, serial {}", r.id, r.identity.brand, r.identity.model,
                                   r.identity.serial));
     }
-    return done(kStep, Phrase(facts.robots ? "{} robots answer" : "{} robots answered last", p.robots.size()),
-                std::move(evidence));
+    return done(
+        kStep,
+        Phrase(facts.robots ? "all robots answer ({})" : "all robots answered last ({})", p.robots.size()),
+        std::move(evidence));
 }
 
 CheckItem check_calibrations(const Project& p, const std::string& now_utc) {

@@ -115,6 +115,31 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors", "the feature kind \"%1\" is not known"),
     QT_TRANSLATE_NOOP("Errors", "it is there already"),
     QT_TRANSLATE_NOOP("Errors", "give the project another name"),
+    // regions and calibrations: directions, advice and origins
+    QT_TRANSLATE_NOOP("Errors", "rotation about %1"),
+    QT_TRANSLATE_NOOP("Errors", "rotation about %1 through (%2)"),
+    QT_TRANSLATE_NOOP("Errors", "rotation about the axis %1"),
+    QT_TRANSLATE_NOOP("Errors", "rotation about the axis %1 through (%2)"),
+    QT_TRANSLATE_NOOP("Errors", "rotation about %1 with %2 mm along it per degree"),
+    QT_TRANSLATE_NOOP("Errors", "translation along %1"),
+    QT_TRANSLATE_NOOP("Errors",
+                      "the spots do not determine the %1: add a spot whose edge runs in another direction"),
+    QT_TRANSLATE_NOOP("Errors",
+                      "add spots whose edges run in other directions and which lie far apart: no few further "
+                      "spots near the taught ones would do"),
+    QT_TRANSLATE_NOOP("Errors",
+                      "add a spot near %1 at (%2) mm of the work object with its edge along %3: the weakest "
+                      "direction goes from %4 to %5 (1 sigma at the spots)"),
+    QT_TRANSLATE_NOOP("Errors",
+                      "add a spot near %1 at (%2) mm of the work object with its edge along %3: the weakest "
+                      "direction goes from %4 to %5 (1 sigma at the spots), and the number of spots whose "
+                      "wrong measure would go unnoticed from %6 to %7"),
+    QT_TRANSLATE_NOOP(
+        "Errors",
+        "no further spot is needed; the best one would be near %1 at (%2) mm of the work object with its "
+        "edge along %3: the weakest direction goes from %4 to %5 (1 sigma at the spots)"),
+    QT_TRANSLATE_NOOP("Errors", "the simulated cell's own optics and mounting"),
+    QT_TRANSLATE_NOOP("Errors", "simulated truth"),
     // settings, features, calibration, drivers, files
     QT_TRANSLATE_NOOP("Errors", "there are no profiles"),
     QT_TRANSLATE_NOOP("Errors", "record the pass from entry to exit"),

@@ -4337,6 +4337,58 @@
         <source>give the project another name</source>
         <translation>dem Projekt einen anderen Namen geben</translation>
     </message>
+    <message>
+        <source>rotation about %1</source>
+        <translation>Drehung um %1</translation>
+    </message>
+    <message>
+        <source>rotation about %1 through (%2)</source>
+        <translation>Drehung um %1 durch (%2) mm</translation>
+    </message>
+    <message>
+        <source>rotation about the axis %1</source>
+        <translation>Drehung um die Achse %1</translation>
+    </message>
+    <message>
+        <source>rotation about the axis %1 through (%2)</source>
+        <translation>Drehung um die Achse %1 durch (%2) mm</translation>
+    </message>
+    <message>
+        <source>rotation about %1 with %2 mm along it per degree</source>
+        <translation>Drehung um %1 mit %2 mm entlang ihr je Grad</translation>
+    </message>
+    <message>
+        <source>translation along %1</source>
+        <translation>Verschiebung entlang %1</translation>
+    </message>
+    <message>
+        <source>the spots do not determine the %1: add a spot whose edge runs in another direction</source>
+        <translation>die Messstellen bestimmen nicht: %1; eine Messstelle hinzufügen, deren Kante in eine andere Richtung verläuft</translation>
+    </message>
+    <message>
+        <source>add spots whose edges run in other directions and which lie far apart: no few further spots near the taught ones would do</source>
+        <translation>Messstellen hinzufügen, deren Kanten in andere Richtungen verlaufen und die weit auseinanderliegen: wenige weitere nahe den eingelernten genügen nicht</translation>
+    </message>
+    <message>
+        <source>add a spot near %1 at (%2) mm of the work object with its edge along %3: the weakest direction goes from %4 to %5 (1 sigma at the spots)</source>
+        <translation>eine Messstelle nahe %1 bei (%2) mm im Werkobjekt hinzufügen, ihre Kante entlang %3: die schwächste Richtung geht von %4 auf %5 (1 Sigma an den Messstellen)</translation>
+    </message>
+    <message>
+        <source>add a spot near %1 at (%2) mm of the work object with its edge along %3: the weakest direction goes from %4 to %5 (1 sigma at the spots), and the number of spots whose wrong measure would go unnoticed from %6 to %7</source>
+        <translation>eine Messstelle nahe %1 bei (%2) mm im Werkobjekt hinzufügen, ihre Kante entlang %3: die schwächste Richtung geht von %4 auf %5 (1 Sigma an den Messstellen), und die Zahl der Messstellen, deren falsches Maß unbemerkt bliebe, von %6 auf %7</translation>
+    </message>
+    <message>
+        <source>no further spot is needed; the best one would be near %1 at (%2) mm of the work object with its edge along %3: the weakest direction goes from %4 to %5 (1 sigma at the spots)</source>
+        <translation>keine weitere Messstelle ist nötig; die beste läge nahe %1 bei (%2) mm im Werkobjekt, ihre Kante entlang %3: die schwächste Richtung ginge von %4 auf %5 (1 Sigma an den Messstellen)</translation>
+    </message>
+    <message>
+        <source>the simulated cell&apos;s own optics and mounting</source>
+        <translation>der Optik und dem Anbau der simulierten Zelle</translation>
+    </message>
+    <message>
+        <source>simulated truth</source>
+        <translation>Wahrheit der Simulation</translation>
+    </message>
 </context>
 <context>
     <name>MethodText</name>
@@ -5397,8 +5449,8 @@
         <translation>keine Durchfahrt aufgezeichnet</translation>
     </message>
     <message>
-        <source>Entry %1 mm, exit %2 mm, jitter +-%3 mm</source>
-        <translation>Einfahrt %1 mm, Ausfahrt %2 mm, Streuung +-%3 mm</translation>
+        <source>Entry %1 mm, exit %2 mm, jitter ±%3 mm</source>
+        <translation>Einfahrt %1 mm, Ausfahrt %2 mm, Streuung ±%3 mm</translation>
     </message>
     <message>
         <source>Choose a spot.</source>
@@ -8222,6 +8274,10 @@ ausgelassen</translation>
 </context>
 <context>
     <name>seamwright::SceneView</name>
+    <message>
+        <source>No part yet: step 1, Cell, imports its mesh.</source>
+        <translation>Noch kein Teil: Schritt 1, Zelle, importiert sein Netz.</translation>
+    </message>
     <message>
         <source>next pose</source>
         <translation>nächste Pose</translation>

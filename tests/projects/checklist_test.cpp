@@ -102,7 +102,7 @@ TEST_F(Checklist, DevicesCountAsTheyAnswer) {
     facts.sensors = {{"A", true, "no light"}};
     expect(CheckStep::sensors, CheckStatus::missing, "no light");
     facts.sensors = {{"A", true, ""}};
-    expect(CheckStep::sensors, CheckStatus::done, "1 sensors answer");
+    expect(CheckStep::sensors, CheckStatus::done, "all sensors answer (1)");
     facts.robots.emplace();
     expect(CheckStep::robots, CheckStatus::missing, "connect");
     facts.robots.reset();

@@ -132,7 +132,6 @@ void OffsetCanvas::paint_live(QPainter& painter, const QRect&) {
     QColor band = style::good(palette());
     band.setAlpha(style::is_dark(palette()) ? 46 : 34);
     const QString names[3] = {AlignView::tr("dx (mm)"), AlignView::tr("dz (mm)"), AlignView::tr("turn (°)")};
-    const QFontMetrics metrics(painter.font());
     for (int row = 0; row < 3; ++row) {
         const QRect area = rect_of(row)->rect();
         const QCPAxis* x = rect_of(row)->axis(QCPAxis::atBottom);
@@ -163,10 +162,10 @@ void OffsetCanvas::paint_live(QPainter& painter, const QRect&) {
         const QString text = AlignView::tr(
             "Run the robot from entry to exit: dx, dz and the turn of every profile against "
             "the one at the trigger appear here. A contour that stands still is flat.");
-        const QRect room = rect_of(0)->rect().united(rect_of(2)->rect()).adjusted(6, 0, -6, 0);
-        const QRect box = metrics.boundingRect(room, Qt::AlignCenter | Qt::TextWordWrap, text);
-        painter.fillRect(box.adjusted(-6, -4, 6, 4), style::plot_ground(palette()));
-        painter.drawText(box, Qt::AlignCenter | Qt::TextWordWrap, text);
+        // Instead of the two lower diagrams; the first stays for its draggable lines.
+        const QRect room = rect_of(1)->rect().united(rect_of(2)->rect());
+        painter.fillRect(room.adjusted(-1, 0, 1, 0), style::plot_ground(palette()));
+        painter.drawText(room.adjusted(6, 0, -6, 0), Qt::AlignCenter | Qt::TextWordWrap, text);
     }
 }
 

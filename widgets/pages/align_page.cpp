@@ -112,7 +112,7 @@ void AlignPage::show_result() {
     if (!here) {
         const bool accepted = spot() && spot()->curve;
         set_verdict(*verdict_, accepted ? tr("accepted earlier") : tr("no pass recorded"), Tone::plain);
-        numbers_->setText(spot() ? tr("Entry %1 mm, exit %2 mm, jitter +-%3 mm")
+        numbers_->setText(spot() ? tr("Entry %1 mm, exit %2 mm, jitter ±%3 mm")
                                        .arg(number(spot()->entry_mm, 1), number(spot()->exit_mm, 1),
                                             number(spot()->jitter_mm, 2))
                                  : tr("Choose a spot."));

@@ -8,6 +8,7 @@
 #include "projects/measure.h"
 #include "projects/simulated_truth.h"
 #include "widgets/calibrate/method_text.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 namespace {
@@ -164,8 +165,7 @@ void CalibratePage::refresh() {
                     : c.verdict == "usable" ? Tone::attention
                                             : Tone::alarm);
         box->addWidget(
-            make_text(tr("Method %1. From: %2")
-                          .arg(QString::fromStdString(c.method), QString::fromStdString(c.source))));
+            make_text(tr("Method %1. From: %2").arg(shown_cause(c.method), shown_cause(c.source))));
         const Eigen::Vector3d t = c.flange_from_sensor.translation();
         box->addWidget(make_text(tr("flange_from_sensor  X %1  Y %2  Z %3 mm")
                                      .arg(number(t.x(), 2), number(t.y(), 2), number(t.z(), 2))));

@@ -5,6 +5,7 @@
 
 #include "projects/fields.h"
 #include "projects/measure.h"
+#include "widgets/errors.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -185,7 +186,7 @@ void RegionsPage::refresh() {
 void RegionsPage::show_plan(const Region& r) {
     const auto plan = plan_region(planned_observations(desk_.project(), r), correction_options(r));
     if (!plan) {
-        set_verdict(*verdict_, QString::fromStdString(plan.error().what), Tone::attention);
+        set_verdict(*verdict_, shown_cause(plan.error().what), Tone::attention);
         set_rows(*plan_, {});
         advice_->clear();
         return;
@@ -193,14 +194,14 @@ void RegionsPage::show_plan(const Region& r) {
     if (plan->status == CorrectionStatus::ok)
         set_verdict(*verdict_,
                     tr("observable; weakest: %1, sigma %2 mm at the spots")
-                        .arg(QString::fromStdString(plan->weakest), number(plan->sigma_at_spots_mm, 3)),
+                        .arg(shown_cause(plan->weakest), number(plan->sigma_at_spots_mm, 3)),
                     plan->sigma_at_spots_mm <= r.sigma_limit_mm ? Tone::good : Tone::attention);
     else
-        set_verdict(*verdict_,
-                    tr("under-determined: %1")
-                        .arg(QString::fromStdString(plan->unobservable.empty() ? plan->weakest
-                                                                               : plan->unobservable.front())),
-                    Tone::alarm);
+        set_verdict(
+            *verdict_,
+            tr("under-determined: %1")
+                .arg(shown_cause(plan->unobservable.empty() ? plan->weakest : plan->unobservable.front())),
+            Tone::alarm);
     const QStringList names{tr("X"), tr("Y"), tr("Z"), tr("A about Z"), tr("B about Y"), tr("C about X")};
     QVector<QStringList> rows;
     for (int i = 0; i < 6; ++i) {
@@ -214,7 +215,7 @@ void RegionsPage::show_plan(const Region& r) {
                                       (i < 3 ? QStringLiteral(" mm") : QChar(0x20) + shown_word("deg"))};
     }
     set_rows(*plan_, rows);
-    QString text = QString::fromStdString(plan->advice);
+    QString text = shown_cause(plan->advice);
     if (!plan->uncontrolled.empty()) {
         QStringList ids;
         for (const std::string& id : plan->uncontrolled) ids << QString::fromStdString(id);

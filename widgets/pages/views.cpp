@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "projects/measure.h"
+#include "widgets/errors.h"
 
 namespace seamwright {
 
@@ -157,7 +158,7 @@ void ViewFeeder::project() {
             const Eigen::Vector3d along = plan->weakest_direction.head<3>();
             if (along.norm() > 0.1 && region.id == desk_.selection().region())
                 r.weak_direction = along.normalized();
-            r.weak_text = plan->weakest;
+            r.weak_text = shown_cause(plan->weakest).toStdString();
         }
         regions.push_back(std::move(r));
     }

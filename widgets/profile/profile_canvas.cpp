@@ -299,7 +299,9 @@ void ProfileCanvas::paint_marks(QPainter& painter) {
         painter.setPen(QPen(style::text(colours), 1.5));
         painter.drawLine(at - QPointF(9, 0), at + QPointF(9, 0));
         painter.drawLine(at - QPointF(0, 9), at + QPointF(0, 9));
-        painter.drawText(at + QPointF(8, 18), ProfilePlot::tr("reference"));
+        const bool room_below = at.y() + 22 < axisRect()->rect().bottom();
+        painter.drawText(at + QPointF(room_below ? 8 : 12, room_below ? 18 : -12),
+                         ProfilePlot::tr("reference"));
     }
     if (feature && feature->status == FeatureStatus::ok && feature->point_mm.allFinite()) {
         const QPointF at = pixel({feature->point_mm.x(), feature->point_mm.y()});

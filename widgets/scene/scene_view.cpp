@@ -241,6 +241,8 @@ SceneLabels SceneView::Impl::words() const {
         std::any_of(spots.begin(), spots.end(), [](const SceneSpot& s) { return s.shift_mm.has_value(); });
     if ((any && shown.at(Layer::corrections)) || (!path.after_mm.empty() && shown.at(Layer::path)))
         words.foot = SceneView::tr("corrections drawn × %1").arg(scale, 0, 'g', 3);
+    else if (mesh.triangles.empty() && spots.empty())
+        words.foot = SceneView::tr("No part yet: step 1, Cell, imports its mesh.");
     return words;
 }
 

@@ -389,6 +389,13 @@ TEST(Texts, AnErrorIsGermanFromPlaceToCure) {
         << "names stay as they were given";
     EXPECT_EQ(shown({ErrorKind::device, "Errno 1234 %1", "10.0.0.1:502", ""}), "10.0.0.1:502: Errno 1234 %1")
         << "what others say stays as it is";
+    EXPECT_EQ(shown_cause("rotation about X through (528.2, 674.9, -33.9)").toStdString(),
+              "Drehung um X durch (528.2, 674.9, -33.9) mm");
+    EXPECT_EQ(shown_cause("the spots do not determine the translation along Z: add a spot whose edge runs in "
+                          "another direction")
+                  .toStdString(),
+              "die Messstellen bestimmen nicht: Verschiebung entlang Z; eine Messstelle hinzufügen, deren "
+              "Kante in eine andere Richtung verläuft");
     QCoreApplication::removeTranslator(&german);
 }
 

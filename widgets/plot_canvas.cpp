@@ -15,6 +15,7 @@ PlotCanvas::PlotCanvas(QWidget* parent) : QCustomPlot(parent) {
     setFocusPolicy(Qt::StrongFocus);
     setAttribute(Qt::WA_OpaquePaintEvent);
     setNoAntialiasingOnDrag(true);
+    setLocale(QLocale::c());  // numbers as everywhere in the window
     setPlottingHint(QCP::phFastPolylines, true);
     timer_.setSingleShot(true);
     timer_.setTimerType(Qt::PreciseTimer);

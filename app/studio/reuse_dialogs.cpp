@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "projects/measure.h"
+#include "widgets/editors/number_box.h"
 #include "widgets/errors.h"
 #include "widgets/pages/form.h"
 #include "widgets/style.h"
@@ -31,7 +32,7 @@ MirrorDialog::MirrorDialog(QWidget* parent) : QDialog(parent) {
     axis_->addItems({tr("X changes its sign"), tr("Y changes its sign"), tr("Z changes its sign")});
     axis_->setCurrentIndex(1);
     add_field(*box, tr("Plane"), axis_, tr("The axis of the work object that the plane stands across"));
-    offset_ = new QDoubleSpinBox;
+    offset_ = new NumberBox;
     offset_->setObjectName("mirror_offset");
     offset_->setDecimals(3);
     offset_->setRange(-1e5, 1e5);

@@ -4389,6 +4389,14 @@
         <source>simulated truth</source>
         <translation>Wahrheit der Simulation</translation>
     </message>
+    <message>
+        <source>%1 regions corrected and pushed</source>
+        <translation>Korrekturbereiche korrigiert und übertragen: %1</translation>
+    </message>
+    <message>
+        <source>%1 regions corrected, nothing pushed (dry run)</source>
+        <translation>Korrekturbereiche korrigiert: %1; nichts übertragen (Probelauf)</translation>
+    </message>
 </context>
 <context>
     <name>MethodText</name>

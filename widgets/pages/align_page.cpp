@@ -4,6 +4,7 @@
 
 #include "projects/measure.h"
 #include "projects/teach.h"
+#include "widgets/editors/number_box.h"
 
 namespace seamwright {
 
@@ -16,7 +17,7 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
     box().addWidget(tree_);
     const auto spin = [this](const QString& name, double low, double high, double value, int decimals,
                              const QString& label, const QString& tip) {
-        auto* s = new QDoubleSpinBox;
+        auto* s = new NumberBox;
         s->setObjectName(name);
         s->setRange(low, high);
         s->setDecimals(decimals);

@@ -6,6 +6,7 @@
 #include "core/geometry/notation.h"
 #include "projects/known_shift.h"
 #include "projects/zero_shift.h"
+#include "widgets/editors/number_box.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -74,7 +75,7 @@ void ProvePage::make_zero_shift() {
 
 QDoubleSpinBox* ProvePage::spin(const QString& name, double value, double maximum, int decimals,
                                 const QString& unit) {
-    auto* box = new QDoubleSpinBox;
+    auto* box = new NumberBox;
     box->setObjectName(name);
     box->setDecimals(decimals);
     box->setRange(std::pow(10.0, -decimals), maximum);

@@ -12,6 +12,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/files.h"
 #include "projects/measure.h"
+#include "widgets/errors.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -239,12 +240,11 @@ void RunPage::refresh() {
 void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
     shown_ = std::move(run);
     const RunRecord& r = *shown_;
-    set_verdict(
-        *verdict_,
-        tr("Run %1, part %2: %3. %4")
-            .arg(r.number)
-            .arg(QString::fromStdString(r.part_id), status_text(r.status), QString::fromStdString(r.message)),
-        tone_of(r.status));
+    set_verdict(*verdict_,
+                tr("Run %1, part %2: %3. %4")
+                    .arg(r.number)
+                    .arg(QString::fromStdString(r.part_id), status_text(r.status), shown_cause(r.message)),
+                tone_of(r.status));
     QVector<QStringList> rows;
     QStringList refusals;
     for (const RegionRecord& region : r.regions) {
@@ -288,7 +288,7 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
                                              : Eigen::Vector3d::Constant(std::nan(""));
         const QString word = shown_word(to_string(m.status));
         rows << QStringList{QString::fromStdString(m.spot_id), number(d.x(), 2), number(d.z(), 2),
-                            m.message.empty() ? word : word + ": " + QString::fromStdString(m.message)};
+                            m.message.empty() ? word : word + ": " + shown_cause(m.message)};
         for (const RegionRecord& region : r.regions) {
             if (!region.correction) continue;
             bool found = false;

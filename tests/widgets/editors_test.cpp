@@ -4,6 +4,7 @@
 #include <QSignalSpy>
 #include <QTest>
 
+#include "widgets/editors/number_box.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 
@@ -18,6 +19,33 @@ TEST(NumberText, PointAndCommaWhateverTheLanguage) {
         EXPECT_FALSE(number_from_text(bad)) << bad;
     EXPECT_EQ(text_from_number(-0.0001, 2), "0.00");
     EXPECT_EQ(text_from_number(12345.678, 2), "12345.68");
+}
+
+TEST(NumberBox, TakesPointAndCommaAndShowsThePoint) {
+    QLocale::setDefault(QLocale(QLocale::German));
+    NumberBox box;
+    box.setRange(0.1, 20);
+    box.setDecimals(2);
+    box.setSuffix(" mm");
+    box.setValue(1.5);
+    EXPECT_EQ(box.text(), "1.50 mm");
+    auto* line = box.findChild<QLineEdit*>();
+    const auto type = [&](const char* text) {
+        line->selectAll();
+        QTest::keyClicks(line, text);
+        QTest::keyClick(line, Qt::Key_Return);
+        return box.value();
+    };
+    EXPECT_DOUBLE_EQ(type("2,5"), 2.5);
+    EXPECT_EQ(box.text(), "2.50 mm");
+    EXPECT_DOUBLE_EQ(type("3.25"), 3.25);
+    EXPECT_DOUBLE_EQ(type("10"), 10);
+    EXPECT_DOUBLE_EQ(type("x7"), 7) << "letters do not get in";
+    type("90");
+    EXPECT_LE(box.value(), 20);
+    box.stepDown();
+    EXPECT_GE(box.value(), 0.1);
+    QLocale::setDefault(QLocale::c());
 }
 
 TEST(ParameterEditor, CommitsRefusesAndGoesBack) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "projects/forecast.h"
 #include "projects/known_shift.h"
 #include "projects/measure.h"
 #include "projects/project_json.h"
@@ -174,19 +175,26 @@ CheckItem check_observable(const Project& p) {
         if (region.spot_ids.empty()) return missing(kStep, Phrase("region {} has no spots", region.id));
         if (region.frame_name.empty())
             return missing(kStep, Phrase("name the controller's frame of region {}", region.id));
-        const auto plan = plan_region(planned_observations(p, region), correction_options(region));
-        if (!plan) return missing(kStep, Phrase("region {}: {}", region.id, plan.error().what));
-        if (plan->status != CorrectionStatus::ok)
+        const auto forecast = forecast_region(p, region);
+        if (!forecast) return missing(kStep, Phrase("region {}: {}", region.id, forecast.error().what));
+        const RegionPlan& plan = forecast->plan;
+        if (plan.status != CorrectionStatus::ok)
             return missing(kStep,
                            Phrase("region {} is under-determined: {}", region.id,
-                                  plan->unobservable.empty() ? plan->weakest : plan->unobservable.front()));
-        const double three_sigma = 3 * plan->sigma_at_spots_mm;
-        if (three_sigma > p.requirements.sigma3_mm)
-            return missing(
-                kStep, Phrase("region {} reaches 3 sigma {} mm, required are {} mm; weakest: {}", region.id,
-                              mm(three_sigma), mm(p.requirements.sigma3_mm), plan->weakest));
+                                  plan.unobservable.empty() ? plan.weakest : plan.unobservable.front()));
+        if (!forecast->enough()) {
+            const Phrase cure = forecast->cures.empty() ? Phrase("add spots that lie farther apart")
+                                                        : forecast->cures.front().what;
+            if (forecast->sigma_mm > forecast->wanted_mm)
+                return missing(kStep,
+                               Phrase("region {} reaches 3 sigma {} mm, {} mm are required: {}", region.id,
+                                      mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm), cure));
+            return missing(kStep,
+                           Phrase("region {} reaches a sigma of {} deg, its limit is {} deg: {}", region.id,
+                                  fmt::format("{:.4f}", forecast->sigma_deg), forecast->wanted_deg, cure));
+        }
         evidence.push_back(Phrase("region {}: predicted 3 sigma {} mm, required {} mm", region.id,
-                                  mm(three_sigma), mm(p.requirements.sigma3_mm)));
+                                  mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm)));
     }
     for (const Spot& spot : p.spots) {
         const bool used = std::any_of(p.regions.begin(), p.regions.end(), [&](const Region& r) {
@@ -266,7 +274,9 @@ CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& kn
     if (p.regions.empty()) return missing(kStep, Phrase("add a region and give it spots"));
     if (!known_shift.done())
         return missing(kStep, Phrase("limits are judged by the range that the known shift has proven"));
-    const ProvenRange range = proven_range(std::get<KnownShift>(newest<KnownShift>(facts)->what));
+    const auto& proof = std::get<KnownShift>(newest<KnownShift>(facts)->what);
+    const ProvenRange range = proven_range(proof);
+    const CorrectionLimits rounded = proven_limits(proof);
     constexpr double kSlack = 1 + 1e-6;
     std::vector<Phrase> evidence;
     for (const Region& r : p.regions) {
@@ -278,7 +288,8 @@ CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& kn
                     "region {} lets {} mm and {} deg through, proven are {} mm and {} deg: lower its limits "
                     "or prove more",
                     r.id, r.limits.translation_mm, r.limits.rotation_deg,
-                    fmt::format("{:.2f}", range.translation_mm), fmt::format("{:.2f}", range.rotation_deg)));
+                    fmt::format("{:.2f}", rounded.translation_mm),
+                    fmt::format("{:.3f}", rounded.rotation_deg)));
         if (!(3 * r.sigma_limit_mm <= p.requirements.sigma3_mm * kSlack))
             return missing(kStep,
                            Phrase("region {} lets 3 sigma {} mm through, required are {} mm: lower its "

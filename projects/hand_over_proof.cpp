@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include "projects/forecast.h"
 #include "projects/hand_over_detail.h"
 #include "projects/known_shift.h"
 #include "projects/measure.h"
@@ -101,22 +102,23 @@ void regions_chapter(HandOverWriter& w) {
                w.t("Largest deviation mm"), w.t("Required 3 sigma mm"), w.t("Redundancy"),
                w.t("Weakest direction")}};
     for (const Region& r : w.project.regions) {
-        const auto plan = plan_region(planned_observations(w.project, r), correction_options(r));
+        const auto forecast = forecast_region(w.project, r);
         const ProvenAccuracy proven =
             e ? proven_accuracy(std::get<KnownShift>(e->what), r.id) : ProvenAccuracy{};
         std::string spots;
         for (const std::string& id : r.spot_ids) spots += (spots.empty() ? "" : ", ") + id;
-        rows.push_back(
-            {r.id, spots, plan ? w.number(3 * plan->sigma_at_spots_mm, 3) : "-",
-             proven.tests ? w.number(proven.three_sigma_mm, 3) : "-",
-             proven.tests ? w.number(proven.worst_mm, 3) : "-", w.number(w.project.requirements.sigma3_mm, 3),
-             plan ? fmt::format("{}", plan->redundancy) : "-", plan ? plan->weakest : plan.error().what});
+        rows.push_back({r.id, spots, forecast ? w.number(3 * forecast->sigma_mm, 3) : "-",
+                        proven.tests ? w.number(proven.three_sigma_mm, 3) : "-",
+                        proven.tests ? w.number(proven.worst_mm, 3) : "-",
+                        w.number(w.project.requirements.sigma3_mm, 3),
+                        forecast ? fmt::format("{}", forecast->plan.redundancy) : "-",
+                        forecast ? forecast->plan.weakest : forecast.error().what});
     }
     w.page.table(rows);
-    w.page.paragraph(
-        w.t("Predicted: 3 sigma of the weakest direction at the spots, from the spots' sigma. Proven: 3 "
-            "times the "
-            "root mean square of the deviations of the known shift, bias included."));
+    w.page.paragraph(w.t(
+        "Predicted: 3 sigma at the worst spot along its worst direction, as the safety gate judges it, over "
+        "the part as taught and as displaced by what is required. Proven: 3 times the root mean square of "
+        "the deviations of the known shift, bias included."));
 }
 
 void zero_shift_chapter(HandOverWriter& w) {

@@ -333,4 +333,11 @@ ProvenRange proven_range(const KnownShift& proof) {
     return range;
 }
 
+CorrectionLimits proven_limits(const KnownShift& proof) {
+    const ProvenRange range = proven_range(proof);
+    constexpr double kHair = 1e-6;  // a turn of 1 degree comes back as 0.9999999
+    return {std::floor((range.translation_mm + kHair) * 100) / 100,
+            std::floor((range.rotation_deg + kHair) * 1000) / 1000};
+}
+
 }  // namespace seamwright

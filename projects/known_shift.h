@@ -88,5 +88,7 @@ struct ProvenRange {
     double translation_mm = 0, rotation_deg = 0;
 };
 ProvenRange proven_range(const KnownShift& proof);
+// The same as limits of a region can be set to it: rounded down to 0.01 mm and 0.001 degree.
+CorrectionLimits proven_limits(const KnownShift& proof);
 
 }  // namespace seamwright

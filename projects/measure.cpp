@@ -25,6 +25,11 @@ void keep_profile(const Profile& from, Profile& to) {
     to.segment.clear();  // raw: the filter marks segments again
 }
 
+// Two observed coordinates share the feature's variance: the mean of the trace.
+double total_sigma_mm(const Spot& spot, const Feature& feature) {
+    return std::sqrt(spot.sigma_mm * spot.sigma_mm + 0.5 * feature.covariance_mm2.trace());
+}
+
 void clear_candidates(ProfileCandidates& c) {
     c.lines = 0;
     c.per_line = 1;
@@ -109,6 +114,11 @@ SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
     o.weights = spot.weights;
     o.sigma_mm = measurement.sigma_mm;
     o.curve = spot.curve;
+    if (spot.weights.x() == spot.weights.z()) {
+        const Eigen::Matrix2d& feature = measurement.feature.covariance_mm2;
+        const double rest = o.sigma_mm * o.sigma_mm - 0.5 * feature.trace();
+        if (rest > 0) o.covariance_mm2 = feature + rest * Eigen::Matrix2d::Identity();
+    }
     return o;
 }
 
@@ -132,7 +142,12 @@ std::vector<SpotObservation> planned_observations(const Project& project, const 
         SpotMeasurement at_reference;
         at_reference.spot_id = id;
         at_reference.measured_mm = spot->reference_mm;
-        at_reference.sigma_mm = spot->sigma_mm;
+        if (spot->reference_profile.size() > 0)
+            if (const auto finder = make_feature_finder(spot->feature))
+                if (Feature found = (*finder)->find(spot->reference_profile);
+                    found.status == FeatureStatus::ok && found.covariance_mm2.allFinite())
+                    at_reference.feature = std::move(found);
+        at_reference.sigma_mm = total_sigma_mm(*spot, at_reference.feature);
         observations.push_back(observation(*spot, project.part.base_from_workobject,
                                            calibration->flange_from_sensor, at_reference));
     }
@@ -209,9 +224,7 @@ struct SpotMeasurer::Impl {
         measurement.measured_mm =
             in_taught_sensor(feature.point_mm, flange_from_sensor, spot.base_from_flange,
                              calibrated ? from.base_from_flange : std::nullopt);
-        // Two observed coordinates share the feature's variance: the mean of the trace.
-        measurement.sigma_mm =
-            std::sqrt(spot.sigma_mm * spot.sigma_mm + 0.5 * feature.covariance_mm2.trace());
+        measurement.sigma_mm = total_sigma_mm(spot, feature);
         measurement.status = SpotStatus::measured;
         return measurement;
     }
@@ -309,10 +322,6 @@ CorrectionOptions correction_options(const Region& region) {
     return options;
 }
 
-namespace {
-
-// What the part's displacement does to a spot whose trigger may come anywhere in its jitter window: the
-// contour stands still over the window as taught, not as displaced.
 void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation) {
     if (spot.stop_at_trigger || spot.jitter_mm == 0) return;
     // A contour that came to lie along the laser line tells nothing; so much is as good as infinite.
@@ -321,12 +330,15 @@ void add_travel(const Spot& spot, const Displacement& displacement, SpotObservat
     Eigen::Matrix2d c = travel_covariance(observation, displacement, spot.jitter_mm / std::sqrt(3.0));
     if (!c.allFinite() || c.trace() > kNothingMm2) c = kNothingMm2 * Eigen::Matrix2d::Identity();
     if (spot.weights.x() == spot.weights.z()) {
-        observation.covariance_mm2 = c + sigma2 * Eigen::Matrix2d::Identity();
+        observation.covariance_mm2 =
+            c + observation.covariance_mm2.value_or(sigma2 * Eigen::Matrix2d::Identity());
     } else {  // one sigma for both: the worse of those observed
         const double worst = std::max(spot.weights.x() > 0 ? c(0, 0) : 0, spot.weights.z() > 0 ? c(1, 1) : 0);
         observation.sigma_mm = std::sqrt(sigma2 + worst);
     }
 }
+
+namespace {
 
 Expected<RegionCorrection> correct_region(const Project& project, const Region& region,
                                           std::vector<SpotObservation> observations) {

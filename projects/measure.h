@@ -39,13 +39,18 @@ Eigen::Vector3d in_taught_sensor(const Eigen::Vector2d& point_mm, const Pose& fl
                                  const std::optional<Pose>& base_from_flange_reported);
 
 // The correction's input of a measured spot. W = base_from_workobject^-1 * base_from_flange *
-// flange_from_sensor.
+// flange_from_sensor. Where x and z weigh the same the feature's whole covariance counts: the end of a
+// contour is unsure along it, and well known across.
 SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
                             const Pose& flange_from_sensor, const SpotMeasurement& measurement);
 
-// The plan's input of a region: each of its enabled spots standing at its reference. Spots without
-// calibration are left out, as they are in a run.
+// The plan's input of a region: each of its enabled spots standing at its reference, with the noise that its
+// feature has in the reference profile. Spots without calibration are left out, as they are in a run.
 std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
+
+// What the part's displacement does to a spot whose trigger may come anywhere in its jitter window, added to
+// the observation's noise: the contour stands still over the window as taught, not as displaced.
+void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation);
 
 // The calibration in use at a sensor, at a spot's sensor; nullptr when there is none.
 const Calibration* calibration_of(const Project& project, const std::string& sensor_id);

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+
+#include "core/correction/sigma.h"
 
 namespace seamwright {
 
@@ -38,23 +39,6 @@ class Reasons {
 bool rigid(const Pose& pose) {
     // A frame that is 100 m away is as wrong as one that is sheared; both end here.
     return pose_from_matrix(pose.matrix(), "", 1e-6).has_value();
-}
-
-// Standard deviation along the worst direction of a 3x3 block, NaN when the block is no covariance.
-double worst_sigma(const Eigen::Matrix3d& covariance) {
-    if (!covariance.allFinite()) return std::numeric_limits<double>::quiet_NaN();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-    const double smallest = solver.eigenvalues().minCoeff(), largest = solver.eigenvalues().maxCoeff();
-    if (smallest < -1e-9 * std::max(1.0, largest)) return std::numeric_limits<double>::quiet_NaN();
-    return std::sqrt(std::max(0.0, largest));
-}
-
-// The same of a point that the displacement carries along: d(D p) = dt - [R p]x dw.
-double sigma_at(const RegionCorrection& correction, const Eigen::Vector3d& point_workobject_mm) {
-    Eigen::Matrix<double, 3, 6> j;
-    j << Eigen::Matrix3d::Identity(),
-        -skew(correction.displacement.workobject_from_movedworkobject.linear() * point_workobject_mm);
-    return worst_sigma(j * correction.covariance * j.transpose());
 }
 
 std::string name_of(const SensorIdentity& id) {
@@ -140,7 +124,7 @@ void judge_correction(const GateRequest& request, Reasons& reasons) {
     // the bead.
     double sigma_mm = request.spots.empty() ? worst_sigma(correction.covariance.topLeftCorner<3, 3>()) : 0.0;
     for (const GateSpot& spot : request.spots) {
-        const double at_spot = sigma_at(correction, spot.point_workobject_mm);
+        const double at_spot = sigma_at_mm(correction.covariance, d, spot.point_workobject_mm);
         if (!(at_spot <= sigma_mm)) sigma_mm = at_spot;  // NaN stays
     }
     const double sigma_deg =

@@ -161,6 +161,20 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
     return pass;
 }
 
+Spot cured(const Spot& spot, const AlignmentResult& result, const Pose& flange_from_sensor) {
+    const Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(rad_from_deg(result.cure_about_z_deg), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rad_from_deg(result.cure_about_x_deg), Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
+    const Eigen::Vector3d r = spot.reference_mm;
+    Spot after = spot;
+    after.base_from_flange = spot.base_from_flange * flange_from_sensor * make_pose(turn, r - turn * r) *
+                             flange_from_sensor.inverse();
+    after.curve.reset();
+    after.reference_profile = {};
+    return after;
+}
+
 FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,
                              const AlignmentOptions& options) {
     FrozenContour frozen{spot_id,

@@ -47,6 +47,10 @@ struct RecordedPass {
 // The robot stops at every step, so that travel is exact; the run itself triggers in motion.
 Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options);
 
+// `spot` turned about its reference point by the rotation that cures the drift; reference profile and curve
+// are gone with the pose that they were about.
+Spot cured(const Spot& spot, const AlignmentResult& result, const Pose& flange_from_sensor);
+
 // What the file keeps of an accepted pass: the verdict with what it was judged by, and the usable offsets.
 FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,
                              const AlignmentOptions& options);

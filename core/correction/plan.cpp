@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/correction/correction.h"
+#include "core/correction/forecast.h"
 #include "core/correction/region_system.h"
 
 namespace seamwright {
@@ -120,7 +120,7 @@ SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector
 
 struct Candidate {
     SpotObservation spot;
-    std::string words;
+    std::string words, near, edge;
     Eigen::Index weak = 6;  // directions still unobservable
     std::size_t uncontrolled = 0;
     double sigma_mm = kInfinity, penalty = 1;
@@ -148,14 +148,17 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
         if (!known && edges.size() < 10) edges.push_back(edge);
     }
     std::vector<Candidate> out;
-    const auto add = [&](const Eigen::Vector3d& p, const std::string& place, double penalty) {
+    const auto add = [&](const Eigen::Vector3d& p, const std::string& near, const std::string& place,
+                         double penalty) {
         for (const Eigen::Vector3d& edge : edges) {
             Candidate c;
             c.spot = spot_across(p, edge, sigma);
             c.penalty = penalty;
+            c.near = near;
+            c.edge = axis_name(edge);
             c.words =
                 fmt::format("{} at ({:.0f}, {:.0f}, {:.0f}) mm of the work object with its edge along {}",
-                            place, p.x() + 0.0, p.y() + 0.0, p.z() + 0.0, axis_name(edge));
+                            place, p.x() + 0.0, p.y() + 0.0, p.z() + 0.0, c.edge);
             out.push_back(std::move(c));
         }
     };
@@ -165,7 +168,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
         const Eigen::Vector3d p = spots[n].workobject_from_sensor * spots[n].reference_mm;
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
-        if (n % every == 0) add(p, "near " + spots[n].id, 1.0);
+        if (n % every == 0) add(p, spots[n].id, "near " + spots[n].id, 1.0);
     }
     // Corners of the box around the spots; around a single spot or a tight cluster the box is taken 500 mm
     // wide.
@@ -182,7 +185,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
             flat = flat || high[i] - low[i] < 1;  // the same corner once more
             p[i] = high[i];
         }
-        if (!flat) add(p, tight ? "on the part" : "towards the corner", kCornerPenalty);
+        if (!flat) add(p, "", tight ? "on the part" : "towards the corner", kCornerPenalty);
     }
     return out;
 }
@@ -270,6 +273,38 @@ Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const C
         plan.uncontrolled.push_back(spots[n].id);
     plan.advice = advise(spots, options, plan);
     return plan;
+}
+
+Expected<Matrix6> predicted_covariance(std::span<const SpotObservation> spots,
+                                       const CorrectionOptions& options) {
+    if (auto good = check_region(spots, options, false); !good) return tl::unexpected(good.error());
+    RegionSystem system;
+    const Judgement now = judge(system, spots, options);
+    Matrix6 covariance;
+    Eigen::Vector3d xyz, abc;
+    report_spread(system, system.spread(now.lin, State{}), now.seen, State{}, covariance, xyz, abc);
+    return covariance;
+}
+
+std::optional<FurtherSpot> best_further_spot(std::span<const SpotObservation> spots,
+                                             const CorrectionOptions& options) {
+    if (!check_region(spots, options, false)) return std::nullopt;
+    RegionSystem system;
+    Candidate best;
+    const Judgement now = judge(system, spots, options);
+    best.sigma_mm = now.seen.weakest_sigma_mm;
+    best.weak = now.seen.weak.cols();
+    Spots extended(spots.begin(), spots.end());
+    extended.emplace_back();
+    for (Candidate& c : candidates(spots)) {
+        extended.back() = c.spot;
+        const Judgement j = judge(system, extended, options);
+        c.weak = j.seen.weak.cols();
+        c.sigma_mm = j.seen.weakest_sigma_mm;
+        if (c < best) best = std::move(c);
+    }
+    if (best.words.empty()) return std::nullopt;
+    return FurtherSpot{std::move(best.spot), std::move(best.near), std::move(best.edge)};
 }
 
 }  // namespace seamwright

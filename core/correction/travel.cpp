@@ -20,6 +20,33 @@ Eigen::Vector3d contour_direction(const SpotObservation& spot, const Displacemen
     return moved / moved.y();
 }
 
+Eigen::Vector3d displaced_measure(const SpotObservation& spot, const Displacement& displacement) {
+    const Pose moved = spot.workobject_from_sensor.inverse() * displacement.workobject_from_movedworkobject *
+                       spot.workobject_from_sensor;
+    const Eigen::Vector3d& r = spot.reference_mm;
+    const ContourCurve curve = spot.curve && spot.weights.y() == 0 ? *spot.curve : ContourCurve{};
+    double y = 0;
+    Eigen::Vector3d at = moved * r;
+    constexpr int kSteps = 8;  // of Newton; the bend of a contour is gentle
+    for (int step = 0; step < kSteps; ++step) {
+        const double inside =
+            spot.curve ? std::clamp(y, curve.valid_from_mm, curve.valid_to_mm) : 0.0;  // tangent beyond
+        const auto shape = [&](const Eigen::Vector3d& c, double& value, double& slope) {
+            slope = c.dot(Eigen::Vector3d(1, 2 * inside, 3 * inside * inside));
+            value = c.dot(Eigen::Vector3d(inside, inside * inside, inside * inside * inside)) +
+                    slope * (y - inside);
+        };
+        double x, z, dx, dz;
+        shape(curve.x_coefficients, x, dx);
+        shape(curve.z_coefficients, z, dz);
+        at = moved * (r + Eigen::Vector3d(x, y, z));
+        const double along = (moved.linear() * Eigen::Vector3d(dx, 1, dz)).y();
+        if (!(std::abs(along) > 1e-3)) return r;
+        y -= (at.y() - r.y()) / along;
+    }
+    return {at.x(), r.y(), at.z()};
+}
+
 Eigen::Matrix2d travel_covariance(const SpotObservation& spot, const Displacement& displacement,
                                   double sigma_mm) {
     const Eigen::Vector3d direction = contour_direction(spot, displacement);

@@ -10,6 +10,10 @@ namespace seamwright {
 // A contour that lies along the laser line (no part along Y) yields infinite slopes.
 Eigen::Vector3d contour_direction(const SpotObservation& spot, const Displacement& displacement);
 
+// Where the displaced contour meets the laser plane: what a spot will measure without noise. Sensor frame, y
+// that of the reference. The reference itself where the contour came to lie along the laser line.
+Eigen::Vector3d displaced_measure(const SpotObservation& spot, const Displacement& displacement);
+
 // Covariance of the measured (x, z), mm^2, from an unreported travel of standard deviation `sigma_mm` along
 // the sensor's Y, to be added to that of the feature. First order: the slope of contour_direction() times the
 // travel. Zero where the contour stands still. A uniform jitter of half width h has h / sqrt(3).

@@ -7924,10 +7924,6 @@ A %5  B %6  C %7 Grad</translation>
         <translation>Grenzen</translation>
     </message>
     <message>
-        <source>observable; weakest: %1, sigma %2 mm at the spots</source>
-        <translation>beobachtbar; am schwächsten: %1, Sigma %2 mm an den Messstellen</translation>
-    </message>
-    <message>
         <source>under-determined: %1</source>
         <translation>unterbestimmt: %1</translation>
     </message>
@@ -7950,6 +7946,42 @@ A %5  B %6  C %7 Grad</translation>
     <message>
         <source>A wrong measure of %1 mm could not be found at: %2</source>
         <translation>Eine Fehlmessung von %1 mm wäre nicht zu finden an: %2</translation>
+    </message>
+    <message>
+        <source>As proven</source>
+        <translation>Wie nachgewiesen</translation>
+    </message>
+    <message>
+        <source>Lets through what the known shift has proven, and no more</source>
+        <translation>Lässt durch, was die bekannten Verschiebungen nachgewiesen haben, und nicht mehr</translation>
+    </message>
+    <message>
+        <source>limits</source>
+        <translation>Grenzen</translation>
+    </message>
+    <message>
+        <source>observable: 3 sigma %1 mm at spot %2, %3 mm required</source>
+        <translation>beobachtbar: 3 Sigma %1 mm an Messstelle %2, gefordert %3 mm</translation>
+    </message>
+    <message>
+        <source>not sure enough: 3 sigma %1 mm at spot %2, %3 mm required</source>
+        <translation>nicht sicher genug: 3 Sigma %1 mm an Messstelle %2, gefordert %3 mm</translation>
+    </message>
+    <message>
+        <source>for parts displaced by up to %1 mm and %2 deg</source>
+        <translation>für Teile, die bis %1 mm und %2 Grad verschoben sind</translation>
+    </message>
+    <message>
+        <source>3 sigma %1 mm: %2</source>
+        <translation>3 Sigma %1 mm: %2</translation>
+    </message>
+    <message>
+        <source>Surer still would be:</source>
+        <translation>Noch sicherer wäre:</translation>
+    </message>
+    <message>
+        <source>To cure, the most effective first:</source>
+        <translation>Abhilfe, das Wirksamste zuerst:</translation>
     </message>
 </context>
 <context>

@@ -153,7 +153,15 @@ TEST_F(Checklist, FrozenIsStaleWhenItsSpotWasTurned) {
 
 TEST_F(Checklist, RegionsMustReachTheRequired3Sigma) {
     project.requirements.sigma3_mm = 0.02;
-    expect(CheckStep::observable, CheckStatus::missing, "required are 0.020 mm");
+    expect(CheckStep::observable, CheckStatus::missing, "0.020 mm are required: ");
+    project.requirements.sigma3_mm = 1;
+    // What the gate would refuse at every part is not sure enough either.
+    project.regions[0].sigma_limit_mm = 0.01;
+    expect(CheckStep::observable, CheckStatus::missing, "0.030 mm are required: ");
+    project.regions[0].sigma_limit_mm = 1;
+    project.regions[0].sigma_limit_deg = 1e-4;
+    expect(CheckStep::observable, CheckStatus::missing, "its limit is 0.0001 deg");
+    project.regions[0].sigma_limit_deg = 0.5;
     project.requirements.sigma3_mm = 1;
     project.regions[0].spot_ids.resize(1);
     expect(CheckStep::observable, CheckStatus::missing, "under-determined");

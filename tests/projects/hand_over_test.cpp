@@ -120,8 +120,8 @@ TEST(HandOverTexts, AreTranslated) {
     int found = 0;
     const std::regex call(R"re((?:\bPhrase\(|\bt\()((?:[^"();]*\? *)?(?:"(?:[^"\\]|\\.)*"\s*(?::\s*)?)+))re");
     const std::regex literal(R"re("((?:[^"\\]|\\.)*)")re");
-    for (const char* name : {"checklist.cpp", "hand_over.cpp", "hand_over_panel.cpp", "hand_over_proof.cpp",
-                             "hand_over_detail.h"}) {
+    for (const char* name : {"checklist.cpp", "forecast.cpp", "hand_over.cpp", "hand_over_panel.cpp",
+                             "hand_over_proof.cpp", "hand_over_detail.h"}) {
         std::ifstream in(std::filesystem::path(SEAMWRIGHT_PROJECTS) / name);
         const std::string source{std::istreambuf_iterator<char>(in), {}};
         ASSERT_FALSE(source.empty()) << name;

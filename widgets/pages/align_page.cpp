@@ -160,16 +160,7 @@ void AlignPage::adopt() {
     if (!s || !pass_) return;
     const Calibration* c = calibration_of(desk_.project(), *s);
     const Pose flange_from_sensor = c ? c->flange_from_sensor : Pose::Identity();
-    const Eigen::Matrix3d turn =
-        (Eigen::AngleAxisd(rad_from_deg(pass_->result.cure_about_z_deg), Eigen::Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(rad_from_deg(pass_->result.cure_about_x_deg), Eigen::Vector3d::UnitX()))
-            .toRotationMatrix();
-    const Eigen::Vector3d r = s->reference_mm;
-    Spot after = *s;
-    after.base_from_flange = s->base_from_flange * flange_from_sensor * make_pose(turn, r - turn * r) *
-                             flange_from_sensor.inverse();
-    after.curve.reset();
-    after.reference_profile = {};
+    const Spot after = cured(*s, pass_->result, flange_from_sensor);
     if (done(desk_.edit(after, tr("pose")))) {
         pass_.reset();
         views_.align->clear();

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "projects/fields.h"
+#include "projects/forecast.h"
+#include "projects/known_shift.h"
 #include "projects/measure.h"
 #include "widgets/errors.h"
 #include "widgets/style.h"
@@ -138,6 +140,17 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
         editors_.push_back(editor);
         in->addWidget(editor);
     }
+    proven_ = make_button("limits_as_proven", "check", tr("As proven"),
+                          tr("Lets through what the known shift has proven, and no more"), [this] {
+                              const Evidence* e = newest<KnownShift>(desk_.facts());
+                              if (!region() || !e) return;
+                              Region r = *region();
+                              r.limits = proven_limits(std::get<KnownShift>(e->what));
+                              r.sigma_limit_mm =
+                                  std::min(r.sigma_limit_mm, desk_.project().requirements.sigma3_mm / 3);
+                              done(desk_.edit(r, tr("limits")));
+                          });
+    in->addLayout(make_row({proven_}));
     box().addStretch(1);
 }
 
@@ -163,6 +176,7 @@ void RegionsPage::refresh() {
     inspector_->setVisible(r);
     rename_->setEnabled(r);
     remove_->setEnabled(r);
+    proven_->setEnabled(r && newest<KnownShift>(desk_.facts()));
     if (r) {
         const int scroll = spots_->currentRow();
         spots_->clear();
@@ -184,24 +198,32 @@ void RegionsPage::refresh() {
 }
 
 void RegionsPage::show_plan(const Region& r) {
-    const auto plan = plan_region(planned_observations(desk_.project(), r), correction_options(r));
-    if (!plan) {
-        set_verdict(*verdict_, shown_cause(plan.error().what), Tone::attention);
+    const auto forecast = forecast_region(desk_.project(), r);
+    if (!forecast) {
+        set_verdict(*verdict_, shown_cause(forecast.error().what), Tone::attention);
         set_rows(*plan_, {});
         advice_->clear();
         return;
     }
-    if (plan->status == CorrectionStatus::ok)
+    const RegionPlan* plan = &forecast->plan;
+    const Requirements& need = desk_.project().requirements;
+    if (plan->status != CorrectionStatus::ok)
         set_verdict(*verdict_,
-                    tr("observable; weakest: %1, sigma %2 mm at the spots")
-                        .arg(shown_cause(plan->weakest), number(plan->sigma_at_spots_mm, 3)),
-                    plan->sigma_at_spots_mm <= r.sigma_limit_mm ? Tone::good : Tone::attention);
+                    tr("under-determined: %1")
+                        .arg(QString::fromStdString(plan->unobservable.empty() ? plan->weakest
+                                                                               : plan->unobservable.front())),
+                    Tone::alarm);
     else
         set_verdict(
             *verdict_,
-            tr("under-determined: %1")
-                .arg(shown_cause(plan->unobservable.empty() ? plan->weakest : plan->unobservable.front())),
-            Tone::alarm);
+            (forecast->enough() ? tr("observable: 3 sigma %1 mm at spot %2, %3 mm required")
+                                : tr("not sure enough: 3 sigma %1 mm at spot %2, %3 mm required"))
+                    .arg(number(3 * forecast->sigma_mm, 3), QString::fromStdString(forecast->worst_spot),
+                         number(3 * forecast->wanted_mm, 3)) +
+                "\n" +
+                tr("for parts displaced by up to %1 mm and %2 deg")
+                    .arg(number(need.known_shift_mm, 1), number(need.known_shift_deg, 2)),
+            forecast->enough() ? Tone::good : Tone::attention);
     const QStringList names{tr("X"), tr("Y"), tr("Z"), tr("A about Z"), tr("B about Y"), tr("C about X")};
     QVector<QStringList> rows;
     for (int i = 0; i < 6; ++i) {
@@ -215,7 +237,19 @@ void RegionsPage::show_plan(const Region& r) {
                                       (i < 3 ? QStringLiteral(" mm") : QChar(0x20) + shown_word("deg"))};
     }
     set_rows(*plan_, rows);
-    QString text = shown_cause(plan->advice);
+    QString text;
+    if (plan->status != CorrectionStatus::ok) text = shown_cause(plan->advice);
+    constexpr std::size_t kMostCures = 3;
+    for (std::size_t i = 0; i < std::min(kMostCures, forecast->cures.size()); ++i) {
+        const Cure& cure = forecast->cures[i];
+        text +=
+            (i ? QStringLiteral("\n") : QString()) +
+            tr("3 sigma %1 mm: %2")
+                .arg(number(3 * cure.sigma_mm, 3), QString::fromStdString(cure.what.in(desk_.language())));
+    }
+    if (plan->status == CorrectionStatus::ok && !text.isEmpty())
+        text = (forecast->enough() ? tr("Surer still would be:") : tr("To cure, the most effective first:")) +
+               "\n" + text;
     if (!plan->uncontrolled.empty()) {
         QStringList ids;
         for (const std::string& id : plan->uncontrolled) ids << QString::fromStdString(id);

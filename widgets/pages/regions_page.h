@@ -25,7 +25,7 @@ class RegionsPage : public StepPage {
     const Region* region() const;
     void show_plan(const Region& region);
     QListWidget *list_, *spots_;
-    QPushButton *rename_, *remove_;
+    QPushButton *proven_ = nullptr, *rename_, *remove_;
     QWidget* inspector_;
     std::array<QCheckBox*, 6> free_{};
     QLineEdit* frame_;

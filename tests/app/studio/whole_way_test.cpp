@@ -10,9 +10,12 @@
 #include <QListWidget>
 #include <QPlainTextEdit>
 #include <QProcess>
+#include <QRegularExpression>
 #include <QTreeWidget>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <set>
 
 #include "app/studio/studio.h"
 #include "devices/exchange/pose_json.h"
@@ -25,6 +28,12 @@
 
 namespace seamwright {
 namespace {
+
+// Of the simulated cell: another one on demand, to see how often a person has to repeat what.
+int seed() {
+    const char* given = std::getenv("SEAMWRIGHT_SEED");
+    return given ? std::atoi(given) : 3;
+}
 
 class WholeWay : public testing::Test {
   protected:
@@ -47,23 +56,134 @@ class WholeWay : public testing::Test {
     }
 };
 
-// Limits are held against the displacements that were proven.
-bool green_when(bool proven, CheckStep step) {
-    return proven || (step != CheckStep::known_shift && step != CheckStep::limits);
+// What a person at the pages does at a spot: pose, feature by pointing, reference, and the pass until the
+// contour stands still.
+class Teacher {
+  public:
+    Teacher(Person& me, Desk& desk, const SimulatedCell& cell) : me_(me), desk_(desk), cell_(cell) {}
+
+    void add(const DoorSpot& door, bool by_template) {
+        me_.step(3);
+        const std::size_t before = desk_.project().spots.size();
+        me_.click("add_spot");
+        ASSERT_EQ(desk_.project().spots.size(), before + 1);
+        me_.write_pose("spot_pose", cell_.flange_for(door.workobject_from_sensor));
+        look(before, by_template);
+        freeze(before);
+    }
+    // An earlier spot, taught once more by a template.
+    void by_template(std::size_t k) {
+        me_.step(3);
+        choose(k);
+        look(k, true);
+        freeze(k);
+    }
+
+  private:
+    std::string id(std::size_t k) const { return desk_.project().spots.at(k).id; }
+    void choose(std::size_t k) {
+        auto* tree = me_.find<QTreeWidget>("spot_tree");
+        ASSERT_TRUE(tree);
+        const auto items =
+            tree->findItems(QString::fromStdString(id(k)), Qt::MatchExactly | Qt::MatchRecursive);
+        ASSERT_FALSE(items.isEmpty());
+        tree->scrollToItem(items[0]);
+        QTest::mouseClick(tree->viewport(), Qt::LeftButton, {}, tree->visualItemRect(items[0]).center());
+    }
+    void measure_reference() {
+        me_.click("measure_reference");
+        ASSERT_TRUE(me_.wait([&] { return desk_.worker().busy(); }));
+        ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
+    }
+    void look(std::size_t k, bool by_template) {
+        const std::string sensor = desk_.project().spots[k].sensor_id;
+        me_.click("go_there");
+        ASSERT_TRUE(me_.wait([&] {
+            const auto live = desk_.live().latest(sensor);
+            return live && live->profile.size() > 100 && !desk_.worker().busy();
+        })) << "the live profile of spot "
+            << id(k);
+        QTest::qWait(300);  // the robot has arrived, the picture is of the new place
+        auto* plot = me_.window().views().profile;
+        const auto on_plot = [&](double x, double z) {
+            return plot->focusProxy()->mapFrom(plot, plot->to_screen({x, z})).toPoint();
+        };
+        const auto live = desk_.live().latest(sensor);
+        double left = 1e9, left_z = 0, right = -1e9, low = 1e9, high = -1e9;
+        for (std::size_t p = 0; p < live->profile.size(); ++p) {
+            const double x = live->profile.x_mm[p], z = live->profile.z_mm[p];
+            if (!std::isfinite(x + z) || live->profile.segment[p] == kOutlier) continue;
+            if (x < left) left = x, left_z = z;
+            right = std::max(right, x), low = std::min(low, z), high = std::max(high, z);
+        }
+        if (by_template) {
+            me_.choose("feature_kind", "template");
+            me_.click("template_window");
+            me_.picture(QString("05_template_%1").arg(k + 1));
+            me_.drag(plot->focusProxy(), on_plot(left - 1, high + 1),
+                     on_plot(std::min(left + 42, right), low - 1));
+            ASSERT_GT(desk_.project().spots[k].feature.template_profile.size(), 50U);
+        } else {
+            me_.choose("feature_kind", "contour end");
+            me_.click("pick");
+            QTest::mouseClick(plot->focusProxy(), Qt::LeftButton, {}, on_plot(left, left_z));
+        }
+        measure_reference();
+        ASSERT_GT(desk_.project().spots[k].reference_profile.size(), 0U)
+            << me_.text_of("reference").toStdString();
+        me_.picture(QString("05_taught_%1").arg(k + 1));
+    }
+    // Turned as the page says until the word is FROZEN.
+    void freeze(std::size_t k) {
+        me_.step(4);
+        choose(k);
+        for (int turn = 0; turn < 4; ++turn) {
+            me_.click("start_pass");
+            ASSERT_TRUE(me_.wait([&] { return desk_.worker().busy(); }));
+            ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
+            QApplication::processEvents();
+            if (me_.text_of("align_verdict") == "FROZEN") break;
+            ASSERT_EQ(me_.text_of("align_verdict"), "DRIFTING") << me_.text_of("align_numbers").toStdString();
+            me_.picture(QString("06_drifting_%1_%2").arg(k + 1).arg(turn));
+            me_.click("adopt_pose");
+            me_.step(3);
+            me_.click("go_there");
+            measure_reference();
+            me_.step(4);
+        }
+        ASSERT_EQ(me_.text_of("align_verdict"), "FROZEN") << me_.text_of("align_numbers").toStdString();
+        me_.picture(QString("06_frozen_%1").arg(k + 1));
+        me_.click("accept_pass");
+        ASSERT_TRUE(desk_.project().spots[k].curve);
+    }
+
+    Person& me_;
+    Desk& desk_;
+    const SimulatedCell& cell_;
+};
+
+// Of the door's suggested spots the one nearest to a place that the page names, its edge along `edge`.
+std::size_t nearest_spot(const Eigen::Vector3d& place_mm, const Eigen::Vector3d& edge,
+                         const std::set<std::size_t>& taken) {
+    const auto doors = default_door_spots();
+    std::size_t best = doors.size();
+    double least = 1e9;
+    for (std::size_t i = 0; i < doors.size(); ++i) {
+        const Pose& w = doors[i].workobject_from_sensor;
+        if (taken.count(i) || std::abs(w.linear().col(1).dot(edge)) < 0.9) continue;
+        if (const double far = (w.translation() - place_mm).norm(); far < least) least = far, best = i;
+    }
+    return best;
 }
 
 TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
-    // A spot that jitters along the displaced contour makes a known shift contradict itself now and then; the
-    // checklist says so then, and stays open there.
-    bool proven = false;
     const nlohmann::json settings = {
-        {"seed", 3},
+        {"seed", seed()},
         {"robot", {{"frames", {{"BASE_Region1", pose_json(default_cell_settings().base_from_workobject)}}}}}};
     const auto cell = SimulatedCell::open(settings).value();
     {
         const std::vector<std::byte> mesh = ply_bytes(cell->part_mesh());
         std::ofstream(folder / "door.ply", std::ios::binary)
-
             .write(reinterpret_cast<const char*>(mesh.data()), static_cast<long>(mesh.size()));
     }
     QStringList measured;
@@ -104,8 +224,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         }
         me.click("connect");
         ASSERT_TRUE(me.wait([&] { return desk.station().connected; }));
-        me.write_parameter("sigma3_mm", "0.6");
-        ASSERT_EQ(desk.project().requirements.sigma3_mm, 0.6);
+        ASSERT_EQ(desk.project().requirements.sigma3_mm, 0.3) << "as a project requires by itself";
         me.picture("03_cell");
 
         me.step(2);
@@ -115,137 +234,89 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
 
         // Three cuts of two directions each observe all six: heights at three corners, and the sides of top,
         // bottom and hinge. The first by a template.
-        me.step(3);
         const auto doors = default_door_spots();
+        std::set<std::size_t> taken;
+        Teacher teacher(me, desk, *cell);
         for (const std::size_t i : {2UL, 6UL, 11UL}) {
-            const std::size_t before = desk.project().spots.size();
-            me.click("add_spot");
-            ASSERT_EQ(desk.project().spots.size(), before + 1);
-            me.write_pose("spot_pose", cell->flange_for(doors[i].workobject_from_sensor));
-            me.click("go_there");
-            const std::string sensor = desk.project().spots.back().sensor_id;
-            ASSERT_TRUE(me.wait([&] {
-                const auto live = desk.live().latest(sensor);
-                return live && live->profile.size() > 100 && !desk.worker().busy();
-            })) << "the live profile of spot "
-                << i;
-            QTest::qWait(300);  // the robot has arrived, the picture is of the new place
-            auto* plot = window.views().profile;
-            const auto on_plot = [&](double x, double z) {
-                return plot->focusProxy()->mapFrom(plot, plot->to_screen({x, z})).toPoint();
-            };
-            const auto live = desk.live().latest(sensor);
-            double left = 1e9, left_z = 0, right = -1e9, low = 1e9, high = -1e9;
-            for (std::size_t p = 0; p < live->profile.size(); ++p) {
-                const double x = live->profile.x_mm[p], z = live->profile.z_mm[p];
-                if (!std::isfinite(x + z) || live->profile.segment[p] == kOutlier) continue;
-                if (x < left) left = x, left_z = z;
-                right = std::max(right, x), low = std::min(low, z), high = std::max(high, z);
-            }
-            if (before == 0) {
-                me.choose("feature_kind", "template");
-                me.click("template_window");
-                me.picture("05_template");
-                QWidget* canvas = plot->focusProxy();
-                const QPoint from = on_plot(left - 1, high + 1),
-                             to = on_plot(std::min(left + 42, right), low - 1);
-                me.drag(canvas, from, to);
-                ASSERT_GT(desk.project().spots.back().feature.template_profile.size(), 50U);
-            } else {
-                me.choose("feature_kind", "contour end");
-                me.click("pick");
-                QTest::mouseClick(plot->focusProxy(), Qt::LeftButton, {}, on_plot(left, left_z));
-            }
-            me.click("measure_reference");
-            ASSERT_TRUE(me.wait([&] {
-                return !desk.worker().busy() && desk.project().spots.back().reference_profile.size() > 0;
-            })) << me.text_of("reference").toStdString();
-            me.picture(QString("05_taught_%1").arg(before + 1));
+            teacher.add(doors[i], taken.empty());
+            if (HasFatalFailure()) return;
+            taken.insert(i);
         }
 
-        // Frozen contour on each: turned as the page says until the word is FROZEN.
-        me.step(4);
-        for (int k = 0; k < 3; ++k) {
-            auto* tree = me.find<QTreeWidget>("spot_tree");
-            ASSERT_TRUE(tree);
-            const auto items =
-                tree->findItems(QString("S%1").arg(k + 1), Qt::MatchExactly | Qt::MatchRecursive);
-            ASSERT_FALSE(items.isEmpty());
-            tree->scrollToItem(items[0]);
-            QTest::mouseClick(tree->viewport(), Qt::LeftButton, {}, tree->visualItemRect(items[0]).center());
-            for (int turn = 0; turn < 4; ++turn) {
-                me.click("start_pass");
-                ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
-                ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
-                QApplication::processEvents();
-                if (me.text_of("align_verdict") == "FROZEN") break;
-                ASSERT_EQ(me.text_of("align_verdict"), "DRIFTING")
-                    << me.text_of("align_numbers").toStdString();
-                me.picture(QString("06_drifting_%1_%2").arg(k + 1).arg(turn));
-                me.click("adopt_pose");
-                me.step(3);
-                me.click("go_there");
-                me.click("measure_reference");
-                ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
-                ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
-                me.step(4);
-            }
-            ASSERT_EQ(me.text_of("align_verdict"), "FROZEN") << me.text_of("align_numbers").toStdString();
-            me.picture(QString("06_frozen_%1").arg(k + 1));
-            me.click("accept_pass");
-            ASSERT_TRUE(desk.project().spots[static_cast<std::size_t>(k)].curve);
-        }
-
-        // One region of all spots.
+        // One region of all spots; then what its page says, until it is sure enough.
+        const auto item = [&](CheckStep step) { return desk.checks().at(static_cast<std::size_t>(step)); };
         me.step(5);
         me.click("add_region");
-        auto* list = me.find<QListWidget>("region_spots");
-        ASSERT_TRUE(list);
-        for (int r = 0; r < 3; ++r) {
-            me.look_at(list);
-            list->setFocus();
-            list->setCurrentRow(r);
-            QTest::keyClick(list, Qt::Key_Space);
-            QApplication::processEvents();
+        int ticked = 0;
+        const auto tick_new = [&] {
+            for (; ticked < static_cast<int>(desk.project().spots.size()); ++ticked) {
+                auto* list = me.find<QListWidget>("region_spots");
+                ASSERT_TRUE(list);
+                me.look_at(list);
+                list->setFocus();
+                list->setCurrentRow(ticked);
+                QTest::keyClick(list, Qt::Key_Space);
+                QApplication::processEvents();
+            }
+            ASSERT_EQ(desk.project().regions.at(0).spot_ids.size(), desk.project().spots.size());
+        };
+        tick_new();
+        if (HasFatalFailure()) return;
+        for (int cure = 0; cure < 4 && !item(CheckStep::observable).done(); ++cure) {
+            me.picture(QString("07_region_%1").arg(cure));
+            const QString say = me.text_of("plan_verdict"), advice = me.text_of("plan_advice");
+            ASSERT_TRUE(say.startsWith("not sure enough")) << say.toStdString();
+            const QString first = advice.section('\n', 1, 1);
+            std::cout << "region: " << say.toStdString() << "\n  " << first.toStdString() << "\n";
+            const QRegularExpression place(
+                R"re(add a spot .*\((-?\d+), (-?\d+), (-?\d+)\) mm .* along ([XYZ])$)re"),
+                feature(R"re(spot S(\d+): its feature is .* teach it by a template$)re");
+            if (const auto m = place.match(first); m.hasMatch()) {
+                const Eigen::Vector3d at(m.captured(1).toDouble(), m.captured(2).toDouble(),
+                                         m.captured(3).toDouble());
+                const std::size_t i =
+                    nearest_spot(at, Eigen::Vector3d::Unit(m.captured(4)[0].unicode() - 'X'), taken);
+                ASSERT_LT(i, doors.size());
+                taken.insert(i);
+                teacher.add(doors[i], true);
+            } else if (const auto k = feature.match(first); k.hasMatch()) {
+                teacher.by_template(k.captured(1).toUInt() - 1);
+            } else {
+                FAIL() << "nothing that a person could do: " << advice.toStdString();
+            }
+            if (HasFatalFailure()) return;
+            me.step(5);
+            tick_new();
+            if (HasFatalFailure()) return;
         }
-        ASSERT_EQ(desk.project().regions.at(0).spot_ids.size(), 3U);
+        ASSERT_TRUE(item(CheckStep::observable).done())
+            << item(CheckStep::observable).why.in(Language::english);
         EXPECT_TRUE(me.text_of("plan_verdict").startsWith("observable"))
             << me.text_of("plan_verdict").toStdString();
-        // The template stands on little contour; this job allows its region twice the usual sigma.
-        me.write_parameter("sigma_limit_mm", "0.2");
-        ASSERT_EQ(desk.project().regions[0].sigma_limit_mm, 0.2);
         me.picture("07_region");
 
         // Zero shift.
         me.step(6);
-        const auto item = [&](CheckStep step) { return desk.checks().at(static_cast<std::size_t>(step)); };
-        for (int attempt = 0; attempt < 3 && !item(CheckStep::zero_shift).done(); ++attempt) {
-            // "a zero-shift run was refused; see why and repeat"
-            me.click("start_zero");
-            ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
-            ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 3 * kPatienceMs));
-            QTest::qWait(100);
-        }
+        me.click("start_zero");
+        ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+        ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 3 * kPatienceMs));
+        QTest::qWait(100);
         me.picture("08_zero");
         EXPECT_GE(desk.runs()->size(), 5U);
-        EXPECT_TRUE(item(CheckStep::zero_shift).done())
+        ASSERT_TRUE(item(CheckStep::zero_shift).done())
             << item(CheckStep::zero_shift).why.in(Language::english);
 
-        // Known shift: the largest displacements each way.
-        me.write(me.find<QDoubleSpinBox>("shift_step_mm")->findChild<QLineEdit*>(), "10");
-        me.write(me.find<QDoubleSpinBox>("shift_step_deg")->findChild<QLineEdit*>(), "1");
-        for (int attempt = 0; attempt < 2 && !item(CheckStep::known_shift).done(); ++attempt) {
-            me.click("start_known");
-            ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
-            ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 6 * kPatienceMs));
-            QTest::qWait(100);
-        }
-        proven = item(CheckStep::known_shift).done();
-        if (!proven) {
-            const std::string why = item(CheckStep::known_shift).why.in(Language::english);
-            EXPECT_NE(why.find("known shifts were refused"), std::string::npos) << why;
-        }
+        // Known shift over the grid that the page proposes.
+        me.click("start_known");
+        ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+        ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 15 * kPatienceMs));
+        QTest::qWait(100);
+        me.look_at(me.find<QTableWidget>("known_table"));
         me.picture("08_known");
+        ASSERT_TRUE(item(CheckStep::known_shift).done())
+            << item(CheckStep::known_shift).why.in(Language::english);
+        std::cout << item(CheckStep::known_shift).evidence.at(0).in(Language::english) << "\n";
+        EXPECT_EQ(me.table("known_table").size(), 3 * 4) << "translation, rotation, both";
 
         // Limits: the checklist says which are too wide, and leads to their page.
         ASSERT_FALSE(item(CheckStep::limits).done());
@@ -255,19 +326,15 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         checklist->setFocus();
         checklist->setCurrentCell(static_cast<int>(CheckStep::limits), 0);
         me.picture("08_checklist");
-        if (proven) {
-            EXPECT_TRUE(me.text_of("finding").contains("lower its limits"))
-                << me.text_of("finding").toStdString();
-        }
+        EXPECT_TRUE(me.text_of("finding").contains("lower its limits"))
+            << me.text_of("finding").toStdString();
         me.click("open_step");
         ASSERT_EQ(window.step(), Step::regions);
-        me.write_parameter("limit_translation_mm", "14");
-        me.write_parameter("limit_rotation_deg", "1");
-        for (const CheckItem& check : desk.checks()) {
-            if (check.step == CheckStep::sensors) continue;  // the robot has not moved since the proof
-            EXPECT_EQ(check.done(), check.step != CheckStep::headless && green_when(proven, check.step))
+        me.click("limits_as_proven");
+        me.picture("08_limits");
+        for (const CheckItem& check : desk.checks())
+            EXPECT_EQ(check.done(), check.step != CheckStep::headless)
                 << to_string(check.step) << ": " << check.why.in(Language::english);
-        }
 
         // The next part, measured and pushed.
         me.step(1);
@@ -279,11 +346,9 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
             auto* confirm = window.findChild<QWidget*>("confirm");
             return confirm && confirm->isVisible();
         };
-        for (int attempt = 0; attempt < 3 && !asked(); ++attempt) {  // a refused part is measured again
-            me.click("measure_push");
-            ASSERT_TRUE(me.wait([&] { return asked() || desk.worker().busy(); }));
-            ASSERT_TRUE(me.wait([&] { return asked() || !desk.worker().busy(); }));
-        }
+        me.click("measure_push");
+        ASSERT_TRUE(me.wait([&] { return asked() || desk.worker().busy(); }));
+        ASSERT_TRUE(me.wait([&] { return asked() || !desk.worker().busy(); }));
         ASSERT_TRUE(asked()) << "what would be written is shown: " << me.text_of("run_verdict").toStdString()
                              << " " << me.text_of("gate").toStdString();
         me.picture("09_confirm");
@@ -329,13 +394,12 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
     me.click("open_run");
     me.picture("11_reopened");
     EXPECT_EQ(me.table("run_regions"), measured) << "the same numbers";
-    EXPECT_EQ(again.desk().project().spots.size(), 3U);
+    EXPECT_GE(again.desk().project().spots.size(), 3U);
 
     // Everything is green: the way ends at measuring, and the report is one click.
     for (const CheckItem& check : again.desk().checks())
-        EXPECT_EQ(check.done(), green_when(proven, check.step))
-            << to_string(check.step) << ": " << check.why.in(Language::english);
-    EXPECT_EQ(next_step(again.desk().steps()), proven ? Step::run : Step::prove);
+        EXPECT_TRUE(check.done()) << to_string(check.step) << ": " << check.why.in(Language::english);
+    EXPECT_EQ(next_step(again.desk().steps()), Step::run);
     me.step(6);
     me.picture("12_green");
     const QString pdf = QString::fromStdString((folder / "door.pdf").string());

@@ -59,6 +59,25 @@ TEST(Travel, CovarianceIsTheSlopeOfTheDisplacedContour) {
     }
 }
 
+TEST(Travel, WhatADisplacedSpotMeasures) {
+    Rng rng(3);
+    for (int i = 0; i < 200; ++i) {
+        SpotObservation s = door(rng, 4, {900, -400, 250})[0];
+        if (i % 2 == 0) {
+            s.curve.emplace();
+            s.curve->x_coefficients = {uniform(rng, -0.05, 0.05), uniform(rng, -2e-3, 2e-3), 1e-6};
+            s.curve->z_coefficients = {uniform(rng, -0.05, 0.05), uniform(rng, -2e-3, 2e-3), -1e-6};
+            s.curve->valid_from_mm = -60, s.curve->valid_to_mm = 60;
+        }
+        const Pose d = random_displacement(rng, 10, 3, {900, -400, 250});
+        EXPECT_LT((displaced_measure(s, {d}) - pierced(s, d, 0)).norm(), 1e-9);
+    }
+    SpotObservation lying = door(rng, 4)[0];
+    const Pose& w = lying.workobject_from_sensor;
+    const Pose turned = w * make_pose(rotation_exp({0, 0, kPi / 2}), Eigen::Vector3d::Zero()) * w.inverse();
+    EXPECT_EQ(displaced_measure(lying, {turned}), lying.reference_mm) << "along the laser line";
+}
+
 TEST(Travel, FrozenContourGainsNothing) {
     Rng rng(2);
     const SpotObservation s = door(rng, 4)[0];

@@ -1,0 +1,29 @@
+#pragma once
+// What a region of spots will be able to tell, beyond its verdict (plan_region in correction.h).
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/correction/correction.h"
+
+namespace seamwright {
+
+// Covariance of D (tangent of pose.h, work object) that follows from the spots' stated noise, at the places
+// as taught (measured_mm is ignored); infinite variances where the information is singular. Refuses what
+// plan_region refuses.
+Expected<Matrix6> predicted_covariance(std::span<const SpotObservation> spots,
+                                       const CorrectionOptions& options);
+
+// The further spot that helps most, with the noise of a middling one; nullopt where none of the places tried
+// does (near the taught spots and at the corners of the box around them, edges along the axes and along the
+// taught ones).
+struct FurtherSpot {
+    SpotObservation spot;
+    std::string near;  // the taught spot that it lies at; empty: a corner of the box
+    std::string edge;  // along which its contour runs, work object: "X" or "(0.30, 0.95, 0.00)"
+};
+std::optional<FurtherSpot> best_further_spot(std::span<const SpotObservation> spots,
+                                             const CorrectionOptions& options);
+
+}  // namespace seamwright

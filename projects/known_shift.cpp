@@ -81,6 +81,9 @@ class Borrowed {
   public:
     explicit Borrowed(Station& station)
         : station_(station), before_(station.project()), was_connected_(station.connected()) {
+        for (const RobotSetup& r : before_.robots)
+            if (RobotLink* robot = station_.robot(r.id); robot && r.driver == kSimulated)
+                if (auto pose = robot->base_from_flange()) stood_[r.id] = *pose;
         station_.disconnect();
     }
     Borrowed(const Borrowed&) = delete;
@@ -119,12 +122,17 @@ class Borrowed {
         station_.use(before_);
         // A device that is gone by now says so at the next thing that is asked of it.
         if (was_connected_) (void)station_.connect();
+        // A simulated cell is made anew, and its robot has not been anywhere yet: its sensor would see
+        // nothing.
+        for (const auto& [id, pose] : stood_)
+            if (RobotLink* robot = station_.robot(id)) (void)robot->move_to(pose);
     }
 
   private:
     Station& station_;
     const Project before_;
     bool was_connected_;
+    std::map<std::string, Pose> stood_;  // simulated robots
     DeviceSession session_;
     std::shared_ptr<SimulatedCell> cell_;
     std::shared_ptr<Pose> shift_ = std::make_shared<Pose>(Pose::Identity());

@@ -94,6 +94,7 @@ class Teacher {
         me_.click("measure_reference");
         ASSERT_TRUE(me_.wait([&] { return desk_.worker().busy(); }));
         ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
+        QTest::qWait(200);  // the page takes what was measured
     }
     void look(std::size_t k, bool by_template) {
         const std::string sensor = desk_.project().spots[k].sensor_id;
@@ -332,6 +333,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         ASSERT_EQ(window.step(), Step::regions);
         me.click("limits_as_proven");
         me.picture("08_limits");
+        EXPECT_TRUE(me.wait([&] { return item(CheckStep::sensors).done(); })) << "the cell is as it was";
         for (const CheckItem& check : desk.checks())
             EXPECT_EQ(check.done(), check.step != CheckStep::headless)
                 << to_string(check.step) << ": " << check.why.in(Language::english);
@@ -396,6 +398,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
     EXPECT_EQ(me.table("run_regions"), measured) << "the same numbers";
     EXPECT_GE(again.desk().project().spots.size(), 3U);
 
+    EXPECT_TRUE(me.wait([&] { return again.desk().checks().at(0).done(); })) << "the first frame has come";
     // Everything is green: the way ends at measuring, and the report is one click.
     for (const CheckItem& check : again.desk().checks())
         EXPECT_TRUE(check.done()) << to_string(check.step) << ": " << check.why.in(Language::english);

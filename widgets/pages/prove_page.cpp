@@ -154,7 +154,7 @@ void ProvePage::make_known_shift() {
     known_verdict_->setObjectName("known_verdict");
     box().addWidget(known_verdict_);
     known_table_ =
-        make_table("known_table", {tr("Displacement"), tr("Tests"), tr("Mean"), tr("3 rms")},
+        make_table("known_table", {tr("Displacement"), tr("Tests"), tr("Mean"), tr("3 sigma"), tr("3 rms")},
                    tr("Deviation of the spots' reference points, found minus true, mm; 3 rms counts the "
                       "mean as error too"));
     known_table_->setMinimumHeight(4 * 34 + 8);

@@ -317,7 +317,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         ASSERT_TRUE(item(CheckStep::known_shift).done())
             << item(CheckStep::known_shift).why.in(Language::english);
         std::cout << item(CheckStep::known_shift).evidence.at(0).in(Language::english) << "\n";
-        EXPECT_EQ(me.table("known_table").size(), 3 * 4) << "translation, rotation, both";
+        EXPECT_EQ(me.table("known_table").size(), 3 * 5) << "translation, rotation, both";
 
         // Limits: the checklist says which are too wide, and leads to their page.
         ASSERT_FALSE(item(CheckStep::limits).done());

@@ -16,6 +16,9 @@ namespace {
 using Spots = std::vector<SpotObservation>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// How much larger than on the reference profile a feature's sigma may be on another: each profile states its
+// own from the few points about the feature, and the gate judges by that. A contour end varies by a third.
+constexpr double kFeatureSpread = 1.5;
 // A cure that gains less is not worth a word.
 constexpr double kWorthIt = 0.98;
 
@@ -50,7 +53,14 @@ class Forecaster {
           options_(correction_options(region)),
           spots_(std::move(spots)),
           middle_(Eigen::Vector3d::Zero()) {
-        for (const SpotObservation& s : spots_) middle_ += point(s) / static_cast<double>(spots_.size());
+        for (SpotObservation& s : spots_) {
+            middle_ += point(s) / static_cast<double>(spots_.size());
+            const double taught = find_spot(project_, s.id)->sigma_mm, more = kFeatureSpread * kFeatureSpread;
+            if (s.covariance_mm2)
+                s.covariance_mm2 =
+                    more * *s.covariance_mm2 + (1 - more) * taught * taught * Eigen::Matrix2d::Identity();
+            s.sigma_mm = std::sqrt(more * s.sigma_mm * s.sigma_mm + (1 - more) * taught * taught);
+        }
     }
 
     Sigma sigma(const Change& change = {}, const SpotObservation* further = nullptr) const {
@@ -90,8 +100,9 @@ class Forecaster {
         };
         for (std::size_t i = 0; i < spots_.size(); ++i) {
             const Spot& spot = *find_spot(project_, spots_[i].id);
-            const double feature = std::sqrt(
-                std::max(0.0, spots_[i].sigma_mm * spots_[i].sigma_mm - spot.sigma_mm * spot.sigma_mm));
+            const double feature = std::sqrt(std::max(0.0, spots_[i].sigma_mm * spots_[i].sigma_mm -
+                                                               spot.sigma_mm * spot.sigma_mm)) /
+                                   kFeatureSpread;
             const Sigma with_better_feature = sigma({i, true, false});
             const std::string known = fmt::format("{:.3f}", feature);
             if (spot.feature.kind == "template")
@@ -131,7 +142,7 @@ class Forecaster {
     }
     const Project& project_;
     const CorrectionOptions options_;
-    const Spots spots_;
+    Spots spots_;
     Eigen::Vector3d middle_;
 };
 

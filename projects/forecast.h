@@ -1,7 +1,8 @@
 #pragma once
 // What a region will be able to tell, as the safety gate will judge it, before anything is measured: over the
 // part as taught and as displaced by as much as is required to be recovered, each spot with the noise of its
-// feature and of its trigger's travel along the displaced contour. And what would make it better.
+// feature (half as much again as the reference profile states: another profile's own estimate may be so much
+// larger) and of its trigger's travel along the displaced contour. And what would make it better.
 
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include "projects/known_shift.h"
 #include "projects/zero_shift.h"
 #include "widgets/editors/number_box.h"
+#include "widgets/errors.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -15,6 +16,22 @@ namespace {
 
 QString q(const std::string& text) {
     return QString::fromStdString(text);
+}
+
+// ". X +7.5 mm: why", of the first that was refused.
+QString first_refusal(const KnownShift& proof, const std::string& region_id) {
+    for (const ShiftTest& test : proof.tests)
+        for (const ShiftOutcome& o : test.regions)
+            if (o.region_id == region_id && !o.ok && !o.message.empty())
+                return QStringLiteral(". ") + q(shift_name(test, proof)) + QStringLiteral(": ") +
+                       shown_cause(o.message);
+    return {};
+}
+QString first_refusal(Desk& desk, const ZeroShift& zero) {
+    for (const std::int64_t number_of_run : zero.runs)
+        if (const auto run = desk.run(number_of_run); run && run->status != RunStatus::ok)
+            return QStringLiteral(". ") + shown_cause(run->message);
+    return {};
 }
 
 }  // namespace
@@ -154,7 +171,7 @@ void ProvePage::make_known_shift() {
     known_verdict_->setObjectName("known_verdict");
     box().addWidget(known_verdict_);
     known_table_ =
-        make_table("known_table", {tr("Displacement"), tr("Tests"), tr("Mean"), tr("3 sigma"), tr("3 rms")},
+        make_table("known_table", {tr("Displacement"), tr("Tests"), tr("Mean"), tr("3 rms")},
                    tr("Deviation of the spots' reference points, found minus true, mm; 3 rms counts the "
                       "mean as error too"));
     known_table_->setMinimumHeight(4 * 34 + 8);
@@ -220,7 +237,9 @@ void ProvePage::refresh_zero_shift() {
     if (!e)
         set_verdict(*zero_verdict_, tr("not measured yet"), Tone::plain);
     else if (zero.refused > 0)
-        set_verdict(*zero_verdict_, tr("%1 of %2 runs were refused").arg(zero.refused).arg(zero.runs.size()),
+        set_verdict(*zero_verdict_,
+                    tr("%1 of %2 runs were refused").arg(zero.refused).arg(zero.runs.size()) +
+                        first_refusal(desk_, zero),
                     Tone::alarm);
     else if (worst > desk_.project().requirements.sigma3_mm)
         set_verdict(*zero_verdict_,
@@ -271,7 +290,7 @@ void ProvePage::refresh_known_shift() {
         rows << QStringList{
             kinds[static_cast<int>(s.kind)],
             s.refused ? tr("%1, %2 refused").arg(s.tests).arg(s.refused) : QString::number(s.tests),
-            number(s.summary.mean, 3), number(s.summary.three_sigma, 3), number(s.about_truth_mm, 3)};
+            number(s.summary.mean, 3), number(s.about_truth_mm, 3)};
     }
     set_rows(*known_table_, rows);
     const double required = desk_.project().requirements.sigma3_mm;
@@ -281,9 +300,10 @@ void ProvePage::refresh_known_shift() {
     else if (proven.refused > 0)
         set_verdict(*known_verdict_,
                     tr("Region %1: %2 of %3 displacements were refused")
-                        .arg(region_->currentText())
-                        .arg(proven.refused)
-                        .arg(proven.tests),
+                            .arg(region_->currentText())
+                            .arg(proven.refused)
+                            .arg(proven.tests) +
+                        first_refusal(proof, id),
                     Tone::alarm);
     else
         set_verdict(*known_verdict_,

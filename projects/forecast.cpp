@@ -8,6 +8,7 @@
 #include "core/correction/forecast.h"
 #include "core/correction/sigma.h"
 #include "core/correction/travel.h"
+#include "core/numbers.h"
 #include "projects/measure.h"
 
 namespace seamwright {
@@ -15,7 +16,6 @@ namespace {
 
 using Spots = std::vector<SpotObservation>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // How much larger than on the reference profile a feature's sigma may be on another: each profile states its
 // own from the few points about the feature, and the gate judges by that. A contour end varies by a third.
 constexpr double kFeatureSpread = 1.5;

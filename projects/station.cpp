@@ -348,8 +348,8 @@ struct Station::Impl {
         const auto regions = run.regions.size();
         switch (run.status) {
             case RunStatus::ok:
-                return run.push ? fmt::format("{} regions corrected and pushed", regions)
-                                : fmt::format("{} regions corrected, nothing pushed (dry run)", regions);
+                return run.push ? fmt::format("regions corrected and pushed: {}", regions)
+                                : fmt::format("regions corrected, nothing pushed (dry run): {}", regions);
             case RunStatus::refused: {
                 std::string text;
                 for (const RegionRecord& region : run.regions)

@@ -140,8 +140,8 @@ constexpr auto kCauses = std::to_array<const char*>({
         "edge along %3: the weakest direction goes from %4 to %5 (1 sigma at the spots)"),
     QT_TRANSLATE_NOOP("Errors", "the simulated cell's own optics and mounting"),
     QT_TRANSLATE_NOOP("Errors", "simulated truth"),
-    QT_TRANSLATE_NOOP("Errors", "%1 regions corrected and pushed"),
-    QT_TRANSLATE_NOOP("Errors", "%1 regions corrected, nothing pushed (dry run)"),
+    QT_TRANSLATE_NOOP("Errors", "regions corrected and pushed: %1"),
+    QT_TRANSLATE_NOOP("Errors", "regions corrected, nothing pushed (dry run): %1"),
     // settings, features, calibration, drivers, files
     QT_TRANSLATE_NOOP("Errors", "there are no profiles"),
     QT_TRANSLATE_NOOP("Errors", "record the pass from entry to exit"),

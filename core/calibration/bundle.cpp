@@ -91,7 +91,7 @@ Expected<BundlePose> bundle_object(const std::vector<PlacedCamera>& cameras,
     // Directions by the information scaled to unit diagonal, so that mm and rad do not matter.
     const Vector6 scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Matrix6 unit = scale.asDiagonal() * normal * scale.asDiagonal();
-    out.determined = Eigen::SelfAdjointEigenSolver<Matrix6>(unit).eigenvalues()(0) > 1e-9;
+    out.determined = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(unit).eigenvalues()(0) > 1e-9;
     out.rms_px = std::sqrt(cost / counted);
     if (out.determined && 2 * counted > 6) out.covariance = cost / (2 * counted - 6) * normal.inverse();
     return out;

@@ -10,11 +10,10 @@
 
 #include "core/calibration/plate_bundle.h"
 #include "core/calibration/pose_set.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // From simple to rich.
 constexpr CameraFreedom kLadder[] = {

@@ -9,11 +9,10 @@
 
 #include "core/calibration/camera.h"
 #include "core/calibration/least_direction.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Similarity that brings points to mean 0 and mean distance sqrt(2): conditions the DLT.
 Eigen::Matrix3d normaliser(const std::vector<Eigen::Vector2d>& points) {

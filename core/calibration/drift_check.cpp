@@ -47,7 +47,7 @@ Fit fit_change(const std::vector<DriftMeasurement>& list, const std::vector<Eige
             h.noalias() += j.transpose() * weight[i] * j;
             right.noalias() += j.transpose() * weight[i] * e;
         }
-        const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(h);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(h);
         Vector6 step = Vector6::Zero();
         Matrix6 inverse = Matrix6::Zero();
         fit.not_determined.clear();

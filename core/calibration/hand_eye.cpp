@@ -25,7 +25,7 @@ using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
 constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact data stay finite
 constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
 constexpr double kUndetermined_mm = 20.0, kUndetermined_rad = 0.05;
-constexpr double kGood_mm = 1.0, kGood_deg = 0.3, kUsable_mm = 3.0, kUsable_deg = 1.0;
+constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
 
 struct Chain {
     std::vector<Pose> a, c;
@@ -251,7 +251,8 @@ Determination determination(const Chain& chain, const Pose& x, const Pose& y, co
     const auto inverse_of = [&](const Scales& s) {
         const Matrix12 h = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity()).sum();
         const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-        const Eigen::SelfAdjointEigenSolver<Matrix12> eigen(scale.asDiagonal() * h * scale.asDiagonal());
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * h *
+                                                                   scale.asDiagonal());
         const Vector12 inverse = eigen.eigenvalues().cwiseMax(1e-15).cwiseInverse();
         return Matrix12(scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
                         eigen.eigenvectors().transpose() * scale.asDiagonal());
@@ -529,12 +530,12 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
     const std::string fit =
         fmt::format("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
-    if (check_mm > kUsable_mm || check_deg > kUsable_deg || 3 * sigma_mm > 2 * kUsable_mm) {
+    if (check_mm > kUsableHand_mm || check_deg > kUsableHand_deg || 3 * sigma_mm > 2 * kUsableHand_mm) {
         const std::string mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
         report.judgement = {
             Verdict::poor, fit,
             mistake.empty() ? "check robot poses, the target's size and the camera's intrinsics" : mistake};
-    } else if (check_mm > kGood_mm || check_deg > kGood_deg || 3 * sigma_mm > kGood_mm || n < 6) {
+    } else if (check_mm > kGoodHand_mm || check_deg > kGoodHand_deg || 3 * sigma_mm > kGoodHand_mm || n < 6) {
         report.judgement = {Verdict::usable,
                             n < 6 ? fmt::format("only {:.0f} poses, little to check with; {}", n, fit) : fit,
                             "take more poses with larger rotations, still and well lit"};

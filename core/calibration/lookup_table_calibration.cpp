@@ -14,6 +14,7 @@
 
 #include "core/calibration/camera.h"
 #include "core/calibration/pose_set.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -25,7 +26,6 @@ using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kMostNodes = 16'000'000;
 constexpr std::size_t kMostPairs = 100'000;
 constexpr Index kMostKnots = 120;

@@ -15,8 +15,8 @@
 namespace seamwright {
 namespace {
 
-constexpr double kGood_mm = 0.1, kUsable_mm = 0.5;  // three sigma anywhere on the plate
-constexpr double kNoiseFloor_mm = 0.01;             // of a world point, for what three points can promise
+constexpr double kGoodPlate_mm = 0.1, kUsablePlate_mm = 0.5;  // three sigma anywhere on the plate
+constexpr double kNoiseFloor_mm = 0.01;  // of a world point, for what three points can promise
 constexpr double kSmallestOutlier_mm = 0.05;
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -291,10 +291,10 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
             Verdict::poor,
             fmt::format("distances in the world are {:.5f} times those on the plate", result.scale),
             "check the plate's drawing, the scale of the measuring system and the order of the points"};
-    } else if (3 * worst > kUsable_mm || result.rms_mm > kUsable_mm) {
+    } else if (3 * worst > kUsablePlate_mm || result.rms_mm > kUsablePlate_mm) {
         report.judgement = {Verdict::poor, fit,
                             "check the order of the points and measure again, with more points"};
-    } else if (3 * worst > kGood_mm || count < 4) {
+    } else if (3 * worst > kGoodPlate_mm || count < 4) {
         report.judgement = {Verdict::usable,
                             count < 4 ? "three points leave little to check with; " + fit : fit,
                             "measure more points, spread over the whole plate"};

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/numbers.h"
+
 namespace seamwright {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Inverse of the left Jacobian of rotation, first order in the (small) residual.
 Eigen::Matrix3d log_jacobian(const Eigen::Vector3d& w) {

@@ -11,7 +11,7 @@
 namespace seamwright {
 namespace {
 
-constexpr double kGood_mm = 0.1, kUsable_mm = 0.3;  // three sigma of the working point
+constexpr double kGoodChain_mm = 0.1, kUsableChain_mm = 0.3;  // three sigma of the working point
 
 Expected<void> check_link(const UncertainPose& link, const std::string& where) {
     if (auto pose = pose_from_matrix(link.pose.matrix(), where); !pose) return tl::unexpected(pose.error());
@@ -24,7 +24,7 @@ Expected<void> check_link(const UncertainPose& link, const std::string& where) {
     const Vector6 inverse = link.covariance.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr(
         [](double s) { return s > 0 ? 1 / s : 0.0; });
     const Matrix6 correlation = inverse.asDiagonal() * link.covariance * inverse.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(correlation);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
     if (link.covariance.diagonal().minCoeff() < 0 || eigen.eigenvalues()[0] < -1e-6)
         return input_error(
             "the covariance is not positive (a variance below zero or a correlation above one)", where);
@@ -116,10 +116,10 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
                 Verdict::usable,
                 fmt::format("sensor {}: no covariance was given, the accuracy is unknown", one.id),
                 "give the covariance of each link"};
-        else if (three > kUsable_mm)
+        else if (three > kUsableChain_mm)
             one.judgement = {Verdict::poor, figure,
                              fmt::format("most of it is {}: calibrate that better", names[largest])};
-        else if (three > kGood_mm)
+        else if (three > kGoodChain_mm)
             one.judgement = {Verdict::usable, figure, fmt::format("most of it is {}", names[largest])};
         else
             one.judgement = {Verdict::good, figure, ""};

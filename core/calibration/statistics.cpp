@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace seamwright {
 
 double normal_quantile(double p) {
     assert(p > 0 && p < 1);
-    constexpr double kPi = 3.14159265358979323846;
     if (p > 0.5) return -normal_quantile(1 - p);
     // Start on the convex side, where Newton cannot overshoot.
     double x = -std::sqrt(-2 * std::log(p));
     for (int i = 0; i < 60; ++i) {
         const double excess = 0.5 * std::erfc(-x / std::sqrt(2.0)) - p;
-        const double density = std::exp(-0.5 * x * x) / std::sqrt(2 * kPi);
+        const double density = std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
         const double step = std::clamp(excess / density, -0.5, 0.5);
         x -= step;
         if (std::abs(step) < 1e-14) break;

@@ -22,8 +22,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFewestSections = 4;  // three numbers a profile against nine unknowns, and one to check with
 constexpr double kNoiseFloor_mm =
     0.02;  // no sensor on a robot is better; keeps noise-free data from looking sure
-constexpr double kUndeterminedSigma_mm = 2.0;       // a direction weaker than this is not determined
-constexpr double kGood_mm = 0.1, kUsable_mm = 0.5;  // three sigma at the working distance
+constexpr double kUndeterminedSigma_mm = 2.0;             // a direction weaker than this is not determined
+constexpr double kGoodTcp_mm = 0.1, kUsableTcp_mm = 0.5;  // three sigma at the working distance
 constexpr double kPoorFit_mm = 0.5;
 
 Expected<void> check_input(const std::vector<SphereObservation>& observations,
@@ -494,7 +494,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
 
     result.degenerate = degenerate_pose_words(sections, model, radius_free);
     const bool weak = !(result.weakest_sigma_mm < kUndeterminedSigma_mm);
-    if (weak || result.weakest_sigma_mm * 3 > kUsable_mm || used < 9)
+    if (weak || result.weakest_sigma_mm * 3 > kUsableTcp_mm || used < 9)
         result.proposals = propose_poses(sections, model, system.information, result.working_point_mm,
                                          radius_free, floor_sigma, weak ? 3 : 1);
     if (weak || ambiguous) {
@@ -514,7 +514,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
         }
         return result;
     }
-    if (!weak && result.weakest_sigma_mm * 3 < kUsable_mm) result.degenerate.clear();
+    if (!weak && result.weakest_sigma_mm * 3 < kUsableTcp_mm) result.degenerate.clear();
 
     result.status = TcpSphereStatus::ok;
     result.flange_from_sensor = model.flange_from_sensor;
@@ -575,15 +575,15 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
             fmt::format("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
                         result.rms_mm, hold_out),
             "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
-    } else if (three_sigma > kUsable_mm) {
+    } else if (three_sigma > kUsableTcp_mm) {
         judgement = {Verdict::poor,
                      fmt::format("three sigma at the working distance are {:.2f} mm", three_sigma),
                      result.proposals.empty() ? "take more poses"
                                               : "take more poses, first: " + result.proposals.front().words};
-    } else if (three_sigma > kGood_mm) {
+    } else if (three_sigma > kGoodTcp_mm) {
         judgement = {Verdict::usable,
                      fmt::format("three sigma at the working distance are {:.2f} mm, good is {:.1f}",
-                                 three_sigma, kGood_mm),
+                                 three_sigma, kGoodTcp_mm),
                      result.proposals.empty() ? "take more poses"
                                               : "take more poses, first: " + result.proposals.front().words};
     } else if (used < kTcpSphereFewestPoses) {

@@ -6,13 +6,12 @@
 
 #include "core/correction/region_system.h"
 #include "core/correction/wrong_spots.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
 using namespace correction;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string join(const std::vector<std::string>& words) {
     std::string out;

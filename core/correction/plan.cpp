@@ -8,6 +8,7 @@
 
 #include "core/correction/forecast.h"
 #include "core/correction/region_system.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 using namespace correction;
 using Spots = std::vector<SpotObservation>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPower95 = 1.645;          // normal quantile: a wrong measure is found in 95 of 100 cases
 constexpr std::size_t kMostPairs = 24;      // spots up to which mix-ups of two spots are looked at
 constexpr std::size_t kMostPositions = 24;  // taught positions tried for a further spot

@@ -25,14 +25,14 @@
 #include "core/features/feature_kinds.h"
 #include "core/features/feature_points.h"
 #include "core/geometry/pose.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
-constexpr int kFewest = 6;
-constexpr double kMadToSigma = 1.4826;
+constexpr int kFewestOnArc = 6;
 
-std::vector<ParameterInfo> parameters() {
+std::vector<ParameterInfo> circle_parameters() {
     return with_window({
         {"radius_mm", "mm", 0, 1e5, 0, 3, "The radius when it is known; 0 fits it."},
         {"radius_min_mm", "mm", 0, 1e5, 0.2, 3, "Free radius: the smallest that is accepted."},
@@ -56,9 +56,9 @@ class CircleFinder final : public FeatureFinder {
         Feature feature;
         points_.gather(profile, window_);
         const int n = static_cast<int>(points_.x.size());
-        if (n < kFewest) {
+        if (n < kFewestOnArc) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("{} points in the window, a circle needs {}", n, kFewest);
+            feature.message = fmt::format("{} points in the window, a circle needs {}", n, kFewestOnArc);
             return feature;
         }
         Circle circle;
@@ -134,7 +134,7 @@ class CircleFinder final : public FeatureFinder {
         const auto try_circle = [&](const Circle& c) {
             double arc = 0;
             const int count = longest_run(c, tolerance, arc);
-            if (count < kFewest) return;
+            if (count < kFewestOnArc) return;
             if (arc >= minimum_arc_) {
                 if (count > best_count) {
                     best_count = count;
@@ -148,7 +148,7 @@ class CircleFinder final : public FeatureFinder {
         };
         Circle c;
         for (const double share : {1.0, 0.6, 0.35, 0.2, 0.1, 0.05}) {
-            const int span = std::max(kFewest - 1, static_cast<int>(share * (n - 1)));
+            const int span = std::max(kFewestOnArc - 1, static_cast<int>(share * (n - 1)));
             if (span > n - 1) continue;
             const int places = static_cast<int>(std::min(48.0, 3 / share));
             for (int p = 0; p < places; ++p) {
@@ -160,7 +160,7 @@ class CircleFinder final : public FeatureFinder {
         }
         if (best_count > 0) return true;
         // Something round, but not enough of it: the refinement will say how badly it is determined.
-        if (best_any < std::max(kFewest, n / 3)) return false;
+        if (best_any < std::max(kFewestOnArc, n / 3)) return false;
         best = any;
         return true;
     }
@@ -210,7 +210,7 @@ class CircleFinder final : public FeatureFinder {
                     const double d = std::abs(circle.distance(points_.x[i], points_.z[i]));
                     if (d <= gate) scratch_.push_back(d);
                 }
-                if (scratch_.size() < kFewest) break;
+                if (scratch_.size() < kFewestOnArc) break;
                 const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
                 std::nth_element(scratch_.begin(), middle, scratch_.end());
                 gate = std::max(std::min(3.5 * kMadToSigma * *middle * 1.05, first), 1e-9);
@@ -234,7 +234,7 @@ class CircleFinder final : public FeatureFinder {
                 rss += e * e;
                 ++used;
             }
-            if (used < kFewest) break;
+            if (used < kFewestOnArc) break;
             if (known_ > 0) normal(2, 2) = 1;
             const Eigen::Vector3d step = -normal.ldlt().solve(gradient);
             if (!step.allFinite()) break;
@@ -246,7 +246,7 @@ class CircleFinder final : public FeatureFinder {
             if (round >= 12 && size < 1e-9 * (1 + circle.radius)) break;
         }
         feature.points_used = used;
-        if (used < kFewest || !circle.centre.allFinite()) {
+        if (used < kFewestOnArc || !circle.centre.allFinite()) {
             feature.status = FeatureStatus::not_found;
             feature.message = "no round piece of contour in the window";
             return feature;
@@ -284,8 +284,8 @@ class CircleFinder final : public FeatureFinder {
     mutable std::vector<std::uint8_t> keep_;
 };
 
-Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
-    const auto infos = parameters();
+Expected<std::unique_ptr<FeatureFinder>> make_circle(const FeatureRecipe& recipe) {
+    const auto infos = circle_parameters();
     const auto window = FeatureWindow::from(recipe.parameters, infos);
     if (!window) return tl::unexpected(window.error());
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
@@ -299,7 +299,7 @@ Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
 }  // namespace
 
 FeatureKind circle_kind() {
-    return {"circle", "The centre of a round piece of contour.", parameters(), &make};
+    return {"circle", "The centre of a round piece of contour.", circle_parameters(), &make_circle};
 }
 
 }  // namespace seamwright

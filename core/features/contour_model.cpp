@@ -4,10 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/numbers.h"
+
 namespace seamwright {
 namespace {
 
-constexpr double kMadToSigma = 1.4826;
 // Below a tenth of a micrometre nothing measured is meant: it stands for drawn (noise-free) contours and
 // rounding.
 constexpr double kSmallestSigma_mm = 1e-4;

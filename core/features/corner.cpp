@@ -30,7 +30,7 @@ namespace {
 
 constexpr int kFewestPerLine = 4;
 
-std::vector<ParameterInfo> parameters() {
+std::vector<ParameterInfo> corner_parameters() {
     return with_window({
         {"split",
          "",
@@ -230,8 +230,8 @@ class Corner final : public FeatureFinder {
     mutable LineWorkspace workspace_;
 };
 
-Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
-    const auto infos = parameters();
+Expected<std::unique_ptr<FeatureFinder>> make_corner(const FeatureRecipe& recipe) {
+    const auto infos = corner_parameters();
     const auto window = FeatureWindow::from(recipe.parameters, infos);
     if (!window) return tl::unexpected(window.error());
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
@@ -257,7 +257,8 @@ Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
 }  // namespace
 
 FeatureKind corner_kind() {
-    return {"corner", "The intersection of two lines fitted left and right of an edge.", parameters(), &make};
+    return {"corner", "The intersection of two lines fitted left and right of an edge.", corner_parameters(),
+            &make_corner};
 }
 
 }  // namespace seamwright

@@ -24,9 +24,9 @@ namespace seamwright {
 namespace {
 
 enum class Which { highest, lowest, leftmost, rightmost };
-constexpr int kFewest = 6;
+constexpr int kFewestForApex = 6;
 
-std::vector<ParameterInfo> parameters() {
+std::vector<ParameterInfo> extremum_parameters() {
     return with_window({
         {"which",
          "",
@@ -50,9 +50,9 @@ class Extremum final : public FeatureFinder {
         Feature feature;
         points_.gather(profile, window_);
         const std::size_t n = points_.x.size();
-        if (n < kFewest) {
+        if (n < kFewestForApex) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("{} points in the window, an extremum needs {}", n, kFewest);
+            feature.message = fmt::format("{} points in the window, an extremum needs {}", n, kFewestForApex);
             return feature;
         }
         const bool upright = which_ == Which::highest || which_ == Which::lowest;
@@ -65,7 +65,7 @@ class Extremum final : public FeatureFinder {
         double best = -std::numeric_limits<double>::infinity();
         const FeaturePoints::Piece* piece = nullptr;
         for (const auto& p : points_.pieces) {
-            if (p.count < kFewest) continue;
+            if (p.count < kFewestForApex) continue;
             for (int i = p.first; i < p.first + p.count; ++i) {
                 const int a = std::max(i - 1, p.first), b = std::min(i + 1, p.first + p.count - 1);
                 const double value = std::max(std::min(sign * h[a], sign * h[i]),
@@ -81,7 +81,7 @@ class Extremum final : public FeatureFinder {
         }
         if (!piece) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("no unbroken piece of {} points in the window", kFewest);
+            feature.message = fmt::format("no unbroken piece of {} points in the window", kFewestForApex);
             return feature;
         }
         const int first = piece->first, last = first + piece->count - 1;
@@ -114,12 +114,12 @@ class Extremum final : public FeatureFinder {
                     high = std::max(high, u);
                     ++used;
                 }
-                if (used < kFewest) break;
+                if (used < kFewestForApex) break;
                 coefficient = normal.ldlt().solve(right);
                 sigma2 = std::max(0.0, hh - right.dot(coefficient)) / (used - 3);
                 gate = 3.5 * std::sqrt(sigma2) + 1e-9;
             }
-            if (used < kFewest) break;
+            if (used < kFewestForApex) break;
             bent = coefficient[0] < 0;
             if (!bent) break;
             const double vertex = -coefficient[1] / (2 * coefficient[0]);
@@ -128,10 +128,10 @@ class Extremum final : public FeatureFinder {
             if (std::abs(vertex) < 1e-3 && round > 0) break;
         }
         feature.points_used = used;
-        if (used < kFewest) {
+        if (used < kFewestForApex) {
             feature.status = FeatureStatus::no_points;
             feature.message = fmt::format("{} points within {} mm of the extremum, the parabola needs {}",
-                                          used, fit_length_, kFewest);
+                                          used, fit_length_, kFewestForApex);
             return feature;
         }
         feature.rms_mm = std::sqrt(sigma2 * (used - 3) / used);
@@ -182,8 +182,8 @@ class Extremum final : public FeatureFinder {
     mutable std::vector<double> scratch_;
 };
 
-Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
-    const auto infos = parameters();
+Expected<std::unique_ptr<FeatureFinder>> make_extremum(const FeatureRecipe& recipe) {
+    const auto infos = extremum_parameters();
     const auto window = FeatureWindow::from(recipe.parameters, infos);
     if (!window) return tl::unexpected(window.error());
     return std::make_unique<Extremum>(
@@ -194,8 +194,8 @@ Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
 }  // namespace
 
 FeatureKind extremum_kind() {
-    return {"extremum", "The highest, lowest, leftmost or rightmost place of the contour.", parameters(),
-            &make};
+    return {"extremum", "The highest, lowest, leftmost or rightmost place of the contour.",
+            extremum_parameters(), &make_extremum};
 }
 
 }  // namespace seamwright

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers.h"
+
 namespace seamwright {
 namespace {
 
-constexpr double kMadToSigma = 1.4826;
 constexpr double kGate = 3.5;  // sigma; keeps 99.95 % of Gaussian noise
 constexpr double kSmallest_mm = 1e-9;
 

@@ -7,11 +7,11 @@
 
 #include "core/features/contour_model.h"
 #include "core/features/registration_search.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
-constexpr double kMadToSigma = 1.4826;
 constexpr int kFewestPoints = 5;
 constexpr int kFewestOnWall = 5;
 // Stated sigma of an undetermined motion, in mm at the template's farther parts.

@@ -12,7 +12,7 @@
 namespace seamwright {
 namespace {
 
-std::vector<ParameterInfo> parameters() {
+std::vector<ParameterInfo> sensor_point_parameters() {
     return {
         {"index", "", 0, 999, 0, 0, "Which of the sensor's points, from 0.", {}},
         {"sigma_mm", "mm", 0.0001, 100, 0.02, 4, "Noise of each coordinate (1 sigma).", {}},
@@ -47,8 +47,8 @@ class SensorPoint final : public FeatureFinder {
     double sigma_mm_;
 };
 
-Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
-    const auto infos = parameters();
+Expected<std::unique_ptr<FeatureFinder>> make_sensor_point(const FeatureRecipe& recipe) {
+    const auto infos = sensor_point_parameters();
     return std::make_unique<SensorPoint>(
         static_cast<std::size_t>(std::lround(parameter(recipe.parameters, infos, "index"))),
         parameter(recipe.parameters, infos, "sigma_mm"));
@@ -57,7 +57,8 @@ Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
 }  // namespace
 
 FeatureKind sensor_point_kind() {
-    return {"sensor-point", "A point that the sensor's own tools have measured.", parameters(), &make};
+    return {"sensor-point", "A point that the sensor's own tools have measured.", sensor_point_parameters(),
+            &make_sensor_point};
 }
 
 }  // namespace seamwright

@@ -12,7 +12,7 @@
 namespace seamwright {
 namespace {
 
-std::vector<ParameterInfo> parameters() {
+std::vector<ParameterInfo> template_parameters() {
     return {
         {"window_dx_mm", "mm", 0, 1000, 10, 2, "How far along x the contour may have moved, +-."},
         {"window_dz_mm", "mm", 0, 1000, 10, 2, "How far along z the contour may have moved, +-."},
@@ -75,8 +75,8 @@ class TemplateFeature final : public FeatureFinder {
     double minimum_share_;
 };
 
-Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
-    const auto infos = parameters();
+Expected<std::unique_ptr<FeatureFinder>> make_template(const FeatureRecipe& recipe) {
+    const auto infos = template_parameters();
     auto matcher = ContourMatcher::make(recipe.template_profile, recipe.template_reference_mm);
     if (!matcher) return tl::unexpected(matcher.error());
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
@@ -92,7 +92,7 @@ Expected<std::unique_ptr<FeatureFinder>> make(const FeatureRecipe& recipe) {
 
 FeatureKind template_kind() {
     return {"template", "A taught piece of contour found again; it carries its reference point along.",
-            parameters(), &make};
+            template_parameters(), &make_template};
 }
 
 }  // namespace seamwright

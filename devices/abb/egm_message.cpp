@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-namespace egm = abb::egm;
+namespace egm = ::abb::egm;
 
 tl::unexpected<Error> refused(const char* wrong) {
     return device_error(std::string("an EGM message is refused: ") + wrong);

@@ -26,19 +26,19 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr Milliseconds kPoll{2};
 
-struct Settings {
+struct ControllerSettings {
     std::string address = "127.0.0.1", serial, model = "IRB 6700 (simulated)";
     std::uint16_t port = 0;
     Milliseconds slow{300}, trigger_interval{20};
 };
 
-Expected<Settings> parse_settings(const nlohmann::json& json) {
+Expected<ControllerSettings> parse_controller_settings(const nlohmann::json& json) {
     const std::string where = "settings of the simulated abb-rapid controller";
     if (auto ok = only_fields(json, {"address", "port", "slow_ms", "trigger_interval_ms", "serial", "model"},
                               where);
         !ok)
         return tl::unexpected(ok.error());
-    Settings s;
+    ControllerSettings s;
     for (auto [key, text] : {std::pair<const char*, std::string*>{"address", &s.address},
                              {"serial", &s.serial},
                              {"model", &s.model}}) {
@@ -73,7 +73,7 @@ Pose as_num(const Pose& pose) {
 
 class Controller final : public SimulatedController {
   public:
-    Controller(std::shared_ptr<SimulatedCell> cell, Settings settings, TcpListener listener)
+    Controller(std::shared_ptr<SimulatedCell> cell, ControllerSettings settings, TcpListener listener)
         : cell_(std::move(cell)),
           settings_(std::move(settings)),
           listener_(std::move(listener)),
@@ -287,7 +287,7 @@ class Controller final : public SimulatedController {
     }
 
     const std::shared_ptr<SimulatedCell> cell_;
-    const Settings settings_;
+    const ControllerSettings settings_;
     TcpListener listener_;
     const std::uint16_t port_;
     std::atomic<bool> stop_ = false;
@@ -304,7 +304,7 @@ class Controller final : public SimulatedController {
 
 Expected<std::unique_ptr<SimulatedController>> start_abb_rapid(std::shared_ptr<SimulatedCell> cell,
                                                                const nlohmann::json& settings) {
-    auto parsed = parse_settings(settings);
+    auto parsed = parse_controller_settings(settings);
     if (!parsed) return tl::unexpected(parsed.error());
     if (parsed->serial.empty()) parsed->serial = cell->settings().serial;
     auto listener = TcpListener::listen(parsed->address, parsed->port);

@@ -21,20 +21,20 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::size_t kEventLimit = 10000;  // events waiting: a controller that floods is refused
 
-struct Settings {
+struct LinkSettings {
     std::string address = "127.0.0.1";
     std::uint16_t port = 1025;
     Milliseconds timeout{1000}, move_timeout{60000}, backoff{100}, backoff_max{5000};
 };
 
-Expected<Settings> parse_settings(const nlohmann::json& json) {
+Expected<LinkSettings> parse_link_settings(const nlohmann::json& json) {
     const std::string where = "settings of abb-rapid";
     if (auto ok = only_fields(
             json, {"address", "port", "timeout_ms", "move_timeout_ms", "backoff_ms", "backoff_max_ms"},
             where);
         !ok)
         return tl::unexpected(ok.error());
-    Settings s;
+    LinkSettings s;
     auto address = json_string_or(json, "address", s.address, where);
     if (!address) return tl::unexpected(address.error());
     s.address = *address;
@@ -67,7 +67,7 @@ std::int64_t now_ns() {
 
 class AbbRapidLink final : public RobotLink {
   public:
-    explicit AbbRapidLink(Settings settings)
+    explicit AbbRapidLink(LinkSettings settings)
         : settings_(std::move(settings)),
           where_(fmt::format("abb-rapid {}:{}", settings_.address, settings_.port)) {}
 
@@ -354,7 +354,7 @@ class AbbRapidLink final : public RobotLink {
         }
     }
 
-    const Settings settings_;
+    const LinkSettings settings_;
     const std::string where_;
     std::optional<TcpConnection> connection_;
     std::string received_;
@@ -370,7 +370,7 @@ class AbbRapidLink final : public RobotLink {
 }  // namespace
 
 Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settings, DeviceSession&) {
-    auto parsed = parse_settings(settings);
+    auto parsed = parse_link_settings(settings);
     if (!parsed) return tl::unexpected(parsed.error());
     return std::make_unique<AbbRapidLink>(std::move(*parsed));
 }

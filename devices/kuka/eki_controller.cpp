@@ -16,7 +16,7 @@ namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr Timeout kTick{5};
+constexpr Timeout kEkiTick{5};
 
 class EkiController final : public SimulatedController {
   public:
@@ -54,7 +54,7 @@ class EkiController final : public SimulatedController {
         if (!tell(hello)) return;
         while (!stop.stop_requested()) {
             std::array<char, 4096> buffer;
-            const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), kTick);
+            const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), kEkiTick);
             if (!got && !is_silence(got.error())) return;
             if (got && !commands.add({buffer.data(), *got})) return;
             for (std::string document; commands.next(document);) {

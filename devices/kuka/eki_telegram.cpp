@@ -13,9 +13,9 @@
 namespace seamwright {
 namespace {
 
-constexpr const char* kWhere = "EthernetKRL telegram";
+constexpr const char* kEkiWhere = "EthernetKRL telegram";
 constexpr std::array<const char*, 6> kPos = {"X", "Y", "Z", "A", "B", "C"};
-constexpr std::array kModes = {
+constexpr std::array kEkiModes = {
     std::pair{RobotMode::manual_reduced, "#T1"}, std::pair{RobotMode::manual_full, "#T2"},
     std::pair{RobotMode::automatic, "#AUT"},     std::pair{RobotMode::external, "#EX"},
     std::pair{RobotMode::stopped, "#STOP"},      std::pair{RobotMode::fault, "#FAULT"}};
@@ -24,10 +24,10 @@ Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
     pugi::xml_document xml;
     const auto parsed =
         xml.load_buffer(document.data(), document.size(), pugi::parse_default, pugi::encoding_utf8);
-    if (!parsed) return device_error(fmt::format("is no XML: {}", parsed.description()), kWhere);
+    if (!parsed) return device_error(fmt::format("is no XML: {}", parsed.description()), kEkiWhere);
     const pugi::xml_node root = xml.document_element();
     if (std::string_view(root.name()) != root_name)
-        return device_error(fmt::format("the root is not {}", root_name), kWhere,
+        return device_error(fmt::format("the root is not {}", root_name), kEkiWhere,
                             "load Seamwright.xml of this version on the controller");
     EkiTelegram t;
     const auto text = [&](const char* name, std::string& value) {
@@ -36,14 +36,14 @@ Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
         return attribute && value.size() <= kEkiLongestTelegram;
     };
     if (!text("Kind", t.kind) || t.kind.empty() || !text("Name", t.name) || !text("Text", t.text))
-        return device_error("lacks Kind, Name or Text", kWhere,
+        return device_error("lacks Kind, Name or Text", kEkiWhere,
                             "load Seamwright.xml of this version on the controller");
     text("Part", t.part);
     text("Mode", t.mode);
     const auto id = root.attribute("Id");
     t.id = id.as_llong(-1);
     if (!id || t.id < 0 || std::to_string(t.id) != id.value())
-        return device_error("has no number Id", kWhere);
+        return device_error("has no number Id", kEkiWhere);
     const pugi::xml_node pos = root.child("Pos");
     std::array<double, 6> v{};
     for (std::size_t i = 0; i < 6; ++i) {
@@ -51,9 +51,11 @@ Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
         const std::string value = attribute.value();
         char* end = nullptr;
         v[i] = std::strtod(value.c_str(), &end);
-        if (value.empty() || *end) return device_error(fmt::format("has no number Pos/{}", kPos[i]), kWhere);
+        if (value.empty() || *end)
+            return device_error(fmt::format("has no number Pos/{}", kPos[i]), kEkiWhere);
         if (!(std::abs(v[i]) <= (i < 3 ? 1e5 : 360.0)))
-            return device_error(fmt::format("Pos/{} = {} is no position of a robot", kPos[i], value), kWhere);
+            return device_error(fmt::format("Pos/{} = {} is no position of a robot", kPos[i], value),
+                                kEkiWhere);
     }
     t.pose = make_pose(rotation_from_kuka({v[3], v[4], v[5]}), {v[0], v[1], v[2]});
     return t;
@@ -105,7 +107,7 @@ Expected<void> EkiSplitter::add(std::string_view bytes) {
         buffer_.erase(0, end);
     }
     if (buffer_.size() > kEkiLongestTelegram)
-        return device_error(fmt::format("is longer than {} bytes", kEkiLongestTelegram), kWhere,
+        return device_error(fmt::format("is longer than {} bytes", kEkiLongestTelegram), kEkiWhere,
                             "check that Seamwright's module talks on this port");
     return {};
 }
@@ -127,13 +129,13 @@ void EkiSplitter::clear() {
 }
 
 Expected<RobotMode> mode_from_eki(std::string_view mode) {
-    for (const auto& [known, name] : kModes)
+    for (const auto& [known, name] : kEkiModes)
         if (mode == name) return known;
-    return device_error(fmt::format("\"{}\" is no operating mode", mode.substr(0, 20)), kWhere);
+    return device_error(fmt::format("\"{}\" is no operating mode", mode.substr(0, 20)), kEkiWhere);
 }
 
 std::string_view eki_from_mode(RobotMode mode) {
-    for (const auto& [known, name] : kModes)
+    for (const auto& [known, name] : kEkiModes)
         if (mode == known) return name;
     return "#STOP";
 }

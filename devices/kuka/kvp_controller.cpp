@@ -17,7 +17,7 @@ namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr Timeout kTick{2};
+constexpr Timeout kKvpTick{2};
 
 class KvpController final : public SimulatedController {
   public:
@@ -36,7 +36,7 @@ class KvpController final : public SimulatedController {
   private:
     void serve(const std::stop_token& stop) {
         while (!stop.stop_requested()) {
-            if (auto client = listener_.accept(kTick)) {
+            if (auto client = listener_.accept(kKvpTick)) {
                 connection_.emplace(std::move(*client));
                 cut_ = false;
                 std::string stream;
@@ -71,7 +71,7 @@ class KvpController final : public SimulatedController {
 
     bool answer_all(std::string& stream) {
         std::array<char, 4096> buffer;
-        const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), kTick);
+        const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), kKvpTick);
         if (!got) return is_silence(got.error());
         stream.append(buffer.data(), *got);
         for (;;) {

@@ -43,12 +43,12 @@ class KvpLink final : public RobotLink {
         if (!values) return tl::unexpected(values.error());
         auto stopped = bool_from_krl((*values)[0]);
         if (!stopped) return fail(stopped.error());
-        static const std::map<std::string, RobotMode> kModes = {{"#T1", RobotMode::manual_reduced},
-                                                                {"#T2", RobotMode::manual_full},
-                                                                {"#AUT", RobotMode::automatic},
-                                                                {"#EX", RobotMode::external}};
-        const auto mode = kModes.find(string_from_krl((*values)[1]));
-        if (mode == kModes.end())
+        static const std::map<std::string, RobotMode> kKvpModes = {{"#T1", RobotMode::manual_reduced},
+                                                                   {"#T2", RobotMode::manual_full},
+                                                                   {"#AUT", RobotMode::automatic},
+                                                                   {"#EX", RobotMode::external}};
+        const auto mode = kKvpModes.find(string_from_krl((*values)[1]));
+        if (mode == kKvpModes.end())
             return fail({ErrorKind::device, "\"" + (*values)[1].substr(0, 20) + "\" is no operating mode",
                          where_, ""});
         return *stopped ? RobotMode::stopped : mode->second;

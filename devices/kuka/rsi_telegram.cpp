@@ -18,7 +18,7 @@ bool name_sign(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.' || c == ':';
 }
-std::string_view trimmed(std::string_view s) {
+std::string_view without_blanks(std::string_view s) {
     while (!s.empty() && blank(s.front())) s.remove_prefix(1);
     while (!s.empty() && blank(s.back())) s.remove_suffix(1);
     return s;
@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view s) {
 
 template <class Number>
 bool number(std::string_view text, Number& value) {
-    text = trimmed(text);
+    text = without_blanks(text);
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     const auto [end, e] = std::from_chars(text.data(), text.data() + text.size(), value);
     return e == std::errc() && end == text.data() + text.size() && !text.empty();
@@ -49,7 +49,7 @@ const char* read_xml(std::string_view s, On& on) {
             if (depth > 0) {
                 if (const char* wrong = on.text(depth, open[static_cast<std::size_t>(depth - 1)], text))
                     return wrong;
-            } else if (!trimmed(text).empty() && trimmed(text) != std::string_view("\0", 1)) {
+            } else if (!without_blanks(text).empty() && without_blanks(text) != std::string_view("\0", 1)) {
                 return "there is text outside the document";
             }
             i = end;
@@ -135,7 +135,7 @@ struct FrameReader {
             if (!number(value, x)) {
                 // Beyond double is still a number; anything else is not.
                 x = NAN;
-                const std::string_view t = trimmed(value);
+                const std::string_view t = without_blanks(value);
                 if (t.empty() || t.find_first_not_of("+-.0123456789eEinfaINFA#") != std::string_view::npos)
                     return "a coordinate is no number";
             }
@@ -189,9 +189,9 @@ struct Reader {
     }
     const char* text(int depth, std::string_view element, std::string_view value) {
         if (depth != 2) return nullptr;
-        if (element == "IPOC" && !trimmed(value).empty()) {
+        if (element == "IPOC" && !without_blanks(value).empty()) {
             if (!ipoc.empty()) return "the IPOC is given twice";
-            ipoc = trimmed(value);
+            ipoc = without_blanks(value);
         }
         if (element == "DiL") {
             std::int64_t d = 0;

@@ -4390,12 +4390,12 @@
         <translation>Wahrheit der Simulation</translation>
     </message>
     <message>
-        <source>%1 regions corrected and pushed</source>
+        <source>regions corrected and pushed: %1</source>
         <translation>Korrekturbereiche korrigiert und übertragen: %1</translation>
     </message>
     <message>
-        <source>%1 regions corrected, nothing pushed (dry run)</source>
-        <translation>Korrekturbereiche korrigiert: %1; nichts übertragen (Probelauf)</translation>
+        <source>regions corrected, nothing pushed (dry run): %1</source>
+        <translation>Korrekturbereiche korrigiert, nichts übertragen (Probelauf): %1</translation>
     </message>
 </context>
 <context>
@@ -8438,8 +8438,8 @@ ausgelassen</translation>
         <translation>eingelernt</translation>
     </message>
     <message>
-        <source>taught, aligned</source>
-        <translation>eingelernt, ausgerichtet</translation>
+        <source>taught, edge recorded</source>
+        <translation>eingelernt, Kante aufgenommen</translation>
     </message>
     <message>
         <source>Spots (%1)</source>

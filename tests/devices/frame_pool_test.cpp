@@ -1,30 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <random>
 #include <thread>
 
 #include "devices/frame.h"
-
-namespace {
-std::atomic<long> allocations = 0;
-}  // namespace
-
-// Counts what this program allocates, for the law that a warm pool allocates nothing. Not inlined: the
-// compiler would take the pair for a mismatch of new and free.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* p = std::malloc(size ? size : 1)) return p;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept {
-    std::free(p);
-}
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-    std::free(p);
-}
+#include "tests/allocations.h"
 
 namespace seamwright {
 namespace {
@@ -77,7 +57,7 @@ TEST(FramePool, AllocatesNothingWhenWarm) {
     for (int i = 0; i < 4; ++i) held.push_back(pool.acquire());
     for (const auto& f : held) f->pixels.resize(1 << 16);
     held.clear();
-    const long before = allocations;
+    const long before = allocations_so_far();
     for (int round = 0; round < 1000; ++round) {
         for (int i = 0; i < 3; ++i) {
             held.push_back(pool.acquire());
@@ -85,7 +65,7 @@ TEST(FramePool, AllocatesNothingWhenWarm) {
         }
         held.clear();
     }
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(allocations_so_far(), before);
 }
 
 TEST(FramePool, FramesOutliveTheirPool) {

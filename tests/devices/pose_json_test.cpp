@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-std::string error_of(const std::string& text) {
+std::string pose_error(const std::string& text) {
     const auto parsed = parse_json(text, "job.json");
     if (!parsed) return parsed.error().sentence();
     const auto pose = parse_pose(*parsed, "spots[3].workobject_from_sensor");
@@ -48,49 +48,49 @@ TEST(PoseJson, AllFormsMeanTheSamePose) {
 }
 
 TEST(PoseJson, RefusesEverythingElseWithItsPath) {
-    EXPECT_THAT(error_of("[]"), HasSubstr("spots[3].workobject_from_sensor: must be an object"));
-    EXPECT_THAT(error_of("{}"), HasSubstr("no translation"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3]})"), HasSubstr("no rotation"));
-    EXPECT_THAT(error_of(R"({"abc":[1,2,3]})"), HasSubstr("no translation"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2],"abc":[0,0,0]})"),
+    EXPECT_THAT(pose_error("[]"), HasSubstr("spots[3].workobject_from_sensor: must be an object"));
+    EXPECT_THAT(pose_error("{}"), HasSubstr("no translation"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3]})"), HasSubstr("no rotation"));
+    EXPECT_THAT(pose_error(R"({"abc":[1,2,3]})"), HasSubstr("no translation"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2],"abc":[0,0,0]})"),
                 HasSubstr("sensor.xyz: has 2 entries instead of 3"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,"3"],"abc":[0,0,0]})"), HasSubstr("xyz[2]: must be a number"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,null],"abc":[0,0,0]})"), HasSubstr("xyz[2]"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,true],"abc":[0,0,0]})"), HasSubstr("xyz[2]"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,NaN],"abc":[0,0,0]})"), HasSubstr("no JSON"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,1e999],"abc":[0,0,0]})"), HasSubstr("job.json"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3e6],"abc":[0,0,0]})"), HasSubstr("100 m"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3],"abc":[0,9000,0]})"), HasSubstr("degrees"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3],"abc":[0,0,0],"quat_wxyz":[1,0,0,0]})"), HasSubstr("mixes"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3],"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]})"),
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,"3"],"abc":[0,0,0]})"), HasSubstr("xyz[2]: must be a number"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,null],"abc":[0,0,0]})"), HasSubstr("xyz[2]"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,true],"abc":[0,0,0]})"), HasSubstr("xyz[2]"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,NaN],"abc":[0,0,0]})"), HasSubstr("no JSON"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,1e999],"abc":[0,0,0]})"), HasSubstr("job.json"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3e6],"abc":[0,0,0]})"), HasSubstr("100 m"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3],"abc":[0,9000,0]})"), HasSubstr("degrees"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3],"abc":[0,0,0],"quat_wxyz":[1,0,0,0]})"), HasSubstr("mixes"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3],"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]})"),
                 HasSubstr("mixes"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3],"abc":[0,0,0],"name":"a"})"),
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3],"abc":[0,0,0],"name":"a"})"),
                 HasSubstr("sensor.name: is not a known"));
-    EXPECT_THAT(error_of(R"({"xyz":[1,2,3],"xyz":[1,2,3],"abc":[0,0,0]})"), HasSubstr("twice"));
-    EXPECT_THAT(error_of(R"({"xyz":[0,0,0],"quat_wxyz":[1,1,0,0]})"), HasSubstr("quat_wxyz"));
-    EXPECT_THAT(error_of(R"({"xyz":[0,0,0],"quat_wxyz":[0,0,0,0]})"), HasSubstr("quat_wxyz"));
-    EXPECT_THAT(error_of(R"({"xyz":[0,0,0],"rotvec_rad":[0,0,90]})"), HasSubstr("radian"));
-    EXPECT_THAT(error_of(R"({"matrix":[1,0,0]})"), HasSubstr("matrix: has 3 entries instead of 16"));
-    EXPECT_THAT(error_of(R"({"matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]})"), HasSubstr("3 rows"));
-    EXPECT_THAT(error_of(R"({"matrix":[[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]})"), HasSubstr("matrix[1]"));
-    EXPECT_THAT(error_of(R"({"matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]})"), HasSubstr("matrix"));
-    EXPECT_THAT(error_of(R"({"matrix":[[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})"), HasSubstr("matrix"));
-    EXPECT_THAT(error_of(R"({"matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[5,6,7,1]]})"), HasSubstr("matrix"));
+    EXPECT_THAT(pose_error(R"({"xyz":[1,2,3],"xyz":[1,2,3],"abc":[0,0,0]})"), HasSubstr("twice"));
+    EXPECT_THAT(pose_error(R"({"xyz":[0,0,0],"quat_wxyz":[1,1,0,0]})"), HasSubstr("quat_wxyz"));
+    EXPECT_THAT(pose_error(R"({"xyz":[0,0,0],"quat_wxyz":[0,0,0,0]})"), HasSubstr("quat_wxyz"));
+    EXPECT_THAT(pose_error(R"({"xyz":[0,0,0],"rotvec_rad":[0,0,90]})"), HasSubstr("radian"));
+    EXPECT_THAT(pose_error(R"({"matrix":[1,0,0]})"), HasSubstr("matrix: has 3 entries instead of 16"));
+    EXPECT_THAT(pose_error(R"({"matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]})"), HasSubstr("3 rows"));
+    EXPECT_THAT(pose_error(R"({"matrix":[[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]})"), HasSubstr("matrix[1]"));
+    EXPECT_THAT(pose_error(R"({"matrix":[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]})"), HasSubstr("matrix"));
+    EXPECT_THAT(pose_error(R"({"matrix":[[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})"), HasSubstr("matrix"));
+    EXPECT_THAT(pose_error(R"({"matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[5,6,7,1]]})"), HasSubstr("matrix"));
     json contradicting = pose_json(make_pose(rotation_exp({0.1, 0.2, 0.3}), {1, 2, 3}));
     contradicting["xyz"][0] = 1.01;
-    EXPECT_THAT(error_of(contradicting.dump()), HasSubstr("contradict"));
+    EXPECT_THAT(pose_error(contradicting.dump()), HasSubstr("contradict"));
 }
 
 TEST(PoseJson, HostileJsonEndsInASentence) {
-    EXPECT_THAT(error_of(""), HasSubstr("empty"));
-    EXPECT_THAT(error_of(std::string(100000, '[')), HasSubstr("job.json"));
-    EXPECT_THAT(error_of(std::string(70, '[') + std::string(70, ']')), HasSubstr("deeper"));
+    EXPECT_THAT(pose_error(""), HasSubstr("empty"));
+    EXPECT_THAT(pose_error(std::string(100000, '[')), HasSubstr("job.json"));
+    EXPECT_THAT(pose_error(std::string(70, '[') + std::string(70, ']')), HasSubstr("deeper"));
     std::string objects;
     for (int i = 0; i < 200; ++i) objects += R"({"a":)";
-    EXPECT_THAT(error_of(objects + "1" + std::string(200, '}')), HasSubstr("deeper"));
-    EXPECT_THAT(error_of("{\"xyz\":[1,2,3],// comment\n\"abc\":[0,0,0]}"), HasSubstr("no JSON"));
-    EXPECT_THAT(error_of("{\"\xFF\":1}"), HasSubstr("no JSON"));
-    EXPECT_THAT(error_of("{\"xyz\":[1,2,3]"), HasSubstr("no JSON"));
+    EXPECT_THAT(pose_error(objects + "1" + std::string(200, '}')), HasSubstr("deeper"));
+    EXPECT_THAT(pose_error("{\"xyz\":[1,2,3],// comment\n\"abc\":[0,0,0]}"), HasSubstr("no JSON"));
+    EXPECT_THAT(pose_error("{\"\xFF\":1}"), HasSubstr("no JSON"));
+    EXPECT_THAT(pose_error("{\"xyz\":[1,2,3]"), HasSubstr("no JSON"));
 }
 
 TEST(PoseFile, TupleAndYamlAreMetres) {

@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string error_of(std::string_view text) {
+std::string profile_error(std::string_view text) {
     const auto profile = parse_profile_csv(text, "in.csv");
     return profile ? "accepted" : profile.error().sentence();
 }
@@ -73,33 +73,33 @@ TEST(ProfileCsv, FilteredProfilesComeBackExactly) {
 }
 
 TEST(ProfileCsv, RefusesWithASentenceThatNamesTheLine) {
-    EXPECT_THAT(error_of(""), HasSubstr("empty"));
-    EXPECT_THAT(error_of("\n\n"), HasSubstr("empty"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n"), HasSubstr("no points"));
-    EXPECT_THAT(error_of("1,2\n3,4\n"), HasSubstr("no column x_mm"));
-    EXPECT_THAT(error_of("x_mm,y_mm\n1,2\n"), HasSubstr("no column z_mm"));
-    EXPECT_THAT(error_of("x_mm,z_mm,x_mm\n1,2,3\n"), HasSubstr("named twice"));
-    EXPECT_THAT(error_of("x_mm;z_mm\n1,5;2,5\n"), HasSubstr("semicolons"));
-    EXPECT_THAT(error_of("x_mm\tz_mm\n1\t2\n"), HasSubstr("tabs"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n1,5;2,5\n"), HasSubstr("line 2"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n1;5\n"), HasSubstr("decimal points"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n1,5,2,5\n"), HasSubstr("decimal commas"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,0\n1\n"), HasSubstr("line 3"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,0\n\n1,1\n"), HasSubstr("blank"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,inf\n"), HasSubstr("infinite"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,1e999\n"), HasSubstr("does not fit"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,1e7\n"), HasSubstr("beyond 1 km"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,0x10\n"), HasSubstr("no number"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,1 2\n"), HasSubstr("no number"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,--1\n"), HasSubstr("no number"));
-    EXPECT_THAT(error_of("x_mm,z_mm\n0,+\n"), HasSubstr("no number"));
-    EXPECT_THAT(error_of(std::string_view("x_mm,z_mm\n0,1\0\n", 15)), HasSubstr("no number"));
-    EXPECT_THAT(error_of("\xFF\xFEx\0_\0"), HasSubstr("UTF-16"));
-    EXPECT_THAT(error_of("x_mm,z_mm,valid\n0,0,2\n"), HasSubstr("0 or 1"));
-    EXPECT_THAT(error_of("x_mm,z_mm,segment\n0,0,1.5\n"), HasSubstr("whole number"));
-    EXPECT_THAT(error_of("x_mm,z_mm,segment\n0,,1\n"), HasSubstr("without return"));
-    EXPECT_THAT(error_of("x_mm,z_mm,valid,segment\n0,0,0,3\n"), HasSubstr("contradicts"));
-    EXPECT_THAT(error_of(std::string(3 << 20, ',')), HasSubstr("no column x_mm"));
+    EXPECT_THAT(profile_error(""), HasSubstr("empty"));
+    EXPECT_THAT(profile_error("\n\n"), HasSubstr("empty"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n"), HasSubstr("no points"));
+    EXPECT_THAT(profile_error("1,2\n3,4\n"), HasSubstr("no column x_mm"));
+    EXPECT_THAT(profile_error("x_mm,y_mm\n1,2\n"), HasSubstr("no column z_mm"));
+    EXPECT_THAT(profile_error("x_mm,z_mm,x_mm\n1,2,3\n"), HasSubstr("named twice"));
+    EXPECT_THAT(profile_error("x_mm;z_mm\n1,5;2,5\n"), HasSubstr("semicolons"));
+    EXPECT_THAT(profile_error("x_mm\tz_mm\n1\t2\n"), HasSubstr("tabs"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n1,5;2,5\n"), HasSubstr("line 2"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n1;5\n"), HasSubstr("decimal points"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n1,5,2,5\n"), HasSubstr("decimal commas"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,0\n1\n"), HasSubstr("line 3"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,0\n\n1,1\n"), HasSubstr("blank"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,inf\n"), HasSubstr("infinite"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,1e999\n"), HasSubstr("does not fit"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,1e7\n"), HasSubstr("beyond 1 km"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,0x10\n"), HasSubstr("no number"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,1 2\n"), HasSubstr("no number"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,--1\n"), HasSubstr("no number"));
+    EXPECT_THAT(profile_error("x_mm,z_mm\n0,+\n"), HasSubstr("no number"));
+    EXPECT_THAT(profile_error(std::string_view("x_mm,z_mm\n0,1\0\n", 15)), HasSubstr("no number"));
+    EXPECT_THAT(profile_error("\xFF\xFEx\0_\0"), HasSubstr("UTF-16"));
+    EXPECT_THAT(profile_error("x_mm,z_mm,valid\n0,0,2\n"), HasSubstr("0 or 1"));
+    EXPECT_THAT(profile_error("x_mm,z_mm,segment\n0,0,1.5\n"), HasSubstr("whole number"));
+    EXPECT_THAT(profile_error("x_mm,z_mm,segment\n0,,1\n"), HasSubstr("without return"));
+    EXPECT_THAT(profile_error("x_mm,z_mm,valid,segment\n0,0,0,3\n"), HasSubstr("contradicts"));
+    EXPECT_THAT(profile_error(std::string(3 << 20, ',')), HasSubstr("no column x_mm"));
 }
 
 TEST(ProfileCsv, NoPrefixOfAValidTextIsRead) {

@@ -3,58 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "tests/allocations.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
-
-namespace {
-std::atomic<long> allocations{0};
-void* counted(std::size_t bytes, std::size_t alignment) {
-    ++allocations;
-    void* p = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-    if (!p) throw std::bad_alloc();
-    return p;
-}
-}  // namespace
-void* operator new(std::size_t bytes) {
-    return counted(bytes, alignof(std::max_align_t));
-}
-void* operator new[](std::size_t bytes) {
-    return counted(bytes, alignof(std::max_align_t));
-}
-void* operator new(std::size_t bytes, std::align_val_t a) {
-    return counted(bytes, static_cast<std::size_t>(a));
-}
-void* operator new[](std::size_t bytes, std::align_val_t a) {
-    return counted(bytes, static_cast<std::size_t>(a));
-}
-void operator delete(void* p) noexcept {
-    std::free(p);
-}
-void operator delete[](void* p) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-    std::free(p);
-}
-void operator delete[](void* p, std::size_t) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::align_val_t) noexcept {
-    std::free(p);
-}
-void operator delete[](void* p, std::align_val_t) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-    std::free(p);
-}
-void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
-    std::free(p);
-}
 
 namespace seamwright {
 namespace {
@@ -266,9 +217,9 @@ TEST(Allocations, NoneAfterTheFirstProfile) {
         // The matcher's lists of candidates are as long as the noise makes them: it sees each profile once.
         if (std::string(id) == "S2")
             for (const Frame& frame : frames) measurer->measure(frame, reported);
-        const long before = allocations;
+        const long before = allocations_so_far();
         for (const Frame& frame : frames) measurer->measure(frame, reported);
-        const long during = allocations - before;
+        const long during = allocations_so_far() - before;
         EXPECT_EQ(during, 0) << "spot " << id;
         EXPECT_EQ(measurer->measure(frames[0], reported).status, SpotStatus::measured)
             << measurer->measure(frames[0]).message;

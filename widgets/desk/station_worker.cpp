@@ -259,7 +259,7 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
 
 namespace {
 
-constexpr double kStillMm = 0.05, kStillDeg = 0.01;
+constexpr double kSameShotMm = 0.05, kSameShotDeg = 0.01;
 constexpr std::chrono::milliseconds kShotFrame{5000};
 constexpr double kBrightShare = 0.6;  // of full scale: where the bright end of a board's picture should lie
 constexpr int kExposures = 4;
@@ -349,8 +349,8 @@ Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, 
     if (robot) {
         auto after = robot->base_from_flange();
         if (!after) return tl::unexpected(after.error());
-        if (distance_mm(*after, *shot.base_from_flange) > kStillMm ||
-            angle_rad(*after, *shot.base_from_flange) > rad_from_deg(kStillDeg))
+        if (distance_mm(*after, *shot.base_from_flange) > kSameShotMm ||
+            angle_rad(*after, *shot.base_from_flange) > rad_from_deg(kSameShotDeg))
             return device_error("the robot moved while the picture was taken", "robot " + robot_id,
                                 "let it stand still and capture again");
     }

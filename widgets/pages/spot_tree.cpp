@@ -56,7 +56,7 @@ void SpotTree::refresh() {
         return !s.enabled                        ? tr("disabled")
                : s.reference_profile.size() == 0 ? tr("no reference")
                : !s.curve                        ? tr("taught")
-                                                 : tr("taught, aligned");
+                                                 : tr("taught, edge recorded");
     };
     auto* spots = new QTreeWidgetItem(this, {tr("Spots (%1)").arg(p.spots.size()), {}});
     spots->setSizeHint(0, {0, style::kTargetPx});

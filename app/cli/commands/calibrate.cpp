@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 using Exclude = std::vector<std::string>;
 
-struct Arguments {
+struct CalibrateArguments {
     std::string data, board, pattern = "chessboard", report, project, sensor, table;
     double pitch_mm = 0;
     Exclude exclude;
@@ -56,7 +56,7 @@ const Method kMethods[] = {
     {"drift", "Does a stored calibration still hold", check_drift_json, false, "measured.json"},
 };
 
-Expected<CalibrateOutcome> solve(const Method& method, const Arguments& a, json& data) {
+Expected<CalibrateOutcome> solve(const Method& method, const CalibrateArguments& a, json& data) {
     const bool stripe = method.from_json == calibrate_stripe_camera_json;
     if (method.images && (std::filesystem::is_directory(a.data) || (stripe && !a.data.ends_with(".json")))) {
         if (a.board.empty() || !(a.pitch_mm > 0))
@@ -78,7 +78,8 @@ Expected<CalibrateOutcome> solve(const Method& method, const Arguments& a, json&
 
 // Into the project: result and raw data, so that it can be solved again, with who and when. It is not put to
 // use by that.
-Expected<std::string> store(const Arguments& a, const Method& method, const json& data, const json& result) {
+Expected<std::string> store(const CalibrateArguments& a, const Method& method, const json& data,
+                            const json& result) {
     auto file = ProjectFile::open(a.project);
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
@@ -134,7 +135,7 @@ std::string text_of(const Method& method, const json& r) {
     return text;
 }
 
-Expected<Answer> calibrate(const Method& method, const Arguments& a) {
+Expected<Answer> calibrate(const Method& method, const CalibrateArguments& a) {
     if (a.project.empty() != a.sensor.empty())
         return usage_error("--store and --sensor belong together", "calibrate");
     json data;
@@ -167,7 +168,7 @@ void add_calibrate(CommandLine& line) {
         "seamwright calibrate tcp-sphere sphere.json --json -\n"
         "  seamwright calibrate stripe-camera images --board 7x6 --pitch-mm 10 --report report.html");
     for (const Method& method : kMethods) {
-        auto a = std::make_shared<Arguments>();
+        auto a = std::make_shared<CalibrateArguments>();
         CLI::App* command = line.add(*group, method.name, method.help,
                                      fmt::format("seamwright calibrate {} {}", method.name, method.example));
         command

@@ -10,13 +10,13 @@
 namespace seamwright::cli {
 namespace {
 
-struct Arguments {
+struct ExtractArguments {
     std::string image, out, method = "centre-of-gravity";
     bool rows = false, columns = false;
     PeakOptions options;
 };
 
-Expected<Answer> extract(Arguments a) {
+Expected<Answer> extract(ExtractArguments a) {
     if (a.method == "centre-of-gravity")
         a.options.method = PeakMethod::centre_of_gravity;
     else if (a.method == "gaussian")
@@ -62,7 +62,7 @@ Expected<Answer> extract(Arguments a) {
 }  // namespace
 
 void add_extract(CommandLine& line) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ExtractArguments>();
     CLI::App* command =
         line.add("extract", "Where the laser stripe crosses each row or column of a camera image.",
                  "seamwright extract frame.png --rows --peaks 3 --out peaks.csv\n"

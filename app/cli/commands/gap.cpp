@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct GapArguments {
     std::string file, capture, record, out, report;
     RecordedGapPass recorded;
     DrivenGapPass driven;
@@ -209,7 +209,7 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
 }
 
 // The pass, with the project it was made with.
-Expected<std::pair<Project, GapPass>> pass_of(Arguments& a) {
+Expected<std::pair<Project, GapPass>> pass_of(GapArguments& a) {
     if (a.simulated) {
         auto project = simulated_gap_project({{"seed", a.seed}}, default_gap_stations(),
                                              std::filesystem::path(a.file).replace_extension(".ply"));
@@ -249,7 +249,7 @@ Expected<std::pair<Project, GapPass>> pass_of(Arguments& a) {
     return std::pair{station->project(), std::move(*pass)};
 }
 
-Expected<Answer> check(Arguments& a) {
+Expected<Answer> check(GapArguments& a) {
     GapScanOptions defaults;
     defaults.gauge.reference =
         a.reference == "left" ? GapFlushSettings::Reference::left : GapFlushSettings::Reference::right;
@@ -277,7 +277,7 @@ Expected<Answer> check(Arguments& a) {
 }  // namespace
 
 void add_gap(CommandLine& line) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<GapArguments>();
     CLI::App* command = line.add(
         "gap",
         "Width, flush and orientation of a gap along a pass, and the places where the nozzle would not pass, "

@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Job {
+struct FitJob {
     std::vector<PanelSpot> spots;
     PanelOptions options;
 };
@@ -44,7 +44,7 @@ Expected<PanelSide> read_side(const json& spot, const std::string& key, const st
     return PanelSide{*reference, *measured};
 }
 
-Expected<PanelSpot> read_spot(const json& spot, const std::string& path) {
+Expected<PanelSpot> read_fit_spot(const json& spot, const std::string& path) {
     if (auto known = only_fields(
             spot, {"id", "gripper_from_sensor", "panel", "body", "weights", "sigma_mm", "surface_deg"}, path);
         !known)
@@ -78,7 +78,7 @@ Expected<PanelSpot> read_spot(const json& spot, const std::string& path) {
     return s;
 }
 
-Expected<Job> read_job(const std::string& file) {
+Expected<FitJob> read_fit_job(const std::string& file) {
     auto text = read_text_file(file);
     if (!text) return tl::unexpected(text.error());
     auto document = parse_json(*text, file);
@@ -87,9 +87,9 @@ Expected<Job> read_job(const std::string& file) {
         return tl::unexpected(known.error());
     auto spots = json_array(*document, "spots", "");
     if (!spots) return tl::unexpected(spots.error());
-    Job job;
+    FitJob job;
     for (std::size_t i = 0; i < (*spots)->size(); ++i) {
-        auto spot = read_spot((**spots)[i], json_path("spots", i));
+        auto spot = read_fit_spot((**spots)[i], json_path("spots", i));
         if (!spot) return tl::unexpected(spot.error());
         job.spots.push_back(std::move(*spot));
     }
@@ -108,7 +108,7 @@ Expected<Job> read_job(const std::string& file) {
 }
 
 Expected<Answer> panel(const std::string& file) {
-    auto job = read_job(file);
+    auto job = read_fit_job(file);
     if (!job) return tl::unexpected(job.error());
     auto fit = fit_panel(job->spots, job->options);
     if (!fit) return tl::unexpected(fit.error());
@@ -121,7 +121,7 @@ Expected<Answer> panel(const std::string& file) {
 
 // --- on a project's devices
 
-struct Arguments {
+struct PanelArguments {
     std::string file, job, part;
     bool push = false, dry_run = false, keep_images = false, simulated = false;
     int teach = 0;
@@ -129,7 +129,7 @@ struct Arguments {
     std::vector<std::pair<std::string, double>> settings;
 };
 
-bool is_project(const Arguments& a) {
+bool is_project(const PanelArguments& a) {
     if (a.simulated || std::filesystem::path(a.file).extension() == ".seam") return true;
     constexpr std::string_view kSqlite = "SQLite format 3";
     std::ifstream in(a.file, std::ios::binary);
@@ -137,7 +137,7 @@ bool is_project(const Arguments& a) {
     return in.read(head.data(), static_cast<std::streamsize>(head.size())) && head == kSqlite;
 }
 
-RunOptions run_options(const Arguments& a) {
+RunOptions run_options(const PanelArguments& a) {
     RunOptions options;
     options.part_id = a.part;
     options.push = a.push;
@@ -150,7 +150,7 @@ RunOptions run_options(const Arguments& a) {
 }
 
 // The job named, or the only one.
-Expected<std::string> job_of(const Project& project, const Arguments& a) {
+Expected<std::string> job_of(const Project& project, const PanelArguments& a) {
     if (!a.job.empty()) return a.job;
     if (project.panel_jobs.size() == 1) return project.panel_jobs.front().id;
     std::string names;
@@ -160,7 +160,7 @@ Expected<std::string> job_of(const Project& project, const Arguments& a) {
     return usage_error("the project has several panel jobs", a.file, "name one with --job: " + names);
 }
 
-Expected<void> teach(Station& station, const std::string& id, const Arguments& a) {
+Expected<void> teach(Station& station, const std::string& id, const PanelArguments& a) {
     Project project = station.project();
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
@@ -177,7 +177,7 @@ Expected<void> teach(Station& station, const std::string& id, const Arguments& a
 }
 
 // Limits and tolerances of the job, by name.
-Expected<Answer> set(Station& station, const std::string& id, const Arguments& a) {
+Expected<Answer> set(Station& station, const std::string& id, const PanelArguments& a) {
     Project project = station.project();
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
@@ -215,7 +215,7 @@ nlohmann::json somewhere(Random& random) {
 
 // The simulated gripper with its panel job, taught in zero position; then panel and body stand somewhere
 // else.
-Expected<void> make_simulated(const Arguments& a) {
+Expected<void> make_simulated(const PanelArguments& a) {
     const json settings = {{"seed", a.seed}};
     auto project = simulated_panel_project(settings);
     if (!project) return tl::unexpected(project.error());
@@ -223,7 +223,7 @@ Expected<void> make_simulated(const Arguments& a) {
     if (!file) return tl::unexpected(file.error());
     Station station(std::move(*file), std::move(*project));
     if (auto connected = station.connect(); !connected) return connected;
-    Arguments teaching = a;
+    PanelArguments teaching = a;
     if (teaching.teach == 0) teaching.teach = 5;
     if (auto taught = teach(station, station.project().panel_jobs.front().id, teaching); !taught)
         return taught;
@@ -236,7 +236,7 @@ Expected<void> make_simulated(const Arguments& a) {
     return station.edit(displaced);
 }
 
-Expected<Answer> panel_on_devices(const Arguments& a) {
+Expected<Answer> panel_on_devices(const PanelArguments& a) {
     if (a.simulated)
         if (auto made = make_simulated(a); !made) return tl::unexpected(made.error());
     auto station = Station::open(a.file);
@@ -304,7 +304,7 @@ void add_panel(CommandLine& line) {
         "             \"body\":{\"reference\":[4,0,0],\"measured\":[4.2,0,-0.1]},\n"
         "             \"weights\":[1,0,1],\"sigma_mm\":0.05}, ...],\n"
         "             \"limits\":{\"translation_mm\":25,\"rotation_deg\":3}}");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<PanelArguments>();
     command->add_option("job", a->file, "The job's measures (JSON), or a project")
         ->required()
         ->type_name("JOB.json|FILE.seam");

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct PathArguments {
     std::string file, path, brand, frame = "base", name = "seamwright_path", report;
     std::filesystem::path folder;
     std::int64_t run = 0;
@@ -147,7 +147,7 @@ std::string report_html(const PathAnswer& a, const json& figures, const std::str
     return page.html();
 }
 
-Expected<std::vector<ProgramFile>> files_of(const Arguments& a, const PathAnswer& answer,
+Expected<std::vector<ProgramFile>> files_of(const PathArguments& a, const PathAnswer& answer,
                                             PathNotation notation, PathFrame frame, const Project& setup,
                                             std::int64_t run) {
     std::vector<ProgramFile> files{{a.name + ".csv", path_csv(answer.path, notation)}};
@@ -165,7 +165,7 @@ Expected<std::vector<ProgramFile>> files_of(const Arguments& a, const PathAnswer
     return files;
 }
 
-Expected<Answer> correct(const Arguments& a) {
+Expected<Answer> correct_path(const PathArguments& a) {
     const auto notation = path_notation_from(a.brand);
     if (!notation) return tl::unexpected(notation.error());
     auto path = read_path_csv(a.path, *notation);
@@ -215,7 +215,7 @@ Expected<Answer> correct(const Arguments& a) {
 }  // namespace
 
 void add_path(CommandLine& line) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<PathArguments>();
     CLI::App* command = line.add(
         "path",
         "The application path corrected point by point by a run: between regions the correction goes over "
@@ -248,7 +248,7 @@ void add_path(CommandLine& line) {
         ->capture_default_str();
     command->add_option("--report", a->report, "HTML with curves of shift, step and sigma")
         ->type_name("FILE.html");
-    line.on(command, [a] { return correct(*a); });
+    line.on(command, [a] { return correct_path(*a); });
 }
 
 }  // namespace seamwright::cli

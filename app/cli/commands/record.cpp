@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Arguments {
+struct RecordArguments {
     std::string file, out;
     std::vector<std::string> sensors, robots;
     bool images = false, no_robots = false;
@@ -59,7 +59,7 @@ std::function<bool(const Frame&, ProfileCandidates&)> candidates_with(const Sens
     };
 }
 
-Expected<Answer> record(const Arguments& a) {
+Expected<Answer> record(const RecordArguments& a) {
     auto file = ProjectFile::open(a.file, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
@@ -142,7 +142,7 @@ Expected<Answer> record(const Arguments& a) {
 }  // namespace
 
 void add_record(CommandLine& line) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<RecordArguments>();
     CLI::App* command = line.add(
         "record", "Record what sensors and robots deliver, until SIGINT, SIGTERM, --seconds or --profiles.",
         "seamwright record door_left.seam --out shift.seam --seconds 60");

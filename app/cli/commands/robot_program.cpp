@@ -15,12 +15,12 @@
 namespace seamwright::cli {
 namespace {
 
-struct Arguments {
+struct ProgramArguments {
     std::string file, brand, robot;
     std::filesystem::path folder;
 };
 
-Expected<Answer> write_program(const Arguments& a) {
+Expected<Answer> write_program(const ProgramArguments& a) {
     auto file = ProjectFile::open(a.file, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
@@ -49,7 +49,7 @@ Expected<Answer> write_program(const Arguments& a) {
 }  // namespace
 
 void add_robot_program(CommandLine& line) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ProgramArguments>();
     CLI::App* command = line.add(
         "robot-program",
         "The controller's side of a project: the module that talks to Seamwright, the measuring program "

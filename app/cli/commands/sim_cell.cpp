@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct SimCellArguments {
     std::string settings, project, camera, gocator, fault;
     std::vector<std::string> controllers;
 };
@@ -45,7 +45,7 @@ Expected<ServedController> controller_from(const std::string& text) {
     return c;
 }
 
-Expected<CellServer> serve(const Arguments& a, const json& cell_settings) {
+Expected<CellServer> serve(const SimCellArguments& a, const json& cell_settings) {
     CellServerOptions options;
     options.cell = cell_settings;
     options.camera_address = a.camera;
@@ -124,7 +124,7 @@ json obey(CellServer& server, const std::string& line, bool& stop) {
     return answer;
 }
 
-Expected<Answer> sim_cell(const Arguments& a) {
+Expected<Answer> sim_cell(const SimCellArguments& a) {
     json settings = json::object();
     if (!a.settings.empty()) {
         auto text = read_text_file(a.settings);
@@ -172,7 +172,7 @@ Expected<Answer> sim_cell(const Arguments& a) {
 }  // namespace
 
 void add_sim_cell(CommandLine& line) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<SimCellArguments>();
     CLI::App* command = line.add(
         "sim-cell",
         std::string(

@@ -7,7 +7,7 @@
 namespace seamwright::cli {
 namespace {
 
-constexpr int kRepeats = 10;
+constexpr int kRepeatsPerPlace = 10;
 constexpr double kStepMm = 2.5, kMostMm = 10;
 
 // x of r - W^-1 D^-1 W m, with the curve's x(y) added when asked for: residual of core/correction at a known
@@ -60,15 +60,15 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
             for (auto& a : sums.across) a.assign(spots.size(), 0);
             sums.squares.assign(spots.size(), 0);
             for (auto& d : sums.deviation) d.assign(spots.size(), Eigen::Vector3d::Zero());
-            for (int k = 0; k < kRepeats; ++k) {
+            for (int k = 0; k < kRepeatsPerPlace; ++k) {
                 std::vector<SpotObservation> observed;
                 for (std::size_t n = 0; n < spots.size(); ++n) {
                     auto o = measure_spot(cell, method, spots[n], n, *(*finders)[n], truth, random, *profile);
                     if (!o) continue;
-                    sums.across[0][n] += across_mm(*o, truth, false) / kRepeats;
+                    sums.across[0][n] += across_mm(*o, truth, false) / kRepeatsPerPlace;
                     const double learnt = across_mm(*o, truth, true);
-                    sums.across[1][n] += learnt / kRepeats;
-                    sums.squares[n] += learnt * learnt / kRepeats;
+                    sums.across[1][n] += learnt / kRepeatsPerPlace;
+                    sums.squares[n] += learnt * learnt / kRepeatsPerPlace;
                     observed.push_back(std::move(*o));
                 }
                 for (const std::size_t way : {1, 0}) {  // learnt first: the curve is dropped for the other
@@ -96,7 +96,8 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
                 const double sense = spots[n].observation.curve->x_coefficients[1] >= 0 ? -1 : 1;
                 step.straight_mm += sense * sums.across[0][n];
                 step.learnt_mm += sense * sums.across[1][n];
-                variance += (sums.squares[n] - sums.across[1][n] * sums.across[1][n]) / (kRepeats - 1);
+                variance +=
+                    (sums.squares[n] - sums.across[1][n] * sums.across[1][n]) / (kRepeatsPerPlace - 1);
                 step.learnt_worst_mm = std::max(step.learnt_worst_mm, std::abs(sums.across[1][n]));
             }
             step.straight_mm /= along;

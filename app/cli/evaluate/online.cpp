@@ -14,7 +14,7 @@ constexpr int kParts = 2;
 constexpr double kShiftMm = 4, kTurnDeg = 0.35, kBendMm = 0.3, kTwistMm = 0.2;
 constexpr double kReferenceStepMm = 5, kPathStepMm = 2;
 constexpr int kReferenceRepeats = 8;
-const Eigen::Vector3d kMiddle(500, 375, 0);
+const Eigen::Vector3d kPartMiddle(500, 375, 0);
 
 // As a DoorSpot's sensor stands (door.h), anywhere along the contour.
 Pose sensor_at(double arc_mm) {
@@ -391,7 +391,7 @@ Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
             const Eigen::Vector3d move = vector(kShiftMm), turn = vector(rad_from_deg(kTurnDeg));
             const Eigen::Matrix3d r = rotation_exp(turn);
             Part part;
-            part.truth = make_pose(r, move + kMiddle - r * kMiddle);
+            part.truth = make_pose(r, move + kPartMiddle - r * kPartMiddle);
             if (result.bent) part.bend = {kBendMm, kTwistMm};
             part.box = w.box;
             const MeshTree& tree = result.bent ? bent_tree : *w.cell.taught;

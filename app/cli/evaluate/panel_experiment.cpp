@@ -11,11 +11,11 @@
 namespace seamwright::cli {
 namespace {
 
-struct Cell {
+struct PanelStudyCell {
     std::vector<PanelSpot> spots;
     Pose panel = Pose::Identity(), body = Pose::Identity();
 
-    explicit Cell(double sigma_mm) {
+    explicit PanelStudyCell(double sigma_mm) {
         for (int n = 0; n < 8; ++n) {
             PanelSpot s;
             s.id = "S" + std::to_string(n + 1);
@@ -76,7 +76,7 @@ struct Cell {
 PanelComparison compare_panel_fitting(int panels, std::uint64_t seed) {
     PanelComparison out;
     out.panels = panels;
-    Cell cell(out.noise_mm);
+    PanelStudyCell cell(out.noise_mm);
     Random random(seed, 501);
     ServoingOptions options;
     const auto values = [&](const Pose& motion) { return cell.values(motion, out.noise_mm, random); };

@@ -2,27 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "core/correction/correction.h"
+#include "tests/allocations.h"
 #include "tests/core/correction/doors.h"
-
-namespace {
-std::size_t allocations = 0;  // the test is single-threaded
-}
-
-void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* p = std::malloc(size)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-    std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-    std::free(p);
-}
 
 namespace seamwright {
 namespace {
@@ -46,12 +28,12 @@ TEST(RegionSolver, AllocatesNothingAfterTheFirstCall) {
             }
         }
         ASSERT_TRUE(solver.solve(parts[0], options, result).has_value());
-        const std::size_t before = allocations;
+        const long before = allocations_so_far();
         for (const auto& spots : parts) {
             const auto good = solver.solve(spots, options, result);
             ASSERT_TRUE(good.has_value() && result.status == CorrectionStatus::ok && result.message.empty());
         }
-        EXPECT_EQ(allocations, before);
+        EXPECT_EQ(allocations_so_far(), before);
     }
 }
 

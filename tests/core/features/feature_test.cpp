@@ -11,7 +11,7 @@
 
 #include "contours.h"
 #include "core/features/gap_flush.h"
-#include "counted_allocations.h"
+#include "tests/allocations.h"
 
 namespace seamwright::test {
 namespace {
@@ -360,12 +360,12 @@ TEST(Features, FindAllocatesNothingAfterTheFirstCalls) {
         const auto f = finder(std::string(kind.name));
         for (int round = 0; round < 2; ++round)
             for (const Profile& p : profiles) f->find(p);
-        const long before = allocations();
+        const long before = allocations_so_far();
         int good = 0;
         for (const Profile& p : profiles) good += f->find(p).status == FeatureStatus::ok;
         // A refusal carries its sentence, which is text on the heap: only good answers must be free.
         if (good == static_cast<int>(profiles.size())) {
-            EXPECT_EQ(allocations() - before, 0) << kind.name;
+            EXPECT_EQ(allocations_so_far() - before, 0) << kind.name;
         }
         if (kind.name == "template" || kind.name == "contour-end") {
             EXPECT_EQ(good, 6) << kind.name;

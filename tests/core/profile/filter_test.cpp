@@ -2,29 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "core/profile/contour_state.h"
+#include "tests/allocations.h"
 #include "tests/core/profile/synthetic_candidates.h"
 #include "tests/core/profile/synthetic_profiles.h"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-// Not inlined: GCC would take the pair malloc, delete for a mistake.
-[[gnu::noinline]] void* operator new(std::size_t n) {
-    ++allocations;
-    if (void* p = std::malloc(n ? n : 1)) return p;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept {
-    std::free(p);
-}
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-    std::free(p);
-}
 
 namespace seamwright {
 namespace {
@@ -352,10 +333,10 @@ TEST(Filter, AllocatesNothingAfterTheFirstProfileOfASize) {
     const auto scene = synthetic::reflections({}, 1);
     Profile tracked;
     ASSERT_TRUE(track_stripe(scene.candidates, {}, tracked).has_value());
-    const long before = allocations;
+    const long before = allocations_so_far();
     const bool ok =
         filter_profile(p, {}).has_value() && track_stripe(scene.candidates, {}, tracked).has_value();
-    EXPECT_EQ(allocations - before, 0);
+    EXPECT_EQ(allocations_so_far() - before, 0);
     EXPECT_TRUE(ok);
 }
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/profile/peaks_detail.h"
-#include "tests/core/profile/allocations.h"
+#include "tests/allocations.h"
 #include "tests/core/profile/stripe_frames.h"
 
 namespace seamwright {
@@ -601,9 +601,9 @@ TEST(Peaks, AllocateNothingAfterTheFirstFrameOfASize) {
             PeakOptions options{scan, method};
             ASSERT_TRUE(find_peaks(quiet.image(), options, peaks));
             options.threshold = 5;  // thousands of runs
-            const long before = testing::allocations();
+            const long before = allocations_so_far();
             const bool ok = find_peaks(busy.image(), options, peaks).has_value();
-            EXPECT_EQ(testing::allocations() - before, 0);
+            EXPECT_EQ(allocations_so_far() - before, 0);
             EXPECT_TRUE(ok);
         }
     }

@@ -7,7 +7,7 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
-#include "tests/core/profile/allocations.h"
+#include "tests/allocations.h"
 
 namespace seamwright {
 namespace {
@@ -186,9 +186,9 @@ TEST(ToMillimetres, PlacesEveryCandidateOfColumnsAndRowsWithoutAllocating) {
         peaks.count[11] = 0;
         ProfileCandidates candidates;
         to_millimetres(peaks, model, candidates);
-        const long before = testing::allocations();
+        const long before = allocations_so_far();
         to_millimetres(peaks, model, candidates);
-        EXPECT_EQ(testing::allocations() - before, 0);
+        EXPECT_EQ(allocations_so_far() - before, 0);
         ASSERT_EQ(candidates.lines, 1000);
         ASSERT_EQ(candidates.per_line, 3);
         EXPECT_EQ(candidates.count[7], 2);

@@ -134,23 +134,24 @@ TEST(EgmPath, AxesAreThoseOfTheManual) {
     EXPECT_FALSE(reference_from_path({0, 0, 0}, {0, 0, -1}));
 }
 
-const Pose kTaught = make_pose(rotation_exp({0, 0, 0.3}), {900, -200, 600});
-Pose written() {
-    return make_pose(rotation_exp({0.002, -0.001, 0.003}) * kTaught.linear(),
-                     kTaught.translation() + Eigen::Vector3d(0.8, -0.6, 0.5));
+const Pose kEgmTaught = make_pose(rotation_exp({0, 0, 0.3}), {900, -200, 600});
+Pose egm_written() {
+    return make_pose(rotation_exp({0.002, -0.001, 0.003}) * kEgmTaught.linear(),
+                     kEgmTaught.translation() + Eigen::Vector3d(0.8, -0.6, 0.5));
 }
 
-struct Pair {
+struct EgmPair {
     std::unique_ptr<RobotLink> link;
     std::unique_ptr<SimulatedController> controller;
     SimulatedEgm& robot() { return static_cast<SimulatedEgm&>(*controller); }
     const CyclicServer& server() { return static_cast<CyclicLink&>(*link).server(); }
 };
 
-Pair open_pair(const nlohmann::json& more_robot, const nlohmann::json& more_link = nlohmann::json::object()) {
+EgmPair open_egm(const nlohmann::json& more_robot,
+                 const nlohmann::json& more_link = nlohmann::json::object()) {
     const std::uint16_t port = UdpSocket::bind("127.0.0.1", 0)->port();
     nlohmann::json settings = {{"port", port},
-                               {"frames", {{"PATH", {{"base_from_frame", pose_json(kTaught)}}}}},
+                               {"frames", {{"PATH", {{"base_from_frame", pose_json(kEgmTaught)}}}}},
                                {"speed_mm_s", 50},
                                {"speed_deg_s", 10},
                                {"acceleration_mm_s2", 500},
@@ -163,7 +164,7 @@ Pair open_pair(const nlohmann::json& more_robot, const nlohmann::json& more_link
     nlohmann::json robot = {{"port", port}, {"restart_ms", 400}, {"slow_ms", 60}};
     robot.update(more_robot);
     DeviceSession session;
-    Pair pair;
+    EgmPair pair;
     auto link = open_abb_egm(settings, session, nullptr);
     EXPECT_TRUE(link) << link.error().sentence();
     auto controller = start_abb_egm(nullptr, robot, nullptr);
@@ -176,14 +177,14 @@ Pair open_pair(const nlohmann::json& more_robot, const nlohmann::json& more_link
 class EgmOnPath : public testing::TestWithParam<bool> {};
 
 TEST_P(EgmOnPath, ThePathIsShiftedAcrossItself) {
-    Pair pair = open_pair({{"straight", GetParam()}});
-    ASSERT_TRUE(pair.link->write_frame("PATH", written()));
+    EgmPair pair = open_egm({{"straight", GetParam()}});
+    ASSERT_TRUE(pair.link->write_frame("PATH", egm_written()));
     const auto confirmed = pair.link->confirm(PartVerdict::corrected, "");
     ASSERT_TRUE(confirmed) << confirmed.error().sentence();
     EXPECT_TRUE(pair.controller->released());
     std::this_thread::sleep_for(milliseconds(50));
     const auto s = pair.robot().newest();
-    const Pose b = written() * kTaught.inverse();
+    const Pose b = egm_written() * kEgmTaught.inverse();
     const Eigen::Vector3d p = s.programmed.translation();
     Eigen::Vector3d wanted = b * p - p;
     wanted -= s.travel * s.travel.dot(wanted);
@@ -209,26 +210,26 @@ TEST_P(EgmOnPath, ThePathIsShiftedAcrossItself) {
 INSTANTIATE_TEST_SUITE_P(LineAndCircle, EgmOnPath, testing::Bool());
 
 TEST(Egm, ATurnIsRefusedAsEgmCannotMakeIt) {
-    Pair pair = open_pair(nlohmann::json::object());
-    Pose turned = kTaught;
+    EgmPair pair = open_egm(nlohmann::json::object());
+    Pose turned = kEgmTaught;
     turned.linear() = rotation_exp({0, 0, rad_from_deg(0.6)}) * turned.linear();
     const auto refused = pair.link->write_frame("PATH", turned);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("0.6000 degrees is beyond the limit of 0.5000"));
 }
 
-struct Fault {
+struct EgmFaultCase {
     ControllerFault fault;
     const char* says;
 };
-void PrintTo(const Fault& f, std::ostream* out) {
+void PrintTo(const EgmFaultCase& f, std::ostream* out) {
     *out << to_string(f.fault);
 }
-class EgmFault : public testing::TestWithParam<Fault> {};
+class EgmFault : public testing::TestWithParam<EgmFaultCase> {};
 
 TEST_P(EgmFault, IsToldLeavesNothingInForceAndEnds) {
-    Pair pair = open_pair({{"late_limit", 40}});
-    ASSERT_TRUE(pair.link->write_frame("PATH", written()));
+    EgmPair pair = open_egm({{"late_limit", 40}});
+    ASSERT_TRUE(pair.link->write_frame("PATH", egm_written()));
     const bool refuses = GetParam().fault == ControllerFault::reject_write;
     if (refuses) pair.controller->set_fault(GetParam().fault);
     auto result = pair.link->confirm(PartVerdict::corrected, "");
@@ -254,13 +255,13 @@ TEST_P(EgmFault, IsToldLeavesNothingInForceAndEnds) {
 }
 INSTANTIATE_TEST_SUITE_P(
     All, EgmFault,
-    testing::Values(Fault{ControllerFault::silent, "fell silent under a correction"},
-                    Fault{ControllerFault::slow, "late or lost"},
-                    Fault{ControllerFault::wrong_answer, "fell silent under a correction"},
-                    Fault{ControllerFault::half_message, "fell silent under a correction"},
-                    Fault{ControllerFault::disconnect, "fell silent under a correction"},
-                    Fault{ControllerFault::reject_write, "left the state"},
-                    Fault{ControllerFault::out_of_range, "a position that it cannot have"}));
+    testing::Values(EgmFaultCase{ControllerFault::silent, "fell silent under a correction"},
+                    EgmFaultCase{ControllerFault::slow, "late or lost"},
+                    EgmFaultCase{ControllerFault::wrong_answer, "fell silent under a correction"},
+                    EgmFaultCase{ControllerFault::half_message, "fell silent under a correction"},
+                    EgmFaultCase{ControllerFault::disconnect, "fell silent under a correction"},
+                    EgmFaultCase{ControllerFault::reject_write, "left the state"},
+                    EgmFaultCase{ControllerFault::out_of_range, "a position that it cannot have"}));
 
 }  // namespace
 }  // namespace seamwright

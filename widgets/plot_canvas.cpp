@@ -76,6 +76,7 @@ void PlotCanvas::due() {
             plotLayout()->update(QCPLayoutElement::upLayout);
             equalise();
         }
+        thin_ticks();
         view_changed();
         const QRect area = equal_axes ? axisRect()->rect() : QRect();
         replot(QCustomPlot::rpRefreshHint);              // ends in keep_picture(), which updates all
@@ -89,6 +90,16 @@ void PlotCanvas::due() {
     const QRegion region = wanted_;
     wanted_ = QRegion();
     if (!region.isEmpty()) update(region);
+}
+
+// As many numbers along a level axis as find room beside one another.
+void PlotCanvas::thin_ticks() {
+    for (QCPAxisRect* rect : axisRects()) {
+        QCPAxis* axis = rect->axis(QCPAxis::atBottom);
+        if (!axis) continue;
+        const int number_px = 10 * QFontMetrics(axis->tickLabelFont()).averageCharWidth();
+        axis->ticker()->setTickCount(std::clamp(rect->width() / std::max(1, number_px), 2, 6));
+    }
 }
 
 // The upright axis takes the scale of the level one.

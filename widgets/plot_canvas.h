@@ -41,6 +41,7 @@ class PlotCanvas : public QCustomPlot {
     void keep_picture();
     void due();
     void equalise();
+    void thin_ticks();
 
     QPixmap picture_;
     QTimer timer_;

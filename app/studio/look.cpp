@@ -1,14 +1,94 @@
 #include "app/studio/look.h"
 
 #include <QFont>
+#include <QPainter>
+#include <QProxyStyle>
+#include <QStyleFactory>
+#include <QStyleOptionSpinBox>
 #include <QToolTip>
 
 #include "widgets/style.h"
 
 namespace seamwright {
+namespace {
+
+// Fusion, with the steps of a number side by side and as high as the field: its own are too small for a
+// glove.
+class DeskStyle final : public QProxyStyle {
+  public:
+    DeskStyle() : QProxyStyle(QStyleFactory::create("Fusion")) {}
+
+    QRect subControlRect(ComplexControl control, const QStyleOptionComplex* option, SubControl part,
+                         const QWidget* widget) const override {
+        const auto* spin = qstyleoption_cast<const QStyleOptionSpinBox*>(option);
+        if (control != CC_SpinBox || !spin || spin->buttonSymbols == QAbstractSpinBox::NoButtons)
+            return QProxyStyle::subControlRect(control, option, part, widget);
+        const QRect all = spin->rect.adjusted(1, 1, -1, -1);
+        const auto from_right = [&](int number) {
+            return QRect(all.right() + 1 - number * kStep_px, all.top(), kStep_px, all.height());
+        };
+        switch (part) {
+            case SC_SpinBoxUp:
+                return visualRect(spin->direction, spin->rect, from_right(1));
+            case SC_SpinBoxDown:
+                return visualRect(spin->direction, spin->rect, from_right(2));
+            case SC_SpinBoxEditField:
+                return visualRect(spin->direction, spin->rect, all.adjusted(2, 2, -2 * kStep_px - 2, -2));
+            default:
+                return QProxyStyle::subControlRect(control, option, part, widget);
+        }
+    }
+
+    QSize sizeFromContents(ContentsType type, const QStyleOption* option, const QSize& size,
+                           const QWidget* widget) const override {
+        const auto* spin = qstyleoption_cast<const QStyleOptionSpinBox*>(option);
+        if (type != CT_SpinBox || !spin || spin->buttonSymbols == QAbstractSpinBox::NoButtons)
+            return QProxyStyle::sizeFromContents(type, option, size, widget);
+        return size + QSize(2 * kStep_px + 6, 6);
+    }
+
+    void drawComplexControl(ComplexControl control, const QStyleOptionComplex* option, QPainter* painter,
+                            const QWidget* widget) const override {
+        const auto* spin = qstyleoption_cast<const QStyleOptionSpinBox*>(option);
+        if (control != CC_SpinBox || !spin || spin->buttonSymbols == QAbstractSpinBox::NoButtons) {
+            QProxyStyle::drawComplexControl(control, option, painter, widget);
+            return;
+        }
+        QStyleOptionSpinBox frame = *spin;
+        frame.buttonSymbols = QAbstractSpinBox::NoButtons;
+        QProxyStyle::drawComplexControl(control, &frame, painter, widget);
+        draw_step(*spin, SC_SpinBoxDown, QAbstractSpinBox::StepDownEnabled, *painter, widget);
+        draw_step(*spin, SC_SpinBoxUp, QAbstractSpinBox::StepUpEnabled, *painter, widget);
+    }
+
+  private:
+    static constexpr int kStep_px = 26;
+
+    void draw_step(const QStyleOptionSpinBox& spin, SubControl part, QAbstractSpinBox::StepEnabledFlag step,
+                   QPainter& painter, const QWidget* widget) const {
+        const QRect rect = subControlRect(CC_SpinBox, &spin, part, widget);
+        const bool usable = (spin.state & State_Enabled) && (spin.stepEnabled & step);
+        const bool pointed_at = usable && (spin.activeSubControls & part);
+        const QPalette& palette = spin.palette;
+        painter.save();
+        painter.fillRect(rect, pointed_at && (spin.state & State_Sunken) ? palette.mid()
+                               : pointed_at                              ? palette.midlight()
+                                                                         : palette.button());
+        painter.setPen(palette.color(QPalette::Mid));
+        painter.drawLine(rect.topLeft(), rect.bottomLeft());
+        painter.setPen(
+            QPen(palette.color(usable ? QPalette::Active : QPalette::Disabled, QPalette::ButtonText), 2));
+        const QPoint middle = rect.center();
+        painter.drawLine(middle - QPoint(5, 0), middle + QPoint(5, 0));
+        if (part == SC_SpinBoxUp) painter.drawLine(middle - QPoint(0, 5), middle + QPoint(0, 5));
+        painter.restore();
+    }
+};
+
+}  // namespace
 
 void apply_look(QApplication& application, bool dark) {
-    QApplication::setStyle("Fusion");
+    QApplication::setStyle(new DeskStyle);  // owned by the application
     const QPalette palette = dark ? style::dark_palette() : style::light_palette();
     QApplication::setPalette(palette);
     QToolTip::setPalette(palette);

@@ -275,9 +275,9 @@ std::vector<DoorSpot> default_door_spots() {
 
 std::vector<DoorRegion> default_door_regions() {
     return {{"top", {"T1", "T2", "T3", "H3", "L3"}},
-            {"latch", {"L1", "L2", "L3", "T3", "B3"}},
+            {"latch", {"L1", "L2", "L3", "T3", "B3", "B2"}},
             {"bottom", {"B1", "B2", "B3", "H1", "L1"}},
-            {"hinge", {"H1", "H2", "H3", "T1", "B1"}}};
+            {"hinge", {"H1", "H2", "H3", "T1", "B1", "T2"}}};
 }
 
 std::vector<Vector3d> door_bead_path(double step_mm) {

@@ -188,7 +188,8 @@ TEST(Door, EveryRegionObservesSixDegreesOfFreedom) {
                 }
             }
         }
-        EXPECT_EQ(known, 5) << region.id;
+        EXPECT_EQ(known, static_cast<int>(region.spot_ids.size())) << region.id;
+        EXPECT_GE(known, 5) << region.id;
         EXPECT_EQ(own, 3) << region.id;
         const Matrix6 covariance = information.inverse() * 0.05 * 0.05;
         for (int k = 3; k < 6; ++k) {

@@ -22,10 +22,31 @@ bool beyond(double value, const TrendLimits& limits) {
     return (limits.lower && value < *limits.lower) || (limits.upper && value > *limits.upper);
 }
 
+// Names as many parts below the axis as find room beside one another.
+class PartsCanvas final : public PlotCanvas {
+  public:
+    using PlotCanvas::PlotCanvas;
+    const std::vector<QString>* labels = nullptr;
+
+  protected:
+    void view_changed() override {
+        if (!labels) return;
+        const QFontMetrics metrics(xAxis->tickLabelFont());
+        int widest = 1;
+        for (const QString& label : *labels) widest = std::max(widest, metrics.horizontalAdvance(label));
+        const auto parts = static_cast<int>(labels->size());
+        const int room = std::max(1, axisRect()->width() / (widest + 2 * metrics.averageCharWidth()));
+        const int step = std::max(1, (parts + room - 1) / room);
+        QSharedPointer<QCPAxisTickerText> ticker(new QCPAxisTickerText);
+        for (int i = 0; i < parts; i += step) ticker->addTick(i, (*labels)[static_cast<std::size_t>(i)]);
+        xAxis->setTicker(ticker);
+    }
+};
+
 }  // namespace
 
 struct TrendChart::Impl {
-    PlotCanvas* canvas = nullptr;
+    PartsCanvas* canvas = nullptr;
     QLabel* title = nullptr;
     QString name, unit;
     std::vector<QString> labels;
@@ -102,10 +123,6 @@ void TrendChart::Impl::rebuild() {
         line->point2->setCoords(marked, 1);
         line->setPen(QPen(style::selection(palette), 1.5));
     }
-    QSharedPointer<QCPAxisTickerText> ticker(new QCPAxisTickerText);
-    const int step = std::max(1, parts / 8);
-    for (int i = 0; i < parts; i += step) ticker->addTick(i, labels[static_cast<std::size_t>(i)]);
-    canvas->xAxis->setTicker(ticker);
     canvas->xAxis->setRange(-0.6, std::max(1.0, parts - 0.4));
     const double margin = std::max(1e-9, 0.12 * (high - low)) + (high > low ? 0 : 1);
     canvas->yAxis->setRange(low - margin, high + margin);
@@ -134,7 +151,8 @@ TrendChart::TrendChart(QWidget* parent) : QWidget(parent), impl_(std::make_uniqu
     impl_->title = new QLabel(this);
     impl_->title->setAccessibleName(tr("Chart title"));
     impl_->title->setContentsMargins(8, 4, 4, 0);
-    impl_->canvas = new PlotCanvas(this);
+    impl_->canvas = new PartsCanvas(this);
+    impl_->canvas->labels = &impl_->labels;
     impl_->canvas->setAccessibleName(tr("History chart"));
     setFocusProxy(impl_->canvas);
     auto* column = new QVBoxLayout(this);

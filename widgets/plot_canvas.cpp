@@ -92,13 +92,17 @@ void PlotCanvas::due() {
     if (!region.isEmpty()) update(region);
 }
 
-// As many numbers along a level axis as find room beside one another.
+// As many numbers along an axis as find room beside one another.
 void PlotCanvas::thin_ticks() {
     for (QCPAxisRect* rect : axisRects()) {
-        QCPAxis* axis = rect->axis(QCPAxis::atBottom);
-        if (!axis) continue;
-        const int number_px = 10 * QFontMetrics(axis->tickLabelFont()).averageCharWidth();
-        axis->ticker()->setTickCount(std::clamp(rect->width() / std::max(1, number_px), 2, 6));
+        if (QCPAxis* x = rect->axis(QCPAxis::atBottom)) {
+            const int number_px = 10 * QFontMetrics(x->tickLabelFont()).averageCharWidth();
+            x->ticker()->setTickCount(std::clamp(rect->width() / std::max(1, number_px), 2, 6));
+        }
+        if (QCPAxis* y = rect->axis(QCPAxis::atLeft)) {
+            const int number_px = 2 * QFontMetrics(y->tickLabelFont()).height();
+            y->ticker()->setTickCount(std::clamp(rect->height() / std::max(1, number_px), 1, 5));
+        }
     }
 }
 

@@ -5449,8 +5449,8 @@
         <translation>Dreht die eingelernte Pose um den Referenzpunkt um den heilenden Winkel; danach neu einlernen</translation>
     </message>
     <message>
-        <source>accepted earlier</source>
-        <translation>früher angenommen</translation>
+        <source>edge recorded earlier</source>
+        <translation>Kante früher aufgenommen</translation>
     </message>
     <message>
         <source>no pass recorded</source>

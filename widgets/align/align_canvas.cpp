@@ -42,7 +42,6 @@ OffsetCanvas::OffsetCanvas(QWidget* parent) : PlotCanvas(parent) {
         area->setMarginGroup(QCP::msLeft | QCP::msRight, group);
         area->setMinimumMargins(QMargins(0, 6, 10, 0));
         area->axis(QCPAxis::atBottom)->setTickLabels(row == 2);
-        area->axis(QCPAxis::atLeft)->ticker()->setTickCount(4);
     }
     plotLayout()->setRowSpacing(2);
     apply_style();
@@ -117,15 +116,6 @@ void OffsetCanvas::rebuild() {
         y->setRange(-reach, reach);
     }
     request_replot();
-}
-
-// As many numbers along a row as it is high.
-void OffsetCanvas::view_changed() {
-    for (QCPAxisRect* row : rects_)
-        if (row)
-            row->axis(QCPAxis::atLeft)
-                ->ticker()
-                ->setTickCount(std::clamp(row->height() / (2 * fontMetrics().height()), 1, 5));
 }
 
 void OffsetCanvas::paint_live(QPainter& painter, const QRect&) {

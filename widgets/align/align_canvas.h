@@ -25,7 +25,6 @@ class OffsetCanvas : public PlotCanvas {
 
   protected:
     void paint_live(QPainter& painter, const QRect& area) override;
-    void view_changed() override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;

@@ -112,7 +112,7 @@ void AlignPage::show_result() {
     adopt_->setEnabled(here && pass_->result.status == AlignmentStatus::drifting);
     if (!here) {
         const bool accepted = spot() && spot()->curve;
-        set_verdict(*verdict_, accepted ? tr("accepted earlier") : tr("no pass recorded"), Tone::plain);
+        set_verdict(*verdict_, accepted ? tr("edge recorded earlier") : tr("no pass recorded"), Tone::plain);
         numbers_->setText(spot() ? tr("Entry %1 mm, exit %2 mm, jitter ±%3 mm")
                                        .arg(number(spot()->entry_mm, 1), number(spot()->exit_mm, 1),
                                             number(spot()->jitter_mm, 2))

@@ -304,12 +304,20 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
             << me.text_of("plan_verdict").toStdString();
         me.picture("07_region");
 
-        // Zero shift.
-        me.step(6);
-        me.click("start_zero");
-        ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
-        ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 3 * kPatienceMs));
-        QTest::qWait(100);
+        // Zero shift. A region that does not read zero is taught again, as the page says; when, is printed.
+        for (int attempt = 0; attempt < 2; ++attempt) {
+            me.step(6);
+            me.click("start_zero");
+            ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
+            ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 3 * kPatienceMs));
+            QTest::qWait(100);
+            if (attempt == 1 || item(CheckStep::zero_shift).done()) break;
+            std::cout << "taught again: " << item(CheckStep::zero_shift).why.in(Language::english) << "\n";
+            for (std::size_t k = 0; k < desk.project().spots.size(); ++k) {
+                teacher.by_template(k);
+                if (HasFatalFailure()) return;
+            }
+        }
         me.picture("08_zero");
         EXPECT_GE(desk.runs()->size(), 5U);
         ASSERT_TRUE(item(CheckStep::zero_shift).done())

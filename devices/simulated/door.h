@@ -53,9 +53,8 @@ std::vector<DoorSpot> default_door_spots();
 
 // Four regions, one a side: the three spots of the side and the nearest spot of each neighbouring side. The
 // neighbours' edges run across, so every region observes all six degrees of freedom; the three alone would
-// leave the translation along the edge and the rotation about it open. "latch" and "hinge"
-// take one more: without it 3 sigma reaches 0.29 mm, and a part whose profiles come out noisier
-// is refused at 0.3.
+// leave the translation along the edge and the rotation about it open. "latch" and "hinge" take one more:
+// without it 3 sigma reaches 0.29 mm, and a part whose profiles come out noisier is refused at 0.3.
 struct DoorRegion {
     std::string id;  // "top", "latch", "bottom", "hinge"
     std::vector<std::string> spot_ids;

@@ -142,7 +142,7 @@ TEST_F(Checklist, FrozenIsStaleWhenItsSpotWasTurned) {
     expect(CheckStep::frozen, CheckStatus::done, "stands still");
     const std::vector<Evidence> kept = facts.evidence;
     facts.evidence.clear();
-    expect(CheckStep::frozen, CheckStatus::missing, "was not kept");
+    expect(CheckStep::frozen, CheckStatus::missing, "holds no accepted pass");
     facts.evidence = kept;
     FrozenContour drifting;
     drifting.spot_id = project.spots[0].id;

@@ -152,7 +152,10 @@ CheckItem check_frozen(const Project& p, const Facts& facts) {
         if (!spot.enabled) continue;
         if (!spot.curve) return missing(kStep, Phrase("record the pass of spot {} and accept it", spot.id));
         const Evidence* e = newest<FrozenContour>(facts, spot.id);
-        if (!e) return missing(kStep, Phrase("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
+        if (!e)
+            return missing(
+                kStep,
+                Phrase("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
         const auto& f = std::get<FrozenContour>(e->what);
         if (f.status != AlignmentStatus::frozen)
             return missing(kStep, Phrase("the contour of spot {} is {}", spot.id, name_of_status(f.status)));

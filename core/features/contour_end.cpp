@@ -48,6 +48,7 @@
 #include "core/features/feature_kinds.h"
 #include "core/features/feature_points.h"
 #include "core/features/line_fit.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
@@ -55,7 +56,6 @@ namespace {
 enum class EndSide { left, right };
 enum class EndSegment { outermost, longest, highest };
 
-constexpr double kEndMadToSigma = 1.4826;
 constexpr double kEndGate = 3.5;  // sigma
 constexpr double kEndSmallest_mm = 1e-9;
 constexpr std::size_t kEndFewestRounded = 6;  // points that know a curvature and their noise
@@ -241,7 +241,7 @@ class ContourEnd final : public FeatureFinder {
         keep_.assign(fit_x_.size(), 1);
         for (int round = 0; round < 12; ++round) {
             if (!least_squares(trial)) return false;
-            const double gate = std::max(kEndGate * kEndMadToSigma * median_residual(trial), kEndSmallest_mm);
+            const double gate = std::max(kEndGate * kMadToSigma * median_residual(trial), kEndSmallest_mm);
             bool changed = false;
             for (std::size_t i = 0; i < fit_x_.size(); ++i) {
                 const std::uint8_t in = std::abs(trial.residual(point(i))) <= gate;

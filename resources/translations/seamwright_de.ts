@@ -91,6 +91,14 @@
         <translation>Kalibrierung %1 an Sensor %2 benutzen</translation>
     </message>
     <message>
+        <source>Use calibration %1</source>
+        <translation>Kalibrierung %1 benutzen</translation>
+    </message>
+    <message>
+        <source>Keep calibration %1</source>
+        <translation>Kalibrierung %1 behalten</translation>
+    </message>
+    <message>
         <source>Rename project to %1</source>
         <translation>Projekt in %1 umbenennen</translation>
     </message>
@@ -5887,14 +5895,6 @@
     <message>
         <source>Solving</source>
         <translation>Lösen</translation>
-    </message>
-    <message>
-        <source>Use calibration %1</source>
-        <translation>Kalibrierung %1 benutzen</translation>
-    </message>
-    <message>
-        <source>Keep calibration %1</source>
-        <translation>Kalibrierung %1 behalten</translation>
     </message>
     <message>
         <source>Mounting from the drawing</source>

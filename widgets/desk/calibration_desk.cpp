@@ -442,13 +442,8 @@ Expected<void> CalibrationDesk::finish(bool use) {
                            "take a pose for verification first");
     auto made = calibration_of_session(*session_, desk_.project());
     if (!made) return tl::unexpected(made.error());
-    const std::string id = made->id, sensor = made->sensor_id;
-    desk_.undo_stack().beginMacro(use ? tr("Use calibration %1").arg(QString::fromStdString(id))
-                                      : tr("Keep calibration %1").arg(QString::fromStdString(id)));
-    auto done = desk_.add(std::move(*made));
-    if (done && use) done = desk_.use_calibration(sensor, id);
-    desk_.undo_stack().endMacro();
-    if (!done) return done;
+    const std::string id = made->id;
+    if (auto done = desk_.take_calibration(std::move(*made), use); !done) return done;
     auto noted = session_->set_used_as(id);
     emit changed();
     return noted;

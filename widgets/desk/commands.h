@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 #include <QUndoCommand>
 #include <functional>
+#include <memory>
 
 #include "projects/project.h"
 
@@ -23,13 +24,31 @@ class DeskCommand : public QUndoCommand {
     void undo() final {
         editor_([this](Project& p) { revert(p); });
     }
-
-  protected:
     virtual void apply(Project& project) = 0;
     virtual void revert(Project& project) = 0;
 
   private:
     Editor editor_;
+};
+
+// Edits that are right only together: the document changes once, so that nobody, not even a crash, meets
+// half.
+class CmdTogether final : public DeskCommand {
+  public:
+    CmdTogether(Editor editor, std::vector<std::unique_ptr<DeskCommand>> edits, const QString& text)
+        : DeskCommand(std::move(editor)), edits_(std::move(edits)) {
+        setText(text);
+    }
+    bool empty() const { return edits_.empty(); }
+    void apply(Project& p) override {
+        for (auto& edit : edits_) edit->apply(p);
+    }
+    void revert(Project& p) override {
+        for (auto edit = edits_.rbegin(); edit != edits_.rend(); ++edit) (*edit)->revert(p);
+    }
+
+  private:
+    std::vector<std::unique_ptr<DeskCommand>> edits_;
 };
 
 // The list of a thing in the project, and how people call it (translated, "spot").

@@ -347,6 +347,22 @@ void Desk::close() {
 
 // ------------------------------------------------------------------------------------------------- edits
 
+void Desk::push(std::unique_ptr<DeskCommand> edit) {
+    if (!together_) return undo_.push(edit.release());
+    edit->apply(project_);
+    together_->push_back(std::move(edit));
+}
+
+Expected<void> Desk::together(const QString& text, const std::function<Expected<void>()>& edits) {
+    together_.emplace();
+    const Expected<void> done = edits();
+    auto made = std::make_unique<CmdTogether>(editor(), std::move(*together_), text);
+    together_.reset();
+    made->revert(project_);
+    if (done && !made->empty()) undo_.push(made.release());
+    return done;
+}
+
 template <class T>
 Expected<void> Desk::add(T thing, int at) {
     if (auto ok = check_id(thing.id); !ok) return ok;
@@ -355,7 +371,7 @@ Expected<void> Desk::add(T thing, int at) {
     if (auto ok = valid<T>(project_, thing); !ok) return ok;
     const std::size_t size = list_of<T>(project_).size();
     const std::size_t where = at < 0 ? size : std::min(size, static_cast<std::size_t>(at));
-    undo_.push(new CmdAdd<T>(editor(), std::move(thing), where));
+    push(std::make_unique<CmdAdd<T>>(editor(), std::move(thing), where));
     return {};
 }
 
@@ -364,7 +380,7 @@ Expected<void> Desk::remove(const std::string& id) {
     const int at = index_of<T>(project_, id);
     if (at < 0) return input_error("there is no \"" + id + "\"");
     if (auto ok = removable<T>(project_, id); !ok) return ok;
-    undo_.push(new CmdRemove<T>(editor(), project_, static_cast<std::size_t>(at)));
+    push(std::make_unique<CmdRemove<T>>(editor(), project_, static_cast<std::size_t>(at)));
     return {};
 }
 
@@ -379,7 +395,7 @@ Expected<void> Desk::rename(const std::string& from, const std::string& to) {
     const bool spot = std::is_same_v<T, Spot> && selection_.spot() == from;
     const bool region = std::is_same_v<T, Region> && selection_.region() == from;
     const bool sensor = std::is_same_v<T, SensorSetup> && selection_.sensor() == from;
-    undo_.push(new CmdRename<T>(editor(), static_cast<std::size_t>(at), from, to));
+    push(std::make_unique<CmdRename<T>>(editor(), static_cast<std::size_t>(at), from, to));
     if (spot) selection_.select_spot(to);
     if (region) selection_.select_region(to);
     if (sensor) selection_.select_sensor(to);
@@ -393,7 +409,8 @@ Expected<void> Desk::move(const std::string& id, int to) {
     const int last = static_cast<int>(list_of<T>(project_).size()) - 1;
     to = std::clamp(to, 0, last);
     if (to == at) return {};
-    undo_.push(new CmdMove<T>(editor(), id, static_cast<std::size_t>(at), static_cast<std::size_t>(to)));
+    push(std::make_unique<CmdMove<T>>(editor(), id, static_cast<std::size_t>(at),
+                                      static_cast<std::size_t>(to)));
     return {};
 }
 
@@ -404,7 +421,7 @@ Expected<void> Desk::edit(const T& after, const QString& what) {
     const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
     if (to_json_document(before) == to_json_document(after)) return {};
     if (auto ok = valid<T>(project_, after); !ok) return ok;
-    undo_.push(new CmdEdit<T>(editor(), before, after, static_cast<std::size_t>(at), what));
+    push(std::make_unique<CmdEdit<T>>(editor(), before, after, static_cast<std::size_t>(at), what));
     return {};
 }
 
@@ -435,7 +452,7 @@ Expected<void> Desk::set_spot_enabled(const std::string& id, bool enabled) {
     const int at = index_of<Spot>(project_, id);
     if (at < 0) return input_error("there is no spot \"" + id + "\"");
     if (project_.spots[static_cast<std::size_t>(at)].enabled == enabled) return {};
-    undo_.push(new CmdSpotEnable(editor(), id, static_cast<std::size_t>(at), enabled));
+    push(std::make_unique<CmdSpotEnable>(editor(), id, static_cast<std::size_t>(at), enabled));
     return {};
 }
 
@@ -466,8 +483,17 @@ Expected<void> Desk::use_calibration(const std::string& sensor_id, const std::st
     if (c >= 0 && project_.calibrations[static_cast<std::size_t>(c)].sensor_id != sensor_id)
         return input_error("calibration " + calibration_id + " belongs to another sensor",
                            "sensor " + sensor_id);
-    undo_.push(new CmdCalibrationUse(editor(), sensor, static_cast<std::size_t>(at), calibration_id));
+    push(std::make_unique<CmdCalibrationUse>(editor(), sensor, static_cast<std::size_t>(at), calibration_id));
     return {};
+}
+
+Expected<void> Desk::take_calibration(Calibration made, bool use) {
+    const std::string id = made.id, sensor = made.sensor_id;
+    const QString text = use ? DeskCommand::tr("Use calibration %1") : DeskCommand::tr("Keep calibration %1");
+    return together(text.arg(QString::fromStdString(id)), [&]() -> Expected<void> {
+        if (auto ok = add(std::move(made)); !ok || !use) return ok;
+        return use_calibration(sensor, id);
+    });
 }
 
 Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
@@ -476,7 +502,7 @@ Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
         return {};
     if (auto rigid = pose_from_matrix(after.base_from_workobject.matrix(), "part"); !rigid)
         return tl::unexpected(rigid.error());
-    undo_.push(new CmdPartEdit(editor(), project_.part, after, text));
+    push(std::make_unique<CmdPartEdit>(editor(), project_.part, after, text));
     return {};
 }
 
@@ -493,7 +519,7 @@ Expected<void> Desk::import_part(const std::filesystem::path& path, const std::s
 
 Expected<void> Desk::rename_project(const std::string& name) {
     if (name == project_.name) return {};
-    undo_.push(new CmdProjectRename(editor(), project_.name, name));
+    push(std::make_unique<CmdProjectRename>(editor(), project_.name, name));
     return {};
 }
 
@@ -501,46 +527,33 @@ Expected<void> Desk::set_requirement(const std::string& field, double value) {
     Requirements after = project_.requirements;
     if (auto set = set_field(after, field, value); !set) return set;
     if (to_json_document(after) == to_json_document(project_.requirements)) return {};
-    undo_.push(new CmdRequirementsEdit(editor(), project_.requirements, after));
+    push(std::make_unique<CmdRequirementsEdit>(editor(), project_.requirements, after));
     return {};
 }
 
 Expected<std::vector<MovedSpot>> Desk::reteach(const Exchange& exchange) {
     auto retaught = after_exchange(project_, exchange);
     if (!retaught) return tl::unexpected(retaught.error());
-    undo_.push(new CmdProjectReplace(editor(), project_, std::move(retaught->project),
-                                     DeskCommand::tr("Take up again after an exchange")));
+    push(std::make_unique<CmdProjectReplace>(editor(), project_, std::move(retaught->project),
+                                             DeskCommand::tr("Take up again after an exchange")));
     return std::move(retaught->spots);
 }
 
 Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm) {
     const nlohmann::json part = {
         {"displacement", pose_json(displacement)}, {"bend_mm", bend_mm}, {"twist_mm", twist_mm}};
-    // All or nothing, and no step of the undo list for a part that stands there already.
-    std::vector<SensorSetup> sensors;
-    std::vector<RobotSetup> robots;
-    const auto place = [&](const auto& all, auto& changed) -> Expected<void> {
-        for (auto after : all) {
-            if (after.driver != "simulated" ||
-                (after.settings.contains("part") && after.settings["part"] == part))
-                continue;
-            after.settings["part"] = part;
-            if (auto ok = valid(project_, after); !ok) return ok;
-            changed.push_back(std::move(after));
-        }
-        return {};
-    };
-    if (auto ok = place(project_.sensors, sensors); !ok) return ok;
-    if (auto ok = place(project_.robots, robots); !ok) return ok;
-    if (sensors.empty() && robots.empty()) return {};
-    undo_.beginMacro(DeskCommand::tr("Place the simulated part"));
-    Expected<void> result{};
-    for (const SensorSetup& sensor : sensors)
-        if (result) result = edit(sensor);
-    for (const RobotSetup& robot : robots)
-        if (result) result = edit(robot);
-    undo_.endMacro();
-    return result;
+    return together(DeskCommand::tr("Place the simulated part"), [&]() -> Expected<void> {
+        const auto place = [&](auto all) -> Expected<void> {  // a copy: the edits change the list
+            for (auto& setup : all) {
+                if (setup.driver != "simulated") continue;
+                setup.settings["part"] = part;
+                if (auto ok = edit(setup); !ok) return ok;
+            }
+            return {};
+        };
+        if (auto ok = place(project_.sensors); !ok) return ok;
+        return place(project_.robots);
+    });
 }
 
 // ------------------------------------------------------------------------------------------ what is known

@@ -68,6 +68,8 @@ class Desk : public QObject {
     Expected<void> set_spot_field(const std::string& id, const std::string& field, double value);
     Expected<void> set_region_field(const std::string& id, const std::string& field, double value);
     Expected<void> use_calibration(const std::string& sensor_id, const std::string& calibration_id);
+    // Adds a calibration, and has its sensor use it.
+    Expected<void> take_calibration(Calibration made, bool use);
     Expected<void> edit_part(const PartSetup& after, const QString& text);
     // STL, PLY, OBJ; `unit` "mm", "m", or "" (refused when metres are suspected).
     Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);
@@ -115,12 +117,16 @@ class Desk : public QObject {
     void drop_kept();    // the recovery file, unless it waits for an answer
     void keep_newest();  // the recovery file holds the project as it is
     void changed();
+    void push(std::unique_ptr<DeskCommand> edit);
+    // All edits that `edits` makes, or none: one change of the project and one step of undo.
+    Expected<void> together(const QString& text, const std::function<Expected<void>()>& edits);
     void derive();
     void look_again();
     void set_recipes();
     void take_identities(const StationState& state);
 
     QUndoStack undo_;
+    std::optional<std::vector<std::unique_ptr<DeskCommand>>> together_;  // made so far
     Selection selection_;
     LiveFeed live_;
     StationWorker worker_;

@@ -104,8 +104,7 @@ void CalibratePage::take_simulated() {
                 return;
             }
             if (index_of<Calibration>(p, truth->id) >= 0) truth->id += " " + s.id;
-            const std::string id = truth->id;
-            if (done(desk_.add(std::move(*truth)))) done(desk_.use_calibration(s.id, id));
+            done(desk_.take_calibration(std::move(*truth), true));
             break;
         }
     }

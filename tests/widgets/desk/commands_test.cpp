@@ -119,6 +119,16 @@ std::vector<Edit> edits() {
          [](Desk& d) { return d.use_calibration("A", "C2"); }},
         {"CalibrationUseNone", "Use calibration  at sensor A",
          [](Desk& d) { return d.use_calibration("A", ""); }},
+        {"CalibrationTake", "Use calibration N",
+         [=](Desk& d) {
+             return d.take_calibration(with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; }),
+                                       true);
+         }},
+        {"CalibrationKeep", "Keep calibration N",
+         [=](Desk& d) {
+             return d.take_calibration(with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; }),
+                                       false);
+         }},
         {"PartEdit", "another part",
          [=](Desk& d) {
              return d.edit_part(with(d.project().part, [](PartSetup& p) { p.name = "door right"; }),
@@ -159,6 +169,8 @@ class EveryEdit : public Commands, public testing::WithParamInterface<Edit> {};
 TEST_P(EveryEdit, ComesAndGoesBitForBit) {
     const std::string before = now();
     QUndoStack& stack = desk.undo_stack();
+    std::vector<std::string> seen;  // by the autosave too: a crash finds one of them
+    QObject::connect(&desk, &Desk::project_changed, &desk, [&] { seen.push_back(now()); });
     const auto made = GetParam().make(desk);
     ASSERT_TRUE(made) << made.error().sentence();
     ASSERT_EQ(stack.count(), 1) << "one step";
@@ -174,6 +186,7 @@ TEST_P(EveryEdit, ComesAndGoesBitForBit) {
         EXPECT_EQ(now(), after);
         EXPECT_TRUE(desk.modified());
     }
+    for (const std::string& state : seen) EXPECT_TRUE(state == before || state == after) << "half an edit";
     // And it is stored as it stands.
     ASSERT_TRUE(desk.save());
     EXPECT_EQ(bits(what_a_crash_leaves(desk.path()).saved), after);
@@ -279,6 +292,9 @@ TEST_F(Commands, WhatIsWrongIsRefusedAndChangesNothing) {
     refused(desk.remove<SensorSetup>("A"), "spot S1 uses it");
     refused(desk.remove<RobotSetup>("R1"), "spot S1 uses it");
     refused(desk.use_calibration("B", "C1"), "another sensor");
+    refused(desk.take_calibration(
+                with(p.calibrations[0], [](Calibration& c) { c.id = "N", c.sensor_id = "Z"; }), true),
+            "\"Z\"");
     refused(desk.use_calibration("A", "none"), "\"none\"");
     refused(desk.import_part(folder / "none.stl", "mm"), "none.stl");
 }

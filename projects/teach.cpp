@@ -11,6 +11,8 @@
 namespace seamwright {
 namespace {
 
+constexpr double kSamePoseMm = 1e-3, kSamePoseDeg = 1e-4;
+
 // What a trigger of the session brought.
 using Visit =
     std::function<void(std::size_t move, const SpotMeasurer& measurer, const SpotMeasurement& measurement)>;
@@ -129,6 +131,23 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
     return taught;
 }
 
+bool measured_alike(const Spot& a, const Spot& b) {
+    const auto same = [](const Profile& p, const Profile& q) { return p.x_mm == q.x_mm && p.z_mm == q.z_mm; };
+    return a.sensor_id == b.sensor_id && a.robot_id == b.robot_id && a.feature.kind == b.feature.kind &&
+           a.feature.parameters == b.feature.parameters &&
+           same(a.feature.template_profile, b.feature.template_profile) &&
+           a.feature.template_reference_mm == b.feature.template_reference_mm &&
+           distance_mm(a.base_from_flange, b.base_from_flange) < kSamePoseMm &&
+           angle_rad(a.base_from_flange, b.base_from_flange) < rad_from_deg(kSamePoseDeg);
+}
+
+Spot with_reference_of(const Spot& before, Spot after) {
+    if (measured_alike(before, after)) return after;
+    after.reference_profile = {};
+    after.curve.reset();
+    return after;
+}
+
 Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options) {
     if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
         return usage_error(fmt::format("a step of {} mm", options.step_mm), "spot " + spot.id,
@@ -170,9 +189,7 @@ Spot cured(const Spot& spot, const AlignmentResult& result, const Pose& flange_f
     Spot after = spot;
     after.base_from_flange = spot.base_from_flange * flange_from_sensor * make_pose(turn, r - turn * r) *
                              flange_from_sensor.inverse();
-    after.curve.reset();
-    after.reference_profile = {};
-    return after;
+    return with_reference_of(spot, std::move(after));
 }
 
 FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,

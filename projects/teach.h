@@ -33,6 +33,13 @@ struct TaughtSpot {
 // reason.
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options);
 
+// Whether what was measured with `a` holds for `b`: sensor, robot, feature, and the pose within a micrometre
+// and 0.0001 degree (what a pose loses on its way through a text).
+bool measured_alike(const Spot& a, const Spot& b);
+
+// `after` without the reference profile and the curve of `before` when they were measured otherwise.
+Spot with_reference_of(const Spot& before, Spot after);
+
 struct PassOptions {
     double step_mm = 2.0;  // travel between two profiles; the ends are the spot's entry and exit
     std::stop_token cancel;

@@ -88,6 +88,8 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors", "no spot is enabled"),
     QT_TRANSLATE_NOOP("Errors", "teach a spot first"),
     QT_TRANSLATE_NOOP("Errors", "the feature was found in %1 of %2 measurements (%3)"),
+    QT_TRANSLATE_NOOP("Errors", "it was changed while its reference was measured"),
+    QT_TRANSLATE_NOOP("Errors", "measure the reference again"),
     QT_TRANSLATE_NOOP("Errors", "choose another feature or move the sensor"),
     QT_TRANSLATE_NOOP("Errors", "only %1 of %2 measurements agree"),
     QT_TRANSLATE_NOOP("Errors", "choose another feature, shield reflections or move the sensor"),

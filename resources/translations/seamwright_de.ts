@@ -2390,6 +2390,14 @@
         <translation>eine Pose der Bewegung ist nicht endlich</translation>
     </message>
     <message>
+        <source>it was changed while its reference was measured</source>
+        <translation>sie wurde geändert, während ihre Referenz gemessen wurde</translation>
+    </message>
+    <message>
+        <source>measure the reference again</source>
+        <translation>die Referenz noch einmal messen</translation>
+    </message>
+    <message>
         <source>sensor and robot of the simulated cell have different settings</source>
         <translation>Sensor und Roboter der simulierten Zelle haben verschiedene Einstellungen</translation>
     </message>

@@ -243,7 +243,7 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
         auto pass = seamwright::record_pass(station, spot, options);
         if (!pass) return emit failed(shown_error(tr("The pass was not recorded."), pass.error()));
         auto result = std::make_shared<PassResult>();
-        result->spot_id = spot.id;
+        result->spot = spot;
         result->pass = std::move(*pass);
         result->options = alignment;
         if (result->pass.profiles.empty())

@@ -50,7 +50,7 @@ struct StationState {
 };
 
 struct PassResult {
-    std::string spot_id;
+    Spot spot;  // as it was
     RecordedPass pass;
     AlignmentOptions options;
     AlignmentResult result;

@@ -76,10 +76,14 @@ const Spot* AlignPage::spot() const {
     return find_spot(desk_.project(), desk_.selection().spot());
 }
 
+bool AlignPage::here() const {
+    return pass_ && spot() && pass_->spot.id == spot()->id && measured_alike(pass_->spot, *spot());
+}
+
 void AlignPage::refresh() {
     tree_->refresh();
     start_->setEnabled(spot() && desk_.station().connected);
-    if (pass_ && (!spot() || pass_->spot_id != spot()->id)) {
+    if (pass_ && !here()) {
         pass_.reset();
         views_.align->clear();
     }
@@ -107,10 +111,9 @@ void AlignPage::judge(double jitter_mm) {
 }
 
 void AlignPage::show_result() {
-    const bool here = pass_ && spot() && pass_->spot_id == spot()->id;
-    accept_->setEnabled(here && pass_->curve && pass_->result.status == AlignmentStatus::frozen);
-    adopt_->setEnabled(here && pass_->result.status == AlignmentStatus::drifting);
-    if (!here) {
+    accept_->setEnabled(here() && pass_->curve && pass_->result.status == AlignmentStatus::frozen);
+    adopt_->setEnabled(here() && pass_->result.status == AlignmentStatus::drifting);
+    if (!here()) {
         const bool accepted = spot() && spot()->curve;
         set_verdict(*verdict_, accepted ? tr("edge recorded earlier") : tr("no pass recorded"), Tone::plain);
         numbers_->setText(spot() ? tr("Entry %1 mm, exit %2 mm, jitter ±%3 mm")

@@ -19,6 +19,7 @@ class AlignPage : public StepPage {
 
   private:
     const Spot* spot() const;
+    bool here() const;  // the pass is one of the chosen spot as it stands
     void start();
     void judge(double jitter_mm);
     void show_result();

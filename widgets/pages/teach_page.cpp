@@ -101,7 +101,7 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         if (!spot()) return;
         Spot s = *spot();
         s.base_from_flange = pose_->pose();
-        done(desk_.edit(s, tr("pose")));
+        change(s, tr("pose"));
     });
     take_ = make_button("take_pose", "robot", tr("Take from the robot"),
                         tr("The pose where the robot stands now"), [this] { take_pose(); });
@@ -121,13 +121,13 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         if (!spot()) return;
         Spot s = *spot();
         s.sensor_id = id.toStdString();
-        done(desk_.edit(s, tr("sensor")));
+        change(s, tr("sensor"));
     });
     connect(robot_, &QComboBox::textActivated, this, [this](const QString& id) {
         if (!spot()) return;
         Spot s = *spot();
         s.robot_id = id.toStdString();
-        done(desk_.edit(s, tr("robot")));
+        change(s, tr("robot"));
     });
 
     in->addWidget(make_heading(tr("Feature of the contour")));
@@ -219,8 +219,13 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         [this](const std::shared_ptr<const TaughtSpot>& taught) {
             const Spot* s = find_spot(desk_.project(), taught->spot.id);
             if (!s) return;
-            // Only what was measured: the draft may have been edited meanwhile. The curve of an earlier pass
-            // was about the old reference.
+            if (!measured_alike(*s, taught->spot)) {
+                done(input_error("it was changed while its reference was measured", "spot " + s->id,
+                                 "measure the reference again"));
+                return;
+            }
+            // Only what was measured: weights and limits may have been edited meanwhile. The curve of an
+            // earlier pass was about the old reference.
             Spot after = *s;
             after.reference_mm = taught->spot.reference_mm;
             after.reference_profile = taught->spot.reference_profile;
@@ -307,7 +312,7 @@ void TeachPage::show_parameters(const Spot& s) {
                 if (!spot()) return;
                 Spot after = *spot();
                 after.feature.parameters[name] = value;
-                done(desk_.edit(after, QString::fromStdString(name)));
+                change(after, QString::fromStdString(name));
             });
             parameter_editors_.push_back(editor);
             parameters_->addWidget(editor);
@@ -317,6 +322,10 @@ void TeachPage::show_parameters(const Spot& s) {
     }
     for (ParameterEditor* e : parameter_editors_)
         e->set_value(parameter(s.feature.parameters, kind->parameters, e->info().name));
+}
+
+bool TeachPage::change(const Spot& after, const QString& what) {
+    return done(desk_.edit(with_reference_of(*spot(), after), what));
 }
 
 void TeachPage::add_spot() {
@@ -363,7 +372,7 @@ void TeachPage::take_pose() {
         if (r.id == spot()->robot_id && r.base_from_flange) {
             Spot s = *spot();
             s.base_from_flange = *r.base_from_flange;
-            done(desk_.edit(s, tr("pose")));
+            change(s, tr("pose"));
             return;
         }
     done(
@@ -375,7 +384,7 @@ void TeachPage::set_kind(const QString& kind) {
     Spot s = *spot();
     s.feature.kind = kind.toStdString();
     s.feature.parameters.clear();
-    done(desk_.edit(s, tr("feature")));
+    change(s, tr("feature"));
 }
 
 // The nearer end of the contour decides the side; other kinds have no choice to make here.
@@ -403,7 +412,7 @@ void TeachPage::picked(const QPointF& point) {
     } else {
         return;
     }
-    done(desk_.edit(after, tr("feature")));
+    change(after, tr("feature"));
 }
 
 void TeachPage::take_template(const QRectF& window) {
@@ -421,7 +430,7 @@ void TeachPage::take_template(const QRectF& window) {
     // Until it is clicked: the contour point in the middle of the window.
     const std::size_t middle = piece.size() / 2;
     after.feature.template_reference_mm = {piece.x_mm[middle], piece.z_mm[middle]};
-    done(desk_.edit(after, tr("template")));
+    change(after, tr("template"));
     views_.profile->set_tool(ProfilePlot::Tool::inspect);
 }
 

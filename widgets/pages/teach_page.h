@@ -24,6 +24,8 @@ class TeachPage : public StepPage {
 
   private:
     const Spot* spot() const;
+    // What was measured with another pose, sensor, robot or feature goes with the edit.
+    bool change(const Spot& after, const QString& what);
     void add_spot();
     void duplicate_spot();
     void rename_spot();

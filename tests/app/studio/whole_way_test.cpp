@@ -99,12 +99,15 @@ class Teacher {
     void look(std::size_t k, bool by_template) {
         const std::string sensor = desk_.project().spots[k].sensor_id;
         me_.click("go_there");
-        ASSERT_TRUE(me_.wait([&] {
+        ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
+        const auto arrived = std::chrono::steady_clock::now().time_since_epoch();
+        ASSERT_TRUE(me_.wait([&] {  // the picture is of the new place
             const auto live = desk_.live().latest(sensor);
-            return live && live->profile.size() > 100 && !desk_.worker().busy();
+            return live && live->profile.size() > 100 &&
+                   std::chrono::nanoseconds(live->frame->host_time_ns) > arrived;
         })) << "the live profile of spot "
             << id(k);
-        QTest::qWait(300);  // the robot has arrived, the picture is of the new place
+        QTest::qWait(100);  // it is drawn
         auto* plot = me_.window().views().profile;
         const auto on_plot = [&](double x, double z) {
             return plot->focusProxy()->mapFrom(plot, plot->to_screen({x, z})).toPoint();

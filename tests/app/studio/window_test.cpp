@@ -130,6 +130,42 @@ TEST_F(Furniture, ASpotIsToldToStandStillAtTheTrigger) {
     EXPECT_FALSE(box->isChecked());
 }
 
+TEST_F(Furniture, WhatWasMeasuredAtAnotherPoseOrFeatureGoesWithTheEdit) {
+    start(true);
+    Desk& desk = studio->desk();
+    const auto spot = [&]() -> const Spot& { return desk.project().spots.at(0); };
+    desk.selection().select_spot(spot().id);
+    Person me(window());
+    me.step(3);
+    ASSERT_GT(spot().reference_profile.size(), 0U);
+
+    me.write_pose("spot_pose", spot().base_from_flange);
+    EXPECT_GT(spot().reference_profile.size(), 0U) << "the pose through its text is the same pose";
+    Pose moved = spot().base_from_flange;
+    moved.translation().x() += 5;
+    me.write_pose("spot_pose", moved);
+    EXPECT_EQ(spot().reference_profile.size(), 0U);
+    EXPECT_FALSE(spot().curve);
+    EXPECT_EQ(me.text_of("reference"), "Not measured yet.");
+    me.shortcut(Qt::Key_Z);
+    EXPECT_GT(spot().reference_profile.size(), 0U);
+
+    me.choose("feature_kind", "circle");
+    EXPECT_EQ(spot().reference_profile.size(), 0U);
+    while (desk.undo_stack().canUndo()) desk.undo_stack().undo();
+
+    // The edit overtakes the measurement: neither is mixed with the other.
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    const Eigen::Vector3d before = spot().reference_mm;
+    me.click("measure_reference");
+    me.write_pose("spot_pose", moved);
+    ASSERT_TRUE(me.wait([&] { return !me.text_of("trouble_text").isEmpty(); }));
+    EXPECT_TRUE(me.text_of("trouble_text").contains("changed while its reference was measured"))
+        << me.text_of("trouble_text").toStdString();
+    EXPECT_EQ(spot().reference_profile.size(), 0U);
+    EXPECT_EQ(spot().reference_mm, before);
+}
+
 TEST_F(Furniture, RecentFilesAreListedNewestFirstAndRemembered) {
     ASSERT_TRUE(studio->create(path("one.seam")));
     ASSERT_TRUE(studio->create(path("two.seam")));

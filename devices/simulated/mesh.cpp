@@ -12,6 +12,36 @@ namespace {
 constexpr int kLeafSize = 4;
 constexpr int kBins = 16;
 constexpr int kStack = 96;
+constexpr std::int32_t kSamples = 128;  // triangles by which a node's split is chosen
+
+// Where triangles lie, as far as the choice of a split needs it.
+struct Bounds {
+    std::array<float, 3> low = {kFar, kFar, kFar}, high = {-kFar, -kFar, -kFar};
+    static constexpr float kFar = std::numeric_limits<float>::infinity();
+    void extend(const std::array<float, 3>& p) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    void extend(const Eigen::Vector3d& p) {
+        extend(std::array<float, 3>{static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                    static_cast<float>(p.z())});
+    }
+    void extend(const Bounds& other) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], other.low[k]);
+            high[k] = std::max(high[k], other.high[k]);
+        }
+    }
+    std::array<float, 3> middle() const {
+        return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+    }
+    float area() const {
+        const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+        return x * y + y * z + z * x;
+    }
+};
 
 float down(double v) {
     return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity());
@@ -59,73 +89,75 @@ void MeshTree::build() {
     const auto n = static_cast<std::int32_t>(mesh_.triangles.size());
     order_.resize(static_cast<std::size_t>(n));
     std::iota(order_.begin(), order_.end(), 0);
-    std::vector<Eigen::AlignedBox3d> boxes(order_.size());
-    std::vector<Eigen::Vector3d> middles(order_.size());
+    std::vector<Bounds> boxes(order_.size());
+    std::vector<std::array<float, 3>> middles(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) {
         for (int k = 0; k < 3; ++k)
             boxes[i].extend(mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[i][k])]);
-        middles[i] = boxes[i].center();
+        middles[i] = boxes[i].middle();
     }
     nodes_.clear();
     nodes_.push_back({{}, {}, 0, n});
     std::vector<std::int32_t> open = {0};
-    const auto area = [](const Eigen::AlignedBox3d& b) {
-        if (b.isEmpty()) return 0.0;
-        const Eigen::Vector3d s = b.sizes();
-        return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
-    };
     while (!open.empty()) {
         const std::int32_t at = open.back();
         open.pop_back();
         const std::int32_t first = nodes_[static_cast<std::size_t>(at)].first;
         const std::int32_t count = nodes_[static_cast<std::size_t>(at)].count;
         if (count <= kLeafSize) continue;
-        Eigen::AlignedBox3d spread;
-        for (std::int32_t i = first; i < first + count; ++i) {
-            spread.extend(middles[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
-        }
+        const std::int32_t stride = std::max(1, count / kSamples);
+        const auto sample = [&](std::int32_t i) {
+            return static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
+        };
+        Bounds spread;
+        int samples = 0;
+        for (std::int32_t i = first; i < first + count; i += stride, ++samples)
+            spread.extend(middles[sample(i)]);
         int best_axis = -1, best_bin = 0;
-        double best_cost = std::numeric_limits<double>::infinity();
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low = spread.min()[axis], size = spread.sizes()[axis];
-            if (!(size > 0)) continue;
-            std::array<Eigen::AlignedBox3d, kBins> bin;
+        float best_cost = std::numeric_limits<float>::infinity();
+        const auto bin_of = [&](std::size_t triangle, std::size_t axis) {
+            const float place =
+                (middles[triangle][axis] - spread.low[axis]) / (spread.high[axis] - spread.low[axis]) * kBins;
+            return static_cast<int>(std::clamp(place, 0.0F, kBins - 1.0F));
+        };
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!(spread.high[axis] > spread.low[axis])) continue;
+            std::array<Bounds, kBins> bin;
             std::array<int, kBins> in{};
-            for (std::int32_t i = first; i < first + count; ++i) {
-                const auto t = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
-                const auto b = static_cast<std::size_t>(
-                    std::min(kBins - 1, static_cast<int>((middles[t][axis] - low) / size * kBins)));
+            for (std::int32_t i = first; i < first + count; i += stride) {
+                const std::size_t t = sample(i);
+                const auto b = static_cast<std::size_t>(bin_of(t, axis));
                 bin[b].extend(boxes[t]);
                 ++in[b];
             }
-            std::array<double, kBins> right{};
-            Eigen::AlignedBox3d grown;
+            std::array<float, kBins> right{};
+            Bounds grown;
             int number = 0;
             for (std::size_t b = kBins - 1; b > 0; --b) {
                 grown.extend(bin[b]);
                 number += in[b];
-                right[b] = area(grown) * number;
+                right[b] = number > 0 ? grown.area() * static_cast<float>(number) : 0;
             }
-            grown.setEmpty();
+            grown = {};
             number = 0;
             for (std::size_t b = 0; b + 1 < kBins; ++b) {
                 grown.extend(bin[b]);
                 number += in[b];
-                const double cost = area(grown) * number + right[b + 1];
-                if (number > 0 && number < count && cost < best_cost) {
+                if (number == 0 || number == samples) continue;
+                const float cost = grown.area() * static_cast<float>(number) + right[b + 1];
+                if (cost < best_cost) {
                     best_cost = cost;
-                    best_axis = axis;
+                    best_axis = static_cast<int>(axis);
                     best_bin = static_cast<int>(b);
                 }
             }
         }
         auto middle = order_.begin() + first + count / 2;
         if (best_axis >= 0) {
-            const double low = spread.min()[best_axis], size = spread.sizes()[best_axis];
             middle =
                 std::partition(order_.begin() + first, order_.begin() + first + count, [&](std::int32_t t) {
-                    const double m = middles[static_cast<std::size_t>(t)][best_axis];
-                    return std::min(kBins - 1, static_cast<int>((m - low) / size * kBins)) <= best_bin;
+                    return bin_of(static_cast<std::size_t>(t), static_cast<std::size_t>(best_axis)) <=
+                           best_bin;
                 });
         }
         const auto split = static_cast<std::int32_t>(middle - order_.begin());

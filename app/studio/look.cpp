@@ -13,7 +13,7 @@ namespace seamwright {
 namespace {
 
 // Fusion, with the steps of a number side by side and as high as the field: its own are too small for a
-// glove.
+// glove; and with boxes to tick in the colour of text: its own take the window's and are lost on a dark one.
 class DeskStyle final : public QProxyStyle {
   public:
     DeskStyle() : QProxyStyle(QStyleFactory::create("Fusion")) {}
@@ -59,6 +59,30 @@ class DeskStyle final : public QProxyStyle {
         QProxyStyle::drawComplexControl(control, &frame, painter, widget);
         draw_step(*spin, SC_SpinBoxDown, QAbstractSpinBox::StepDownEnabled, *painter, widget);
         draw_step(*spin, SC_SpinBoxUp, QAbstractSpinBox::StepUpEnabled, *painter, widget);
+    }
+
+    void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                       const QWidget* widget) const override {
+        if (element != PE_IndicatorCheckBox && element != PE_IndicatorItemViewItemCheck)
+            return QProxyStyle::drawPrimitive(element, option, painter, widget);
+        const QPalette& palette = option->palette;
+        const QColor ink = palette.color(
+            option->state & State_Enabled ? QPalette::Active : QPalette::Disabled, QPalette::Text);
+        const QRectF box = QRectF(option->rect).adjusted(1, 1, -1, -1);
+        const auto at = [&](double x, double y) {
+            return QPointF(box.left() + x * box.width(), box.top() + y * box.height());
+        };
+        painter->save();
+        painter->setRenderHint(QPainter::Antialiasing);
+        painter->setBrush(palette.base());
+        painter->setPen(QPen(ink, option->state & State_MouseOver ? 2 : 1.2));
+        painter->drawRoundedRect(box, 2, 2);
+        painter->setPen(QPen(ink, 2));
+        if (option->state & State_On)
+            painter->drawPolyline(QPolygonF{at(0.2, 0.5), at(0.42, 0.75), at(0.8, 0.25)});
+        else if (option->state & State_NoChange)
+            painter->drawLine(at(0.25, 0.5), at(0.75, 0.5));
+        painter->restore();
     }
 
   private:

@@ -8426,8 +8426,8 @@ ausgelassen</translation>
         <translation>Messstellen in der Reihenfolge des Messens, und Korrekturbereiche mit ihren Messstellen</translation>
     </message>
     <message>
-        <source>Spot / region</source>
-        <translation>Messstelle / Bereich</translation>
+        <source>Name</source>
+        <translation>Name</translation>
     </message>
     <message>
         <source>State</source>

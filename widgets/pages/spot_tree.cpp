@@ -15,7 +15,7 @@ SpotTree::SpotTree(Desk& desk, QWidget* parent) : QTreeWidget(parent), desk_(des
     setAccessibleName(tr("Spots and regions"));
     setToolTip(tr("Spots in the order of measuring, and regions with their spots"));
     setColumnCount(2);
-    setHeaderLabels({tr("Spot / region"), tr("State")});
+    setHeaderLabels({tr("Name"), tr("State")});
     header()->setSectionResizeMode(0, QHeaderView::Stretch);
     header()->setSectionResizeMode(1, QHeaderView::ResizeToContents);
     header()->setStretchLastSection(false);
@@ -72,8 +72,10 @@ void SpotTree::refresh() {
             if (const Spot* s = find_spot(p, id)) make(item, "spot", id, state_of(*s));
         if (region_current && r.id == desk_.selection().region()) current = item;
     }
-    spots->setExpanded(true);
-    regions->setExpanded(true);
+    for (QTreeWidgetItem* group : {spots, regions}) {
+        group->setExpanded(true);
+        group->setFirstColumnSpanned(true);
+    }
     if (current) {
         setCurrentItem(current);
         scrollToItem(current);

@@ -1,8 +1,9 @@
 #pragma once
 // What a region will be able to tell, as the safety gate will judge it, before anything is measured: over the
 // part as taught and as displaced by as much as is required to be recovered, each spot with the noise of its
-// feature (half as much again as the reference profile states: another profile's own estimate may be so much
-// larger) and of its trigger's travel along the displaced contour. And what would make it better.
+// feature (larger than the reference profile states, as another profile's own estimate may be: one and a half
+// times, of a contour end two and a half times) and of its trigger's travel along the displaced contour. And
+// what would make it better.
 
 #include <string>
 #include <vector>

@@ -22,6 +22,7 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/door.h"
 #include "devices/simulated/mesh_file.h"
+#include "projects/measure.h"
 #include "tests/app/studio/person.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/profile/profile_plot.h"
@@ -91,10 +92,16 @@ class Teacher {
         QTest::mouseClick(tree->viewport(), Qt::LeftButton, {}, tree->visualItemRect(items[0]).center());
     }
     void measure_reference() {
+        bool ended = false;
+        QObject over;
+        QObject::connect(&desk_.worker(), &StationWorker::taught, &over, [&] { ended = true; });
+        QObject::connect(&desk_.worker(), &StationWorker::failed, &over, [&](const QString& why) {
+            ended = true;
+            ADD_FAILURE() << why.toStdString();
+        });
         me_.click("measure_reference");
-        ASSERT_TRUE(me_.wait([&] { return desk_.worker().busy(); }));
-        ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
-        QTest::qWait(200);  // the page takes what was measured
+        ASSERT_TRUE(me_.wait([&] { return ended; }));
+        QApplication::processEvents();  // the page takes what was measured
     }
     void look(std::size_t k, bool by_template) {
         const std::string sensor = desk_.project().spots[k].sensor_id;
@@ -316,6 +323,18 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
             QTest::qWait(100);
             if (attempt == 1 || item(CheckStep::zero_shift).done()) break;
             std::cout << "taught again: " << item(CheckStep::zero_shift).why.in(Language::english) << "\n";
+            const std::vector<RunSummary> zero_runs = desk.runs().value();
+            for (const RunSummary& summary : zero_runs) {
+                const RunRecord run = desk.run(summary.number).value();
+                std::cout << "  run " << summary.number << " " << summary.message << "\n";
+                for (const SpotMeasurement& m : run.spots) {
+                    const Spot& spot = *find_spot(desk.project(), m.spot_id);
+                    std::cout << "    " << m.spot_id << " " << m.message << " off by ("
+                              << (m.measured_mm - spot.reference_mm).transpose() << ") mm, sigma "
+                              << m.sigma_mm << ", points " << m.feature.points_used << ", rms "
+                              << m.feature.rms_mm << "\n";
+                }
+            }
             for (std::size_t k = 0; k < desk.project().spots.size(); ++k) {
                 teacher.by_template(k);
                 if (HasFatalFailure()) return;
@@ -327,8 +346,8 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
             << item(CheckStep::zero_shift).why.in(Language::english) << "\n"
             << me.text_of("zero_verdict").toStdString();
 
-        // Known shift over the grid that the page proposes. A proof with a displacement that was refused is
-        // repeated, as a person would; how often is printed.
+        // Known shift over the grid that the page proposes. A proof with a displacement that was refused
+        // is repeated, as a person would; how often is printed.
         std::ostringstream odd;
         for (int repeat = 0; repeat < 3 && !item(CheckStep::known_shift).done(); ++repeat) {
             if (repeat > 0) std::cout << "known shift repeated: " << odd.str() << "\n";

@@ -6825,6 +6825,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Die Lösung gilt für diese Sensoren; abgelegt wird: %1.</translation>
     </message>
     <message>
+        <source>One shot leaves no pose to verify it with: compare each sensor with what it used before.</source>
+        <translation>Eine Aufnahme lässt keine Pose zum Verifizieren übrig: jeden Sensor mit seiner bisherigen Kalibrierung vergleichen.</translation>
+    </message>
+    <message>
         <source>It has nothing in common with calibration %1, in use.</source>
         <translation>Sie hat mit der benutzten Kalibrierung %1 nichts gemeinsam.</translation>
     </message>

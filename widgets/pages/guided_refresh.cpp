@@ -317,7 +317,12 @@ void GuidedPage::refresh_verdict() {
                 word == "good"     ? Tone::good
                 : word == "usable" ? Tone::attention
                                    : Tone::alarm);
-    QStringList lines{text(r->value("reason", ""))};
+    QStringList lines;
+    if (s.method().capture == CaptureKind::board_chain)
+        for (const json& sensor : r->value("sensors", json::array()))
+            lines << text(sensor.value("reason", ""));
+    else
+        lines << text(r->value("reason", ""));
     if (const std::string cure = r->value("cure", ""); !cure.empty()) lines << tr("Cure: %1").arg(text(cure));
     for (const json& notice : r->value("notices", json::array()))
         if (notice.is_string()) lines << text(notice.get<std::string>());
@@ -404,10 +409,10 @@ void GuidedPage::refresh_use() {
                                      number(d.shift_mm, 3), number(d.turn_deg, 3));
         against << (chains ? tr("Sensor %1: %2").arg(text(now.sensor_id), words) : words);
     }
-    // A chain has no pose that could be kept back: what each sensor is compared with judges it.
-    set_verdict(*stands_,
-                tr("The solution stands for these sensors; stored will be: %1.").arg(stored_as.join(", ")),
-                Tone::plain);
+    const QStringList stands{
+        tr("The solution stands for these sensors; stored will be: %1.").arg(stored_as.join(", ")),
+        tr("One shot leaves no pose to verify it with: compare each sensor with what it used before.")};
+    set_verdict(*stands_, stands.join("\n"), Tone::plain);
     stands_->setVisible(chains && !used);
     compared_->setText(against.join("\n"));
     compared_->setVisible(!against.isEmpty());

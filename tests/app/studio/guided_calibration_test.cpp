@@ -554,14 +554,13 @@ class GuidedFile : public Guided, public testing::WithParamInterface<const char*
     // Every sensor of the gripper at once: told before, stored and in use together, taken back together.
     static void use_all_of_a_shot(const Person& me, MainWindow& window, Desk& desk) {
         auto* table = me.find<QTableWidget>("captures");
-        EXPECT_EQ(
-            me.text_of("calibration_stands"),
-            "The solution stands for these sensors; stored will be: static-3 for sensor A, static-4 for "
-            "sensor B.");
         EXPECT_TRUE(
-            me.text_of("calibration_compared").contains("Sensor A: Against calibration simulated-truth,"));
-        EXPECT_TRUE(
-            me.text_of("calibration_compared").contains("Sensor B: Against calibration simulated-truth B,"));
+            me.text_of("calibration_stands").contains("static-3 for sensor A, static-4 for sensor B."));
+        for (const char* id : {"sensor A: three sigma", "sensor B: three sigma"})
+            EXPECT_TRUE(me.text_of("calibration_reason").contains(id)) << id;
+        for (const char* against : {"Sensor A: Against calibration simulated-truth,",
+                                    "Sensor B: Against calibration simulated-truth B,"})
+            EXPECT_TRUE(me.text_of("calibration_compared").contains(against)) << against;
         EXPECT_EQ(me.find<QPushButton>("calibration_use")->text(), "Use these calibrations");
         // Without its tick a sensor is left out.
         press_space(me, table, 1);

@@ -367,9 +367,10 @@ INSTANTIATE_TEST_SUITE_P(Methods, GuidedLive,
                              return name;
                          });
 
-// The plate found by the page before, then one shot of it: the sensor's place on the flange.
+// The plate found by the page before, then one shot of it: the place on the flange of both sensors, which are
+// one head of the simulated cell.
 TEST_F(Guided, StaticOneShotOfAPlateFoundBefore) {
-    make_project();
+    make_project({"A", "B"});
     Studio studio(*qApp, options());
     studio.window().resize(1280, 800);
     studio.window().show();
@@ -395,21 +396,25 @@ TEST_F(Guided, StaticOneShotOfAPlateFoundBefore) {
     ASSERT_FALSE(HasFailure());
     ASSERT_TRUE(solved(me, studio.window()));
     me.click("calibration_keep");
-    ASSERT_EQ(desk.project().calibrations.size(), 2U) << window_text(me);
+    ASSERT_EQ(desk.project().calibrations.size(), 3U) << window_text(me);
     me.click("calibration_back");
 
     go_to_page(me, desk, "static");
     me.click("calibration_set_target");
-    capture(me, desk);
-    ASSERT_FALSE(HasFailure());
+    me.click("calibration_go");
+    ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+    me.click("calibration_capture");
+    ASSERT_TRUE(QTest::qWaitFor([&] { return captures(me) == 2; }, 3 * kPatienceMs)) << window_text(me);
     ASSERT_TRUE(solved(me, studio.window()));
     me.picture("guided_static_live");
     me.click("calibration_use");
-    ASSERT_EQ(desk.project().calibrations.size(), 3U) << window_text(me);
-    const Calibration& made = desk.project().calibrations.back();
-    EXPECT_EQ(desk.project().sensors.at(0).calibration_id, made.id);
-    EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 1.0)
-        << "over the whole field";
+    ASSERT_EQ(desk.project().calibrations.size(), 5U) << window_text(me);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Calibration& made = desk.project().calibrations.at(3 + k);
+        EXPECT_EQ(desk.project().sensors.at(k).calibration_id, made.id);
+        EXPECT_LT(difference(made, desk.project().calibrations.at(k)).largest_mm, 1.0)
+            << "over the whole field";
+    }
 }
 
 // Every page in German on the small and the large screen, dark: what is to be done next is on it without

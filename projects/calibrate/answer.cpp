@@ -128,38 +128,54 @@ Expected<Calibration> calibration_of_result(const CalibrationMethod& method, con
     return c;
 }
 
-Expected<Calibration> calibration_of_session(const CalibrationSession& session, const Project& project) {
-    const json* result = session.result();
-    if (!result) return input_error("there is no solution yet", session.method().id, "solve first");
-    const SensorSetup* sensor = find_sensor(project, session.sensor_id());
-    if (!sensor) return input_error("the project has no such sensor", session.sensor_id());
-    const Calibration* base = nullptr;
-    for (const Calibration& c : project.calibrations)
-        if (c.id == sensor->calibration_id) base = &c;
-    json answer = *result;
-    if (session.method().id == "static") {
-        // One chain a sensor: this sensor's own.
-        const json* own = nullptr;
-        for (const json& s : answer.at("sensors"))
-            if (s.value("id", "") == session.sensor_id() || answer["sensors"].size() == 1) own = &s;
-        if (!own)
-            return input_error("the chain holds no sensor " + session.sensor_id(), "static",
-                               "name the sensors in the data as in the project");
-        answer = *own;
-    }
-    auto c = calibration_of_result(session.method(), session.data(), session.exclude(), answer, base);
+namespace {
+
+// What one sensor's calibration is made of.
+struct SensorAnswer {
+    std::string sensor_id;
+    json data, result;
+    std::vector<std::string> exclude;
+};
+
+// One a sensor, each complete in itself.
+Expected<std::vector<SensorAnswer>> answers_of_chains(const CalibrationSession& session,
+                                                      const Project& project, const json& result) {
+    const std::string& entries = session.method().entries;
+    std::vector<SensorAnswer> answers;
+    std::string unknown;
+    for (const json& chain : result.at("sensors"))
+        for (const SessionCapture& c : session.state().captures) {
+            if (c.taken->id != chain.value("id", "")) continue;
+            SensorAnswer one{sensor_of_chain(*c.taken), session.state().settings, result, {}};
+            one.data[entries] = json::array({c.taken->entry});
+            one.result["sensors"] = json::array({chain});
+            for (const char* word : {"verdict", "reason", "cure"}) one.result[word] = chain.value(word, "");
+            if (!find_sensor(project, one.sensor_id))
+                unknown += (unknown.empty() ? "" : ", ") + one.sensor_id;
+            answers.push_back(std::move(one));
+        }
+    if (!unknown.empty())
+        return input_error("the project does not know the sensors of these chains: " + unknown, "static",
+                           "take their ticks away, or name the sensors in the data as in the project");
+    return answers;
+}
+
+Expected<Calibration> calibration_of_answer(const CalibrationSession& session, const Project& project,
+                                            const SensorAnswer& answer) {
+    const SensorSetup* sensor = find_sensor(project, answer.sensor_id);
+    if (!sensor) return input_error("the project has no such sensor", answer.sensor_id);
+    auto c = calibration_of_result(session.method(), answer.data, answer.exclude, answer.result,
+                                   calibration_of(project, sensor->id));
     if (!c) return c;
-    if (session.method().id == "static") {
-        c->result = *result;
-        if (answer.contains("reference_from_laser")) {
-            auto pose = parse_pose(answer["reference_from_laser"], "reference_from_laser");
-            if (!pose) return tl::unexpected(pose.error());
-            c->flange_from_sensor = *pose;
-            c->covariance = parse_covariance(answer, "covariance");
-        } else {
+    if (session.method().capture == CaptureKind::board_chain) {
+        const json& chain = answer.result.at("sensors").at(0);
+        if (!chain.contains("reference_from_laser"))
             return input_error("the chain ends in the world, not on the flange", "static",
                                "give reference_from_world with the flange as reference");
-        }
+        auto pose = pose_at(chain, "reference_from_laser");
+        if (!pose) return tl::unexpected(pose.error());
+        c->flange_from_sensor = *pose;
+        c->covariance = parse_covariance(chain, "covariance");
     }
     c->sensor_id = sensor->id;
     c->sensor_identity = sensor->identity;
@@ -167,25 +183,50 @@ Expected<Calibration> calibration_of_session(const CalibrationSession& session, 
         c->robot_id = robot->id;
         c->robot_identity = robot->identity;
     }
-    c->created_utc = utc_now();
-    for (std::size_t n = project.calibrations.size() + 1;; ++n) {
-        c->id = fmt::format("{}-{}", session.method().id, n);
-        if (std::none_of(project.calibrations.begin(), project.calibrations.end(),
-                         [&](const Calibration& other) { return other.id == c->id; }))
-            break;
+    return c;
+}
+
+}  // namespace
+
+Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSession& session,
+                                                           const Project& project) {
+    const json* result = session.result();
+    if (!result) return input_error("there is no solution yet", session.method().id, "solve first");
+    std::vector<SensorAnswer> answers;
+    if (session.method().capture == CaptureKind::board_chain) {
+        auto chains = answers_of_chains(session, project, *result);
+        if (!chains) return tl::unexpected(chains.error());
+        answers = std::move(*chains);
+    } else {
+        answers.push_back({session.sensor_id(), session.data(), *result, session.exclude()});
     }
     const Verification v = session.verification();
-    c->source = fmt::format("{} captures, {} for verification", session.solving_captures(), v.poses);
-    if (v.poses > 0)
-        c->result["verification"] = {{"poses", v.poses},
-                                     {"confirmed", v.confirmed},
-                                     {"worst_mm", number_json(v.worst_mm)},
-                                     {"limit_mm", number_json(v.limit_mm)},
-                                     {"worst_deg", number_json(v.worst_deg)},
-                                     {"limit_deg", number_json(v.limit_deg)},
-                                     {"worst_px", number_json(v.worst_px)},
-                                     {"limit_px", number_json(v.limit_px)}};
-    return c;
+    const std::string now = utc_now();
+    std::size_t number = project.calibrations.size();
+    std::vector<Calibration> made;
+    for (const SensorAnswer& answer : answers) {
+        auto c = calibration_of_answer(session, project, answer);
+        if (!c) return tl::unexpected(c.error());
+        c->created_utc = now;
+        do {
+            c->id = fmt::format("{}-{}", session.method().id, ++number);
+        } while (std::any_of(project.calibrations.begin(), project.calibrations.end(),
+                             [&](const Calibration& other) { return other.id == c->id; }));
+        c->source = answers.size() > 1 ? fmt::format("one shot of {} sensors", answers.size())
+                                       : fmt::format("{} captures, {} for verification",
+                                                     session.solving_captures(), v.poses);
+        if (v.poses > 0 && session.method().capture != CaptureKind::board_chain)
+            c->result["verification"] = {{"poses", v.poses},
+                                         {"confirmed", v.confirmed},
+                                         {"worst_mm", number_json(v.worst_mm)},
+                                         {"limit_mm", number_json(v.limit_mm)},
+                                         {"worst_deg", number_json(v.worst_deg)},
+                                         {"limit_deg", number_json(v.limit_deg)},
+                                         {"worst_px", number_json(v.worst_px)},
+                                         {"limit_px", number_json(v.limit_px)}};
+        made.push_back(std::move(*c));
+    }
+    return made;
 }
 
 CalibrationDifference difference(const Calibration& now, const Calibration& before) {

@@ -13,8 +13,12 @@ Expected<Calibration> calibration_of_result(const CalibrationMethod& method, con
                                             const std::vector<std::string>& exclude,
                                             const nlohmann::json& result, const Calibration* base);
 
-// The whole of it from a session, named with a free id, for this project's sensor and robot.
-Expected<Calibration> calibration_of_session(const CalibrationSession& session, const Project& project);
+// The whole of it from a session, named with free ids, for this project's sensors and robot: one calibration,
+// or, of the one shot of a gripper, one for each sensor whose chain was solved, built on that sensor's own
+// calibration in use; its raw data and result hold its chain alone. Error (input): also a chain of a sensor
+// that the project does not know; there is no part of an answer.
+Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSession& session,
+                                                           const Project& project);
 
 // How far apart two calibrations put the same pixel (or the same profile point), on the flange, over the
 // field.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/calibration/board.h"
 #include "core/calibration/camera.h"
@@ -145,7 +146,7 @@ Expected<json> plate_entry(const std::string& where, const Calibration* base,
     return json{{"points", std::move(points)}, {"outline", (*seen)["outline"]}, {"size", (*seen)["size"]}};
 }
 
-// One shot: the chain ends on the flange, where it stands now.
+// One shot: the chain ends on the flange, where it stood when the first sensor was shot.
 Expected<json> chain_entry(json& settings, const std::string& where, const Calibration* base,
                            const std::optional<FoundBoard>& board, const BoardSpec& spec,
                            const std::optional<Pose>& base_from_flange) {
@@ -154,14 +155,19 @@ Expected<json> chain_entry(json& settings, const std::string& where, const Calib
                            "find it with \"Plate in the world\" first, or load the chain");
     auto seen = board_entry(where, base, board, spec, base_from_flange);
     if (!seen) return seen;
-    if (settings.contains("reference_from_world")) {
-        const auto before = parse_pose(settings["reference_from_world"], "reference_from_world");
-        constexpr double kSameMm = 0.05;
-        if (before && (distance_mm(before->inverse(), *base_from_flange) > kSameMm))
+    const auto reference = settings.find("reference_from_world");
+    if (reference == settings.end()) {
+        settings["reference_from_world"] = pose_json(base_from_flange->inverse());
+    } else {
+        // A file may give it with its covariance.
+        const auto before = parse_pose(reference->contains("pose") ? (*reference)["pose"] : *reference,
+                                       "reference_from_world");
+        constexpr double kSameMm = 0.05, kSameDeg = 0.01;
+        if (before && (distance_mm(before->inverse(), *base_from_flange) > kSameMm ||
+                       angle_rad(before->inverse(), *base_from_flange) > rad_from_deg(kSameDeg)))
             return input_error("the robot has moved since the first shot", where,
-                               "one shot is enough: remove the first to take another from here");
+                               "one shot is enough: begin anew to take another from here");
     }
-    settings["reference_from_world"] = pose_json(base_from_flange->inverse());
     return json{{"world_from_plate", settings["world_from_plate"]},
                 {"camera_from_plate", (*seen)["camera_from_target"]},
                 {"camera_from_laser", pose_json(base->model->camera_from_laser)},
@@ -269,7 +275,7 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
     taken.capture.entry = std::move(*entry);
     taken.capture.base_from_flange = base_from_flange;
     taken.capture.origin = "live";
-    // The answer finds this sensor's chain by its name.
+    // Each sensor has one chain, called after it.
     if (method.capture == CaptureKind::board_chain) taken.capture.id = sensor.id;
     return taken;
 }
@@ -284,7 +290,13 @@ Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const
     ReadCaptures read;
     read.settings = settings;
     json entries;
-    if (method.id == "static" && !data->contains(method.entries)) {
+    const bool chains = method.capture == CaptureKind::board_chain;
+    const bool single = chains && !data->contains(method.entries);
+    constexpr const char* kReference = "reference_from_world";
+    if (chains) read.settings.erase(kReference);  // those of a file end where the file says
+    if (single) {
+        if (data->contains(kReference)) read.settings[kReference] = (*data)[kReference];
+        data->erase(kReference);
         entries = json::array({*data});
     } else {
         auto list = json_array(*data, method.entries, path.string());
@@ -293,13 +305,14 @@ Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const
         data->erase(method.entries);
         read.settings.update(*data);
     }
+    std::set<std::string> sensors;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         CalibrationCapture c;
         const json& entry = entries[i];
         if (entry.is_object()) {
             auto id = entry_id(entry, i, json_path(method.entries, i));
             if (!id) return tl::unexpected(id.error());
-            c.id = *id;
+            if (!single || entry.contains("id")) c.id = *id;
             if (entry.contains("base_from_flange") && !entry["base_from_flange"].is_null()) {
                 auto pose = parse_pose(entry["base_from_flange"],
                                        json_path(json_path(method.entries, i), "base_from_flange"));
@@ -309,6 +322,9 @@ Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const
         }
         c.entry = entry;
         c.origin = path.string();
+        if (chains && !sensors.insert(sensor_of_chain(c)).second)
+            return input_error(fmt::format("the id '{}' occurs twice", sensor_of_chain(c)), path.string(),
+                               "give each sensor one chain");
         read.captures.push_back(std::move(c));
     }
     return read;

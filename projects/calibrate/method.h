@@ -14,7 +14,7 @@ namespace seamwright {
 // What is taken when the robot stands still. `files`: this method's data are measured elsewhere and loaded.
 // `apex`: of a triangular body, see apex_pair.h. `board_points`: corners of a board in the robot's base,
 // through the calibration in use. `board_chain`: one sensor's chain from the plate's place to its laser
-// plane.
+// plane; one stand of the robot takes those of all its sensors.
 enum class CaptureKind {
     sphere_profile,
     board_and_stripe,

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kFormat = "seamwright-calibration-session";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;  // 1: "used_as" is one id, not a list
 
 // Device names come from people: what a folder cannot be called becomes '_'.
 std::string file_name(const std::string& text) {
@@ -92,6 +92,14 @@ double at_most(const json& entry, const char* key) {
 
 }  // namespace
 
+const std::string& sensor_of_chain(const CalibrationCapture& capture) {
+    if (capture.entry.is_object())
+        if (const auto named = capture.entry.find("sensor");
+            named != capture.entry.end() && named->is_string())
+            return named->get_ref<const std::string&>();
+    return capture.id;
+}
+
 fs::path CalibrationSession::folder_of(const fs::path& project_file) {
     return fs::path(project_file.string() + ".calibration");
 }
@@ -161,7 +169,10 @@ Expected<void> CalibrationSession::read() {
         return file_error((!settings ? settings.error() : captures.error()).sentence(), list_file.string(),
                           mend);
     state_.settings = **settings;
-    used_as_ = data->value("used_as", "");
+    if (const auto used = data->find("used_as"); used != data->end()) {
+        for (const json& id : used->is_array() ? *used : json::array({*used}))
+            if (id.is_string() && !id.get_ref<const std::string&>().empty()) used_as_.push_back(id);
+    }
     last_number_ = data->value("last_number", 0);
     for (const json& mark : **captures) {
         const std::string id = mark.value("id", "");
@@ -186,7 +197,8 @@ Expected<void> CalibrationSession::read() {
     return {};
 }
 
-Expected<void> CalibrationSession::write_list(const SessionState& state, const std::string& used_as) const {
+Expected<void> CalibrationSession::write_list(const SessionState& state,
+                                              const std::vector<std::string>& used_as) const {
     if (auto ok = make_folder(folder_ / "captures"); !ok) return ok;
     return write_text_file(folder_ / "session.json", json{{"format", kFormat},
                                                           {"version", kVersion},
@@ -211,8 +223,14 @@ std::string CalibrationSession::free_id() const {
     return fmt::format("P{}", last_number_ + 1);
 }
 
-fs::path CalibrationSession::picture_path(const std::string& id) const {
-    return folder_ / "captures" / (file_name(id) + ".png");
+fs::path CalibrationSession::free_picture_path(const std::string& id) const {
+    const std::string name = file_name(id.empty() ? free_id() : id);
+    fs::path path = folder_ / "captures" / (name + ".png");
+    std::error_code code;
+    // Undo brings a capture back with its picture.
+    for (int n = 2; fs::exists(path, code); ++n)
+        path = folder_ / "captures" / fmt::format("{}-{}.png", name, n);
+    return path;
 }
 
 fs::path CalibrationSession::picture_of(const CalibrationCapture& capture) const {
@@ -224,6 +242,11 @@ fs::path CalibrationSession::picture_of(const CalibrationCapture& capture) const
 Expected<std::string> CalibrationSession::add(CalibrationCapture capture, bool verification) {
     std::set<std::string> taken;
     for (const SessionCapture& c : state_.captures) taken.insert(file_name(c.taken->id));
+    const bool chain = method_->capture == CaptureKind::board_chain && capture.entry.is_object();
+    if (chain) {
+        const std::string sensor = sensor_of_chain(capture);
+        capture.entry["sensor"] = sensor.empty() ? sensor_id_ : sensor;
+    }
     if (capture.id.empty()) capture.id = free_id();
     const std::string wanted = capture.id;
     std::error_code code;
@@ -243,6 +266,10 @@ Expected<std::string> CalibrationSession::add(CalibrationCapture capture, bool v
     last_number_ = std::max(last_number_, number_of(capture.id));
     const std::string id = capture.id;
     SessionState next = state_;
+    if (chain)
+        std::erase_if(next.captures, [&](const SessionCapture& c) {
+            return sensor_of_chain(*c.taken) == sensor_of_chain(capture);
+        });
     next.captures.push_back(
         {std::make_shared<const CalibrationCapture>(std::move(capture)), false, verification});
     if (auto ok = set_state(std::move(next)); !ok) {
@@ -420,9 +447,9 @@ SessionStage CalibrationSession::stage() const {
     return verification().confirmed ? SessionStage::use : SessionStage::verify;
 }
 
-Expected<void> CalibrationSession::set_used_as(const std::string& calibration_id) {
-    if (auto ok = write_list(state_, calibration_id); !ok) return ok;
-    used_as_ = calibration_id;
+Expected<void> CalibrationSession::set_used_as(std::vector<std::string> calibration_ids) {
+    if (auto ok = write_list(state_, calibration_ids); !ok) return ok;
+    used_as_ = std::move(calibration_ids);
     return {};
 }
 

@@ -39,6 +39,10 @@ struct SessionCapture {
     bool operator==(const SessionCapture&) const = default;
 };
 
+// Whose chain a capture of CaptureKind::board_chain is: "sensor" of its entry, which add() writes, else the
+// sensor it is called after.
+const std::string& sensor_of_chain(const CalibrationCapture& capture);
+
 // What undo and redo exchange.
 struct SessionState {
     nlohmann::json settings = nlohmann::json::object();  // the method's data without the list
@@ -95,8 +99,9 @@ class CalibrationSession {
 
     // Every edit is on disk when it returns; an Error changes nothing.
     Expected<void> set_state(SessionState state);
-    // An entry without id gets a free one; an id that is taken is extended. A picture beside the session is
-    // the caller's to write before, at picture_path(free_id()).
+    // An entry without id gets a free one; an id that is taken is extended. A chain takes the place of the
+    // one that its sensor has; without id it is of the session's own sensor. A picture beside the session is
+    // the caller's to write before, at free_picture_path().
     Expected<std::string> add(CalibrationCapture capture, bool verification = false);
     Expected<void> leave_out(const std::string& id, bool left_out);
     Expected<void> set_verification(const std::string& id, bool verification);
@@ -104,7 +109,7 @@ class CalibrationSession {
     Expected<void> set(const std::string& setting, double value);
     Expected<void> set_settings(nlohmann::json settings);
     std::string free_id() const;
-    std::filesystem::path picture_path(const std::string& id) const;
+    std::filesystem::path free_picture_path(const std::string& id) const;       // empty id: for free_id()
     std::filesystem::path picture_of(const CalibrationCapture& capture) const;  // empty: none
 
     // The method's data of all captures, those not to solve with named by exclude().
@@ -123,18 +128,19 @@ class CalibrationSession {
     std::vector<PoseRow> rows() const;
     Verification verification() const;
     SessionStage stage() const;
-    const std::string& used_as() const { return used_as_; }  // calibration id; empty: not used yet
-    Expected<void> set_used_as(const std::string& calibration_id);
+    const std::vector<std::string>& used_as() const { return used_as_; }  // calibrations; empty: not used yet
+    Expected<void> set_used_as(std::vector<std::string> calibration_ids);
     // The session so far is kept under its time, this one starts empty with the same settings.
     Expected<void> begin_anew();
 
   private:
     CalibrationSession() = default;
-    Expected<void> write_list(const SessionState& state, const std::string& used_as) const;
+    Expected<void> write_list(const SessionState& state, const std::vector<std::string>& used_as) const;
     Expected<void> read();
 
     const CalibrationMethod* method_ = nullptr;
-    std::string sensor_id_, robot_id_, used_as_;
+    std::string sensor_id_, robot_id_;
+    std::vector<std::string> used_as_;
     std::filesystem::path folder_;
     SessionState state_;
     int last_number_ = 0;  // of the newest "P<n>" ever

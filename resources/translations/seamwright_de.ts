@@ -99,6 +99,14 @@
         <translation>Kalibrierung %1 behalten</translation>
     </message>
     <message>
+        <source>Use calibrations %1</source>
+        <translation>Kalibrierungen %1 benutzen</translation>
+    </message>
+    <message>
+        <source>Keep calibrations %1</source>
+        <translation>Kalibrierungen %1 behalten</translation>
+    </message>
+    <message>
         <source>Rename project to %1</source>
         <translation>Projekt in %1 umbenennen</translation>
     </message>
@@ -3250,12 +3258,16 @@
         <translation>das Projekt hat diesen Sensor nicht</translation>
     </message>
     <message>
-        <source>the chain holds no sensor %1</source>
-        <translation>die Kette enthält keinen Sensor %1</translation>
+        <source>the project does not know the sensors of these chains: %1</source>
+        <translation>das Projekt kennt die Sensoren dieser Ketten nicht: %1</translation>
     </message>
     <message>
-        <source>name the sensors in the data as in the project</source>
-        <translation>die Sensoren in den Daten wie im Projekt nennen</translation>
+        <source>take their ticks away, or name the sensors in the data as in the project</source>
+        <translation>ihre Haken wegnehmen oder die Sensoren in den Daten wie im Projekt nennen</translation>
+    </message>
+    <message>
+        <source>give each sensor one chain</source>
+        <translation>jedem Sensor eine Kette geben</translation>
     </message>
     <message>
         <source>the chain ends in the world, not on the flange</source>
@@ -3386,8 +3398,8 @@
         <translation>der Roboter hat sich seit der ersten Aufnahme bewegt</translation>
     </message>
     <message>
-        <source>one shot is enough: remove the first to take another from here</source>
-        <translation>eine Aufnahme genügt: die erste entfernen, um von hier eine andere zu machen</translation>
+        <source>one shot is enough: begin anew to take another from here</source>
+        <translation>eine Aufnahme genügt: neu beginnen, um von hier eine andere zu machen</translation>
     </message>
     <message>
         <source>the image has another size than those before</source>
@@ -5861,6 +5873,10 @@
 <context>
     <name>seamwright::CalibrationDesk</name>
     <message>
+        <source>The chains before end in another reference: begin anew, or remove them.</source>
+        <translation>Die Ketten davor enden in einem anderen Bezug: neu beginnen oder sie entfernen.</translation>
+    </message>
+    <message>
         <source>Leave out %1</source>
         <translation>%1 weglassen</translation>
     </message>
@@ -6659,6 +6675,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Baut auf der benutzten Kalibrierung %1 auf.</translation>
     </message>
     <message>
+        <source>sensor %1 with calibration %2</source>
+        <translation>Sensor %1 mit Kalibrierung %2</translation>
+    </message>
+    <message>
+        <source>One capture shoots %1.</source>
+        <translation>Eine Aufnahme nimmt auf: %1.</translation>
+    </message>
+    <message>
         <source>Camera and laser plane are not calibrated yet: begin with them.</source>
         <translation>Kamera und Laserebene sind noch nicht kalibriert: mit ihnen beginnen.</translation>
     </message>
@@ -6783,6 +6807,26 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Stored in the project as %1.</source>
         <translation>Im Projekt abgelegt als %1.</translation>
+    </message>
+    <message>
+        <source>Use these calibrations</source>
+        <translation>Diese Kalibrierungen benutzen</translation>
+    </message>
+    <message>
+        <source>%1 for sensor %2</source>
+        <translation>%1 für Sensor %2</translation>
+    </message>
+    <message>
+        <source>Sensor %1: %2</source>
+        <translation>Sensor %1: %2</translation>
+    </message>
+    <message>
+        <source>The solution stands for these sensors; stored will be: %1.</source>
+        <translation>Die Lösung gilt für diese Sensoren; abgelegt wird: %1.</translation>
+    </message>
+    <message>
+        <source>One shot leaves no pose to verify it with: compare each sensor with what it used before.</source>
+        <translation>Eine Aufnahme lässt keine Pose zum Verifizieren übrig: jeden Sensor mit seiner bisherigen Kalibrierung vergleichen.</translation>
     </message>
     <message>
         <source>It has nothing in common with calibration %1, in use.</source>

@@ -20,6 +20,13 @@ constexpr double kStillSeconds = 0.5, kStillMm = 0.02, kStillDeg = 0.005;
 // Nearer than this to a capture nothing is captured by itself.
 constexpr double kNewMm = 3, kNewDeg = 1;
 
+// Whether chains of other sensors than these are in the session.
+bool stays_beside(const SessionState& state, const std::vector<std::string>& sensor_ids) {
+    return std::any_of(state.captures.begin(), state.captures.end(), [&](const SessionCapture& c) {
+        return std::find(sensor_ids.begin(), sensor_ids.end(), sensor_of_chain(*c.taken)) == sensor_ids.end();
+    });
+}
+
 // The whole state before and after: captures are shared, so that it costs a list.
 class CmdSession final : public QUndoCommand {
   public:
@@ -47,13 +54,7 @@ CalibrationDesk::CalibrationDesk(Desk& desk, QObject* parent)
     connect(&desk_, &Desk::opened, this, &CalibrationDesk::close);
     connect(&desk_, &Desk::station_changed, this, &CalibrationDesk::watch_robot);
     connect(&desk_.live(), &LiveFeed::arrived, this, &CalibrationDesk::look);
-    connect(&desk_.worker(), &StationWorker::shot_taken, this, &CalibrationDesk::take_shot);
-    connect(&desk_.worker(), &StationWorker::shot_failed, this, [this](const QString& sentence) {
-        if (!waiting_for_shot_) return;
-        waiting_for_shot_ = false;
-        set_doing({});
-        emit refused(sentence);
-    });
+    connect(&desk_.worker(), &StationWorker::shots_taken, this, &CalibrationDesk::take_shots);
 }
 
 CalibrationDesk::~CalibrationDesk() {
@@ -116,12 +117,18 @@ void CalibrationDesk::close() {
 }
 
 const Calibration* CalibrationDesk::base() const {
-    if (!session_) return nullptr;
-    const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
-    if (!sensor) return nullptr;
-    for (const Calibration& c : desk_.project().calibrations)
-        if (c.id == sensor->calibration_id) return &c;
-    return nullptr;
+    return session_ ? calibration_of(desk_.project(), session_->sensor_id()) : nullptr;
+}
+
+std::vector<std::string> CalibrationDesk::shot_sensors() const {
+    std::vector<std::string> ids{session_->sensor_id()};
+    if (session_->method().capture != CaptureKind::board_chain) return ids;
+    for (const SensorState& s : desk_.station().sensors) {
+        const Calibration* c = calibration_of(desk_.project(), s.id);
+        if (s.id != session_->sensor_id() && c && c->model && c->robot_id == session_->robot_id())
+            ids.push_back(s.id);
+    }
+    return ids;
 }
 
 std::optional<Pose> CalibrationDesk::mounting() const {
@@ -188,9 +195,9 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
 Expected<nlohmann::json> CalibrationDesk::capture_settings() const {
     auto settings = prepared_settings(session_->method(), session_->state().settings, base());
     // What captures are measured from goes with them.
-    if (settings && session_->state().captures.empty()) {
-        settings->erase("anchor");
-        if (session_->method().capture == CaptureKind::board_chain) settings->erase("reference_from_world");
+    if (settings && session_->state().captures.empty()) settings->erase("anchor");
+    if (settings && session_->method().capture == CaptureKind::board_chain) {
+        if (!stays_beside(session_->state(), shot_sensors())) settings->erase("reference_from_world");
     }
     // The plate's newest place.
     if (settings && session_->method().id == "static")
@@ -224,43 +231,69 @@ void CalibrationDesk::capture(bool verification) {
     const bool robot = session_->method().robot ||
                        std::any_of(robots.begin(), robots.end(),
                                    [&](const RobotState& r) { return r.id == session_->robot_id(); });
-    desk_.worker().take_shot(session_->sensor_id(), robot ? session_->robot_id() : std::string(),
-                             shows_board(kind));
+    desk_.worker().take_shots(shot_sensors(), robot ? session_->robot_id() : std::string(),
+                              shows_board(kind));
 }
 
-void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
+void CalibrationDesk::take_shots(std::shared_ptr<const CalibrationShots> shots) {
     if (!waiting_for_shot_ || !session_) return;
     waiting_for_shot_ = false;
-    const SensorSetup* found = find_sensor(desk_.project(), shot->sensor_id);
-    if (!found) return set_doing({});
-    std::optional<Calibration> used;
-    if (base()) used = *base();
-    const auto id = session_->free_id();
     auto settings = capture_settings();
     if (!settings) {
         set_doing({});
         return emit refused(shown_error(settings.error()));
     }
-    post([this, shot, used, id, session = *session_, settings = *settings, sensor = *found,
-          generation = generation_, verification = shot_verifies_](const std::stop_token&) {
-        auto taken = std::make_shared<Expected<TakenCapture>>(
-            capture_shot(session.method(), settings, sensor, used ? &*used : nullptr, *shot->stripe,
-                         shot->board.get(), shot->base_from_flange));
-        if (*taken) {
+    struct Taken {
+        std::vector<CalibrationCapture> captures;
+        nlohmann::json settings;
+        QStringList refusals;
+    };
+    auto taken = std::make_shared<Taken>();
+    taken->settings = std::move(*settings);
+    struct Shot {
+        const CalibrationShot* shot;
+        SensorSetup sensor;
+        std::optional<Calibration> used;
+    };
+    std::vector<Shot> good;
+    for (const auto& shot : *shots) {
+        if (!shot) {
+            taken->refusals << shown_error(shot.error());
+            continue;
+        }
+        const SensorSetup* sensor = find_sensor(desk_.project(), shot->sensor_id);
+        if (!sensor) continue;
+        const Calibration* used = calibration_of(desk_.project(), sensor->id);
+        good.push_back({&*shot, *sensor, used ? std::optional(*used) : std::nullopt});
+    }
+    post([this, shots, good = std::move(good), taken, session = *session_, generation = generation_,
+          verification = shot_verifies_](const std::stop_token& cancelled) {
+        for (const auto& [shot, sensor, used] : good) {
+            if (cancelled.stop_requested()) return;
+            auto one = capture_shot(session.method(), taken->settings, sensor, used ? &*used : nullptr,
+                                    *shot->stripe, shot->board.get(), shot->base_from_flange);
+            if (!one) {
+                taken->refusals << shown_error(one.error());
+                continue;
+            }
             // The picture is for people: without it the capture is as good.
             const StripeImage& image = shot->board ? shot->board->image : shot->stripe->image;
-            const auto file = session.picture_path(id);
+            const auto file = session.free_picture_path(one->capture.id);
             std::error_code code;
             std::filesystem::create_directories(file.parent_path(), code);
             if (!image.empty() && write_image_file(file, image))
-                (*taken)->capture.picture = std::filesystem::relative(file, session.folder(), code).string();
+                one->capture.picture = std::filesystem::relative(file, session.folder(), code).string();
+            taken->settings = std::move(one->settings);
+            taken->captures.push_back(std::move(one->capture));
         }
         QMetaObject::invokeMethod(this, [this, taken, generation, verification] {
             if (generation != generation_) return;
             set_doing({});
-            if (!*taken) return emit refused(shown_error(taken->error()));
-            take_captures({std::move((*taken)->capture)}, std::move((*taken)->settings), verification,
-                          tr("Capture"));
+            taken->refusals.removeDuplicates();  // of the robot
+            if (!taken->refusals.isEmpty()) emit refused(taken->refusals.join("\n"));
+            if (!taken->captures.empty())
+                take_captures(std::move(taken->captures), std::move(taken->settings), verification,
+                              tr("Capture"));
         });
     });
 }
@@ -268,6 +301,19 @@ void CalibrationDesk::take_shot(std::shared_ptr<const CalibrationShot> shot) {
 void CalibrationDesk::take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings,
                                     bool verification, const QString& text) {
     const SessionState before = session_->state();
+    if (session_->method().capture == CaptureKind::board_chain) {
+        // The chains of a session end in one frame.
+        std::vector<std::string> ids;
+        for (const CalibrationCapture& c : captures) {
+            const std::string& sensor = sensor_of_chain(c);
+            ids.push_back(sensor.empty() ? session_->sensor_id() : sensor);
+        }
+        const char* key = "reference_from_world";
+        if (stays_beside(before, ids) &&
+            before.settings.value(key, nlohmann::json()) != settings.value(key, nlohmann::json()))
+            return emit refused(
+                tr("The chains before end in another reference: begin anew, or remove them."));
+    }
     auto done = session_->set_settings(std::move(settings));
     for (CalibrationCapture& capture : captures) {
         if (!done) break;
@@ -440,11 +486,12 @@ Expected<void> CalibrationDesk::finish(bool use) {
     if (session_->stage() != SessionStage::use && session_->stage() != SessionStage::used)
         return input_error("the solution is not verified", session_->method().id,
                            "take a pose for verification first");
-    auto made = calibration_of_session(*session_, desk_.project());
+    auto made = calibrations_of_session(*session_, desk_.project());
     if (!made) return tl::unexpected(made.error());
-    const std::string id = made->id;
-    if (auto done = desk_.take_calibration(std::move(*made), use); !done) return done;
-    auto noted = session_->set_used_as(id);
+    std::vector<std::string> ids;
+    for (const Calibration& c : *made) ids.push_back(c.id);
+    if (auto done = desk_.take_calibrations(std::move(*made), use); !done) return done;
+    auto noted = session_->set_used_as(std::move(ids));
     emit changed();
     return noted;
 }

@@ -47,6 +47,9 @@ class CalibrationDesk : public QObject {
     QUndoStack& undo_stack() { return undo_; }
     // The calibration in use at the session's sensor; nullptr: none.
     const Calibration* base() const;
+    // Whose pictures one capture takes, the session's own sensor first: that alone, or, where every capture
+    // is a sensor's chain, all that are connected and know their camera and robot, the session's.
+    std::vector<std::string> shot_sensors() const;
     // flange_from_sensor as far as known: given by the drawing, of the calibration in use, or as a simulated
     // cell is built.
     std::optional<Pose> mounting() const;
@@ -74,8 +77,8 @@ class CalibrationDesk : public QObject {
     bool switches_laser()
         const;  // the sensor takes a board's picture with its laser off, when it is captured
 
-    // The session's answer into the project, undoable there: kept, and with `use` put to use. Error: not
-    // verified, nothing solved.
+    // The session's answer into the project, undoable there: all its calibrations or none are kept, and with
+    // `use` put to use. Error: not verified, nothing solved, a sensor that the project does not know.
     Expected<void> finish(bool use);
     Expected<void> begin_anew();
 
@@ -92,7 +95,7 @@ class CalibrationDesk : public QObject {
     void post(Job job);
     void work(const std::stop_token& stop);
     void push(const QString& text, const SessionState& before);
-    void take_shot(std::shared_ptr<const CalibrationShot> shot);
+    void take_shots(std::shared_ptr<const CalibrationShots> shots);
     void take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings, bool verification,
                        const QString& text);
     void solve_when_due();

@@ -487,12 +487,21 @@ Expected<void> Desk::use_calibration(const std::string& sensor_id, const std::st
     return {};
 }
 
-Expected<void> Desk::take_calibration(Calibration made, bool use) {
-    const std::string id = made.id, sensor = made.sensor_id;
-    const QString text = use ? DeskCommand::tr("Use calibration %1") : DeskCommand::tr("Keep calibration %1");
-    return together(text.arg(QString::fromStdString(id)), [&]() -> Expected<void> {
-        if (auto ok = add(std::move(made)); !ok || !use) return ok;
-        return use_calibration(sensor, id);
+Expected<void> Desk::take_calibrations(std::vector<Calibration> made, bool use) {
+    QStringList ids;
+    for (const Calibration& c : made) ids << QString::fromStdString(c.id);
+    const QString text =
+        ids.size() == 1 ? use ? DeskCommand::tr("Use calibration %1") : DeskCommand::tr("Keep calibration %1")
+        : use ? DeskCommand::tr("Use calibrations %1")
+                        : DeskCommand::tr("Keep calibrations %1");
+    return together(text.arg(ids.join(", ")), [&]() -> Expected<void> {
+        for (Calibration& c : made) {
+            const std::string id = c.id, sensor = c.sensor_id;
+            if (auto ok = add(std::move(c)); !ok) return ok;
+            if (!use) continue;
+            if (auto ok = use_calibration(sensor, id); !ok) return ok;
+        }
+        return {};
     });
 }
 

@@ -68,8 +68,8 @@ class Desk : public QObject {
     Expected<void> set_spot_field(const std::string& id, const std::string& field, double value);
     Expected<void> set_region_field(const std::string& id, const std::string& field, double value);
     Expected<void> use_calibration(const std::string& sensor_id, const std::string& calibration_id);
-    // Adds a calibration, and has its sensor use it.
-    Expected<void> take_calibration(Calibration made, bool use);
+    // Adds calibrations, and with `use` has each sensor use its own: all or none, one step of undo.
+    Expected<void> take_calibrations(std::vector<Calibration> made, bool use);
     Expected<void> edit_part(const PartSetup& after, const QString& text);
     // STL, PLY, OBJ; `unit` "mm", "m", or "" (refused when metres are suspected).
     Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);

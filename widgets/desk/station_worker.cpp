@@ -359,11 +359,18 @@ Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, 
 
 }  // namespace
 
-void StationWorker::take_shot(const std::string& sensor_id, const std::string& robot_id, bool board) {
+void StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id,
+                               bool board) {
     post(tr("Capturing"), [=, this](Station& station, const std::stop_token& cancelled) {
-        auto shot = shoot(station, sensor_id, robot_id, board, cancelled);
-        if (!shot) return emit shot_failed(shown_error(shot.error()));
-        emit shot_taken(std::make_shared<const CalibrationShot>(std::move(*shot)));
+        auto shots = std::make_shared<CalibrationShots>();
+        for (const std::string& id : sensor_ids) {
+            auto shot = shoot(station, id, robot_id, board, cancelled);
+            // A device names its address; among several sensors that is no name.
+            if (!shot && sensor_ids.size() > 1 && shot.error().where != "robot " + robot_id)
+                shot.error().where = "sensor " + id;
+            shots->push_back(std::move(shot));
+        }
+        emit shots_taken(std::move(shots));
     });
 }
 

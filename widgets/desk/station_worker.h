@@ -64,6 +64,8 @@ struct CalibrationShot {
     FramePtr board;                        // with the laser off, where the sensor can switch it
     std::optional<Pose> base_from_flange;  // absent: no robot was asked
 };
+// Of each sensor asked for, in that order; an Error's place names its sensor.
+using CalibrationShots = std::vector<Expected<CalibrationShot>>;
 
 class StationWorker : public QObject {
     Q_OBJECT
@@ -85,8 +87,8 @@ class StationWorker : public QObject {
     void teach(const Spot& draft, int repeats);
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
-    // for the surroundings. An empty robot_id asks no robot.
-    void take_shot(const std::string& sensor_id, const std::string& robot_id, bool board);
+    // for the surroundings; one sensor after another. An empty robot_id asks no robot.
+    void take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id, bool board);
     void jog_simulated(const std::string& robot_id, const Pose& base_from_flange);  // other drivers refuse
     void set_sensor_parameter(const std::string& sensor_id, const std::string& name, double value);
     void answer_push(bool yes);  // to confirm_push
@@ -104,8 +106,8 @@ class StationWorker : public QObject {
     void proven();  // an evidence has come into the file
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
-    void shot_taken(std::shared_ptr<const seamwright::CalibrationShot> shot);
-    void shot_failed(QString sentence);  // instead of failed(): who asked for it says it
+    // What failed is in them: who asked for it says it.
+    void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);
 
   private:
     struct Live;

@@ -104,7 +104,7 @@ void CalibratePage::take_simulated() {
                 return;
             }
             if (index_of<Calibration>(p, truth->id) >= 0) truth->id += " " + s.id;
-            done(desk_.take_calibration(std::move(*truth), true));
+            done(desk_.take_calibrations({std::move(*truth)}, true));
             break;
         }
     }

@@ -213,6 +213,9 @@ void GuidedPage::make_use(QVBoxLayout& box) {
                               calibration_.capture(true);
                           });
     inside->addLayout(make_row({verify_}));
+    stands_ = make_text({});
+    stands_->setObjectName("calibration_stands");
+    box.addWidget(stands_);
     compared_ = make_text({});
     compared_->setObjectName("calibration_compared");
     used_ = make_text({});

@@ -55,6 +55,7 @@ GuidedPage::GuidedPage(Desk& desk) : desk_(desk), calibration_(desk) {
     });
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible() && calibration_.is_open()) {
+            refresh_base();  // which sensors are there
             refresh_next();
             refresh_busy();
         }

@@ -46,6 +46,7 @@ class GuidedPage : public QWidget {
     void refresh();
     void refresh_stage();
     void refresh_settings();
+    void refresh_base();
     void refresh_table();
     void refresh_coverage();
     void refresh_next();
@@ -81,7 +82,7 @@ class GuidedPage : public QWidget {
     QPushButton *undo_, *redo_, *needs_, *capture_, *automatic_, *load_, *load_folder_, *set_target_,
         *go_there_, *copy_next_;
     QPushButton *verification_, *remove_, *solve_, *cancel_, *verify_, *use_, *keep_, *anew_;
-    QLabel *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *compared_, *used_;
+    QLabel *next_, *next_words_, *count_, *verdict_, *reason_, *verified_, *stands_, *compared_, *used_;
     QTableWidget *table_, *parameters_;
     CoverageView* coverage_;
     QProgressBar* progress_;

@@ -10,6 +10,7 @@
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/errors.h"
 #include "widgets/pages/form.h"
 #include "widgets/pages/guided_page.h"
 #include "widgets/style.h"
@@ -139,13 +140,26 @@ void GuidedPage::refresh_settings() {
     nominal_holder_->setVisible(s.method().robot && s.method().use == AnswerUse::sensor);
     if (const auto mounting = calibration_.mounting(); mounting && !nominal_->refused())
         nominal_->set_pose(*mounting);
-    const Calibration* base = calibration_.base();
+    refresh_base();
+}
+
+void GuidedPage::refresh_base() {
+    const CalibrationSession& s = calibration_.session();
     base_->setVisible(s.method().model || s.method().use == AnswerUse::check);
-    if (base)
-        set_verdict(*base_, tr("Built on calibration %1, in use.").arg(text(base->id)), Tone::plain);
-    else
-        set_verdict(*base_, tr("Camera and laser plane are not calibrated yet: begin with them."),
-                    Tone::attention);
+    const Calibration* base = calibration_.base();
+    if (!base)
+        return set_verdict(*base_, tr("Camera and laser plane are not calibrated yet: begin with them."),
+                           Tone::attention);
+    QString built = tr("Built on calibration %1, in use.").arg(text(base->id));
+    if (s.method().capture == CaptureKind::board_chain) {
+        QStringList shot;
+        for (const std::string& id : calibration_.shot_sensors()) {
+            const Calibration* used = calibration_of(desk_.project(), id);
+            shot << tr("sensor %1 with calibration %2").arg(text(id), used ? text(used->id) : QString());
+        }
+        built = tr("One capture shoots %1.").arg(shot.join(", "));
+    }
+    set_verdict(*base_, built, Tone::plain);
 }
 
 void GuidedPage::refresh_table() {
@@ -303,7 +317,12 @@ void GuidedPage::refresh_verdict() {
                 word == "good"     ? Tone::good
                 : word == "usable" ? Tone::attention
                                    : Tone::alarm);
-    QStringList lines{text(r->value("reason", ""))};
+    QStringList lines;
+    if (s.method().capture == CaptureKind::board_chain)
+        for (const json& sensor : r->value("sensors", json::array()))
+            lines << text(sensor.value("reason", ""));
+    else
+        lines << text(r->value("reason", ""));
     if (const std::string cure = r->value("cure", ""); !cure.empty()) lines << tr("Cure: %1").arg(text(cure));
     for (const json& notice : r->value("notices", json::array()))
         if (notice.is_string()) lines << text(notice.get<std::string>());
@@ -322,9 +341,12 @@ void GuidedPage::refresh_verdict() {
     set_rows(*parameters_, rows);
 }
 
-// Undo in the project takes the calibration away again.
+// Undo in the project takes the calibrations away again.
 bool GuidedPage::stored() const {
-    return index_of<Calibration>(desk_.project(), calibration_.session().used_as()) >= 0;
+    const auto& ids = calibration_.session().used_as();
+    return !ids.empty() && std::all_of(ids.begin(), ids.end(), [&](const std::string& id) {
+        return index_of<Calibration>(desk_.project(), id) >= 0;
+    });
 }
 
 void GuidedPage::refresh_use() {
@@ -356,22 +378,44 @@ void GuidedPage::refresh_use() {
     }
     use_->setVisible(s.method().use == AnswerUse::sensor);
     anew_->setVisible(!s.state().captures.empty());
-    used_->setVisible(s.stage() == SessionStage::used && stored());
-    set_verdict(*used_, tr("Stored in the project as %1.").arg(text(s.used_as())), Tone::good);
+    const bool used = s.stage() == SessionStage::used && stored();
+    used_->setVisible(used);
+    QStringList ids;
+    for (const std::string& id : s.used_as()) ids << text(id);
+    set_verdict(*used_, tr("Stored in the project as %1.").arg(ids.join(", ")), Tone::good);
     compared_->hide();
-    const Calibration* before = calibration_.base();
-    if (!r || !before || s.method().use != AnswerUse::sensor || before->id == s.used_as()) return;
-    const auto now = calibration_of_session(s, desk_.project());
-    if (!now) return;
-    const CalibrationDifference d = difference(*now, *before);
-    compared_->setText(
-        d.points == 0
-            ? tr("It has nothing in common with calibration %1, in use.").arg(text(before->id))
-            : tr("Against calibration %1, in use: the same pixel lies up to %2 mm elsewhere (mean %3 mm); "
-                 "sensor shifted %4 mm, turned %5°.")
-                  .arg(text(before->id), number(d.largest_mm, 3), number(d.mean_mm, 3), number(d.shift_mm, 3),
-                       number(d.turn_deg, 3)));
-    compared_->show();
+    stands_->hide();
+    use_->setText(tr("Use this calibration"));
+    if (!r || s.method().use != AnswerUse::sensor) return;
+    const auto made = calibrations_of_session(s, desk_.project());
+    const bool chains = s.method().capture == CaptureKind::board_chain;
+    if (!made) {
+        if (chains) set_verdict(*stands_, shown_error(made.error()), Tone::attention);
+        return stands_->setVisible(chains);
+    }
+    if (made->size() > 1) use_->setText(tr("Use these calibrations"));
+    QStringList stored_as, against;
+    for (const Calibration& now : *made) {
+        stored_as << tr("%1 for sensor %2").arg(text(now.id), text(now.sensor_id));
+        const Calibration* before = calibration_of(desk_.project(), now.sensor_id);
+        if (!before || std::count(s.used_as().begin(), s.used_as().end(), before->id) > 0) continue;
+        const CalibrationDifference d = difference(now, *before);
+        const QString words =
+            d.points == 0 ? tr("It has nothing in common with calibration %1, in use.").arg(text(before->id))
+                          : tr("Against calibration %1, in use: the same pixel lies up to %2 mm elsewhere "
+                               "(mean %3 mm); "
+                               "sensor shifted %4 mm, turned %5°.")
+                                .arg(text(before->id), number(d.largest_mm, 3), number(d.mean_mm, 3),
+                                     number(d.shift_mm, 3), number(d.turn_deg, 3));
+        against << (chains ? tr("Sensor %1: %2").arg(text(now.sensor_id), words) : words);
+    }
+    const QStringList stands{
+        tr("The solution stands for these sensors; stored will be: %1.").arg(stored_as.join(", ")),
+        tr("One shot leaves no pose to verify it with: compare each sensor with what it used before.")};
+    set_verdict(*stands_, stands.join("\n"), Tone::plain);
+    stands_->setVisible(chains && !used);
+    compared_->setText(against.join("\n"));
+    compared_->setVisible(!against.isEmpty());
 }
 
 void GuidedPage::refresh_busy() {

@@ -43,12 +43,11 @@ class Guided : public testing::Test {
         if (!std::getenv(kFolder)) fs::remove_all(folder);
     }
 
-    // One simulated sensor on its robot, with the calibration that the cell has by construction in use.
-    void make_project() const {
+    // Simulated sensors on their robot, with the calibration that the cell has by construction in use.
+    void make_project(const std::vector<std::string>& ids = {"A"}) const {
         Project p;
         p.name = "Guided";
         SensorSetup sensor;
-        sensor.id = "A";
         sensor.driver = "simulated";
         sensor.settings = settings;
         const auto cell = SimulatedCell::open(settings).value();
@@ -58,10 +57,14 @@ class Guided : public testing::Test {
         robot.id = "R1";
         robot.driver = "simulated";
         robot.settings = settings;
-        p.sensors = {sensor};
         p.robots = {robot};
-        p.calibrations = {simulated_truth(sensor, robot).value()};
-        p.sensors[0].calibration_id = p.calibrations[0].id;
+        for (const std::string& id : ids) {
+            sensor.id = id;
+            p.calibrations.push_back(simulated_truth(sensor, robot).value());
+            if (p.sensors.size() > 0) p.calibrations.back().id += " " + id;
+            p.sensors.push_back(sensor);
+            p.sensors.back().calibration_id = p.calibrations.back().id;
+        }
         ASSERT_TRUE(ProjectFile::create(file, p));
     }
     StudioOptions options() const {
@@ -364,9 +367,10 @@ INSTANTIATE_TEST_SUITE_P(Methods, GuidedLive,
                              return name;
                          });
 
-// The plate found by the page before, then one shot of it: the sensor's place on the flange.
+// The plate found by the page before, then one shot of it: the place on the flange of both sensors, which are
+// one head of the simulated cell.
 TEST_F(Guided, StaticOneShotOfAPlateFoundBefore) {
-    make_project();
+    make_project({"A", "B"});
     Studio studio(*qApp, options());
     studio.window().resize(1280, 800);
     studio.window().show();
@@ -392,21 +396,25 @@ TEST_F(Guided, StaticOneShotOfAPlateFoundBefore) {
     ASSERT_FALSE(HasFailure());
     ASSERT_TRUE(solved(me, studio.window()));
     me.click("calibration_keep");
-    ASSERT_EQ(desk.project().calibrations.size(), 2U) << window_text(me);
+    ASSERT_EQ(desk.project().calibrations.size(), 3U) << window_text(me);
     me.click("calibration_back");
 
     go_to_page(me, desk, "static");
     me.click("calibration_set_target");
-    capture(me, desk);
-    ASSERT_FALSE(HasFailure());
+    me.click("calibration_go");
+    ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
+    me.click("calibration_capture");
+    ASSERT_TRUE(QTest::qWaitFor([&] { return captures(me) == 2; }, 3 * kPatienceMs)) << window_text(me);
     ASSERT_TRUE(solved(me, studio.window()));
     me.picture("guided_static_live");
     me.click("calibration_use");
-    ASSERT_EQ(desk.project().calibrations.size(), 3U) << window_text(me);
-    const Calibration& made = desk.project().calibrations.back();
-    EXPECT_EQ(desk.project().sensors.at(0).calibration_id, made.id);
-    EXPECT_LT(difference(made, desk.project().calibrations.front()).largest_mm, 1.0)
-        << "over the whole field";
+    ASSERT_EQ(desk.project().calibrations.size(), 5U) << window_text(me);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Calibration& made = desk.project().calibrations.at(3 + k);
+        EXPECT_EQ(desk.project().sensors.at(k).calibration_id, made.id);
+        EXPECT_LT(difference(made, desk.project().calibrations.at(k)).largest_mm, 1.0)
+            << "over the whole field";
+    }
 }
 
 // Every page in German on the small and the large screen, dark: what is to be done next is on it without
@@ -533,20 +541,61 @@ class GuidedFile : public Guided, public testing::WithParamInterface<const char*
         };
         const Pose plate_from_camera = make_pose(rotation_exp({3.0, 0.2, 0.1}), {30, 20, 310});
         const Pose camera_from_laser = cell->sensor_model().camera_from_laser;
-        // The reference is the flange: the chain ends where the cell has its sensor.
+        // The reference is the flange: A's chain ends where the cell has its sensor, B's 50 mm beside.
         const Pose world_from_laser = world_from_plate * plate_from_camera * camera_from_laser;
+        const auto chain = [&](const char* id, const Pose& plate) {
+            return json{{"id", id},
+                        {"world_from_plate", link(plate)},
+                        {"plate_from_camera", link(plate_from_camera)},
+                        {"camera_from_laser", link(camera_from_laser)}};
+        };
+        const Pose beside = make_pose(Eigen::Matrix3d::Identity(), {0, kBesideMm, 0});
         return {{"reference_from_world", link(cell->flange_from_sensor() * world_from_laser.inverse())},
                 {"sensors",
-                 {{{"id", "A"},
-                   {"world_from_plate", link(world_from_plate)},
-                   {"plate_from_camera", link(plate_from_camera)},
-                   {"camera_from_laser", link(camera_from_laser)}}}}};
+                 {chain("A", world_from_plate),
+                  chain("B", world_from_laser * beside * world_from_laser.inverse() * world_from_plate)}}};
+    }
+    static constexpr double kBesideMm = 50;
+    // Every sensor of the gripper at once: told before, stored and in use together, taken back together.
+    static void use_all_of_a_shot(const Person& me, MainWindow& window, Desk& desk) {
+        auto* table = me.find<QTableWidget>("captures");
+        EXPECT_TRUE(
+            me.text_of("calibration_stands").contains("static-3 for sensor A, static-4 for sensor B."));
+        for (const char* id : {"sensor A: three sigma", "sensor B: three sigma"})
+            EXPECT_TRUE(me.text_of("calibration_reason").contains(id)) << id;
+        for (const char* against : {"Sensor A: Against calibration simulated-truth,",
+                                    "Sensor B: Against calibration simulated-truth B,"})
+            EXPECT_TRUE(me.text_of("calibration_compared").contains(against)) << against;
+        EXPECT_EQ(me.find<QPushButton>("calibration_use")->text(), "Use these calibrations");
+        // Without its tick a sensor is left out.
+        press_space(me, table, 1);
+        ASSERT_TRUE(me.wait([&] { return table->item(1, 4)->text() == "left out"; }));
+        ASSERT_TRUE(solved(me, window));
+        EXPECT_FALSE(me.text_of("calibration_stands").contains("sensor B"));
+        press_space(me, table, 1);
+        ASSERT_TRUE(me.wait([&] { return table->item(1, 4)->text() != "left out"; }));
+        ASSERT_TRUE(solved(me, window));
+        me.click("calibration_use");
+        ASSERT_EQ(desk.project().calibrations.size(), 4U) << window_text(me);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Calibration& made = desk.project().calibrations.at(2 + i);
+            EXPECT_EQ(desk.project().sensors.at(i).calibration_id, made.id);
+            EXPECT_EQ(made.sensor_id, desk.project().sensors.at(i).id);
+            EXPECT_NEAR(difference(made, desk.project().calibrations.at(i)).shift_mm, i == 0 ? 0 : kBesideMm,
+                        1e-3);
+        }
+        EXPECT_EQ(me.text_of("calibration_used"), "Stored in the project as static-3, static-4.");
+        me.picture("guided_static_used");
+        me.shortcut(Qt::Key_Z);
+        EXPECT_EQ(desk.project().calibrations.size(), 2U);
+        for (const SensorSetup& sensor : desk.project().sensors)
+            EXPECT_TRUE(sensor.calibration_id.starts_with("simulated-truth")) << sensor.id;
     }
 };
 
 TEST_P(GuidedFile, FromItsFile) {
     const std::string method = GetParam();
-    make_project();
+    make_project(method == "static" ? std::vector<std::string>{"A", "B"} : std::vector<std::string>{"A"});
     const fs::path path = folder / (method + ".json");
     std::ofstream(path) << data(method);
     Studio studio(*qApp, options());
@@ -580,6 +629,7 @@ TEST_P(GuidedFile, FromItsFile) {
             << me.text_of("calibration_verified").toStdString();
     }
     me.picture("guided_" + QString::fromStdString(method));
+    if (method == "static") return use_all_of_a_shot(me, window, desk);
     const bool use = find_method(method)->use == AnswerUse::sensor;
     me.click(use ? "calibration_use" : "calibration_keep");
     ASSERT_EQ(desk.project().calibrations.size(), 2U) << me.text_of("calibration_said").toStdString();

@@ -121,13 +121,27 @@ std::vector<Edit> edits() {
          [](Desk& d) { return d.use_calibration("A", ""); }},
         {"CalibrationTake", "Use calibration N",
          [=](Desk& d) {
-             return d.take_calibration(with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; }),
-                                       true);
+             return d.take_calibrations(
+                 {with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; })}, true);
+         }},
+        {"CalibrationsTake", "Use calibrations N, M",
+         [=](Desk& d) {
+             return d.take_calibrations(
+                 {with(d.project().calibrations[0], [](Calibration& c) { c.id = "N", c.sensor_id = "A"; }),
+                  with(d.project().calibrations[0], [](Calibration& c) { c.id = "M", c.sensor_id = "B"; })},
+                 true);
+         }},
+        {"CalibrationsKeep", "Keep calibrations N, M",
+         [=](Desk& d) {
+             return d.take_calibrations(
+                 {with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; }),
+                  with(d.project().calibrations[0], [](Calibration& c) { c.id = "M"; })},
+                 false);
          }},
         {"CalibrationKeep", "Keep calibration N",
          [=](Desk& d) {
-             return d.take_calibration(with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; }),
-                                       false);
+             return d.take_calibrations(
+                 {with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; })}, false);
          }},
         {"PartEdit", "another part",
          [=](Desk& d) {
@@ -292,9 +306,11 @@ TEST_F(Commands, WhatIsWrongIsRefusedAndChangesNothing) {
     refused(desk.remove<SensorSetup>("A"), "spot S1 uses it");
     refused(desk.remove<RobotSetup>("R1"), "spot S1 uses it");
     refused(desk.use_calibration("B", "C1"), "another sensor");
-    refused(desk.take_calibration(
-                with(p.calibrations[0], [](Calibration& c) { c.id = "N", c.sensor_id = "Z"; }), true),
-            "\"Z\"");
+    const Calibration good = with(p.calibrations[0], [](Calibration& c) { c.id = "M"; });
+    const Calibration lost = with(good, [](Calibration& c) { c.id = "N", c.sensor_id = "Z"; });
+    refused(desk.take_calibrations({lost}, true), "\"Z\"");
+    refused(desk.take_calibrations({good, lost}, true), "\"Z\"");
+    refused(desk.take_calibrations({good, good}, false), "used already");
     refused(desk.use_calibration("A", "none"), "\"none\"");
     refused(desk.import_part(folder / "none.stl", "mm"), "none.stl");
 }

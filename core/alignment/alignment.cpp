@@ -64,7 +64,8 @@ Eigen::Vector2d straight_direction(const Profile& p) {
         const Eigen::Vector2d d = Eigen::Vector2d(x.back(), z.back()) - middle;
         moment += d * d.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(moment);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+    eigen.computeDirect(moment);
     const double rms = std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) /
                                  static_cast<double>(std::max<std::size_t>(1, x.size())));
     const double noise = contour_noise_mm(x, z, scratch);

@@ -1,6 +1,6 @@
 #include "core/calibration/block_solver.h"
 
-#include <Eigen/Eigenvalues>
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -23,24 +23,29 @@ bool solve_blocks(const BlockNormal& normal, double damping, Eigen::VectorXd& st
     for (Eigen::Index i = 0; i < shared; ++i)
         if (schur(i, i) <= 0) schur(i, i) = 1;
     Eigen::VectorXd rhs = -normal.g;
-    std::vector<Eigen::LLT<Matrix6>> factors(normal.vv.size());
+    std::vector<Eigen::MatrixXd> by_shared(normal.vv.size());  // what a shared step does to the view
+    std::vector<Vector6> alone(normal.vv.size());
     for (std::size_t k = 0; k < normal.vv.size(); ++k) {
-        factors[k].compute(damped(normal.vv[k], damping));
-        if (factors[k].info() != Eigen::Success) return false;
-        const Eigen::MatrixXd t = factors[k].solve(normal.gv[k].transpose());
-        schur.noalias() -= normal.gv[k] * t;
-        rhs.noalias() += t.transpose() * normal.v[k];
+        Eigen::MatrixXd right(6, shared + 1);
+        right.leftCols(shared) = normal.gv[k].transpose();
+        right.col(shared) = normal.v[k];
+        const auto solved = solve_positive(damped(normal.vv[k], damping), right);
+        if (!solved) return false;
+        by_shared[k] = solved->leftCols(shared);
+        alone[k] = solved->col(shared);
+        schur.noalias() -= normal.gv[k] * by_shared[k];
+        rhs.noalias() += normal.gv[k] * alone[k];
     }
     step.setZero(shared);
     if (shared > 0) {
-        const Eigen::LLT<Eigen::MatrixXd> llt(schur);
-        if (llt.info() != Eigen::Success) return false;
-        step = llt.solve(rhs);
-        if (!step.allFinite()) return false;
+        const auto solved = solve_positive(schur, rhs);
+        if (!solved || !solved->allFinite()) return false;
+        step = *solved;
     }
     view_steps.resize(normal.vv.size());
     for (std::size_t k = 0; k < normal.vv.size(); ++k) {
-        view_steps[k] = factors[k].solve(-normal.v[k] - normal.gv[k].transpose() * step);
+        view_steps[k] = -alone[k];
+        view_steps[k].noalias() -= by_shared[k] * step;
         if (!view_steps[k].allFinite()) return false;
     }
     return true;
@@ -50,9 +55,9 @@ Eigen::MatrixXd shared_covariance(const BlockNormal& normal, double* condition) 
     if (condition) *condition = 0;
     Eigen::MatrixXd schur = normal.gg;
     for (std::size_t k = 0; k < normal.vv.size(); ++k) {
-        const Eigen::LLT<Matrix6> llt(normal.vv[k]);
-        if (llt.info() != Eigen::Success) return {};
-        schur.noalias() -= normal.gv[k] * llt.solve(normal.gv[k].transpose());
+        const auto solved = solve_positive(normal.vv[k], normal.gv[k].transpose());
+        if (!solved) return {};
+        schur.noalias() -= normal.gv[k] * *solved;
     }
     std::vector<Eigen::Index> free;
     for (Eigen::Index i = 0; i < schur.rows(); ++i)
@@ -63,13 +68,14 @@ Eigen::MatrixXd shared_covariance(const BlockNormal& normal, double* condition) 
     for (Eigen::Index i = 0; i < n; ++i) scale(i) = 1 / std::sqrt(normal.gg(free[i], free[i]));
     for (Eigen::Index i = 0; i < n; ++i)
         for (Eigen::Index j = 0; j < n; ++j) scaled(i, j) = schur(free[i], free[j]) * scale(i) * scale(j);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-    if (eigen.info() != Eigen::Success || n == 0) return {};
-    const double smallest = eigen.eigenvalues()(0);
+    if (n == 0) return {};
+    const SymmetricEigen eigen = symmetric_eigen(scaled);
+    if (!eigen.converged) return {};
+    const double smallest = eigen.values(0);
     if (condition) *condition = smallest;
     if (!(smallest > 1e-14)) return {};
-    const Eigen::MatrixXd inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                                    eigen.eigenvectors().transpose();
+    const Eigen::MatrixXd inverse =
+        eigen.vectors * eigen.values.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(schur.rows(), schur.rows());
     for (Eigen::Index i = 0; i < n; ++i)
         for (Eigen::Index j = 0; j < n; ++j)
@@ -78,7 +84,7 @@ Eigen::MatrixXd shared_covariance(const BlockNormal& normal, double* condition) 
 }
 
 Matrix6 view_covariance(const BlockNormal& normal, const Eigen::MatrixXd& shared, std::size_t view) {
-    const Matrix6 inverse = normal.vv[view].inverse();
+    const Matrix6 inverse = inverse_matrix(normal.vv[view]);
     const Eigen::MatrixXd t = inverse * normal.gv[view].transpose();
     return inverse + t * shared * t.transpose();
 }

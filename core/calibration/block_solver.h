@@ -3,7 +3,6 @@
 // plate poses, camera, laser plane and plate poses. The views are eliminated (Schur complement), so a step
 // costs the views once and one system of the shared unknowns (B.2.2 in block form).
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
 #include <vector>

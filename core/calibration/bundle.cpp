@@ -1,7 +1,8 @@
 #include "core/calibration/bundle.h"
 
-#include <Eigen/Eigenvalues>
 #include <limits>
+
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 
@@ -73,7 +74,7 @@ Expected<BundlePose> bundle_object(const std::vector<PlacedCamera>& cameras,
     for (int i = 0; i < 100 && damping < 1e12; ++i) {
         Matrix6 damped = normal;
         damped.diagonal() *= 1 + damping;
-        const Vector6 step = -damped.ldlt().solve(gradient);
+        const Vector6 step = -solve_symmetric(damped, gradient);
         const Pose trial = retract(out.world_from_object, step);
         const double c = step.allFinite() ? evaluate(trial, nullptr, nullptr) : infinity;
         if (!(c <= cost)) {
@@ -91,9 +92,9 @@ Expected<BundlePose> bundle_object(const std::vector<PlacedCamera>& cameras,
     // Directions by the information scaled to unit diagonal, so that mm and rad do not matter.
     const Vector6 scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Matrix6 unit = scale.asDiagonal() * normal * scale.asDiagonal();
-    out.determined = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(unit).eigenvalues()(0) > 1e-9;
+    out.determined = symmetric_eigen(unit).values(0) > 1e-9;
     out.rms_px = std::sqrt(cost / counted);
-    if (out.determined && 2 * counted > 6) out.covariance = cost / (2 * counted - 6) * normal.inverse();
+    if (out.determined && 2 * counted > 6) out.covariance = cost / (2 * counted - 6) * inverse_matrix(normal);
     return out;
 }
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/calibration/camera.h"
-#include "core/calibration/least_direction.h"
+#include "core/geometry/decompositions.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -95,8 +95,9 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
         for (Eigen::Index k = 0; k < 2; ++k)
             ata.selfadjointView<Eigen::Lower>().rankUpdate(a.row(k).transpose());
     }
-    const Eigen::VectorXd p = least_direction(ata).vector;
-    if (p.size() == 0) return std::nullopt;
+    const SymmetricEigen eigen = symmetric_eigen(ata);
+    if (!eigen.converged) return std::nullopt;
+    const Eigen::VectorXd p = eigen.vectors.col(0);
     Eigen::Matrix<double, 3, 4> m;
     m << p.segment<4>(0).transpose(), p.segment<4>(4).transpose(), p.segment<4>(8).transpose();
     if (m(2, 3) < 0) m = -m;
@@ -116,7 +117,7 @@ double refine_pose(const Intrinsics& k, const CameraPoints& view, const std::vec
     for (int i = 0; i < 60 && std::isfinite(cost); ++i) {
         Matrix6 a = n.bottomRightCorner<6, 6>();
         a.diagonal() *= 1 + damping;
-        const Vector6 step = -a.ldlt().solve(g.tail<6>());
+        const Vector6 step = -solve_symmetric(a, g.tail<6>());
         if (!step.allFinite()) break;
         const Pose trial = retract(pose, step);
         const double c = accumulate_view(k, trial, view, used, nullptr, nullptr);
@@ -298,9 +299,10 @@ std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>
         for (Eigen::Index k = 0; k < 2; ++k)
             ata.selfadjointView<Eigen::Lower>().rankUpdate(row.row(k).transpose());
     }
-    const LeastDirection least = least_direction(ata);
-    if (least.vector.size() == 0 || !(least.second_share > 1e-12)) return std::nullopt;
-    const Eigen::VectorXd& v = least.vector;
+    // The answer of a DLT is what the matrix maps to least; none when a second direction is as good.
+    const SymmetricEigen eigen = symmetric_eigen(ata);
+    if (!eigen.converged || !(eigen.values(1) > 1e-12 * eigen.values(8))) return std::nullopt;
+    const Eigen::VectorXd v = eigen.vectors.col(0);
     Eigen::Matrix3d h;
     h << v.segment<3>(0).transpose(), v.segment<3>(3).transpose(), v.segment<3>(6).transpose();
     h = b.inverse() * h * a;
@@ -450,7 +452,7 @@ Expected<TargetPose> locate_target(const CameraModel& camera, const CameraPoints
     const auto n = static_cast<double>(view.pixel.size());
     out.rms_px = std::sqrt(cost / n);
     const double variance = 2 * n > 6 ? cost / (2 * n - 6) : 0;
-    out.covariance = variance * information.inverse();
+    out.covariance = variance * inverse_matrix(information);
     return out;
 }
 

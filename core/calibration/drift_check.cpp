@@ -10,6 +10,7 @@
 #include "core/calibration/circle_section.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -47,14 +48,14 @@ Fit fit_change(const std::vector<DriftMeasurement>& list, const std::vector<Eige
             h.noalias() += j.transpose() * weight[i] * j;
             right.noalias() += j.transpose() * weight[i] * e;
         }
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(h);
+        const SymmetricEigen eigen = symmetric_eigen(h);
         Vector6 step = Vector6::Zero();
         Matrix6 inverse = Matrix6::Zero();
         fit.not_determined.clear();
         fit.determined = 0;
         for (int k = 0; k < 6; ++k) {
-            const double value = eigen.eigenvalues()[k];
-            const Vector6 direction = eigen.eigenvectors().col(k);
+            const double value = eigen.values[k];
+            const Vector6 direction = eigen.vectors.col(k);
             if (value < 1 / (coarsest_mm * coarsest_mm)) {
                 const bool turn = direction.tail<3>().norm() > direction.head<3>().norm();
                 fit.not_determined.push_back(

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 #include "core/calibration/hand_eye_start.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -112,7 +112,7 @@ double refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, i
             Matrix12 damped = scale.asDiagonal() * h * scale.asDiagonal();
             damped.diagonal().array() += lambda + 1e-14;
             const Vector12 step =
-                -(scale.asDiagonal() * damped.ldlt().solve(scale.asDiagonal() * normal.gradient));
+                -(scale.asDiagonal() * solve_symmetric(damped, scale.asDiagonal() * normal.gradient));
             const Pose next_x = retract(x, step.head<6>()), next_y = retract(y, step.tail<6>());
             const double next = cost_of(chain, next_x, next_y, s, k);
             if (next <= cost) {
@@ -152,8 +152,9 @@ Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
 // Variance components by the hat matrix' share of each group: s^2 = sum r^2 / (3 n - tr(H^-1 H_group)).
 Scales estimated_scales(const Chain& chain, const Pose& x, const Pose& y, const Scales& s) {
     const Normal normal = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity());
-    const Eigen::LDLT<Matrix12> ldlt(normal.sum());
-    const double p_t = ldlt.solve(normal.translation).trace(), p_r = ldlt.solve(normal.rotation).trace();
+    const Matrix12 sum = normal.sum();
+    const double p_t = solve_symmetric(sum, normal.translation).trace(),
+                 p_r = solve_symmetric(sum, normal.rotation).trace();
     double squares_t = 0, squares_r = 0;
     for (size_t i = 0; i < chain.size(); ++i) {
         if (!chain.used[i]) continue;
@@ -251,11 +252,10 @@ Determination determination(const Chain& chain, const Pose& x, const Pose& y, co
     const auto inverse_of = [&](const Scales& s) {
         const Matrix12 h = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity()).sum();
         const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * h *
-                                                                   scale.asDiagonal());
-        const Vector12 inverse = eigen.eigenvalues().cwiseMax(1e-15).cwiseInverse();
-        return Matrix12(scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-                        eigen.eigenvectors().transpose() * scale.asDiagonal());
+        const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * h * scale.asDiagonal());
+        const Vector12 inverse = eigen.values.cwiseMax(1e-15).cwiseInverse();
+        return Matrix12(scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() *
+                        eigen.vectors.transpose() * scale.asDiagonal());
     };
     Determination result;
     const Matrix12 floored = inverse_of(floor);

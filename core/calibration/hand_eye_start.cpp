@@ -1,10 +1,11 @@
 #include "core/calibration/hand_eye_start.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 #include <optional>
+
+#include "core/geometry/decompositions.h"
 
 namespace seamwright::hand_eye {
 namespace {
@@ -28,11 +29,6 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m) {
     return svd.matrixU() * guard.asDiagonal() * svd.matrixV().transpose();
 }
 
-// Of run-time size, here and below: a decomposition is compiled once for all sizes.
-Eigen::VectorXd minimum_norm(const Eigen::MatrixXd& h, const Eigen::VectorXd& g) {
-    return h.completeOrthogonalDecomposition().solve(g);
-}
-
 // (R_A' - I) t = R t_B' - t_A', stacked.
 Eigen::Vector3d translation_for(const std::vector<Motion>& list, const Eigen::Matrix3d& rotation) {
     Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
@@ -42,7 +38,7 @@ Eigen::Vector3d translation_for(const std::vector<Motion>& list, const Eigen::Ma
         h.noalias() += left.transpose() * left;
         g.noalias() += left.transpose() * (rotation * m.b.translation() - m.a.translation());
     }
-    return minimum_norm(h, g);
+    return least_squares(h, g).x;
 }
 
 Eigen::Quaterniond positive(const Eigen::Matrix3d& rotation) {
@@ -69,8 +65,7 @@ Eigen::Matrix3d horaud(const std::vector<Motion>& list) {
         right << 0, -b.transpose(), b, -skew(b);
         sum.noalias() += (left - right).transpose() * (left - right);
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum);
-    const Eigen::Vector4d q = eigen.eigenvectors().col(0);
+    const Eigen::Vector4d q = symmetric_eigen(sum).vectors.col(0);
     return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
@@ -87,8 +82,7 @@ std::optional<Eigen::Matrix3d> andreff(const std::vector<Motion>& list) {
         }
         h.noalias() += k.transpose() * k;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(h);
-    const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);
+    const Eigen::VectorXd v = symmetric_eigen(h).vectors.col(0);
     Eigen::Matrix3d m = Eigen::Map<const Eigen::Matrix3d>(v.data());
     const double det = m.determinant();
     if (std::abs(det) < 1e-9) return std::nullopt;
@@ -119,8 +113,8 @@ std::optional<Pose> daniilidis(const std::vector<Motion>& list) {
         s.block<3, 3>(3, 5) = skew(a + b);
         h.noalias() += s.transpose() * s;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(h);
-    const Eigen::Matrix<double, 8, 1> v1 = eigen.eigenvectors().col(0), v2 = eigen.eigenvectors().col(1);
+    const SymmetricEigen eigen = symmetric_eigen(h);
+    const Eigen::VectorXd v1 = eigen.vectors.col(0), v2 = eigen.vectors.col(1);
     const Eigen::Vector4d u1 = v1.head<4>(), w1 = v1.tail<4>(), u2 = v2.head<4>(), w2 = v2.tail<4>();
     // q = l1 u1 + l2 u2, q' = l1 w1 + l2 w2 with q.q' = 0 and |q| = 1; s = l1 / l2.
     const double qa = u1.dot(w1), qb = u1.dot(w2) + u2.dot(w1), qc = u2.dot(w2);
@@ -155,8 +149,8 @@ Closed shah(const std::vector<Pose>& a, const std::vector<Pose>& c) {
         for (int row = 0; row < 3; ++row)
             for (int col = 0; col < 3; ++col)
                 k.block<3, 3>(3 * row, 3 * col) += c[i].linear()(col, row) * a[i].linear();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(k, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix<double, 9, 1> u = svd.matrixU().col(0), v = svd.matrixV().col(0);
+    const SingularValues svd = singular_values(k);
+    const Eigen::VectorXd u = svd.u.col(0), v = svd.v.col(0);
     Eigen::Matrix3d ry = Eigen::Map<const Eigen::Matrix3d>(u.data()),
                     rx = Eigen::Map<const Eigen::Matrix3d>(v.data());
     if (rx.determinant() < 0) {
@@ -175,7 +169,7 @@ Closed shah(const std::vector<Pose>& a, const std::vector<Pose>& c) {
         h.noalias() += j.transpose() * j;
         g.noalias() -= j.transpose() * (a[i].linear() * rx * c[i].translation() + a[i].translation());
     }
-    const Eigen::Matrix<double, 6, 1> t = minimum_norm(h, g);
+    const Eigen::Matrix<double, 6, 1> t = least_squares(h, g).x;
     return {"Shah", make_pose(rx, t.head<3>()), make_pose(ry, t.tail<3>())};
 }
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/calibration/camera.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -136,7 +136,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
             for (int attempt = 0; attempt < 12 && !better; ++attempt) {
                 Eigen::MatrixXd damped = information;
                 damped.diagonal() *= 1 + damping;
-                const Eigen::VectorXd step = -damped.ldlt().solve(gradient);
+                const Eigen::VectorXd step = -solve_symmetric(damped, gradient);
                 Intrinsics trial = k;
                 for (Eigen::Index j = 0; j < n; ++j) trial(free[static_cast<std::size_t>(j)]) += step(j);
                 Eigen::VectorXd e(points);
@@ -172,7 +172,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     static constexpr const char* names[] = {"", "", "centre_u", "centre_v", "k1", "k2", "p1", "p2", "k3"};
     auto& report = result.report;
     for (const int p : free) report.parameters.push_back({names[p], k(p), p < 4 ? "px" : "1", 0});
-    report.covariance = variance * information.inverse();
+    report.covariance = variance * inverse_matrix(information);
     // Shift of the image's corners and its sigma, by the covariance.
     for (const Eigen::Vector2d& corner :
          {Eigen::Vector2d(0, 0), Eigen::Vector2d(data.width, 0), Eigen::Vector2d(0, data.height),

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -14,6 +13,7 @@
 
 #include "core/calibration/camera.h"
 #include "core/calibration/pose_set.h"
+#include "core/geometry/decompositions.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -42,7 +42,7 @@ double flatness(const std::vector<Vector2d>& points) {
     for (const auto& p : points) mean += p / static_cast<double>(points.size());
     Matrix2d scatter = Matrix2d::Zero();
     for (const auto& p : points) scatter += (p - mean) * (p - mean).transpose();
-    const Vector2d l = Eigen::SelfAdjointEigenSolver<Matrix2d>(scatter).eigenvalues();
+    const Vector2d l = Eigen::SelfAdjointEigenSolver<Matrix2d>().computeDirect(scatter).eigenvalues();
     return l(1) > 0 ? std::sqrt(std::max(0.0, l(0)) / l(1)) : 0;
 }
 
@@ -310,11 +310,11 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
         const Eigen::HouseholderQR<MatrixXd> qr(affine);
         const MatrixXd q = qr.householderQ() * MatrixXd::Identity(m, m);
         const MatrixXd free = q.rightCols(m - 3);
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(free.transpose() * penalty * free);
-        const double least = 1e-10 * eigen.eigenvalues()(m - 4);
+        const SymmetricEigen eigen = symmetric_eigen(free.transpose() * penalty * free);
+        const double least = 1e-10 * eigen.values(m - 4);
         if (!(least > 0)) return false;
-        transform = free * eigen.eigenvectors() *
-                    eigen.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse().asDiagonal();
+        transform =
+            free * eigen.vectors * eigen.values.cwiseMax(least).cwiseSqrt().cwiseInverse().asDiagonal();
         MatrixXd kernels(n, m);
         for (Index i = 0; i < n; ++i) kernels.row(i) = kernel(places[static_cast<std::size_t>(i)]);
         columns = kernels * transform;
@@ -341,9 +341,9 @@ bool SmoothMap::fit(const Samples& s, int least_degree, int most_degree) {
         if (columns.size() > 0) {
             mixed = q.transpose() * columns;
             modes = columns - q * mixed;
-            const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(modes.transpose() * modes);
-            power = eigen.eigenvalues().cwiseMax(0);
-            vectors = eigen.eigenvectors();
+            const SymmetricEigen eigen = symmetric_eigen(modes.transpose() * modes);
+            power = eigen.values.cwiseMax(0);
+            vectors = eigen.vectors;
             modes = modes * vectors;
             scores = modes.transpose() * flat;
         }

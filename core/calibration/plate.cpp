@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -222,8 +222,8 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     result.rms_mm = std::sqrt(squares / count);
     result.sigma_mm = options.sigma_mm.value_or(std::sqrt(squares / redundancy));
     const double student = options.sigma_mm ? 1 : student_quantile(0.975, redundancy) / 1.959964;
-    result.covariance =
-        information_of(plate, pose, use).inverse() * (result.sigma_mm * result.sigma_mm * student * student);
+    result.covariance = inverse_matrix(information_of(plate, pose, use)) *
+                        (result.sigma_mm * result.sigma_mm * student * student);
     const Moments m = moments_of(world, plate, use);
     result.scale = std::sqrt(m.spread_to / m.spread_from);
 
@@ -267,7 +267,7 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     }
 
     // Largest sigma on the plate, with a floor: three points fit anything.
-    const Matrix6 honest = information_of(plate, pose, use).inverse() *
+    const Matrix6 honest = inverse_matrix(information_of(plate, pose, use)) *
                            std::pow(std::max(result.sigma_mm * student, kNoiseFloor_mm), 2);
     double worst = 0;
     for (size_t i = 0; i < points.size(); ++i) {

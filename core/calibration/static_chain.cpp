@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/calibration/pose_set.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -24,8 +25,7 @@ Expected<void> check_link(const UncertainPose& link, const std::string& where) {
     const Vector6 inverse = link.covariance.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr(
         [](double s) { return s > 0 ? 1 / s : 0.0; });
     const Matrix6 correlation = inverse.asDiagonal() * link.covariance * inverse.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-    if (link.covariance.diagonal().minCoeff() < 0 || eigen.eigenvalues()[0] < -1e-6)
+    if (link.covariance.diagonal().minCoeff() < 0 || symmetric_eigen(correlation).values[0] < -1e-6)
         return input_error(
             "the covariance is not positive (a variance below zero or a correlation above one)", where);
     for (int i = 0; i < 6; ++i)

@@ -11,21 +11,22 @@
 #include "core/calibration/pose_set.h"
 #include "core/calibration/stripe_line.h"
 #include "core/calibration/stripe_plane.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
 
 constexpr double kOnPlaneMm = 0.5;
 
-struct Model {
+struct LadderStep {
     CameraFreedom freedom;
     ShapeFreedom shape;
 };
 
 // From simple to rich. With a free stretch of the plate the two focal lengths stay one: they are hard to tell
 // apart.
-const std::vector<Model>& model_ladder() {
-    static const std::vector<Model> ladder{
+const std::vector<LadderStep>& model_ladder() {
+    static const std::vector<LadderStep> ladder{
         {{false, false, 1, false}, ShapeFreedom::rigid},   {{false, true, 1, false}, ShapeFreedom::rigid},
         {{true, true, 2, false}, ShapeFreedom::rigid},     {{false, false, 1, false}, ShapeFreedom::in_plane},
         {{false, true, 1, false}, ShapeFreedom::in_plane}, {{false, false, 1, false}, ShapeFreedom::bowed},
@@ -262,13 +263,13 @@ class Solver {
                 ata1 += m.leftCols<3>().transpose() * m.leftCols<3>();
                 btb += r.squaredNorm();
             }
-        const Eigen::FullPivLU<Eigen::Matrix4d> lu(ata);
-        if (lu.rank() < 4) return {};
-        const Eigen::Vector4d x = lu.solve(atb);
+        const LeastSquares solved = least_squares(ata, atb);
+        if (solved.rank < 4) return {};
+        const Eigen::Vector4d x = solved.x;
         const double s = x(3);
         const double free_cost = std::max(0.0, btb - atb.dot(x));
         Eigen::Vector4d unit;
-        unit << ata1.ldlt().solve(atb.head<3>() - ata.block<3, 1>(0, 3)), 1;
+        unit << solve_symmetric(ata1, atb.head<3>() - ata.block<3, 1>(0, 3)), 1;
         const double unit_cost = btb - 2 * atb.dot(unit) + unit.dot(ata * unit);
         if (!(s > 0) || std::abs(s - 1) < 0.06 || free_cost > 0.3 * unit_cost) return {};
         if (s > 300 || s < 1 / 300.0)
@@ -295,7 +296,7 @@ class Solver {
     }
 
     // Mean squared corner error of each view, predicted by the others.
-    std::vector<double> cross_validate(const Model& model) {
+    std::vector<double> cross_validate(const LadderStep& model) {
         PlateBundle p = bundle_;
         p.freedom = model.freedom;
         p.shape = model.shape;
@@ -716,7 +717,7 @@ class Solver {
     PlateBundle bundle_;
     PlateBundleState state_;
     PlateBundleFit fit_;
-    Model model_;
+    LadderStep model_;
     std::vector<std::vector<detail::PlateStripe>> lines_;  // per view
     std::vector<std::size_t> choice_;
     std::vector<char> best_used_;

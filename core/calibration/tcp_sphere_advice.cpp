@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/calibration/pose_set.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright::tcp_sphere {
 namespace {
@@ -49,16 +50,15 @@ Determination determination(const Matrix10& information, const Model& model,
     const Matrix10 basis = scaled_basis(model, working_point_sensor);
     const Matrix10 scaled = basis.transpose() * information * basis;
     const Eigen::Index n = radius_free ? 10 : 9;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled.topLeftCorner(n, n));
+    const SymmetricEigen eigen = symmetric_eigen(scaled.topLeftCorner(n, n));
     Determination result;
-    result.weakest_direction.head(n) = eigen.eigenvectors().col(0);
-    const double floor = 1e-14 * std::max(eigen.eigenvalues()[n - 1], 1e-300);
-    const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(floor).cwiseInverse();
+    result.weakest_direction.head(n) = eigen.vectors.col(0);
+    const double floor = 1e-14 * std::max(eigen.values[n - 1], 1e-300);
+    const Eigen::VectorXd inverse = eigen.values.cwiseMax(floor).cwiseInverse();
     result.weakest =
-        eigen.eigenvalues()[0] > floor ? std::sqrt(inverse[0]) : std::numeric_limits<double>::infinity();
+        eigen.values[0] > floor ? std::sqrt(inverse[0]) : std::numeric_limits<double>::infinity();
     Matrix10 scaled_inverse = Matrix10::Zero();
-    scaled_inverse.topLeftCorner(n, n) =
-        eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+    scaled_inverse.topLeftCorner(n, n) = eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose();
     result.inverse = basis * scaled_inverse * basis.transpose();
     return result;
 }
@@ -218,7 +218,7 @@ std::vector<PoseProposal> propose_poses(const std::vector<Section>& sections, co
             Matrix10 scaled = basis.transpose() * total * basis;
             if (!radius_free) scaled(9, 9) += 1e12;
             scaled.diagonal().array() += 1e-8;
-            return scaled.inverse().trace();
+            return inverse_matrix(scaled).trace();
         };
         const View* best = nullptr;
         double best_worth = std::numeric_limits<double>::infinity();

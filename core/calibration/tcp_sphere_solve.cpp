@@ -1,13 +1,13 @@
 #include "core/calibration/tcp_sphere_solve.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "core/calibration/statistics.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright::tcp_sphere {
 namespace {
@@ -48,7 +48,7 @@ Vector10 damped_step(const Matrix10& information, const Vector10& gradient, doub
     const Vector10 scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
     h = scale.asDiagonal() * h * scale.asDiagonal();
     h.diagonal().array() += lambda + 1e-13;
-    return -(scale.asDiagonal() * h.ldlt().solve(scale.asDiagonal() * g));
+    return -(scale.asDiagonal() * solve_symmetric(h, scale.asDiagonal() * g));
 }
 
 // Residual and Jacobian of root (v - best).
@@ -136,7 +136,7 @@ Model start_for_axis(const std::vector<Section>& sections, const Eigen::Vector3d
         const Vector7 scale = h.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
         h = scale.asDiagonal() * h * scale.asDiagonal();
         h.diagonal().array() += 1e-9;
-        solution = scale.asDiagonal() * h.ldlt().solve(scale.asDiagonal() * g);
+        solution = scale.asDiagonal() * solve_symmetric(h, scale.asDiagonal() * g);
         for (size_t i = 0; i < sections.size(); ++i) {
             if (!sections[i].used) continue;
             rows(sections[i], a, right);
@@ -464,8 +464,9 @@ NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& mode
         used += 1;
         // A centre error d shows as d^T G d, less what the common parameters take up: J^T G d moves them.
         const Eigen::Matrix3d g = information_on_centre(section, model);
-        const Matrix3x10 j = centre_jacobian(section, model);
-        absorbed += g.trace() - (g * j * inverse_information * j.transpose() * g).trace();
+        const Matrix3x10 gj = g * centre_jacobian(section, model);
+        const Matrix3x10 taken = gj * inverse_information;
+        absorbed += g.trace() - taken.cwiseProduct(gj).sum();
     }
     noise.point_variance = own / std::max(1.0, own_freedom);
     noise.redundancy = 3 * used - (radius_free ? 10 : 9);

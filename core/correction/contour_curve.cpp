@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "core/correction/contour_fit.h"
 #include "core/correction/correction.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -37,9 +37,9 @@ PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> 
     double robust = 0;
     for (int round = 0; round < 30; ++round) {
         const Eigen::VectorXd root = weight.cwiseSqrt();
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() * a);
-        if (qr.rank() < order + 1) return out;
-        const Eigen::VectorXd next = qr.solve(root.cwiseProduct(value));
+        const LeastSquares solved = least_squares(root.asDiagonal() * a, root.cwiseProduct(value));
+        if (solved.rank < order + 1) return out;
+        const Eigen::VectorXd next = solved.x;
         const bool settled = round > 0 && (next - c).norm() <= 1e-12 * (1 + c.norm());
         c = next;
         residual = value - a * c;
@@ -68,15 +68,15 @@ PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> 
         b.row(i) = a.row(kept[static_cast<std::size_t>(i)]);
         w[i] = value[kept[static_cast<std::size_t>(i)]];
     }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(b);
-    if (qr.rank() < order + 1) return out;
-    c = qr.solve(w);
+    const LeastSquares solved = least_squares(b, w);
+    if (solved.rank < order + 1) return out;
+    c = solved.x;
     const double sum = (w - b * c).squaredNorm();
     out.used = static_cast<int>(m);
     out.degrees = static_cast<int>(m) - order - 1;
     out.sum_squares = sum;
     out.sigma = out.degrees > 0 ? std::sqrt(sum / out.degrees) : 0;
-    const Eigen::MatrixXd inverse = (b.transpose() * b).inverse();
+    const Eigen::MatrixXd inverse = inverse_matrix(b.transpose() * b);
     double power = 1;
     for (int k = 0; k <= order; ++k, power *= scale) {
         out.coefficient[static_cast<std::size_t>(k)] = c[k] / power;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "core/correction/region_system.h"
+#include "core/geometry/decompositions.h"
 
 namespace seamwright::correction {
 namespace {
@@ -46,8 +46,8 @@ Columns nice_basis(Columns span) {
     for (Eigen::Index k = 0; k < wanted && out.cols() < wanted; ++k) {
         Columns rest = span;
         if (out.cols() > 0) {
-            const Eigen::JacobiSVD<Columns> svd(out, Eigen::ComputeThinU);
-            rest -= svd.matrixU() * (svd.matrixU().transpose() * span);
+            const Columns taken = singular_values(out).u;
+            rest -= taken * (taken.transpose() * span);
         }
         Eigen::Index best;
         rest.colwise().norm().maxCoeff(&best);
@@ -74,22 +74,20 @@ std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<do
                                          const Eigen::Vector3d& centroid, double spread) {
     std::vector<std::string> words;
     if (xi.cols() == 0) return words;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> span(xi, Eigen::ComputeThinU);
-    const Eigen::MatrixXd& u = span.matrixU();
+    const Eigen::MatrixXd u = singular_values(xi).u;
     // Combinations ordered by how much rotation they hold; the last ones are translations.
-    const Eigen::JacobiSVD<Eigen::MatrixXd> parts(u.bottomRows(3), Eigen::ComputeFullV);
+    const SingularValues parts = singular_values(u.bottomRows(3));
     Eigen::Index turning = 0;
-    for (Eigen::Index k = 0; k < parts.singularValues().size(); ++k)
-        turning += parts.singularValues()[k] > kTranslationShare;
-    const Eigen::MatrixXd ordered = u * parts.matrixV();
+    for (Eigen::Index k = 0; k < parts.values.size(); ++k) turning += parts.values[k] > kTranslationShare;
+    const Eigen::MatrixXd ordered = u * parts.v;
 
     Columns pure(3, 0);
     if (turning < u.cols()) {
         const Columns translations = ordered.topRows(3).rightCols(u.cols() - turning);
-        const Eigen::JacobiSVD<Columns> svd(translations, Eigen::ComputeThinU);
+        const SingularValues svd = singular_values(translations);
         Eigen::Index rank = 0;
-        for (Eigen::Index k = 0; k < svd.singularValues().size(); ++k) rank += svd.singularValues()[k] > 1e-3;
-        pure = svd.matrixU().leftCols(rank);
+        for (Eigen::Index k = 0; k < svd.values.size(); ++k) rank += svd.values[k] > 1e-3;
+        pure = svd.u.leftCols(rank);
         const Columns named = nice_basis(pure);
         for (Eigen::Index k = 0; k < named.cols(); ++k)
             words.push_back("translation along " + axis_words(named.col(k)));
@@ -98,11 +96,10 @@ std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<do
 
     const Columns v = ordered.topRows(3).leftCols(turning);              // motion of the centroid, mm
     const Columns w = ordered.bottomRows(3).leftCols(turning) / spread;  // rad
-    const Eigen::JacobiSVD<Columns> axes(w, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Columns named = nice_basis(axes.matrixU());
+    const Columns named = nice_basis(singular_values(w).u);
     for (Eigen::Index k = 0; k < named.cols(); ++k) {
         const Eigen::Vector3d axis = tidy(named.col(k)).normalized();
-        const Eigen::VectorXd mix = axes.solve(axis);
+        const Eigen::VectorXd mix = least_squares(w, axis).x;
         const Eigen::Vector3d turn = w * mix;  // about 1 rad about the axis
         Eigen::Vector3d move = v * mix;
         move -= pure * (pure.transpose() * move);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/decompositions.h"
+
 namespace seamwright {
 namespace {
 
@@ -35,9 +37,8 @@ Expected<void> check(std::span<const PathPoint> points, std::span<const PathRegi
         if (!rigid) return tl::unexpected(rigid.error());
         const Matrix6& c = regions[r].covariance;
         if (!c.allFinite()) return input_error("the covariance holds a value that is not finite", where);
-        const Eigen::SelfAdjointEigenSolver<Matrix6> solver(c, Eigen::EigenvaluesOnly);
-        if (!c.isApprox(c.transpose(), 1e-9) ||
-            solver.eigenvalues().minCoeff() < -1e-9 * std::max(1.0, solver.eigenvalues().maxCoeff()))
+        const Eigen::VectorXd values = symmetric_eigen(c).values;
+        if (!c.isApprox(c.transpose(), 1e-9) || values[0] < -1e-9 * std::max(1.0, values[5]))
             return input_error("the covariance is not symmetric and positive", where);
     }
     bool any = false;

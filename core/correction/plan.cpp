@@ -111,9 +111,7 @@ std::string axis_name(Eigen::Vector3d v) {
 // A spot whose sensor's Y runs along `edge`, X and Z observed.
 SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector3d& edge, double sigma) {
     SpotObservation s;
-    s.workobject_from_sensor = make_pose(
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), edge.normalized()).toRotationMatrix(),
-        position);
+    s.workobject_from_sensor = make_pose(rotation_between(Eigen::Vector3d::UnitY(), edge), position);
     s.sigma_mm = sigma;
     return s;
 }

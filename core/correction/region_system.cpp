@@ -1,16 +1,13 @@
 #include "core/correction/region_system.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/decompositions.h"
 #include "core/geometry/notation.h"
 
 namespace seamwright::correction {
 namespace {
-
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
 // Smallest ratio of eigenvalues of the information (in xi) that counts as regular.
 constexpr double kSingular = 1e-13;
@@ -328,8 +325,7 @@ Observability RegionSystem::observability(const Linearization& lin, const State&
     // eta = xi over its limit: a direction is weak when its sigma in eta exceeds 1.
     const Vector6 to_eta = per_limit();
     const Spread s = spread(lin, state);
-    Square m(free_count_, free_count_), h(free_count_, free_count_);
-    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> b(6, free_count_);
+    Eigen::MatrixXd b(6, free_count_);
     {
         const Matrix6 all = xi_from_parameters(state);
         for (int i = 0, k = 0; i < 6; ++i) {
@@ -337,31 +333,30 @@ Observability RegionSystem::observability(const Linearization& lin, const State&
         }
     }
     const Vector6 to_xi = to_eta.cwiseInverse();
-    m = b.transpose() * b;
+    const Eigen::MatrixXd m = b.transpose() * b;
     const Matrix6 information = to_xi.asDiagonal() * lin.information * to_xi.asDiagonal();  // in eta
     // Basis of the free space, orthonormal in eta.
-    const Eigen::SelfAdjointEigenSolver<Square> basis(m);
-    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> q = b * basis.eigenvectors();
+    Eigen::MatrixXd q = b * symmetric_eigen(m).vectors;
     for (int k = 0; k < free_count_; ++k) q.col(k).normalize();
     // Re-orthogonalised: the metric may be ill-conditioned when the origin lies far from the spots.
     for (int k = 0; k < free_count_; ++k) {
         for (int j = 0; j < k; ++j) q.col(k) -= q.col(j).dot(q.col(k)) * q.col(j);
         q.col(k).normalize();
     }
-    Square sigma_squared(free_count_, free_count_);
-    Eigen::SelfAdjointEigenSolver<Square> eigen;
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> sigma(free_count_);
+    SymmetricEigen eigen;
+    Vector6 sigma;
     if (s.regular) {
-        sigma_squared = q.transpose() * (to_eta.asDiagonal() * s.covariance * to_eta.asDiagonal()) * q;
-        eigen.compute(sigma_squared);
+        const Eigen::MatrixXd sigma_squared =
+            q.transpose() * (to_eta.asDiagonal() * s.covariance * to_eta.asDiagonal()) * q;
+        eigen = symmetric_eigen(sigma_squared);
         for (int k = 0; k < free_count_; ++k)
-            sigma[k] = inflation * std::sqrt(std::max(0.0, eigen.eigenvalues()[k]));
+            sigma[k] = inflation * std::sqrt(std::max(0.0, eigen.values[k]));
     } else {
-        h = q.transpose() * information * q;
-        eigen.compute(h);
-        const double largest = std::max(0.0, eigen.eigenvalues()[free_count_ - 1]);
+        const Eigen::MatrixXd h = q.transpose() * information * q;
+        eigen = symmetric_eigen(h);
+        const double largest = std::max(0.0, eigen.values[free_count_ - 1]);
         for (int k = 0; k < free_count_; ++k) {
-            const double lambda = eigen.eigenvalues()[k];
+            const double lambda = eigen.values[k];
             const bool none = !(lambda > 1e-10 * largest) || largest == 0;
             out.singular = out.singular || none;
             sigma[k] = none ? std::numeric_limits<double>::infinity() : inflation / std::sqrt(lambda);
@@ -374,7 +369,7 @@ Observability RegionSystem::observability(const Linearization& lin, const State&
     out.weak.resize(6, 0);
     double worst = -1;
     for (int k = 0; k < free_count_; ++k) {
-        const Vector6 xi = to_xi.asDiagonal() * (q * eigen.eigenvectors().col(k));
+        const Vector6 xi = to_xi.asDiagonal() * (q * eigen.vectors.col(k));
         const double length = xi.norm();
         if (sigma[k] > worst) {
             worst = sigma[k];
@@ -399,21 +394,17 @@ void RegionSystem::outer(const Matrix6& covariance_xi, const State& state, Matri
     Eigen::Matrix3d to_abc = Eigen::Matrix3d::Zero();
     if (by_angles_) {
         // Only the free angles' columns of d(w)/d(A, B, C), so that fixed ones come out as exactly 0.
-        const Eigen::Matrix3d g = rotation_vector_from_abc(state.abc);
-        Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> some(3, 0);
-        std::array<int, 3> which{};
-        for (int i = 0; i < 3; ++i) {
-            if (!options_.free[static_cast<std::size_t>(i + 3)]) continue;
-            which[static_cast<std::size_t>(some.cols())] = i;
-            some.conservativeResize(3, some.cols() + 1);
-            some.col(some.cols() - 1) = g.col(i);
-        }
-        if (some.cols() > 0) {
-            const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> pseudo =
-                (some.transpose() * some).ldlt().solve(some.transpose());
-            for (int k = 0; k < some.cols(); ++k)
-                to_abc.row(which[static_cast<std::size_t>(k)]) = pseudo.row(k);
-        }
+        Eigen::Matrix3d g = rotation_vector_from_abc(state.abc);
+        Eigen::Matrix3d square = Eigen::Matrix3d::Identity();
+        for (int i = 0; i < 3; ++i)
+            if (!options_.free[static_cast<std::size_t>(i + 3)]) g.col(i).setZero();
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < i; ++k) square(i, k) = square(k, i) = g.col(i).dot(g.col(k));
+        // Unit axes: the determinant is near 0 in the gimbal lock alone.
+        if (square.determinant() > 1e-9)
+            to_abc = square.inverse() * g.transpose();
+        else
+            to_abc = least_squares(g, Eigen::Matrix3d::Identity()).x;
     } else {
         // Closed form of kuka_jacobian away from the gimbal lock: the axes of A, B, C are Z, the turned Y,
         // and R X.

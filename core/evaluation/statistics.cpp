@@ -1,10 +1,12 @@
 #include "core/evaluation/statistics.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 
@@ -36,7 +38,7 @@ double nees(const Vector6& error, const Matrix6& covariance) {
     const Vector6 scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
     const Matrix6 correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
     const Vector6 d = scale.asDiagonal() * error;
-    return d.dot(correlation.ldlt().solve(d));
+    return d.dot(Vector6(solve_symmetric(correlation, d)));
 }
 
 Eigen::Matrix2d landmark_bound(std::span<const Eigen::Vector2d> points,
@@ -50,9 +52,9 @@ Eigen::Matrix2d landmark_bound(std::span<const Eigen::Vector2d> points,
         const Eigen::Vector3d row(n.x(), n.y(), lever.x() * n.y() - lever.y() * n.x());
         information += row * row.transpose() / (sigma_mm * sigma_mm);
     }
-    const Eigen::FullPivLU<Eigen::Matrix3d> lu(information);
-    if (!lu.isInvertible()) return Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
-    return lu.inverse().topLeftCorner<2, 2>();
+    const LeastSquares inverse = least_squares(information, Eigen::Matrix3d::Identity());
+    if (inverse.rank < 3) return Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    return inverse.x.topLeftCorner<2, 2>();
 }
 
 Matrix6 displacement_bound(std::span<const SpotObservation> spots,
@@ -70,7 +72,7 @@ Matrix6 displacement_bound(std::span<const SpotObservation> spots,
     }
     const Vector6 scale = information.diagonal().cwiseSqrt().cwiseInverse();
     const Matrix6 scaled = scale.asDiagonal() * information * scale.asDiagonal();
-    return scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+    return scale.asDiagonal() * inverse_matrix(scaled) * scale.asDiagonal();
 }
 
 double mean_square_at_spots(std::span<const SpotObservation> spots, const Matrix6& covariance) {

@@ -261,7 +261,8 @@ class CircleFinder final : public FeatureFinder {
             feature.message = fmt::format("the radius of {:.3g} mm is not within the limits", circle.radius);
             return feature;
         }
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(feature.covariance_mm2);
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+        eigen.computeDirect(feature.covariance_mm2);
         const double worst = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
         double arc = 0;
         longest_run(circle, std::max(gate, 1e-9), arc);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/geometry/decompositions.h"
+
 namespace seamwright {
 namespace {
 
@@ -44,7 +46,7 @@ Eigen::Matrix3d kuka_jacobian(const Eigen::Matrix3d& r) {
     m.col(0) = Eigen::Vector3d::UnitZ();
     m.col(1) = ra * Eigen::Vector3d::UnitY();
     m.col(2) = ra * rb * Eigen::Vector3d::UnitX();
-    return m.completeOrthogonalDecomposition().pseudoInverse();
+    return least_squares(m, Eigen::Matrix3d::Identity()).x;
 }
 
 Eigen::Matrix3d rotation_from_fanuc(const FanucWpr& wpr) {

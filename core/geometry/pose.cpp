@@ -56,6 +56,18 @@ Eigen::Vector3d rotation_log(const Eigen::Matrix3d& r) {
     return q.vec() * (2.0 * std::atan2(s, q.w()) / s);
 }
 
+Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    // A half turn about `from`, then one about the middle of both.
+    const Eigen::Vector3d a = from.normalized(), b = to.normalized(), across = a - b;
+    Eigen::Vector3d middle = a + b;
+    if (across.squaredNorm() > 2)  // of a short sum only what is square to the difference keeps its digits
+        middle -= across.dot(middle) / across.squaredNorm() * across;
+    middle = middle.norm() > 1e-12 ? middle.normalized() : a.unitOrthogonal();
+    const Eigen::Matrix3d first = 2 * a * a.transpose() - Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d second = 2 * middle * middle.transpose() - Eigen::Matrix3d::Identity();
+    return second * first;
+}
+
 Pose make_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_mm) {
     Pose p = Pose::Identity();
     p.linear() = rotation;
@@ -98,7 +110,7 @@ Matrix6 covariance_of_product(const Pose& a_from_b, const Matrix6& cov_ab, const
 Pose interpolate(const Pose& a, const Pose& b, double s) {
     const Pose d = a.inverse() * b;
     const Eigen::Vector3d w = rotation_log(d.linear());
-    const Eigen::Vector3d v = left_jacobian(w).partialPivLu().solve(d.translation());
+    const Eigen::Vector3d v = left_jacobian(w).inverse() * d.translation();
     return a * make_pose(rotation_exp(s * w), left_jacobian(s * w) * (s * v));
 }
 

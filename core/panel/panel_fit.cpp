@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "core/correction/region_system.h"
+#include "core/geometry/decompositions.h"
 #include "core/geometry/notation.h"
 
 namespace seamwright {
@@ -66,7 +67,7 @@ Response respond(std::span<const SpotObservation> spots, const std::vector<SpotR
     // Scaled to a unit diagonal: mm and rad.
     const Vector6 scale = information.diagonal().cwiseSqrt().cwiseInverse();
     const Matrix6 scaled = scale.asDiagonal() * information * scale.asDiagonal();
-    out.gain = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * weighted.transpose());
+    out.gain = scale.asDiagonal() * solve_symmetric(scaled, scale.asDiagonal() * weighted.transpose());
     return out;
 }
 
@@ -108,19 +109,18 @@ void judge(std::span<const SpotObservation> spots, const PanelOptions& options, 
     to_xi.topRightCorner<3, 3>() = -skew(fit.gripper_motion.linear() * centroid);
     to_xi.bottomRightCorner<3, 3>() *= spread;
     const Matrix6 xi = to_xi * fit.covariance * to_xi.transpose();
-    fit.sigma_at_spots_mm =
-        std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Matrix6>(xi).eigenvalues()[5]));
+    fit.sigma_at_spots_mm = std::sqrt(std::max(0.0, symmetric_eigen(xi).values[5]));
     const double limit_rotation =
         std::min(options.sigma_limit_mm, rad_from_deg(options.sigma_limit_deg) * spread);
     Vector6 limit;
     limit << Eigen::Vector3d::Constant(options.sigma_limit_mm), Eigen::Vector3d::Constant(limit_rotation);
     const Vector6 per = limit.cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eta(per.asDiagonal() * xi * per.asDiagonal());
+    const SymmetricEigen eta = symmetric_eigen(per.asDiagonal() * xi * per.asDiagonal());
     Eigen::Matrix<double, 6, Eigen::Dynamic> weak(6, 0);
     for (int k = 0; k < 6; ++k) {
-        if (eta.eigenvalues()[k] <= 1) continue;
+        if (eta.values[k] <= 1) continue;
         weak.conservativeResize(6, weak.cols() + 1);
-        weak.col(weak.cols() - 1) = (limit.asDiagonal() * eta.eigenvectors().col(k)).normalized();
+        weak.col(weak.cols() - 1) = (limit.asDiagonal() * eta.vectors.col(k)).normalized();
     }
     observable = weak.cols() == 0;
     if (!observable) fit.unobservable = correction::name_directions(weak, centroid, spread);

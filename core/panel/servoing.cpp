@@ -1,9 +1,10 @@
 #include "core/panel/servoing.h"
 
-#include <Eigen/SVD>
 #include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "core/geometry/decompositions.h"
 
 namespace seamwright {
 namespace {
@@ -31,14 +32,12 @@ Sensitivity learn_sensitivity(const ServoValues& values, const ServoingOptions& 
         out.matrix.col(i) = change / (2 * scale[i]);
         out.moves += 2;
     }
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(out.matrix * scale.asDiagonal(),
-                                                Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Eigen::VectorXd& s = svd.singularValues();
+    const SingularValues svd = singular_values(out.matrix * scale.asDiagonal());
+    const Eigen::VectorXd& s = svd.values;
     out.condition = s.size() == 6 && s[5] > 0 ? s[0] / s[5] : std::numeric_limits<double>::infinity();
     out.usable = out.condition <= options.condition_limit;
     if (out.usable)
-        out.pseudo_inverse =
-            scale.asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+        out.pseudo_inverse = scale.asDiagonal() * svd.v * s.cwiseInverse().asDiagonal() * svd.u.transpose();
     return out;
 }
 

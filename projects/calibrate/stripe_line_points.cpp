@@ -1,8 +1,8 @@
 #include "projects/calibrate/stripe_line_points.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 
+#include "core/geometry/decompositions.h"
 #include "core/profile/filter.h"
 
 namespace seamwright {
@@ -38,7 +38,7 @@ std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points) {
             a.row(i) << 1, u, u * u;
             v(i) = p.y();
         }
-        const Eigen::VectorXd off = (v - a * a.colPivHouseholderQr().solve(v)).cwiseAbs();
+        const Eigen::VectorXd off = (v - a * least_squares(a, v).x).cwiseAbs();
         std::vector<double> sorted(off.begin(), off.end());
         std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                          sorted.end());

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
 
+#include "core/geometry/decompositions.h"
 #include "devices/simulated/profile_cut.h"
 
 namespace seamwright::cli {
@@ -117,10 +118,10 @@ Growth growth_along(const std::vector<EvaluationTrial>& trials, std::size_t axis
     }
     const auto left_by = [&](Eigen::Index terms) {
         const Eigen::MatrixXd a = powers.leftCols(terms);
-        return (deviation - a * a.colPivHouseholderQr().solve(deviation)).squaredNorm();
+        return (deviation - a * least_squares(a, deviation).x).squaredNorm();
     };
     const double about_mean = left_by(1), straight = left_by(2), bent = left_by(4);
-    const Eigen::MatrixXd line = powers.leftCols(2).colPivHouseholderQr().solve(deviation);
+    const Eigen::MatrixXd line = least_squares(powers.leftCols(2), deviation).x;
     out.slope_mm_per_mm = std::sqrt(line.row(1).squaredNorm() / static_cast<double>(coordinates)) / reach;
     if (about_mean > 0) {
         out.linear_share = 1 - straight / about_mean;

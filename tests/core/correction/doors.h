@@ -44,7 +44,7 @@ inline std::vector<SpotObservation> door(Rng& rng, int spots,
         s.id = fmt::format("S{}", n + 1);
         s.reference_mm = Eigen::Vector3d(uniform(rng, -20, 20), 0, uniform(rng, -15, 15));
         const Eigen::Matrix3d r =
-            Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), edge).toRotationMatrix() *
+            rotation_between(Eigen::Vector3d::UnitY(), edge) *
             Eigen::AngleAxisd(uniform(rng, -kPi, kPi), Eigen::Vector3d::UnitY()).toRotationMatrix();
         s.workobject_from_sensor = make_pose(r, offset + p - r * s.reference_mm);
         out.push_back(s);
@@ -91,8 +91,7 @@ inline SpotObservation spot(const std::string& id, const Eigen::Vector3d& positi
                             const Eigen::Vector3d& edge) {
     SpotObservation s;
     s.id = id;
-    s.workobject_from_sensor = make_pose(
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), edge).toRotationMatrix(), position);
+    s.workobject_from_sensor = make_pose(rotation_between(Eigen::Vector3d::UnitY(), edge), position);
     return s;
 }
 

@@ -36,6 +36,22 @@ TEST(Rotation, ExpAgreesWithAngleAxis) {
     }
 }
 
+TEST(Rotation, BetweenTwoDirectionsIsTheSmallest) {
+    std::mt19937 rng(3);
+    std::normal_distribution<double> n;
+    for (int i = 0; i < 200; ++i) {
+        const Eigen::Vector3d a = Eigen::Vector3d(n(rng), n(rng), n(rng)).normalized();
+        Eigen::Vector3d b = Eigen::Vector3d(n(rng), n(rng), n(rng)).normalized();
+        if (i % 4 == 0) b = (-a + std::pow(10.0, -i / 10) * b).normalized();
+        if (i % 4 == 1) b = i % 8 == 1 ? a : Eigen::Vector3d(-a);
+        const Eigen::Matrix3d r = rotation_between(3 * a, 0.2 * b);
+        EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_NEAR(r.determinant(), 1, 1e-14);
+        EXPECT_LT((r * a - b).norm(), 1e-12);
+        EXPECT_NEAR(rotation_log(r).norm(), 2 * std::atan2((b - a).norm(), (b + a).norm()), 1e-12);
+    }
+}
+
 TEST(Tangent, RetractAndDifferenceAreInverse) {
     std::mt19937 rng(1);
     for (int i = 0; i < 200; ++i) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/geometry/decompositions.h"
+
 namespace seamwright {
 namespace {
 
@@ -99,7 +101,7 @@ TEST(PanelFit, StatedSigmaHoldsForEveryDegreeOfFreedom) {
         const Vector6 off = difference(fit->gripper_motion, truth);
         for (int i = 0; i < 6; ++i)
             inside[i] += std::abs(off[i]) <= 1.959964 * std::sqrt(fit->covariance(i, i));
-        nees += off.dot(fit->covariance.ldlt().solve(off));
+        nees += off.dot(Vector6(solve_symmetric(fit->covariance, off)));
     }
     for (int i = 0; i < 6; ++i) EXPECT_NEAR(inside[i] / kTrials, 0.95, 0.02) << "dof " << i;
     // Mean of kTrials chi-square values with six degrees: sigma sqrt(12 / kTrials).
@@ -177,7 +179,7 @@ TEST(PanelFit, ResidualIsTheDeformationThatNoMotionRemoves) {
             j.row(row) << axis.transpose(), at.cross(axis).transpose();
             d[row] = deformation[n][2 * k];
         }
-    const Eigen::VectorXd left = d - j * j.colPivHouseholderQr().solve(d);
+    const Eigen::VectorXd left = d - j * least_squares(j, d).x;
     for (std::size_t n = 0; n < spots.size(); ++n) {
         EXPECT_NEAR(fit->spots[n].residual_mm.x(), left[static_cast<Eigen::Index>(2 * n)], 0.005);
         EXPECT_NEAR(fit->spots[n].residual_mm.z(), left[static_cast<Eigen::Index>(2 * n) + 1], 0.005);

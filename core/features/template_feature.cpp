@@ -12,6 +12,12 @@
 namespace seamwright {
 namespace {
 
+// A reflection that runs beside the contour for a good part of it, brighter than it, is followed by the
+// filter and can carry the template along, millimetres off: then part of the template has no partner, and the
+// rest misfits by a multiple of the noise. Either alone is common (a part seen in part, a part of another
+// shape).
+constexpr double kWholeShare = 0.8, kMostMisfit = 3;
+
 std::vector<ParameterInfo> template_parameters() {
     return {
         {"window_dx_mm", "mm", 0, 1000, 10, 2, "How far along x the contour may have moved, +-."},
@@ -56,6 +62,12 @@ class TemplateFeature final : public FeatureFinder {
         if (feature.status == FeatureStatus::ok && r.inlier_share < minimum_share_) {
             feature.status = FeatureStatus::not_found;
             feature.message = "less of the template is seen than required";
+            return feature;
+        }
+        if (feature.status == FeatureStatus::ok && r.inlier_share < kWholeShare &&
+            r.rms_mm > kMostMisfit * r.noise_mm) {
+            feature.status = FeatureStatus::not_found;
+            feature.message = "the template is seen in part only, and that has another shape: a reflection?";
             return feature;
         }
         feature.point_mm = r.scene_from_template * reference_;

@@ -154,6 +154,8 @@ class Teacher {
             ASSERT_TRUE(me_.wait([&] { return !desk_.worker().busy(); }));
             QApplication::processEvents();
             if (me_.text_of("align_verdict") == "FROZEN") break;
+            // A reflection in one of the pass's frames looks so: a person runs it again.
+            if (me_.text_of("align_verdict") == "SHAPE CHANGES") continue;
             ASSERT_EQ(me_.text_of("align_verdict"), "DRIFTING") << me_.text_of("align_numbers").toStdString();
             me_.picture(QString("06_drifting_%1_%2").arg(k + 1).arg(turn));
             me_.click("adopt_pose");
@@ -314,15 +316,17 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
             << me.text_of("plan_verdict").toStdString();
         me.picture("07_region");
 
-        // Zero shift. A region that does not read zero is taught again, as the page says; when, is printed.
-        for (int attempt = 0; attempt < 2; ++attempt) {
+        // Zero shift. A region that does not read zero is taught again, runs of which one was refused (a
+        // reflection) are repeated, as the page says; when, is printed.
+        for (int attempt = 0; attempt < 3; ++attempt) {
             me.step(6);
             me.click("start_zero");
             ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));
             ASSERT_TRUE(QTest::qWaitFor([&] { return !desk.worker().busy(); }, 3 * kPatienceMs));
             QTest::qWait(100);
-            if (attempt == 1 || item(CheckStep::zero_shift).done()) break;
-            std::cout << "taught again: " << item(CheckStep::zero_shift).why.in(Language::english) << "\n";
+            if (attempt == 2 || item(CheckStep::zero_shift).done()) break;
+            std::cout << "zero shift again: " << item(CheckStep::zero_shift).why.in(Language::english)
+                      << "\n";
             const std::vector<RunSummary> zero_runs = desk.runs().value();
             for (const RunSummary& summary : zero_runs) {
                 const RunRecord run = desk.run(summary.number).value();
@@ -335,6 +339,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
                               << m.feature.rms_mm << "\n";
                 }
             }
+            if (std::get<ZeroShift>(newest<ZeroShift>(desk.facts())->what).refused > 0) continue;
             for (std::size_t k = 0; k < desk.project().spots.size(); ++k) {
                 teacher.by_template(k);
                 if (HasFatalFailure()) return;

@@ -2406,6 +2406,154 @@
         <translation>die Referenz noch einmal messen</translation>
     </message>
     <message>
+        <source>less of the template is seen than required</source>
+        <translation>es ist weniger von der Vorlage zu sehen als gefordert</translation>
+    </message>
+    <message>
+        <source>no round piece of contour in the window</source>
+        <translation>kein rundes Stück Kontur im Fenster</translation>
+    </message>
+    <message>
+        <source>no stripe was found in the image</source>
+        <translation>im Bild wurde kein Streifen gefunden</translation>
+    </message>
+    <message>
+        <source>no surface in the window</source>
+        <translation>keine Fläche im Fenster</translation>
+    </message>
+    <message>
+        <source>only one surface in the window: the contour is not broken by a gap</source>
+        <translation>nur eine Fläche im Fenster: die Kontur ist von keinem Spalt unterbrochen</translation>
+    </message>
+    <message>
+        <source>the contour has no smooth extremum there, it ends or has an edge</source>
+        <translation>die Kontur hat dort kein glattes Extremum, sie endet oder hat eine Kante</translation>
+    </message>
+    <message>
+        <source>the contour is flat there: no bow is seen above the noise</source>
+        <translation>die Kontur ist dort eben: über dem Rauschen ist kein Bogen zu sehen</translation>
+    </message>
+    <message>
+        <source>the contour may slide along itself: the template needs an edge or a bend</source>
+        <translation>die Kontur kann auf sich selbst gleiten: die Vorlage braucht eine Kante oder einen Bogen</translation>
+    </message>
+    <message>
+        <source>the contour runs on beyond the window on that side</source>
+        <translation>die Kontur läuft auf dieser Seite über das Fenster hinaus weiter</translation>
+    </message>
+    <message>
+        <source>the contour runs on without a gap</source>
+        <translation>die Kontur läuft ohne Spalt weiter</translation>
+    </message>
+    <message>
+        <source>the frame holds neither a profile nor an image</source>
+        <translation>die Aufnahme enthält weder ein Profil noch ein Bild</translation>
+    </message>
+    <message>
+        <source>the points before the end do not form a line</source>
+        <translation>die Punkte vor dem Ende bilden keine Gerade</translation>
+    </message>
+    <message>
+        <source>the points do not form two lines</source>
+        <translation>die Punkte bilden keine zwei Geraden</translation>
+    </message>
+    <message>
+        <source>the sensor delivers images and its calibration holds no model</source>
+        <translation>der Sensor liefert Bilder, und seine Kalibrierung enthält kein Modell</translation>
+    </message>
+    <message>
+        <source>the sensor&apos;s own tool has found nothing</source>
+        <translation>das Werkzeug des Sensors hat nichts gefunden</translation>
+    </message>
+    <message>
+        <source>the template fits at two places about equally well</source>
+        <translation>die Vorlage passt an zwei Stellen etwa gleich gut</translation>
+    </message>
+    <message>
+        <source>the template is not in the profile, or not within the search window</source>
+        <translation>die Vorlage ist nicht im Profil, oder nicht im Suchfenster</translation>
+    </message>
+    <message>
+        <source>the template is seen in part only, and that has another shape: a reflection?</source>
+        <translation>von der Vorlage ist nur ein Teil zu sehen, und der hat eine andere Form: eine Reflexion?</translation>
+    </message>
+    <message>
+        <source>the two lines meet far away from the points</source>
+        <translation>die beiden Geraden treffen sich weit weg von den Punkten</translation>
+    </message>
+    <message>
+        <source>the two surfaces stand across each other: flush has no meaning</source>
+        <translation>die beiden Flächen stehen quer zueinander: Bündigkeit hat keinen Sinn</translation>
+    </message>
+    <message>
+        <source>too few points for the template</source>
+        <translation>zu wenige Punkte für die Vorlage</translation>
+    </message>
+    <message>
+        <source>too little straight surface beside an edge</source>
+        <translation>zu wenig gerade Fläche neben einer Kante</translation>
+    </message>
+    <message>
+        <source>no segment with %1 points in the window</source>
+        <translation>kein Segment mit %1 Punkten im Fenster</translation>
+    </message>
+    <message>
+        <source>no unbroken piece of %1 points in the window</source>
+        <translation>kein ununterbrochenes Stück von %1 Punkten im Fenster</translation>
+    </message>
+    <message>
+        <source>the radius of %1 mm is not within the limits</source>
+        <translation>der Radius von %1 mm liegt nicht in den Grenzen</translation>
+    </message>
+    <message>
+        <source>the two lines meet at %1 degrees only</source>
+        <translation>die beiden Geraden treffen sich nur unter %1 Grad</translation>
+    </message>
+    <message>
+        <source>what was found lies %1 mm beside the gap&apos;s course</source>
+        <translation>was gefunden wurde, liegt %1 mm neben dem Verlauf des Spalts</translation>
+    </message>
+    <message>
+        <source>%1 points in the window, a circle needs %2</source>
+        <translation>%1 Punkte im Fenster, ein Kreis braucht %2</translation>
+    </message>
+    <message>
+        <source>%1 points in the window, an extremum needs %2</source>
+        <translation>%1 Punkte im Fenster, ein Extremum braucht %2</translation>
+    </message>
+    <message>
+        <source>%1 points left and %2 right of the corner, each line needs %3</source>
+        <translation>%1 Punkte links und %2 rechts der Ecke, jede Gerade braucht %3</translation>
+    </message>
+    <message>
+        <source>%1 points within %2 mm of the extremum, the parabola needs %3</source>
+        <translation>%1 Punkte innerhalb von %2 mm um das Extremum, die Parabel braucht %3</translation>
+    </message>
+    <message>
+        <source>the feature is not a finite point</source>
+        <translation>das Merkmal ist kein endlicher Punkt</translation>
+    </message>
+    <message>
+        <source>the reported pose of the flange is no rigid pose</source>
+        <translation>die gemeldete Pose des Flanschs ist keine starre Pose</translation>
+    </message>
+    <message>
+        <source>the capture holds no profile</source>
+        <translation>die Aufnahme enthält kein Profil</translation>
+    </message>
+    <message>
+        <source>the sensor delivers %1 points, number %2 is meant</source>
+        <translation>der Sensor liefert %1 Punkte, gemeint ist Nummer %2</translation>
+    </message>
+    <message>
+        <source>%1 points in the window, a corner needs %2</source>
+        <translation>%1 Punkte im Fenster, eine Ecke braucht %2</translation>
+    </message>
+    <message>
+        <source>the arc of %1 degrees is too short: the centre is uncertain by %2 mm</source>
+        <translation>der Bogen von %1 Grad ist zu kurz: die Mitte ist um %2 mm unsicher</translation>
+    </message>
+    <message>
         <source>sensor and robot of the simulated cell have different settings</source>
         <translation>Sensor und Roboter der simulierten Zelle haben verschiedene Einstellungen</translation>
     </message>

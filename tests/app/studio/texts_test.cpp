@@ -325,7 +325,10 @@ TEST(Texts, WhatTheLayersBelowRefuseIsInTheList) {
             if (entry.path().extension() != ".cpp" || elsewhere.count(name)) continue;
             std::ostringstream text;
             text << std::ifstream(entry.path()).rdbuf();
-            for (const std::string& piece : error_pieces(text.str())) {
+            std::string source = text.str();
+            if (name.starts_with("core/features/"))  // why a feature is not there
+                source = std::regex_replace(source, std::regex(R"(\bmessage\s*=\s*([^;]*);)"), "refuse($1);");
+            for (const std::string& piece : error_pieces(source)) {
                 if (piece.find("%time") != std::string::npos) continue;  // the sensor's own placeholders
                 ++pieces;
                 EXPECT_NE(listed.find(piece), std::string::npos)

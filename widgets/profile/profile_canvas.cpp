@@ -342,8 +342,8 @@ void ProfileCanvas::paint_marks(QPainter& painter) {
         painter.drawText(box, Qt::AlignCenter, label);
     } else if (feature) {
         painter.setPen(style::alarm(colours));
-        const QString why = feature->message.empty() ? shown_word(to_string(feature->status))
-                                                     : shown_cause(feature->message);
+        const QString why =
+            feature->message.empty() ? shown_word(to_string(feature->status)) : shown_cause(feature->message);
         painter.drawText(QRectF(axisRect()->rect()).adjusted(8, 6, -8, -6), Qt::AlignTop | Qt::AlignLeft,
                          ProfilePlot::tr("no feature: %1").arg(why));
     }

@@ -407,7 +407,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const SearchWin
         }
     }
     result.rms_mm = std::sqrt(mean_r2);
-    result.noise_mm = std::hypot(scene.sigma_mm, model.sigma_mm());
+    result.noise_mm = std::max(std::hypot(scene.sigma_mm, model.sigma_mm()), 0.1 * model.pitch().distance);
     collect_jumps(pose, rating.gate);
     // residual^2 = scene noise^2 + template noise^2 * (variance of its fitted value)
     const double scene_variance =

@@ -34,7 +34,9 @@ struct Registration {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();         // of (dx, dz, phi): mm^2, mm rad, rad^2
     Eigen::Vector2d sliding_direction = Eigen::Vector2d::Zero();  // unit, in the scene; only for `sliding`
     double rms_mm = 0;
-    double noise_mm = 0;      // what rms_mm would be of noise alone, by the differences of neighbours in both
+    // What rms_mm would be of noise alone, by the differences of neighbours in both; at least a tenth of the
+    // template's pitch, which a curve through its points may be off.
+    double noise_mm = 0;
     double inlier_share = 0;  // share of template points with a partner in the scene
     int inliers = 0;          // scene points that the pose rests on
     int iterations = 0;

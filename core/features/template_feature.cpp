@@ -16,7 +16,7 @@ namespace {
 // filter and can carry the template along, millimetres off: then part of the template has no partner, and the
 // rest misfits by a multiple of the noise. Either alone is common (a part seen in part, a part of another
 // shape).
-constexpr double kWholeShare = 0.8, kMostMisfit = 3;
+constexpr double kWholeShare = 0.8, kMostMisfit = 4;
 
 std::vector<ParameterInfo> template_parameters() {
     return {

@@ -182,6 +182,34 @@ TEST(TemplateFeature, CarriesItsReference) {
     EXPECT_NEAR(*f.phi_rad, 0.15, 1e-4);
 }
 
+// Part of the contour in the dark, with and without noise: what is seen lies where it is.
+TEST(TemplateFeature, SeenInPartIsFoundAsLongAsThePartHasItsShape) {
+    FeatureRecipe recipe;
+    recipe.kind = "template";
+    recipe.template_reference_mm = {3, 12};
+    const PlanarMotion truth{2, -3, 0.05};
+    for (const double sigma : {0.0, 1e-4, 0.02}) {
+        SCOPED_TRACE(sigma);
+        Random random(5);
+        std::normal_distribution<double> noise(0, 1);
+        const auto noisy = [&](Profile p) {
+            for (double& z : p.z_mm) z += sigma * noise(random);
+            return p;
+        };
+        recipe.template_profile = noisy(sample(hem(-15, 15), 0.05));
+        const auto finder = make_feature_finder(recipe).value();
+        const Profile all = noisy(sample(hem(-15, 15).moved(truth), 0.05, 0.3));
+        for (const double seen_to : {4.0, 8.0}) {
+            Profile part = all;
+            for (std::size_t i = 0; i < part.size(); ++i)
+                if (part.x_mm[i] > seen_to) part.x_mm[i] = part.z_mm[i] = NAN;
+            const Feature f = finder->find(part);
+            ASSERT_EQ(f.status, FeatureStatus::ok) << f.message << ", up to " << seen_to;
+            EXPECT_LT((f.point_mm - truth * recipe.template_reference_mm).norm(), 0.02 + 2 * sigma);
+        }
+    }
+}
+
 TEST(GapFlush, KnownGapEitherReference) {
     Profile p;
     for (int i = 0; i < 300; ++i) {

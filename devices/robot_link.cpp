@@ -48,12 +48,30 @@ std::string_view to_string(PartVerdict verdict) {
     return "failed";
 }
 
+std::string_view to_string(Permission permission) {
+    switch (permission) {
+        case Permission::none:
+            return "none";
+        case Permission::given:
+            return "given";
+        case Permission::running:
+            return "running";
+        case Permission::taken:
+            return "taken";
+    }
+    return "none";
+}
+
 Expected<StartSignal> RobotLink::wait_start(std::chrono::milliseconds) {
     return usage_error("this robot has no start signal", {}, "start each run by command");
 }
 
 Expected<void> RobotLink::confirm(PartVerdict, const std::string&) {
     return {};
+}
+
+Expected<Permission> RobotLink::permission() {
+    return Permission::taken;
 }
 
 Expected<void> RobotLink::move_to(const Pose&) {

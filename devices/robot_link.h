@@ -34,6 +34,7 @@ std::optional<RobotMode> robot_mode_from_string(std::string_view name);
 // base_from_flange.
 struct MeasuringMove {
     std::string spot_id;
+    std::vector<Pose> via = {};  // passed in this order on the way to the entry, at travelling speed
     Pose entry = Pose::Identity(), trigger = Pose::Identity(), exit = Pose::Identity();
     double speed_mm_s = 100;
     bool stop_at_trigger = false;  // measure standing still
@@ -58,14 +59,24 @@ struct StartSignal {
 enum class PartVerdict { corrected, refused, failed };
 std::string_view to_string(PartVerdict verdict);
 
+// What became of the permission to run the application, as the controller tells it.
+enum class Permission {
+    none,     // not given, or taken back: the application stands
+    given,    // it may begin and has not yet; a lost connection takes the permission back
+    running,  // it runs and needs this connection to its end (corrections in every cycle)
+    taken     // it is the application's until the part ends; a lost connection changes nothing any more
+};
+std::string_view to_string(Permission permission);
+
 // One thread at a time. No call blocks longer than its own or the driver's time-out. Errors are of kind
 // device: a silent controller is one that is_silence() knows. After a lost connection the call that met it
 // fails, and later calls connect anew (backing off between attempts), so a link recovers when its controller
 // does; who answers then is asked by identity(), which is never remembered across connections.
 //
 // A frame that was written counts for the application only after confirm(corrected); a start of measuring, a
-// lost connection and any other verdict take the permission back. So whatever breaks between writing and
-// reading back, no unverified frame is used.
+// lost connection and any other verdict take the permission back, until the application has taken it: then
+// frames and permission are its own to the end of the part. So whatever breaks between writing and reading
+// back, no unverified frame is used, and who ends the link must first see permission() say `taken`.
 class RobotLink {
   public:
     virtual ~RobotLink() = default;
@@ -88,6 +99,9 @@ class RobotLink {
     // Tells the controller how the part ended and waits for its acknowledgement. `text` is for its screen.
     // Nothing happens with a driver that has no such handshake.
     virtual Expected<void> confirm(PartVerdict verdict, const std::string& text);
+    // What became of confirm(corrected). `taken` with a driver that has no such handshake: nothing waits
+    // there.
+    virtual Expected<Permission> permission();
     // Teaching: goes to `base_from_flange` and stands still there. An Error unless the driver can move.
     virtual Expected<void> move_to(const Pose& base_from_flange);
     // What the link has to tell since the last call beside its answers, a sentence each: peers that it

@@ -228,14 +228,37 @@ std::optional<TriggerEvent> SimulatedCell::next_trigger() {
     commanded_ = move.trigger;
     Pose at = arrived(move.trigger);
     const Eigen::Vector3d way = move.exit.translation() - move.entry.translation();
-    if (!move.stop_at_trigger && way.norm() > 1e-6) {
-        Random random(stream_seed(settings_.seed, kJitter, arrivals_));
-        const double half = settings_.robot.trigger_jitter_mm * std::abs(move.speed_mm_s) / 100;
-        at.translation() += way.normalized() * random.uniform(-half, half);
-    }
+    if (!move.stop_at_trigger && way.norm() > 1e-6)
+        at.translation() += trigger_error(way.normalized() * move.speed_mm_s);
     true_ = at;
     if (armed_) expose(move.spot_id, at);
     return TriggerEvent{move.spot_id, now_ns(), move.trigger};
+}
+
+Eigen::Vector3d SimulatedCell::trigger_error(const Eigen::Vector3d& velocity_mm_s) {
+    const double speed = velocity_mm_s.norm();
+    if (speed < 1e-6) return Eigen::Vector3d::Zero();
+    Random random(stream_seed(settings_.seed, kJitter, arrivals_));
+    const double half = settings_.robot.trigger_jitter_mm * speed / 100;
+    return velocity_mm_s / speed * random.uniform(-half, half);
+}
+
+void SimulatedCell::follow(const Pose& base_from_flange) {
+    const std::lock_guard lock(mutex_);
+    commanded_ = true_ = base_from_flange;
+}
+
+void SimulatedCell::fire(const Pose& base_from_flange, const Eigen::Vector3d& velocity_mm_s) {
+    const std::lock_guard lock(mutex_);
+    const auto nearest = std::min_element(
+        program_.begin(), program_.end(), [&](const MeasuringMove& a, const MeasuringMove& b) {
+            return distance_mm(a.trigger, base_from_flange) < distance_mm(b.trigger, base_from_flange);
+        });
+    commanded_ = base_from_flange;
+    Pose at = arrived(base_from_flange);
+    at.translation() += trigger_error(velocity_mm_s);
+    true_ = at;
+    if (armed_) expose(nearest == program_.end() ? "" : nearest->spot_id, at);
 }
 
 RobotMode SimulatedCell::mode() const {

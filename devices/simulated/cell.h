@@ -116,6 +116,12 @@ class SimulatedCell {
     std::optional<Pose> reported_flange() const;
     std::optional<Pose> true_flange() const;
     void start_moves(std::vector<MeasuringMove> moves);
+    // For a robot program that is executed (arm.h): where the robot is sent at this instant, without scatter.
+    void follow(const Pose& base_from_flange);
+    // The sensor's trigger input rises while the robot passes there: with the scatter of an arrival, and with
+    // the jitter along `velocity_mm_s` (base; zero = standing). The spot is the one of the stored program
+    // whose trigger lies nearest.
+    void fire(const Pose& base_from_flange, const Eigen::Vector3d& velocity_mm_s);
     // The measuring program as stored on a controller, and its start. Error (device) when the robot is
     // stopped or holds no program.
     void store_program(std::vector<MeasuringMove> moves);
@@ -147,6 +153,8 @@ class SimulatedCell {
   private:
     SimulatedCell(const CellSettings& settings, TriangleMesh part);
     Pose arrived(const Pose& commanded);  // precondition: locked
+    // Jitter of the trigger at that velocity. Precondition: locked.
+    Eigen::Vector3d trigger_error(const Eigen::Vector3d& velocity_mm_s);
     void expose(const std::string& spot_id, const Pose& base_from_flange);
 
     const CellSettings settings_;

@@ -59,17 +59,24 @@ std::optional<std::string> SimulatedController::take_start() {
 void SimulatedController::part_begins() {
     const std::lock_guard lock(mutex_);
     verdict_.reset();
-    released_ = false;
+    released_ = taken_ = false;
 }
 
 void SimulatedController::withdraw() {
     const std::lock_guard lock(mutex_);
-    released_ = false;
+    if (!taken_) released_ = false;
+}
+
+bool SimulatedController::take() {
+    const std::lock_guard lock(mutex_);
+    if (released_) taken_ = true;
+    return taken_;
 }
 
 void SimulatedController::take_verdict(PartVerdict verdict) {
     const std::lock_guard lock(mutex_);
     verdict_ = verdict;
+    taken_ = false;
     released_ = verdict == PartVerdict::corrected;
 }
 

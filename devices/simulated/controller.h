@@ -47,18 +47,22 @@ class SimulatedController {
     // May the application run with the frames as they are? See RobotLink. False from the making, from a start
     // of measuring and from a lost connection on; true from PartVerdict::corrected on.
     bool released() const { return released_; }
+    // The application began with the frames as they are: from then on released() stays, whatever happens to
+    // the connection, until the next part begins.
+    bool taken() const { return taken_; }
     std::optional<PartVerdict> verdict() const;  // of the present part, as confirmed
 
   protected:
     // For the protocols: the call for a part is told once.
     std::optional<std::string> take_start();
     void part_begins();  // no verdict, not released
-    void withdraw();     // not released
+    void withdraw();     // not released, unless the application has taken it
+    bool take();         // by the application, once it is released; says whether it was
     void take_verdict(PartVerdict verdict);
 
   private:
     std::atomic<ControllerFault> fault_ = ControllerFault::none;
-    std::atomic<bool> released_ = false;
+    std::atomic<bool> released_ = false, taken_ = false;
     mutable std::mutex mutex_;
     std::optional<std::string> start_;
     std::optional<PartVerdict> verdict_;

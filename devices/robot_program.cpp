@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/robot_words.h"
+
 namespace seamwright {
 
 std::string program_signature(const std::vector<MeasuringMove>& moves) {
@@ -15,7 +17,9 @@ std::string program_signature(const std::vector<MeasuringMove>& moves) {
     };
     for (const MeasuringMove& move : moves) {
         add(move.spot_id);
-        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit}) {
+        std::vector<const Pose*> poses = {&move.entry, &move.trigger, &move.exit};
+        for (const Pose& pose : move.via) poses.push_back(&pose);
+        for (const Pose* pose : poses) {
             // Entries of the rotation matrix in steps of the angle's: sin(1e-4 deg) = 1.7e-6.
             for (int i = 0; i < 3; ++i) add(fmt::format("{}", std::llround(pose->translation()[i] * 1e3)));
             for (int i = 0; i < 9; ++i)
@@ -27,12 +31,7 @@ std::string program_signature(const std::vector<MeasuringMove>& moves) {
 
 Expected<void> check_path_program(const PathProgramRequest& request) {
     const std::string& name = request.name;
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    if (name.empty() || name.size() > 20 || !letter(name.front()) ||
-        !std::all_of(name.begin(), name.end(),
-                     [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; }))
-        return input_error("\"" + name + "\" is no name of a program", "name",
-                           "use a letter, then letters, digits and _, at most 20");
+    if (auto named = check_program_name(name, "name"); !named) return named;
     if (request.frame_from_tool.empty() || request.frame_from_tool.size() > kMostPathPoints)
         return input_error(fmt::format("{} points make no path program", request.frame_from_tool.size()),
                            name, fmt::format("give 1 to {}", kMostPathPoints));

@@ -38,16 +38,16 @@ struct PathProgramRequest {
     double rounding_mm =
         2;  // how far from a point the robot may begin to round it off; 0 = exactly through it
 };
-// Error (input): a name that is no identifier of up to 20 letters, digits and _ in every brand's language, no
-// point or more than kMostPathPoints, poses that are not finite or beyond 100 m, a speed over 2 m/s.
+// Error (input): a name that check_program_name refuses (robot_words.h), no point or more than
+// kMostPathPoints, poses that are not finite or beyond 100 m, a speed over 2 m/s.
 inline constexpr std::size_t kMostPathPoints = 5000;
 Expected<void> check_path_program(const PathProgramRequest& request);
 // `text` as a comment may hold it: one line of ASCII.
 std::string program_comment(std::string text);
 
-// Tells one measuring program from another: names, order and poses (to 0.001 mm and 0.0001 degree) of its
-// spots, as "SW-" and 16 hexadecimal digits. The controller holds the one of its program and compares it at
-// the start of measuring.
+// Tells one measuring program from another: names, order, via points and poses (to 0.001 mm and 0.0001
+// degree) of its spots, as "SW-" and 16 hexadecimal digits. The controller holds the one of its program and
+// compares it at the start of measuring.
 std::string program_signature(const std::vector<MeasuringMove>& moves);
 
 }  // namespace seamwright

@@ -438,16 +438,26 @@ System accumulate(const std::vector<Section>& sections, const Model& model, bool
 
 namespace {
 
-// Information of a section's points on s (3x3), and its square root.
-Eigen::Matrix3d information_on_centre(const Section& section, const Model& model) {
+// What an error d of a section's centre does to the normal equations. Each of its points errs by u^T d, so
+// d^T squares d is added to the sum of squares and pull d to J^T e: the row of the radius (de/dr = -1) too.
+struct CentreError {
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // sum u u^T
+    Eigen::Matrix<double, 10, 3> pull;                  // sum J^T u^T
+};
+
+CentreError centre_error(const Section& section, const Model& model) {
     const Eigen::Vector3d s = centre_in_sensor(section, model);
-    Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
+    CentreError error;
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
     for (size_t i = 0; i < section.x.size(); ++i) {
         const Eigen::Vector3d u =
             Eigen::Vector3d(s.x() - section.x[i], s.y(), s.z() - section.z[i]).normalized();
-        g.noalias() += u * u.transpose();
+        error.squares.noalias() += u * u.transpose();
+        sum += u.transpose();
     }
-    return g;
+    error.pull = centre_jacobian(section, model).transpose() * error.squares;
+    error.pull.row(9) = -sum;
+    return error;
 }
 
 }  // namespace
@@ -455,18 +465,16 @@ Eigen::Matrix3d information_on_centre(const Section& section, const Model& model
 NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& model,
                          const Matrix10& inverse_information, bool radius_free) {
     NoiseLevels noise;
-    double own = 0, own_freedom = 0, between = 0, used = 0, absorbed = 0;
+    double own = 0, own_freedom = 0, between = 0, used = 0, shown = 0;
     for (const auto& section : sections) {
         if (!section.used) continue;
         own += section.own_squares;
         own_freedom += section.count() - 3;
         between += disagreement(section, model);
         used += 1;
-        // A centre error d shows as d^T G d, less what the common parameters take up: J^T G d moves them.
-        const Eigen::Matrix3d g = information_on_centre(section, model);
-        const Matrix3x10 gj = g * centre_jacobian(section, model);
-        const Matrix3x10 taken = gj * inverse_information;
-        absorbed += g.trace() - taken.cwiseProduct(gj).sum();
+        // What a centre error shows, less what the common parameters take up of it.
+        const CentreError error = centre_error(section, model);
+        shown += error.squares.trace() - (inverse_information * error.pull).cwiseProduct(error.pull).sum();
     }
     noise.point_variance = own / std::max(1.0, own_freedom);
     noise.redundancy = 3 * used - (radius_free ? 10 : 9);
@@ -474,8 +482,8 @@ NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& mode
     if (noise.point_variance > 0) noise.ratio = between / noise.redundancy / noise.point_variance;
     noise.poses_disagree = noise.ratio > chi_squared_quantile(0.99, noise.redundancy) / noise.redundancy &&
                            between / noise.redundancy > 1e-12;
-    if (noise.poses_disagree && absorbed > 0)
-        noise.centre_variance = std::max(0.0, between - noise.point_variance * noise.redundancy) / absorbed;
+    if (noise.poses_disagree && shown > 0)
+        noise.centre_variance = std::max(0.0, between - noise.point_variance * noise.redundancy) / shown;
     return noise;
 }
 
@@ -484,9 +492,7 @@ Matrix10 covariance_of_centres(const std::vector<Section>& sections, const Model
     Matrix10 sum = Matrix10::Zero();
     for (const auto& section : sections) {
         if (!section.used) continue;
-        const Eigen::Matrix<double, 10, 3> gain = inverse_information *
-                                                  centre_jacobian(section, model).transpose() *
-                                                  information_on_centre(section, model);
+        const Eigen::Matrix<double, 10, 3> gain = inverse_information * centre_error(section, model).pull;
         sum.noalias() += centre_variance * gain * gain.transpose();
     }
     return sum;

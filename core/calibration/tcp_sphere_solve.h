@@ -73,7 +73,8 @@ NoiseLevels noise_levels(const std::vector<Section>& sections, const Model& mode
                          const Matrix10& inverse_information, bool radius_free);
 
 // Covariance of the least-squares solution when each s_i carries an error of `centre_variance` an axis
-// besides: sum over profiles of (H^-1 J_i^T G_i) (H^-1 J_i^T G_i)^T, G_i the points' information on s_i.
+// besides: sum over profiles of (H^-1 K_i) (H^-1 K_i)^T, K_i = sum over its points of J^T u^T, u = de/ds. K_i
+// has a row for the radius: an error of the centres is taken up by a free radius as by every other unknown.
 Matrix10 covariance_of_centres(const std::vector<Section>& sections, const Model& model,
                                const Matrix10& inverse_information, double centre_variance);
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "tests/core/calibration/hand_eye_simulation.h"
 #include "tests/core/calibration/sphere_simulation.h"
 
@@ -62,6 +64,66 @@ TEST(CalibrationTrials, TcpSphereNinePoses) {
     EXPECT_GE(good, 970);  // poses are drawn at random: a few sets are weak, and say so
     EXPECT_LT(largest, 0.2);
 }
+
+// Robot errors far over the sensor's noise, radius known and solved for: the stated intervals hold against
+// the truth, and two halves of one data set agree within what they state.
+class TcpSphereWithRobotErrors : public testing::TestWithParam<std::tuple<double, bool>> {};
+
+TEST_P(TcpSphereWithRobotErrors, StatesWhatTheHalvesShow) {
+    const auto [robot_mm, radius_free] = GetParam();
+    constexpr int kTrials = 200;
+    std::vector<int> inside(10), agree(10);
+    int halves = 0;
+    for (unsigned trial = 0; trial < kTrials; ++trial) {
+        Random random(50000 + trial);
+        SphereCell cell = any_cell(random);
+        cell.step_mm = 0.3;
+        cell.working_point = {0, 0, -150};
+        cell.robot_mm = robot_mm;
+        const auto all = sphere_observations(cell, 24, random);
+        TcpSphereOptions options;
+        if (!radius_free) options.radius_mm = cell.radius;
+        std::vector<TcpSphereResult> found;
+        for (int half = 0; half < 2; ++half) {
+            std::vector<SphereObservation> part(all.begin() + 12 * half, all.begin() + 12 * (half + 1));
+            auto result = calibrate_tcp_sphere(part, options);
+            ASSERT_TRUE(result.has_value());
+            if (result->status == TcpSphereStatus::ok) found.push_back(std::move(*result));
+        }
+        if (found.size() < 2) continue;
+        ++halves;
+        const auto deviations = [&](const Pose& pose, const Eigen::Vector3d& centre, double radius) {
+            Eigen::Matrix<double, 10, 1> d;
+            d << difference(found[0].flange_from_sensor, pose), found[0].centre_base_mm - centre,
+                found[0].radius_mm - radius;
+            return d;
+        };
+        const auto sigmas = [](const TcpSphereResult& r) {
+            Eigen::Matrix<double, 10, 1> s;
+            s << r.covariance.diagonal().cwiseSqrt(), r.centre_covariance.diagonal().cwiseSqrt(),
+                r.radius_sigma_mm;
+            return s;
+        };
+        const auto from_truth = deviations(cell.flange_from_sensor, cell.centre_base, cell.radius);
+        const auto from_other =
+            deviations(found[1].flange_from_sensor, found[1].centre_base_mm, found[1].radius_mm);
+        const auto s0 = sigmas(found[0]), s1 = sigmas(found[1]);
+        for (Eigen::Index k = 0; k < 10; ++k) {
+            inside[static_cast<size_t>(k)] += std::abs(from_truth[k]) < 1.96 * s0[k] ? 1 : 0;
+            agree[static_cast<size_t>(k)] +=
+                std::abs(from_other[k]) < 1.96 * std::hypot(s0[k], s1[k]) ? 1 : 0;
+        }
+    }
+    EXPECT_GT(halves, kTrials * 2 / 3);
+    for (size_t k = 0; k < (radius_free ? 10u : 9u); ++k) {
+        // 200 draws at 95 %: three of their standard deviations are 4.6 %.
+        EXPECT_NEAR(static_cast<double>(inside[k]) / halves, 0.95, 0.046) << "truth, parameter " << k;
+        EXPECT_NEAR(static_cast<double>(agree[k]) / halves, 0.95, 0.046) << "halves, parameter " << k;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(CalibrationTrials, TcpSphereWithRobotErrors,
+                         testing::Combine(testing::Values(0.05, 0.5), testing::Bool()));
 
 TEST(CalibrationTrials, HandEyeTwelvePairs) {
     Tally tally(12);

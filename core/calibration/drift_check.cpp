@@ -229,7 +229,10 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     const bool beyond =
         (result.change_mm > limits.translation_mm && result.change_mm > 2 * result.sigma_mm) ||
         (result.change_deg > limits.rotation_deg && result.change_deg > 2 * result.sigma_deg);
-    const bool too_rough = fit.determined < 3 || 2 * result.sigma_mm > limits.translation_mm;
+    // Nothing holds that was not seen: every direction is determined, each to within half its limit.
+    const bool shift_unknown = fit.determined < 3 || 2 * result.sigma_mm > limits.translation_mm;
+    const bool turn_unknown = fit.determined < 6 || 2 * result.sigma_deg > limits.rotation_deg;
+    const bool outside = result.change_mm > limits.translation_mm || result.change_deg > limits.rotation_deg;
     const std::string change =
         fmt::format("change {:.3f} mm (sigma {:.3f}) and {:.3f} degrees (sigma {:.3f})", result.change_mm,
                     result.sigma_mm, result.change_deg, result.sigma_deg);
@@ -244,20 +247,29 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     } else if (significant && beyond) {
         result.status = DriftStatus::drifted;
         report.judgement = {Verdict::poor, "the calibration no longer holds: " + change, "calibrate again"};
-    } else if (too_rough) {
+    } else if (shift_unknown) {
         result.status = DriftStatus::undetermined;
         report.judgement = {
             Verdict::undetermined,
             fmt::format("the measurements are too few or too rough to see {:.3f} mm", limits.translation_mm),
             "measure two or three spheres, cut off their middle, from several poses"};
-    } else {
-        result.status = DriftStatus::holds;
+    } else if (turn_unknown) {
+        result.status = DriftStatus::undetermined;
         std::string open;
         for (const auto& word : fit.not_determined) open += (open.empty() ? "" : ", ") + word;
-        report.judgement = {
-            open.empty() ? Verdict::good : Verdict::usable,
-            "the calibration holds: " + change + (open.empty() ? "" : "; not seen: " + open),
-            open.empty() ? "" : "measure a further sphere elsewhere in the view to see the rest"};
+        report.judgement = {Verdict::undetermined,
+                            open.empty() ? fmt::format("a turn of {:.3f} degrees cannot be seen: {}",
+                                                       limits.rotation_deg, change)
+                                         : fmt::format("not seen: {}; {}", open, change),
+                            "measure further spheres near the rims of the view, left, right, near and far"};
+    } else if (outside) {
+        result.status = DriftStatus::undetermined;
+        report.judgement = {Verdict::undetermined,
+                            "more than the limits, and no more than chance could make it: " + change,
+                            "measure the spheres again from further poses"};
+    } else {
+        result.status = DriftStatus::holds;
+        report.judgement = {Verdict::good, "the calibration holds: " + change, ""};
     }
     return result;
 }

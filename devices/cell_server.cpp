@@ -28,7 +28,7 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
         auto camera = ServedCamera::open(cell, settings);
         if (!camera) return tl::unexpected(camera.error());
         server.camera_ = std::move(*camera);
-        server.camera_address_ = options.camera_address;
+        server.camera_address_ = server.camera_->address();
     }
     if (!options.gocator.is_null()) {
         auto gocator = ServedGocator::open(cell, options.gocator);

@@ -24,7 +24,7 @@ struct ServedController {
 
 struct CellServerOptions {
     nlohmann::json cell = nlohmann::json::object();    // as documented in cell.h
-    std::string camera_address;                        // empty = no camera
+    std::string camera_address;                        // empty = no camera, "free" = one that is found free
     nlohmann::json camera = nlohmann::json::object();  // further settings of served_camera.h
     nlohmann::json gocator;  // settings of served_gocator.h; null = none. Camera or Gocator, not both
     std::vector<ServedController> controllers;

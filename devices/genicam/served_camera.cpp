@@ -189,6 +189,9 @@ ServedCamera::~ServedCamera() {
 WireCamera& ServedCamera::wire() {
     return *impl_->wire;
 }
+std::string ServedCamera::address() const {
+    return impl_->wire->address();
+}
 std::string ServedCamera::serial() const {
     return impl_->serial;
 }

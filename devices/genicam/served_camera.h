@@ -1,5 +1,6 @@
 #pragma once
-// The simulated cell's camera on the wire: a GigE Vision camera on 127.0.0.1 that any client can open.
+// The simulated cell's camera on the wire: a GigE Vision camera on a loopback address that any client can
+// open.
 //
 // The cell's rendered frames go out as they are measured in-process. The robot's triggers are the camera's
 // Line1, a client's TriggerSoftware exposes at the robot's present pose, and free running does so at
@@ -9,7 +10,8 @@
 // exposure on this host's steady clock (1 tick = 1 ns). See wire_camera.h for what the wire cannot do.
 //
 // Settings, all optional, with defaults:
-//   {"address": "127.0.0.1", "serial": the cell's, "packet_size": 7496, "lost_packets_per_mille": 0,
+//   {"address": "127.0.0.1" or "free" (wire_camera.h), "serial": the cell's, "packet_size": 7496,
+//   "lost_packets_per_mille": 0,
 //    "loss_seed": 1, "first_frame_id": 1}
 
 #include <cstdint>
@@ -30,6 +32,7 @@ class ServedCamera {
     ~ServedCamera();  // within 200 ms
 
     WireCamera& wire();
+    std::string address() const;  // where it was found free
     std::string serial() const;
     // For tests: every frame as it was handed to the wire, on the drawing thread.
     struct Served {

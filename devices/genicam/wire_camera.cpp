@@ -12,12 +12,13 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <random>
+#include <span>
 #include <thread>
 
 #include "devices/genicam/aravis_private.h"
-#include "devices/genicam/gvcp.h"
+#include "devices/genicam/gige_server.h"
 #include "devices/genicam/pixel_format.h"
-#include "devices/net/socket.h"
 #include "served_camera_xml.h"
 
 namespace seamwright {
@@ -31,9 +32,21 @@ constexpr std::uint32_t kTriggerMode = 0x400, kTriggerSource = 0x404, kTriggerSo
                         kExposureMode = 0x4b8, kOutputMode = 0x4c8;
 // Bootstrap registers of GigE Vision.
 constexpr std::uint32_t kGevVersion = 0x0, kDeviceMode = 0x4, kVendorName = 0x48, kModelName = 0x68,
-                        kVersion = 0x88, kInfo = 0xa8, kSerial = 0xd8, kPacketSize = 0xd04;
+                        kVersion = 0x88, kInfo = 0xa8, kSerial = 0xd8, kCameraPrivilege = 0xa00,
+                        kCameraPacketSize = 0xd04;
 
-constexpr auto kWait = std::chrono::milliseconds(1);  // of the wire thread for a frame
+constexpr int kFreeAddresses = 50;  // tried
+
+// The address, or the first ones of the loopback range in an order that differs from process to process.
+std::vector<std::string> addresses_of(const std::string& address) {
+    if (address != kFreeAddress) return {address};
+    std::vector<std::string> list = {"127.0.0.1"};
+    std::mt19937 random(std::random_device{}());
+    std::uniform_int_distribution<int> byte(1, 254);
+    while (list.size() < kFreeAddresses)
+        list.push_back(fmt::format("127.{}.{}.{}", byte(random), byte(random), byte(random)));
+    return list;
+}
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
@@ -73,12 +86,11 @@ Expected<std::filesystem::path> write_description(const WireCameraSettings& sett
 
 }  // namespace
 
-struct WireCamera::Impl {
+struct WireCamera::Impl final : GigeMemory {
     WireCameraSettings settings;
     std::function<void()> software_trigger;
-    GPtr<ArvGvFakeCamera> camera;
-    ArvGvFakeCamera* wire = nullptr;  // the same; the wire thread draws until the camera has gone
-    ArvFakeCamera* registers = nullptr;
+    mutable std::mutex registers_mutex;
+    GPtr<ArvFakeCamera> registers;
     std::atomic<bool> ready = false;
     struct Waiting {
         std::vector<std::byte> payload;
@@ -86,78 +98,115 @@ struct WireCamera::Impl {
         std::chrono::steady_clock::time_point due;
     };
     mutable std::mutex mutex;
-    std::mutex ending;
-    std::condition_variable pushed;
+    std::condition_variable_any pushed;
     std::deque<Waiting> queue;
     WireFault fault = WireFault::none;
     int late_ms = 0;
     std::atomic<double> lost_per_mille = 0;
     std::atomic<std::uint64_t> sent = 0, dropped = 0, triggers = 0;
-    std::atomic<bool> stopping = false;
-    std::uint16_t frame_id = 0;  // of the last frame sent; wire thread
+    std::uint16_t frame_id = 0;  // of the last frame sent; stream thread
+    std::mt19937 loss;           // stream thread
+    std::unique_ptr<GigeServer> server;
+    std::jthread stream;  // last
 
-    std::uint32_t read(std::uint32_t address) const {
+    std::uint32_t reg(std::uint32_t address) const {
+        const std::lock_guard lock(registers_mutex);
         guint32 value = 0;
-        arv_fake_camera_read_register(registers, address, &value);
+        arv_fake_camera_read_register(registers.get(), address, &value);
         return value;
     }
-    void write(std::uint32_t address, std::uint32_t value) {
-        arv_fake_camera_write_register(registers, address, value);
+    void set_reg(std::uint32_t address, std::uint32_t value) {
+        const std::lock_guard lock(registers_mutex);
+        arv_fake_camera_write_register(registers.get(), address, value);
     }
     double read_double(std::uint32_t address) const {
-        std::uint64_t raw = 0, again = 0;  // the wire thread may be writing: twice the same is whole
-        for (int i = 0; i < 10; ++i) {
-            arv_fake_camera_read_memory(registers, address, sizeof raw, &raw);
-            arv_fake_camera_read_memory(registers, address, sizeof again, &again);
-            if (raw == again) break;
-        }
+        const std::lock_guard lock(registers_mutex);
+        std::uint64_t raw = 0;
+        arv_fake_camera_read_memory(registers.get(), address, sizeof raw, &raw);
         return std::bit_cast<double>(GUINT64_FROM_BE(raw));
     }
     void write_double(std::uint32_t address, double value) {
+        const std::lock_guard lock(registers_mutex);
         const std::uint64_t raw = GUINT64_TO_BE(std::bit_cast<std::uint64_t>(value));
-        arv_fake_camera_write_memory(registers, address, sizeof raw, &raw);
+        arv_fake_camera_write_memory(registers.get(), address, sizeof raw, &raw);
     }
     void write_text(std::uint32_t address, std::size_t size, const std::string& text) {
+        const std::lock_guard lock(registers_mutex);
         std::vector<char> field(size, '\0');
         std::memcpy(field.data(), text.data(), std::min(text.size(), size - 1));
-        arv_fake_camera_write_memory(registers, address, static_cast<guint32>(size), field.data());
+        arv_fake_camera_write_memory(registers.get(), address, static_cast<guint32>(size), field.data());
     }
+    std::size_t payload_size() const {
+        const std::lock_guard lock(registers_mutex);
+        return arv_fake_camera_get_payload(registers.get());
+    }
+
+    bool read(std::uint32_t address, std::span<std::byte> to) override {
+        const std::lock_guard lock(registers_mutex);
+        return arv_fake_camera_read_memory(registers.get(), address, static_cast<guint32>(to.size()),
+                                           to.data());
+    }
+    bool write(std::uint32_t address, std::span<const std::byte> from) override;
+    void acquire_when_ready();
     void wake_up();
-    void fill(ArvBuffer* buffer);
-    static void draw(ArvBuffer* buffer, void* self, guint32, guint32, ArvPixelFormat) {
-        static_cast<Impl*>(self)->fill(buffer);
-    }
+    void run(const std::stop_token& stop);
+    void send(const Waiting& frame, double loss_share);
 };
+
+bool WireCamera::Impl::write(std::uint32_t address, std::span<const std::byte> from) {
+    {
+        const std::lock_guard lock(registers_mutex);
+        if (!arv_fake_camera_write_memory(registers.get(), address, static_cast<guint32>(from.size()),
+                                          from.data()))
+            return false;
+    }
+    if (reg(kCameraPrivilege) == 0)  // nobody is in control any more
+        set_reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION, 0);
+    if (reg(kTriggerSoftware) != 0) {
+        set_reg(kTriggerSoftware, 0);
+        if (reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0) {
+            ++triggers;
+            if (software_trigger) software_trigger();
+        }
+    }
+    acquire_when_ready();
+    return true;
+}
+
+// A trigger leads to a frame at once: told to the client by AcquisitionStatus.
+void WireCamera::Impl::acquire_when_ready() {
+    if (ready && reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) == 1)
+        set_reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION, 2);
+}
 
 void WireCamera::Impl::wake_up() {
     const auto& s = settings;
-    write(kGevVersion, 0x00010002);  // 1.2: 16-bit frame numbers, 32-bit packet headers
-    write(kDeviceMode, 0x80000001);  // big-endian registers, texts in UTF-8
+    set_reg(kGevVersion, 0x00010002);  // 1.2: 16-bit frame numbers, 32-bit packet headers
+    set_reg(kDeviceMode, 0x80000001);  // big-endian registers, texts in UTF-8
     write_text(kVendorName, 32, "Seamwright");
     write_text(kModelName, 32, s.model);
     write_text(kVersion, 32, "1");
     write_text(kInfo, 48, "simulated");
     write_text(kSerial, 16, s.serial);
     const auto width = static_cast<std::uint32_t>(s.width), height = static_cast<std::uint32_t>(s.height);
-    write(ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, width);
-    write(ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, height);
-    write(ARV_FAKE_CAMERA_REGISTER_WIDTH, width);
-    write(ARV_FAKE_CAMERA_REGISTER_HEIGHT, height);
+    set_reg(ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, width);
+    set_reg(ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, height);
+    set_reg(ARV_FAKE_CAMERA_REGISTER_WIDTH, width);
+    set_reg(ARV_FAKE_CAMERA_REGISTER_HEIGHT, height);
     const PixelFormat* format = pixel_format_by_name(s.pixel_formats.front());
-    write(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, format->code);
-    write(ARV_FAKE_CAMERA_REGISTER_TRIGGER_MODE, 0);
-    write(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, 1);
-    write(kPacketSize, static_cast<std::uint32_t>(s.packet_size));
+    set_reg(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, format->code);
+    set_reg(ARV_FAKE_CAMERA_REGISTER_TRIGGER_MODE, 0);
+    set_reg(kCameraPacketSize, static_cast<std::uint32_t>(s.packet_size));
     write_double(kRate, 50);
-    write(kRateEnable, 1);
+    set_reg(kRateEnable, 1);
     write_double(kExposure, s.exposure_us);
     write_double(kGain, s.gain_db);
     write_double(kTemperature, 35);
-    write(kStatusSelector, 1);
-    write(kExposureMode, 1);
-    write(kScanType, format->is_range() ? 1 : 0);
-    write(kOutputMode, format->coordinates.size() > 1 ? 1 : 0);
-    write(kInvalidFlag, s.invalid_flag ? 1 : 0);
+    set_reg(kStatusSelector, 1);
+    set_reg(kExposureMode, 1);
+    set_reg(kScanType, format->is_range() ? 1 : 0);
+    set_reg(kOutputMode, format->coordinates.size() > 1 ? 1 : 0);
+    set_reg(kInvalidFlag, s.invalid_flag ? 1 : 0);
     write_double(kInvalidValue, s.invalid_value);
     write_double(kScale, s.a_scale_mm);
     write_double(kOffset, s.a_offset_mm);
@@ -166,48 +215,45 @@ void WireCamera::Impl::wake_up() {
     write_double(kOffset + 16, s.c_offset_mm);
 }
 
-// On the wire thread, once a round while acquiring.
-void WireCamera::Impl::fill(ArvBuffer* buffer) {
-    if (stopping) return;
-    if (read(kTriggerSoftware) != 0) {
-        write(kTriggerSoftware, 0);
-        ++triggers;
-        if (software_trigger) software_trigger();
-    }
-    // From the first round on a trigger leads to a frame at once: told to the client by AcquisitionStatus.
-    if (ready && read(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) == 1)
-        write(ARV_FAKE_CAMERA_REGISTER_ACQUISITION, 2);
-    double loss = 1;
-    {
+void WireCamera::Impl::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
         std::unique_lock lock(mutex);
-        pushed.wait_for(lock, kWait, [this] { return stopping || !queue.empty(); });
-        const auto now = std::chrono::steady_clock::now();
-        // A late frame holds up those behind it for short spans only: the wire thread must go on answering.
-        if (!queue.empty() && queue.front().due > now)
-            pushed.wait_for(lock, kWait, [this] { return stopping.load(); });
-        if (!queue.empty() && queue.front().due <= std::chrono::steady_clock::now()) {
-            const Waiting frame = std::move(queue.front());
-            queue.pop_front();
-            const bool fits = frame.payload.size() == arv_fake_camera_get_payload(registers);
-            if (fits) {
-                size_t unused = 0;
-                auto* to = static_cast<std::byte*>(const_cast<void*>(arv_buffer_get_data(buffer, &unused)));
-                std::memcpy(to, frame.payload.data(), frame.payload.size());
-                arv_buffer_set_timestamp(buffer, static_cast<guint64>(frame.device_ns));
-                frame_id = frame_id == 65535 ? 1 : static_cast<std::uint16_t>(frame_id + 1);
-                loss = lost_per_mille / 1000;
-                if (fault == WireFault::damaged) loss = std::max(loss, 0.3);
-                if (fault == WireFault::lost) loss = 1;
-                if (fault == WireFault::damaged || fault == WireFault::lost) fault = WireFault::none;
-                ++sent;
-            } else {
-                ++dropped;
-            }
+        pushed.wait(lock, stop, [this] { return !queue.empty(); });
+        if (queue.empty()) continue;
+        // A late frame holds up those behind it.
+        const auto due = queue.front().due;
+        pushed.wait_until(lock, stop, due,
+                          [&] { return queue.empty() || std::chrono::steady_clock::now() >= due; });
+        if (stop.stop_requested() || queue.empty() || queue.front().due > std::chrono::steady_clock::now())
+            continue;
+        const Waiting frame = std::move(queue.front());
+        queue.pop_front();
+        if (frame.payload.size() != payload_size()) {  // the client has changed the region meanwhile
+            ++dropped;
+            continue;
         }
+        double share = lost_per_mille / 1000;
+        if (fault == WireFault::damaged) share = std::max(share, 0.3);
+        if (fault == WireFault::lost) share = 1;
+        if (fault == WireFault::damaged || fault == WireFault::lost) fault = WireFault::none;
+        lock.unlock();
+        send(frame, share);
+        ++sent;
     }
-    arv_buffer_set_frame_id(buffer, frame_id);
-    const std::lock_guard lock(ending);
-    if (!stopping) g_object_set(wire, "gvsp-lost-ratio", loss, nullptr);
+}
+
+void WireCamera::Impl::send(const Waiting& frame, double loss_share) {
+    frame_id = frame_id == 65535 ? 1 : static_cast<std::uint16_t>(frame_id + 1);
+    std::uniform_real_distribution<double> random(0, 1);
+    server->send({.id = frame_id,
+                  .device_ns = static_cast<std::uint64_t>(frame.device_ns),
+                  .pixel_format = reg(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT),
+                  .width = reg(ARV_FAKE_CAMERA_REGISTER_WIDTH),
+                  .height = reg(ARV_FAKE_CAMERA_REGISTER_HEIGHT),
+                  .x = reg(ARV_FAKE_CAMERA_REGISTER_X_OFFSET),
+                  .y = reg(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET),
+                  .payload = frame.payload},
+                 [&] { return random(loss) < loss_share; });
 }
 
 WireCamera::WireCamera(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -224,70 +270,61 @@ Expected<std::unique_ptr<WireCamera>> WireCamera::open(const WireCameraSettings&
     if (!(settings.lost_packets_per_mille >= 0 && settings.lost_packets_per_mille <= 1000))
         return input_error("must be 0 to 1000", "lost_packets_per_mille");
     if (settings.pixel_formats.empty()) return input_error("one pixel format at least", "pixel_formats");
-    // Aravis takes no notice of a port that it cannot have.
-    if (auto port = UdpSocket::bind(settings.address, kGvcpPort); !port) {
-        return device_error(
-            "no camera can be served: port 3956 of the address is taken or the address is not "
-            "this host's",
-            where, "stop the other camera, or give 127.0.0.1");
-    }
     auto description = write_description(settings);
     if (!description) return tl::unexpected(description.error());
     auto impl = std::make_unique<Impl>();
-    impl->settings = settings;
-    impl->software_trigger = std::move(software_trigger);
-    impl->lost_per_mille = settings.lost_packets_per_mille;
-    impl->frame_id = static_cast<std::uint16_t>(std::max<int>(settings.first_frame_id, 1) - 1);
-    impl->camera.reset(
-        arv_gv_fake_camera_new_full(settings.address.c_str(), settings.serial.c_str(), description->c_str()));
+    Impl* i = impl.get();
+    i->settings = settings;
+    i->software_trigger = std::move(software_trigger);
+    i->lost_per_mille = settings.lost_packets_per_mille;
+    i->loss.seed(settings.loss_seed);
+    i->frame_id = static_cast<std::uint16_t>(std::max<int>(settings.first_frame_id, 1) - 1);
+    i->registers.reset(arv_fake_camera_new_full(settings.serial.c_str(), description->c_str()));
     std::error_code ignored;
     std::filesystem::remove(*description, ignored);
-    if (!impl->camera || !arv_gv_fake_camera_is_running(impl->camera.get())) {
-        return device_error("no camera can be served: the address has no network interface of its own", where,
-                            "give 127.0.0.1");
+    i->wake_up();
+    for (const std::string& address : addresses_of(settings.address)) {
+        auto server = GigeServer::open(address, *i);
+        if (!server) continue;
+        i->settings.address = address;
+        i->server = std::move(*server);
+        GPtr<GInetAddress> own(g_inet_address_new_from_string(address.c_str()));
+        const std::lock_guard lock(i->registers_mutex);
+        arv_fake_camera_set_inet_address(i->registers.get(), own.get());
+        break;
     }
-    impl->wire = impl->camera.get();
-    impl->registers = arv_gv_fake_camera_get_fake_camera(impl->camera.get());
-    g_random_set_seed(settings.loss_seed);
-    impl->wake_up();
-    arv_fake_camera_set_fill_pattern(impl->registers, &Impl::draw, impl.get());
+    if (!i->server)
+        return device_error(
+            "no camera can be served: port 3956 of the address is taken or the address is not "
+            "this host's",
+            where, "stop the other camera, or give another address of 127.0.0.0/8");
+    i->stream = std::jthread([i](const std::stop_token& stop) { i->run(stop); });
     return std::unique_ptr<WireCamera>(new WireCamera(std::move(impl)));
 }
 
-WireCamera::~WireCamera() {
-    {
-        // The wire thread draws until the camera's end has joined it: it must touch the object no more by
-        // then.
-        const std::lock_guard lock(impl_->ending);
-        impl_->stopping = true;
-        g_object_set(impl_->wire, "gvsp-lost-ratio", 1.0, nullptr);
-    }
-    impl_->pushed.notify_all();
-    impl_->camera.reset();  // joins the wire thread
-}
+WireCamera::~WireCamera() = default;
 
 WireState WireCamera::state() const {
     const Impl& i = *impl_;
     WireState s;
-    s.acquiring = i.read(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0 &&
-                  arv_fake_camera_get_control_channel_privilege(i.registers) != 0;
-    s.x = static_cast<int>(i.read(ARV_FAKE_CAMERA_REGISTER_X_OFFSET));
-    s.y = static_cast<int>(i.read(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET));
-    s.width = static_cast<int>(i.read(ARV_FAKE_CAMERA_REGISTER_WIDTH));
-    s.height = static_cast<int>(i.read(ARV_FAKE_CAMERA_REGISTER_HEIGHT));
-    s.pixel_format = i.read(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT);
+    s.acquiring = i.reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) != 0 && i.reg(kCameraPrivilege) != 0;
+    s.x = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_X_OFFSET));
+    s.y = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET));
+    s.width = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_WIDTH));
+    s.height = static_cast<int>(i.reg(ARV_FAKE_CAMERA_REGISTER_HEIGHT));
+    s.pixel_format = i.reg(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT);
     s.exposure_us = i.read_double(kExposure);
     s.gain_db = i.read_double(kGain);
-    s.trigger = i.read(kTriggerMode) == 0     ? WireTrigger::free
-                : i.read(kTriggerSource) == 0 ? WireTrigger::software
-                                              : WireTrigger::line;
-    s.frame_rate_hz = i.read(kRateEnable) ? i.read_double(kRate) : 0;
+    s.trigger = i.reg(kTriggerMode) == 0     ? WireTrigger::free
+                : i.reg(kTriggerSource) == 0 ? WireTrigger::software
+                                             : WireTrigger::line;
+    s.frame_rate_hz = i.reg(kRateEnable) ? i.read_double(kRate) : 0;
     return s;
 }
 
 void WireCamera::set_ready(bool ready) {
     impl_->ready = ready;
-    if (ready) return;
+    if (ready) return impl_->acquire_when_ready();
     const std::lock_guard lock(impl_->mutex);
     impl_->queue.clear();
 }
@@ -297,9 +334,8 @@ bool WireCamera::push(std::vector<std::byte> payload, std::int64_t device_ns) {
     auto due = std::chrono::steady_clock::now();
     {
         const std::lock_guard lock(i.mutex);
-        if (i.queue.size() >= i.settings.queue ||
-            payload.size() != arv_fake_camera_get_payload(i.registers) ||
-            i.read(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) == 0) {
+        if (i.queue.size() >= i.settings.queue || payload.size() != i.payload_size() ||
+            i.reg(ARV_FAKE_CAMERA_REGISTER_ACQUISITION) == 0) {
             ++i.dropped;
             return false;
         }

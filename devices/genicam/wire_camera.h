@@ -1,20 +1,14 @@
 #pragma once
-// A GigE Vision camera on a loopback address, served by Aravis' own camera simulator: what is pushed here
-// goes out as GVSP frames to whatever client acquires. It knows nothing of what the frames show.
+// A GigE Vision camera on an address of this host: what is pushed here goes out as GVSP frames to whatever
+// client acquires. It knows nothing of what the frames show.
 //
-// How Aravis 0.8's simulator works, and what follows. One thread answers GVCP and sends frames. It sends when
-// its frame period has gone by, whatever the trigger, and polls with a time-out of whole milliseconds: at
-// periods above 1 ms a trigger waits for the period's end, below it the thread spins. So it runs here with a
-// period of 1 us, and the drawing callback waits up to 1 ms for a frame: a frame that is pushed leaves at
-// once, the thread sleeps meanwhile, and a GVCP command waits 1 ms at most while acquiring. When none came
-// the callback switches the simulator's packet loss to 100 % for that round, so that nothing is sent, and
-// gives the frame number back. Trigger mode and source, exposure, gain and frame rate are registers of ours
-// (resources/camera/served-camera.xml) in the simulator's memory.
+// The bootstrap and image registers are those of Aravis' fake camera (a memory, no more), the wire is
+// gige_server.h. Trigger mode and source, exposure, gain and frame rate are registers of ours
+// (resources/camera/served-camera.xml) in that memory. A frame that is pushed leaves at once, a software
+// trigger is told within its command.
 //
-// Limits of the simulator, which are ours too: port 3956 only and one camera an address; an address must be
-// that of an interface (127.0.0.1); no packet resend, no chunks, no events, no packet delay, GigE Vision 1
-// frame numbers (16 bit); the first frame after AcquisitionStart leaves up to 100 ms late; it listens for
-// discovery broadcasts of other interfaces' clients too, but answers from its own address only.
+// Limits: one camera an address, whose port 3956 the standard fixes, and those of gige_server.h; no chunks,
+// no packet delay.
 
 #include <chrono>
 #include <cstddef>
@@ -27,6 +21,9 @@
 #include "core/error.h"
 
 namespace seamwright {
+
+// As an address: 127.0.0.1 where its port is free, else any address of the loopback range that is.
+inline constexpr const char* kFreeAddress = "free";
 
 struct WireCameraSettings {
     std::string address = "127.0.0.1";
@@ -65,15 +62,15 @@ struct WireCounters {
 
 class WireCamera {
   public:
-    // `software_trigger` is called on the wire thread at each TriggerSoftware command while acquiring; it
-    // must be quick. Error (device): the address has no interface or its port 3956 is taken.
+    // `software_trigger` is called on the server's thread at each TriggerSoftware command while acquiring; it
+    // must be quick. Error (device): the address is not this host's or its port 3956 is taken.
     static Expected<std::unique_ptr<WireCamera>> open(const WireCameraSettings& settings,
                                                       std::function<void()> software_trigger = {});
-    ~WireCamera();  // within 150 ms
+    ~WireCamera();  // within 60 ms
 
     // As the client set it. Any thread.
     WireState state() const;
-    // Whether who draws takes triggers; clients see it (AcquisitionStatus) from the wire's next round on.
+    // Whether who draws takes triggers; clients see it (AcquisitionStatus).
     // Not ready: what waits for the wire is thrown away.
     void set_ready(bool ready);
     // One frame of state()'s region and format for the wire, in order; false: not acquiring, of another size
@@ -84,7 +81,7 @@ class WireCamera {
     void fail_next(WireFault fault, int late_ms = 0);
     void set_lost_packets(double per_mille);
     WireCounters counters() const;
-    std::string address() const;
+    std::string address() const;  // where it was found free
 
   private:
     struct Impl;

@@ -234,13 +234,14 @@ UdpSocket::UdpSocket(UdpSocket&&) noexcept = default;
 UdpSocket& UdpSocket::operator=(UdpSocket&&) noexcept = default;
 UdpSocket::~UdpSocket() = default;
 
-Expected<UdpSocket> UdpSocket::bind(const std::string& address, std::uint16_t port) {
+Expected<UdpSocket> UdpSocket::bind(const std::string& address, std::uint16_t port, Shared shared) {
     auto impl = std::make_unique<Impl>();
     impl->where = fmt::format("{}:{}", address, port);
     error_code e;
     const udp::endpoint endpoint(asio::ip::make_address(address, e), port);
     if (e) return input_error(fmt::format("\"{}\" is not an IP address", address), "bind");
     impl->socket.open(endpoint.protocol(), e);
+    if (!e && shared == Shared::yes) impl->socket.set_option(udp::socket::reuse_address(true), e);
     if (!e) impl->socket.bind(endpoint, e);
     if (e)
         return device_error("cannot bind: " + e.message(), impl->where, "another program may use this port");

@@ -80,7 +80,9 @@ struct Endpoint {
 
 class UdpSocket {
   public:
-    static Expected<UdpSocket> bind(const std::string& address, std::uint16_t port);
+    enum class Shared { no, yes };  // yes: others may have the same; each hears what is broadcast
+    static Expected<UdpSocket> bind(const std::string& address, std::uint16_t port,
+                                    Shared shared = Shared::no);
     UdpSocket(UdpSocket&&) noexcept;
     UdpSocket& operator=(UdpSocket&&) noexcept;
     ~UdpSocket();

@@ -89,11 +89,14 @@ void add_demo(CommandLine& line) {
         ->capture_default_str();
     command->add_flag("!--in-process", options->loopback,
                       "Without the GigE Vision camera and the KUKA controller on the loopback address");
-    command->add_option("--camera", options->camera_address, "Loopback address of the served camera")
+    command
+        ->add_option("--camera", options->camera_address,
+                     "Loopback address of the served camera; free: one that is found free")
         ->capture_default_str();
     command
-        ->add_option("--robot-port", options->robot_port, "Where the simulated KUKA controller connects to")
-        ->check(CLI::Range(1, 65535))
+        ->add_option("--robot-port", options->robot_port,
+                     "Where the simulated KUKA controller connects to; 0: a port that is found free")
+        ->check(CLI::Range(0, 65535))
         ->capture_default_str();
     line.on(command, [options] { return demo(*options); });
 }

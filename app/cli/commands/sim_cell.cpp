@@ -13,6 +13,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/settings.h"
 #include "devices/gocator/served_gocator.h"
 #include "projects/acquire.h"
 #include "projects/project_file.h"
@@ -45,7 +46,32 @@ Expected<ServedController> controller_from(const std::string& text) {
     return c;
 }
 
-Expected<CellServer> serve(const SimCellArguments& a, const json& cell_settings) {
+// What the settings say under "serve" ({"camera": ADDRESS, "controllers": [NAME:PORT]}, as the demo leaves
+// it) is served where the command names nothing.
+Expected<void> take_serve(json& cell_settings, SimCellArguments& a) {
+    const auto serve = cell_settings.is_object() ? cell_settings.find("serve") : cell_settings.end();
+    if (serve == cell_settings.end()) return {};
+    SettingsReader f(*serve, "serve");
+    f.only({"camera", "controllers"});
+    std::string camera;
+    f.text("camera", camera);
+    if (f.failed()) return tl::unexpected(f.error());
+    std::vector<std::string> controllers;
+    if (const auto named = serve->find("controllers"); named != serve->end()) {
+        if (!named->is_array()) return input_error("must be a list of NAME:PORT", "serve.controllers");
+        for (const json& name : *named) {
+            if (!name.is_string()) return input_error("must be a list of NAME:PORT", "serve.controllers");
+            controllers.push_back(name.get<std::string>());
+        }
+    }
+    if (a.camera.empty() && a.gocator.empty()) a.camera = camera;
+    if (a.controllers.empty()) a.controllers = controllers;
+    cell_settings.erase(serve);
+    return {};
+}
+
+Expected<CellServer> serve(SimCellArguments a, json cell_settings) {
+    if (auto taken = take_serve(cell_settings, a); !taken) return tl::unexpected(taken.error());
     CellServerOptions options;
     options.cell = cell_settings;
     options.camera_address = a.camera;
@@ -187,10 +213,16 @@ void add_sim_cell(CommandLine& line) {
     for (const ControllerDriver& d : controller_drivers())
         known += (known.empty() ? "" : " | ") + std::string(d.name);
     for (const ControllerFault f : controller_faults()) faults += " | " + std::string(to_string(f));
-    command->add_option("settings", a->settings, "The cell's settings")->type_name("CELL.json");
+    command
+        ->add_option(
+            "settings", a->settings,
+            "The cell's settings; what they name under \"serve\" is served where the command names nothing")
+        ->type_name("CELL.json");
     command->add_option("--project", a->project, "Its spots are the measuring program on the controllers")
         ->type_name("FILE.seam");
-    command->add_option("--camera", a->camera, "Serve the sensor as a GigE Vision camera on this address")
+    command
+        ->add_option("--camera", a->camera,
+                     "Serve the sensor as a GigE Vision camera on this address; free: one that is found free")
         ->type_name("ADDRESS");
     command->add_option("--gocator", a->gocator, "Serve it as a Gocator on this address instead")
         ->type_name("ADDRESS");

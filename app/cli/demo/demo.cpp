@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 #include <random>
 
 #include "devices/cell_server.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/path_csv.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/net/socket.h"
 #include "devices/simulated/door.h"
 #include "projects/acquire.h"
 #include "projects/measure.h"
@@ -22,11 +24,54 @@ namespace {
 constexpr double kCurveTravelMm = 20;
 constexpr const char* kSensor = "A";
 constexpr const char* kRobot = "R1";
+constexpr int kUsualRobotPort = 54600;  // of kuka-eki
 
 struct Devices {
     std::unique_ptr<ProfileSource> sensor;
     std::unique_ptr<RobotLink> robot;
 };
+
+// The devices go before the server that they talk to.
+struct ServedDemo {
+    std::optional<CellServer> server;
+    nlohmann::json sensor_settings, robot_settings;
+    Devices devices;
+};
+
+// The robot's link and the settings that it listens with. Where no port is asked for: the usual one, else one
+// that the system calls free; another program may take it before the link does, then the next.
+Expected<ServedDemo> listen_for_robot(const DemoOptions& options, DeviceSession& session) {
+    for (int attempt = 0;; ++attempt) {
+        int port = options.robot_port;
+        if (port == 0 && attempt == 0) port = kUsualRobotPort;
+        if (port == 0) {
+            auto listener = TcpListener::listen("127.0.0.1", 0);
+            if (!listener) return tl::unexpected(listener.error());
+            port = listener->port();
+        }
+        const nlohmann::json settings = {{"port", port}};
+        auto robot = open_robot("kuka-eki", settings, session);
+        if (robot) return ServedDemo{{}, {}, settings, {nullptr, std::move(*robot)}};
+        if (options.robot_port != 0 || attempt == 20) return tl::unexpected(robot.error());
+    }
+}
+
+Expected<ServedDemo> serve_demo(const DemoOptions& options, const std::shared_ptr<SimulatedCell>& cell) {
+    DeviceSession session;
+    auto demo = listen_for_robot(options, session);
+    if (!demo) return demo;
+    CellServerOptions serve;
+    serve.camera_address = options.camera_address;
+    serve.controllers = {{"kuka-eki", demo->robot_settings}};
+    auto server = CellServer::start(serve, cell);
+    if (!server) return tl::unexpected(server.error());
+    demo->server.emplace(std::move(*server));
+    demo->sensor_settings = {{"address", demo->server->camera_address()}, {"hardware_trigger", true}};
+    auto sensor = open_sensor("genicam", demo->sensor_settings, session);
+    if (!sensor) return tl::unexpected(sensor.error());
+    demo->devices.sensor = std::move(*sensor);
+    return demo;
+}
 
 std::string frame_name(const std::string& region_id) {
     return "BASE_" + region_id;
@@ -207,32 +252,23 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
          default_door_regions())  // the frames that the application program runs in
         settings["robot"]["frames"][frame_name(region.id)] =
             pose_json(default_cell_settings().base_from_workobject);
-    // For `seamwright sim-cell`: the same cell again, for further runs of the project.
-    if (auto written = write_text_file(options.folder / "cell.json", settings.dump(2)); !written)
-        return tl::unexpected(written.error());
     auto opened = SimulatedCell::open(settings);
     if (!opened) return tl::unexpected(opened.error());
     const std::shared_ptr<SimulatedCell> cell = *opened;
     SimulatedCell& world = *cell;
-    CellServerOptions serve;
-    nlohmann::json sensor_settings = settings, robot_settings = settings;
+    Expected<ServedDemo> served =
+        ServedDemo{{}, settings, settings, {make_simulated_sensor(cell), make_simulated_robot(cell)}};
+    if (options.loopback) served = serve_demo(options, cell);
+    if (!served) return tl::unexpected(served.error());
     if (options.loopback) {
-        serve.camera_address = options.camera_address;
-        serve.controllers = {{"kuka-eki", {{"port", options.robot_port}}}};
-        sensor_settings = {{"address", options.camera_address}, {"hardware_trigger", true}};
-        robot_settings = {{"port", options.robot_port}};
+        const std::string controller = fmt::format("kuka-eki:{}", served->robot_settings["port"].get<int>());
+        progress(
+            fmt::format("camera on {}, robot controller {}", served->server->camera_address(), controller));
+        settings["serve"] = {{"camera", served->server->camera_address()}, {"controllers", {controller}}};
     }
-    auto server = CellServer::start(serve, cell);
-    if (!server) return tl::unexpected(server.error());
-    const auto open_devices = [&]() -> Expected<Devices> {
-        if (!options.loopback) return Devices{make_simulated_sensor(cell), make_simulated_robot(cell)};
-        DeviceSession session;
-        auto sensor = open_sensor("genicam", sensor_settings, session);
-        if (!sensor) return tl::unexpected(sensor.error());
-        auto robot = open_robot("kuka-eki", robot_settings, session);
-        if (!robot) return tl::unexpected(robot.error());
-        return Devices{std::move(*sensor), std::move(*robot)};
-    };
+    // For `seamwright sim-cell`: the same cell again, for further runs of the project.
+    if (auto written = write_text_file(options.folder / "cell.json", settings.dump(2)); !written)
+        return tl::unexpected(written.error());
 
     progress("calibrating the sensor on plate and sphere");
     Project& project = outcome.project;
@@ -241,23 +277,19 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     SensorSetup sensor_setup;
     sensor_setup.id = kSensor;
     sensor_setup.driver = options.loopback ? "genicam" : "simulated";
-    sensor_setup.settings = sensor_settings;
+    sensor_setup.settings = served->sensor_settings;
     RobotSetup robot_setup;
     robot_setup.id = kRobot;
     robot_setup.driver = options.loopback ? "kuka-eki" : "simulated";
-    robot_setup.settings = robot_settings;
+    robot_setup.settings = served->robot_settings;
     robot_setup.required_mode = RobotMode::automatic;
-    {
-        auto devices = open_devices();
-        if (!devices) return tl::unexpected(devices.error());
-        sensor_setup.identity = devices->sensor->identity();
-        auto identity = devices->robot->identity();
-        if (!identity) return tl::unexpected(identity.error());
-        robot_setup.identity = *identity;
-        auto calibrated = calibrate_demo_sensor(world, *devices->sensor, *devices->robot);
-        if (!calibrated) return tl::unexpected(calibrated.error());
-        outcome.calibration = std::move(*calibrated);
-    }
+    sensor_setup.identity = served->devices.sensor->identity();
+    auto identity = served->devices.robot->identity();
+    if (!identity) return tl::unexpected(identity.error());
+    robot_setup.identity = *identity;
+    auto calibrated = calibrate_demo_sensor(world, *served->devices.sensor, *served->devices.robot);
+    if (!calibrated) return tl::unexpected(calibrated.error());
+    outcome.calibration = std::move(*calibrated);
     Calibration& calibration = outcome.calibration.calibration;
     calibration.id = "cal-1";
     calibration.sensor_id = kSensor;
@@ -274,15 +306,11 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     if (!file) return tl::unexpected(file.error());
     Station station(std::move(*file), project);
     world.set_scene(Scene::part);
-    {
-        auto devices = open_devices();
-        if (!devices) return tl::unexpected(devices.error());
-        std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
-        std::map<std::string, std::unique_ptr<RobotLink>> robots;
-        sensors[kSensor] = std::move(devices->sensor);
-        robots[kRobot] = std::move(devices->robot);
-        station.connect(std::move(sensors), std::move(robots));
-    }
+    std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
+    std::map<std::string, std::unique_ptr<RobotLink>> robots;
+    sensors[kSensor] = std::move(served->devices.sensor);
+    robots[kRobot] = std::move(served->devices.robot);
+    station.connect(std::move(sensors), std::move(robots));
 
     for (const DoorSpot& door : default_door_spots()) {
         progress("teaching spot " + door.id);

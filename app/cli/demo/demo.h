@@ -24,8 +24,8 @@ struct DemoOptions {
     // Over loopback: the sensor as a GigE Vision camera at this address, the robot as a KUKA controller that
     // connects by EthernetKRL. In-process otherwise: the same cell without cables between.
     bool loopback = true;
-    std::string camera_address = "127.0.0.1";
-    int robot_port = 54600;
+    std::string camera_address = "free";  // 127.0.0.1, else another of 127.0.0.0/8 that is free
+    int robot_port = 0;                   // 0: 54600, else another that is free
 };
 
 // One calibration step as the report shows it.

@@ -1,4 +1,5 @@
-// The driver before a camera that Aravis serves on 127.0.0.1. Nothing leaves the loopback interface.
+// The driver before a served camera on a loopback address that is free. Nothing leaves the loopback
+// interface.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -9,6 +10,7 @@
 #include "devices/genicam/gvcp.h"
 #include "devices/genicam/pixel_format.h"
 #include "devices/genicam/served_camera.h"
+#include "devices/net/socket.h"
 #include "devices/registry.h"
 #include "devices/silence.h"
 
@@ -18,8 +20,10 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
+std::string camera_address = "127.0.0.1";  // of the camera served last
+
 Expected<std::unique_ptr<ProfileSource>> open(const json& extra = json::object()) {
-    json settings = {{"address", "127.0.0.1"}, {"packet_resend", false}, {"frame_retention_ms", 200}};
+    json settings = {{"address", camera_address}, {"packet_resend", false}, {"frame_retention_ms", 200}};
     settings.update(extra);
     DeviceSession session;
     return open_sensor("genicam", settings, session);
@@ -34,14 +38,11 @@ std::shared_ptr<SimulatedCell> small_cell(int depth) {
     return cell ? *cell : nullptr;
 }
 
-// Waits for the port while another program on this machine serves a camera.
 Expected<std::unique_ptr<ServedCamera>> serve(const std::shared_ptr<SimulatedCell>& cell,
-                                              const json& settings = json::object()) {
+                                              json settings = json::object()) {
+    if (!settings.contains("address")) settings["address"] = kFreeAddress;
     auto camera = ServedCamera::open(cell, settings);
-    for (int i = 0; i < 100 && !camera && camera.error().kind == ErrorKind::device; ++i) {
-        std::this_thread::sleep_for(200ms);
-        camera = ServedCamera::open(cell, settings);
-    }
+    if (camera) camera_address = (*camera)->address();
     return camera;
 }
 
@@ -90,11 +91,11 @@ std::shared_ptr<SimulatedCell> Wire::cell_, Wire::deep_;
 TEST_F(Wire, IsFoundAndOpenedByAddressAndSerial) {
     auto camera = serve(cell_);
     ASSERT_TRUE(camera) << camera.error().sentence();
-    const auto seen = ask_camera("127.0.0.1", 1s);
+    const auto seen = ask_camera(camera_address, 1s);
     ASSERT_TRUE(seen) << seen.error().sentence();
     EXPECT_EQ(seen->serial, "WIRE-1");
     EXPECT_EQ(seen->vendor, "Seamwright");
-    EXPECT_EQ(seen->address, "127.0.0.1");
+    EXPECT_EQ(seen->address, camera_address);
     {
         auto sensor = open();
         ASSERT_TRUE(sensor) << sensor.error().sentence();
@@ -102,7 +103,7 @@ TEST_F(Wire, IsFoundAndOpenedByAddressAndSerial) {
                   (SensorIdentity{"genicam", "Seamwright", "Simulated stripe camera", "WIRE-1"}));
     }
     DeviceSession session;
-    json by_serial = {{"serial", "WIRE-1"}, {"search", {"127.0.0.1"}}};
+    json by_serial = {{"serial", "WIRE-1"}, {"search", {camera_address}}};
     auto sensor = open_sensor("genicam", by_serial, session);
     ASSERT_TRUE(sensor) << sensor.error().sentence();
     sensor->reset();
@@ -117,7 +118,7 @@ TEST_F(Wire, IsFoundAndOpenedByAddressAndSerial) {
 }
 
 TEST_F(Wire, NobodyThereIsSilence) {
-    auto sensor = open({{"timeout_ms", 200}});
+    auto sensor = open({{"address", "127.99.98.97"}, {"timeout_ms", 200}});
     ASSERT_FALSE(sensor);
     EXPECT_TRUE(is_silence(sensor.error())) << sensor.error().sentence();
     sensor = open({{"address", "nowhere"}});
@@ -372,7 +373,7 @@ TEST_F(Wire, UnpluggedAndPluggedInAgain) {
     ASSERT_FALSE(frame);
     EXPECT_TRUE(is_silence(frame.error())) << frame.error().sentence();
     EXPECT_FALSE((*sensor)->get("exposure_us"));
-    camera = serve(cell_);
+    camera = serve(cell_, {{"address", camera_address}});
     ASSERT_TRUE(camera) << camera.error().sentence();
     Expected<void> fired;
     for (int i = 0; i < 200 && !(fired = (*sensor)->trigger("after")); ++i) std::this_thread::sleep_for(20ms);
@@ -389,13 +390,37 @@ TEST_F(Wire, UnpluggedAndPluggedInAgain) {
 TEST_F(Wire, ASecondCameraOrControllerIsRefusedInWords) {
     auto camera = serve(cell_);
     ASSERT_TRUE(camera) << camera.error().sentence();
-    auto twice = ServedCamera::open(cell_, json::object());
+    auto twice = ServedCamera::open(cell_, {{"address", camera_address}});
     ASSERT_FALSE(twice);
-    EXPECT_NE(twice.error().sentence().find("127.0.0.1"), std::string::npos);
+    EXPECT_NE(twice.error().sentence().find(camera_address), std::string::npos);
     EXPECT_FALSE(ServedCamera::open(cell_, {{"adress", "127.0.0.1"}}));
     EXPECT_FALSE(ServedCamera::open(cell_, {{"serial", ""}}));
     EXPECT_FALSE(ServedCamera::open(cell_, {{"packet_size", 10}}));
     EXPECT_FALSE(ServedCamera::open(cell_, {{"address", "203.0.113.9"}}));
+}
+
+// The port is fixed by the standard, so another program's camera on an address leaves the other addresses.
+TEST_F(Wire, AFreeAddressIsFoundBesideTakenOnes) {
+    const auto other = UdpSocket::bind("127.0.0.1", kGvcpPort);  // or another program has it already
+    auto first = serve(cell_);
+    ASSERT_TRUE(first) << first.error().sentence();
+    EXPECT_NE((*first)->address(), "127.0.0.1");
+    auto second = serve(deep_, {{"serial", "WIRE-2"}});
+    ASSERT_TRUE(second) << second.error().sentence();
+    EXPECT_NE((*first)->address(), (*second)->address());
+    for (const ServedCamera* camera : {first->get(), second->get()}) {
+        const auto seen = ask_camera(camera->address(), 1s);
+        ASSERT_TRUE(seen) << seen.error().sentence();
+        EXPECT_EQ(seen->serial, camera->serial());
+        EXPECT_EQ(seen->address, camera->address());
+    }
+    auto sensor = open();
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    ASSERT_TRUE((*sensor)->start());
+    ASSERT_TRUE((*sensor)->trigger("a"));
+    const auto frame = (*sensor)->wait_next(3s);
+    ASSERT_TRUE(frame) << frame.error().sentence();
+    EXPECT_EQ((*frame)->status, FrameStatus::ok);
 }
 
 TEST(WireRange, RowsAreProfilesInOrder) {
@@ -409,8 +434,10 @@ TEST(WireRange, RowsAreProfilesInOrder) {
     s.c_offset_mm = -100;
     s.invalid_flag = true;
     s.invalid_value = 0;
+    s.address = kFreeAddress;
     auto camera = WireCamera::open(s);
     ASSERT_TRUE(camera) << camera.error().sentence();
+    camera_address = (*camera)->address();
     auto sensor = open({{"trigger", "free"}});
     ASSERT_TRUE(sensor) << sensor.error().sentence();
     (*camera)->set_ready(true);

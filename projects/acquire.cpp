@@ -23,6 +23,7 @@ bool hardware_triggered(const SensorSetup& sensor) {
 MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
     MeasuringMove move;
     move.spot_id = spot.id;
+    move.via = spot.via;
     move.trigger = spot.base_from_flange;
     const Eigen::Vector3d travel = (spot.base_from_flange * flange_from_sensor).linear().col(1);
     move.entry = move.exit = move.trigger;

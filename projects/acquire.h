@@ -18,7 +18,7 @@ struct AcquireLimits {
     std::chrono::milliseconds frame_timeout{3000};     // sensor: from trigger to frame
 };
 
-// entry -> trigger -> exit along the sensor's Y with the orientation held.
+// Via points -> entry -> trigger -> exit, the pass along the sensor's Y with the orientation held.
 MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor);
 
 // The measuring program of a robot: its enabled spots in the project's order. A spot without calibration is

@@ -103,6 +103,8 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     findings.unless(known(project.robots, spot.robot_id), where,
                     fmt::format("its robot \"{}\" is not in the project", spot.robot_id));
     findings.rigid(spot.base_from_flange, where + ".base_from_flange");
+    for (std::size_t i = 0; i < spot.via.size(); ++i)
+        findings.rigid(spot.via[i], fmt::format("{}.via[{}]", where, i));
     if (auto finder = make_feature_finder(spot.feature); !finder)
         findings.add(where + ".feature", finder.error().what, finder.error().mend);
     findings.unless(spot.reference_mm.allFinite(), where, "the reference is not a finite point",

@@ -32,8 +32,10 @@ class ShiftedRobot final : public RobotLink {
     }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         std::vector<MeasuringMove> shifted = moves;
-        for (MeasuringMove& move : shifted)
+        for (MeasuringMove& move : shifted) {
             for (Pose* pose : {&move.entry, &move.trigger, &move.exit}) *pose = *shift_ * *pose;
+            for (Pose& via : move.via) via = *shift_ * via;
+        }
         return robot_->start_measuring(shifted);
     }
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {

@@ -144,11 +144,15 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
         if (!calibration)
             return input_error("the sensor has no calibration in use, its pose on the part is unknown",
                                "spot " + spot.id, "calibrate the sensor first");
-        const Pose workobject_from_sensor = project.part.base_from_workobject.inverse() *
-                                            spot.base_from_flange * calibration->flange_from_sensor;
-        spot.base_from_flange = project.part.base_from_workobject *
-                                reflected(plane, workobject_from_sensor, sensor_mirror) *
-                                calibration->flange_from_sensor.inverse();
+        const auto mirror_flange = [&](Pose& base_from_flange) {
+            const Pose workobject_from_sensor = project.part.base_from_workobject.inverse() *
+                                                base_from_flange * calibration->flange_from_sensor;
+            base_from_flange = project.part.base_from_workobject *
+                               reflected(plane, workobject_from_sensor, sensor_mirror) *
+                               calibration->flange_from_sensor.inverse();
+        };
+        mirror_flange(spot.base_from_flange);
+        for (Pose& via : spot.via) mirror_flange(via);
         auto recipe = mirrored_recipe(spot.feature);
         if (!recipe) {
             Error error = recipe.error();

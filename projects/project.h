@@ -75,6 +75,8 @@ struct Spot {
     bool enabled = true;
     bool required = true;                      // a region with a required spot missing is not pushed
     Pose base_from_flange = Pose::Identity();  // taught trigger pose
+    // base_from_flange too: passed in this order on the way from the spot before to the entry. None: straight.
+    std::vector<Pose> via;
     double entry_mm = 20, exit_mm = 20;        // travel before and after the trigger, along the sensor's Y
     double speed_mm_s = 100;
     bool stop_at_trigger = false;

@@ -266,6 +266,7 @@ void describe(A& a, Spot& v) {
     a("exit_mm", v.exit_mm);
     a("speed_mm_s", v.speed_mm_s);
     a("stop_at_trigger", v.stop_at_trigger);
+    if (A::reading || !v.via.empty()) a("via", v.via);
     a("feature", v.feature);
     a("reference_mm", v.reference_mm);
     if (a.options().profiles) a("reference_profile", v.reference_profile);

@@ -290,6 +290,22 @@
         <translation>keine Antwort in der Zeit: der nächste Verbindungsversuch ist in %1 ms</translation>
     </message>
     <message>
+        <source>the controller is silent: %1</source>
+        <translation>die Steuerung schweigt: %1</translation>
+    </message>
+    <message>
+        <source>another robot answers than before: &quot;%1&quot;, not &quot;%2&quot;</source>
+        <translation>es antwortet ein anderer Roboter als vorher: „%1“, nicht „%2“</translation>
+    </message>
+    <message>
+        <source>check the cables and addresses</source>
+        <translation>Kabel und Adressen prüfen</translation>
+    </message>
+    <message>
+        <source>the connection was lost while the part was measured</source>
+        <translation>die Verbindung ging verloren, während das Teil gemessen wurde</translation>
+    </message>
+    <message>
         <source>the connection was closed by the other side</source>
         <translation>die Gegenseite hat die Verbindung geschlossen</translation>
     </message>
@@ -9056,6 +9072,34 @@ und %1 weitere</translation>
     <message>
         <source>template</source>
         <translation>Vorlage</translation>
+    </message>
+    <message>
+        <source>Via points</source>
+        <translation>Zwischenpunkte</translation>
+    </message>
+    <message>
+        <source>Passed in this order on the way from the spot before. Write the robot&apos;s program anew after a change.</source>
+        <translation>Auf dem Weg von der vorigen Messstelle in dieser Reihenfolge überfahren. Nach einer Änderung das Roboterprogramm neu schreiben.</translation>
+    </message>
+    <message>
+        <source>Add here</source>
+        <translation>Hier einfügen</translation>
+    </message>
+    <message>
+        <source>The pose where the robot stands now, behind the selected via point</source>
+        <translation>Die Pose, in der der Roboter gerade steht, hinter dem gewählten Zwischenpunkt</translation>
+    </message>
+    <message>
+        <source>Remove point</source>
+        <translation>Punkt entfernen</translation>
+    </message>
+    <message>
+        <source>Take the selected via point out; undo brings it back</source>
+        <translation>Den gewählten Zwischenpunkt herausnehmen; Rückgängig holt ihn zurück</translation>
+    </message>
+    <message>
+        <source>via points</source>
+        <translation>Zwischenpunkte</translation>
     </message>
     <message>
         <source>Stand still at the trigger</source>

@@ -8,7 +8,9 @@
 #include <deque>
 
 #include "devices/silence.h"
+#include "projects/measure.h"
 #include "tests/projects/mock_devices.h"
+#include "tests/projects/sample_project.h"
 
 namespace seamwright {
 namespace {
@@ -156,6 +158,20 @@ TEST(Waiting, FailureIsNotWaitedOut) {
     const auto trigger = next_trigger(robot, std::chrono::hours(1), {});
     ASSERT_FALSE(trigger);
     EXPECT_TRUE(is_disconnect(trigger.error()));
+}
+
+TEST(MeasuringProgram, ViaPointsOfTheProjectGoBeforeTheEntry) {
+    const Project project = sample_project();
+    const auto moves = measuring_program(project, "R1");
+    ASSERT_FALSE(moves.empty());
+    int vias = 0;
+    for (const MeasuringMove& move : moves) {
+        const Spot& spot = *find_spot(project, move.spot_id);
+        ASSERT_EQ(move.via.size(), spot.via.size());
+        for (std::size_t i = 0; i < move.via.size(); ++i, ++vias)
+            EXPECT_EQ(move.via[i].matrix(), spot.via[i].matrix());
+    }
+    EXPECT_GT(vias, 0);
 }
 
 }  // namespace

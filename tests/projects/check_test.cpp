@@ -63,6 +63,12 @@ TEST(Check, NamesEveryImplausibility) {
          "writes the same frame"},
         {"no frame", [](P p) { p.regions[1].frame_name.clear(); }, "names no frame"},
         {"nan pose", [](P p) { p.spots[0].base_from_flange(0, 3) = kNan; }, "not a finite number"},
+        {"nan via point",
+         [](P p) {
+             p.spots[0].via = {Pose::Identity(), Pose::Identity()};
+             p.spots[0].via[1](2, 3) = kNan;
+         },
+         "via[1]"},
         {"sheared pose", [](P p) { p.part.base_from_workobject(0, 0) += 0.1; }, "orthonormal"},
         {"nan reference", [](P p) { p.spots[0].reference_mm.x() = kNan; }, "reference is not a finite point"},
         {"no weight", [](P p) { p.spots[0].weights.setZero(); }, "no direction has a weight"},

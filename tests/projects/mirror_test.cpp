@@ -291,6 +291,9 @@ TEST(Mirror, TwiceIsTheOriginal) {
     for (const MirrorPlane& plane : kPlanes) {
         Project project = rich_project();
         project.regions[1].free = kAllFree;
+        for (Spot& s : project.spots)
+            s.via = {make_pose(rotation_exp({0.2, -0.1, 0.3}), {10, 20, -30}) * s.base_from_flange,
+                     s.base_from_flange};
         TriangleMesh mesh;
         mesh.vertices = {{0, 0, 0}, {100, 0, 0}, {0, 80, 0}, {0, 0, 60}};
         mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -303,6 +306,10 @@ TEST(Mirror, TwiceIsTheOriginal) {
         for (std::size_t i = 0; i < project.spots.size(); ++i) {
             const Spot &a = project.spots[i], &b = twice->spots[i];
             expect_equal(a.base_from_flange, b.base_from_flange, a.id);
+            const Spot& image = once->spots[i];
+            ASSERT_EQ(image.via.size(), 2U);
+            expect_equal(image.via[1], image.base_from_flange, "mirrored as the spot is");
+            for (std::size_t k = 0; k < 2; ++k) expect_equal(a.via[k], b.via[k], a.id);
             EXPECT_EQ(a.reference_mm, b.reference_mm);
             EXPECT_EQ(a.reference_profile.x_mm, b.reference_profile.x_mm);
             EXPECT_EQ(a.reference_profile.intensity, b.reference_profile.intensity);

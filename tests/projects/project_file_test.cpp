@@ -38,6 +38,9 @@ TEST(ProjectFile, RoundTripIsExact) {
         EXPECT_TRUE(
             same_bits(loaded->spots[i].feature.template_profile, project.spots[i].feature.template_profile));
         EXPECT_EQ(loaded->spots[i].base_from_flange.matrix(), project.spots[i].base_from_flange.matrix());
+        ASSERT_EQ(loaded->spots[i].via.size(), i % 3);
+        for (std::size_t k = 0; k < i % 3; ++k)
+            EXPECT_EQ(loaded->spots[i].via[k].matrix(), project.spots[i].via[k].matrix());
     }
     EXPECT_TRUE(std::signbit(loaded->spots[0].feature.template_reference_mm.y()));
     EXPECT_TRUE(file->check().empty());

@@ -151,6 +151,7 @@ inline Project sample_project(unsigned seed = 1) {
         s.exit_mm = 12 + i;
         s.speed_mm_s = 80 + i;
         s.stop_at_trigger = i % 2;
+        for (int k = 0; k < i % 3; ++k) s.via.push_back(make.pose());
         s.feature.kind = i % 2 ? "template" : "contour-end";
         s.feature.parameters = {{"window_left_mm", -1.0 / 3.0}, {"tiny", 5e-324}};
         s.feature.template_profile = make.profile(50, i % 2);

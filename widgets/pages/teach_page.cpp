@@ -111,6 +111,31 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
                               desk_.worker().jog_simulated(spot()->robot_id, spot()->base_from_flange);
                       });
     in->addLayout(make_row({take_, go_}));
+
+    in->addWidget(make_heading(tr("Via points")));
+    via_ = new QListWidget;
+    via_->setObjectName("spot_via");
+    via_->setAccessibleName(tr("Via points"));
+    via_->setToolTip(
+        tr("Passed in this order on the way from the spot before. Write the robot's program anew after a "
+           "change."));
+    via_->setMaximumHeight(3 * style::kTargetPx);
+    in->addWidget(via_);
+    add_via_ = make_button("add_via", "add", tr("Add here"),
+                           tr("The pose where the robot stands now, behind the selected via point"),
+                           [this] { add_via(); });
+    remove_via_ = make_button("remove_via", "remove", tr("Remove point"),
+                              tr("Take the selected via point out; undo brings it back"), [this] {
+                                  const int row = via_->currentRow();
+                                  if (!spot() || row < 0) return;
+                                  Spot s = *spot();
+                                  s.via.erase(s.via.begin() + row);
+                                  done(desk_.edit(s, tr("via points")));
+                              });
+    in->addLayout(make_row({add_via_, remove_via_}));
+    connect(via_, &QListWidget::currentRowChanged, this,
+            [this](int row) { remove_via_->setEnabled(row >= 0); });
+
     sensor_ = new QComboBox;
     sensor_->setObjectName("spot_sensor");
     add_field(*in, tr("Sensor"), sensor_, tr("The sensor that looks at the spot"));
@@ -277,6 +302,17 @@ void TeachPage::refresh() {
     go_->setVisible(robot && robot->driver == "simulated");
     take_->setEnabled(connected);
     go_->setEnabled(connected);
+    add_via_->setEnabled(connected);
+    const int row = via_->currentRow();
+    via_->clear();
+    for (const Pose& via : s->via)
+        via_->addItem(QStringLiteral("%1  X %2  Y %3  Z %4")
+                          .arg(via_->count() + 1)
+                          .arg(number(via.translation().x(), 1), number(via.translation().y(), 1),
+                               number(via.translation().z(), 1)));
+    via_->setCurrentRow(std::min(row, via_->count() - 1));
+    via_->setVisible(via_->count() > 0);
+    remove_via_->setEnabled(via_->currentRow() >= 0);
     sensor_->clear();
     robot_->clear();
     for (const SensorSetup& x : desk_.project().sensors) sensor_->addItem(QString::fromStdString(x.id));
@@ -366,17 +402,31 @@ void TeachPage::rename_spot() {
     if (ok) done(desk_.rename<Spot>(spot()->id, name.trimmed().toStdString()));
 }
 
-void TeachPage::take_pose() {
-    if (!spot()) return;
+std::optional<Pose> TeachPage::present_pose() {
     for (const RobotState& r : desk_.station().robots)
-        if (r.id == spot()->robot_id && r.base_from_flange) {
-            Spot s = *spot();
-            s.base_from_flange = *r.base_from_flange;
-            change(s, tr("pose"));
-            return;
-        }
+        if (r.id == spot()->robot_id && r.base_from_flange) return r.base_from_flange;
     done(
         device_error("the robot tells no pose", "robot " + spot()->robot_id, "connect it, or type the pose"));
+    return std::nullopt;
+}
+
+void TeachPage::take_pose() {
+    if (!spot()) return;
+    const auto pose = present_pose();
+    if (!pose) return;
+    Spot s = *spot();
+    s.base_from_flange = *pose;
+    change(s, tr("pose"));
+}
+
+void TeachPage::add_via() {
+    if (!spot()) return;
+    const auto pose = present_pose();
+    if (!pose) return;
+    Spot s = *spot();
+    const int at = via_->currentRow() < 0 ? static_cast<int>(s.via.size()) : via_->currentRow() + 1;
+    s.via.insert(s.via.begin() + at, *pose);
+    if (done(desk_.edit(s, tr("via points")))) via_->setCurrentRow(at);
 }
 
 void TeachPage::set_kind(const QString& kind) {

@@ -3,7 +3,9 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QListWidget>
 #include <QSpinBox>
+#include <optional>
 
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
@@ -29,7 +31,9 @@ class TeachPage : public StepPage {
     void add_spot();
     void duplicate_spot();
     void rename_spot();
+    std::optional<Pose> present_pose();  // of the spot's robot; says why there is none
     void take_pose();
+    void add_via();
     void set_kind(const QString& kind);
     void picked(const QPointF& point_mm);
     void take_template(const QRectF& window_mm);
@@ -40,6 +44,8 @@ class TeachPage : public StepPage {
     QPushButton *pick_, *window_, *click_;
     QCheckBox *enabled_, *required_, *stop_;
     PoseEditor* pose_;
+    QListWidget* via_;
+    QPushButton *add_via_, *remove_via_;
     QComboBox *sensor_, *robot_, *kind_;
     QLabel *kind_help_, *reference_, *spread_;
     QSpinBox* repeats_;

@@ -53,7 +53,8 @@ void add_robot_program(CommandLine& line) {
     CLI::App* command = line.add(
         "robot-program",
         "The controller's side of a project: the module that talks to Seamwright, the measuring program "
-        "(entry, trigger and exit of every spot) and the application frames.",
+        "(entry, trigger and exit of every spot, and the via points that the project gives on the way to it; "
+        "without any it goes straight from exit to the next entry) and the application frames.",
         "seamwright robot-program door_left.seam --brand kuka --out krc");
     std::vector<std::string> brands;
     for (const ProgramWriter& w : program_writers()) brands.emplace_back(w.name);

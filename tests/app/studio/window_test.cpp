@@ -21,6 +21,8 @@
 #include "app/studio/studio.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/mesh_file.h"
+#include "projects/acquire.h"
+#include "projects/project_file.h"
 #include "tests/app/studio/person.h"
 
 namespace seamwright {
@@ -129,6 +131,50 @@ TEST_F(Furniture, ASpotIsToldToStandStillAtTheTrigger) {
     me.shortcut(Qt::Key_Z);
     EXPECT_FALSE(studio->desk().project().spots.at(0).stop_at_trigger);
     EXPECT_FALSE(box->isChecked());
+}
+
+TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {
+    start(true);
+    Desk& desk = studio->desk();
+    desk.selection().select_spot(desk.project().spots.at(1).id);
+    const auto via = [&]() -> const std::vector<Pose>& { return desk.project().spots.at(1).via; };
+    Person me(window());
+    me.step(3);
+    ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
+    const auto stands = [&](const Pose& at) {
+        desk.worker().jog_simulated(desk.project().robots.front().id, at);
+        return me.wait([&] {
+            const auto& robots = desk.station().robots;
+            return !robots.empty() && robots.front().base_from_flange &&
+                   distance_mm(*robots.front().base_from_flange, at) < 1e-6;
+        });
+    };
+    const Pose first = desk.project().spots.at(0).base_from_flange;
+    Pose second = first;
+    second.translation().z() += 100;
+    ASSERT_TRUE(stands(first));
+    me.click("add_via");
+    ASSERT_TRUE(stands(second));
+    me.click("add_via");
+    ASSERT_EQ(via().size(), 2U);
+    EXPECT_LT(distance_mm(via()[0], first), 1e-6);
+    EXPECT_LT(distance_mm(via()[1], second), 1e-6);
+    auto* list = me.find<QListWidget>("spot_via");
+    ASSERT_TRUE(list);
+    ASSERT_EQ(list->count(), 2);
+    list->setCurrentRow(0);
+    me.click("remove_via");
+    ASSERT_EQ(via().size(), 1U);
+    EXPECT_LT(distance_mm(via()[0], second), 1e-6);
+    me.shortcut(Qt::Key_Z);
+    EXPECT_EQ(via().size(), 2U);
+    EXPECT_EQ(list->count(), 2);
+    // They reach the robot's program and are there when the file is opened again.
+    EXPECT_EQ(measuring_program(desk.project(), desk.project().robots.front().id).at(1).via.size(), 2U);
+    ASSERT_TRUE(desk.save());
+    auto file = ProjectFile::open(path("demo.seam"), FileAccess::read_only);
+    ASSERT_TRUE(file) << file.error().sentence();
+    EXPECT_EQ(file->load()->spots.at(1).via.size(), 2U);
 }
 
 TEST_F(Furniture, WhatWasMeasuredAtAnotherPoseOrFeatureGoesWithTheEdit) {

@@ -51,7 +51,10 @@ struct TriggerEvent {
 // The line calls for a part to be measured. `part_id` is empty where the controller does not know it.
 struct StartSignal {
     std::string part_id;
-    std::int64_t host_time_ns = 0;
+    std::int64_t host_time_ns = 0;  // when it was heard, steady clock
+    // It was not called before this instant, when the controller was last heard without the call: a moment
+    // ago between two parts, before the outage after one. 0: nothing is known of before.
+    std::int64_t not_before_ns = 0;
 };
 
 // How a part ended, as the controller is told. Only `corrected` lets the application run with the frames
@@ -84,13 +87,15 @@ class RobotLink {
     virtual Expected<RobotMode> mode() = 0;
     // The newest pose that the controller told; fresh within the driver's time-out.
     virtual Expected<Pose> base_from_flange() = 0;
-    // The controller's call for the next part. Silence after `timeout`. An Error unless the driver has such a
-    // signal.
+    // The controller's call for the next part. Silence after `timeout`: it has not come; a controller that is
+    // silent itself or away is told otherwise (fell_silent() of silence.h). An Error unless the driver has
+    // such a signal. A call that is not to be measured is answered by confirm(refused).
     virtual Expected<StartSignal> wait_start(std::chrono::milliseconds timeout);
     // Starts the measuring program, or lets one go on that waits after its start signal. Controllers that
     // hold their own program compare the spots' names with it.
     virtual Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) = 0;
-    // Next trigger in order. Silence after `timeout`.
+    // Next trigger in order. Silence after `timeout`, as with wait_start(); where the connection was lost
+    // since the start of measuring and triggers with it, an Error at once.
     virtual Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) = 0;
     // The frame (base, work object) that a region's path runs in, by its name on the controller:
     // base_from_frame.

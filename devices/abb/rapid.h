@@ -19,7 +19,7 @@
 //   {"address": "127.0.0.1", "port": 1025,
 //    "timeout_ms": 1000            for each answer and for connecting,
 //    "move_timeout_ms": 60000      for move_to(), which answers when the robot stands,
-//    "backoff_ms": 100, "backoff_max_ms": 5000}   between attempts to connect, doubling
+//    "backoff_ms": 100, "backoff_max_ms": 500}   between attempts to connect, doubling
 //
 // Failure: a controller that is silent or answers half a message is known by is_silence(), and the connection
 // is dropped, so that a late answer is never taken for that of the next question. An answer with another

@@ -11,6 +11,8 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
+#include "devices/same_robot.h"
+#include "devices/silence.h"
 
 namespace seamwright {
 namespace {
@@ -24,7 +26,7 @@ constexpr std::size_t kEventLimit = 10000;  // events waiting: a controller that
 struct LinkSettings {
     std::string address = "127.0.0.1";
     std::uint16_t port = 1025;
-    Milliseconds timeout{1000}, move_timeout{60000}, backoff{100}, backoff_max{5000};
+    Milliseconds timeout{1000}, move_timeout{60000}, backoff{100}, backoff_max{500};
 };
 
 Expected<LinkSettings> parse_link_settings(const nlohmann::json& json) {
@@ -72,11 +74,9 @@ class AbbRapidLink final : public RobotLink {
           where_(fmt::format("abb-rapid {}:{}", settings_.address, settings_.port)) {}
 
     Expected<RobotIdentity> identity() override {
-        auto answer = ask({0, "HELLO", {"1"}, {}, {}}, settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
-        if (answer->fields != std::vector<std::string>{"1"})
-            return broken("the controller's module speaks another version of the protocol than 1");
-        return RobotIdentity{"abb-rapid", "ABB", answer->line3, answer->line2};
+        auto now = ask_identity();
+        if (!now) return now;
+        return robot_.told(*now);
     }
 
     Expected<RobotMode> mode() override {
@@ -142,6 +142,9 @@ class AbbRapidLink final : public RobotLink {
                 return trigger;
             }
             if (ended_) return device_error("the measuring program has ended", where_);
+            if (next_trigger_ == 0)
+                return device_error("the connection was lost while the part was measured", where_,
+                                    "measure the part again");
             if (auto got = next_event(until); !got) return tl::unexpected(got.error());
         }
     }
@@ -155,6 +158,7 @@ class AbbRapidLink final : public RobotLink {
         if (auto ok = check_frame_name(name); !ok) return ok;
         Message request{0, "WRITE", {name}, {}, {}};
         if (auto ok = put_pose(request, base_from_frame); !ok) return ok;
+        if (auto same = same_robot(); !same) return same;
         auto staged = pose_of(ask(std::move(request), settings_.timeout));
         if (!staged) return tl::unexpected(staged.error());
         return {};
@@ -164,6 +168,8 @@ class AbbRapidLink final : public RobotLink {
         const char* word = verdict == PartVerdict::corrected ? "CORRECTED"
                            : verdict == PartVerdict::refused ? "REFUSED"
                                                              : "FAILED";
+        if (verdict == PartVerdict::corrected)
+            if (auto same = same_robot(); !same) return same;
         auto answer = ask({0, "VERDICT", {word}, text, {}}, settings_.timeout);
         if (!answer) return tl::unexpected(answer.error());
         return {};
@@ -172,12 +178,24 @@ class AbbRapidLink final : public RobotLink {
     Expected<void> move_to(const Pose& base_from_flange) override {
         Message request{0, "MOVE", {}, {}, {}};
         if (auto ok = put_pose(request, base_from_flange); !ok) return ok;
+        if (auto same = same_robot(); !same) return same;
         auto answer = ask(std::move(request), settings_.move_timeout);
         if (!answer) return tl::unexpected(answer.error());
         return {};
     }
 
   private:
+    Expected<RobotIdentity> ask_identity() {
+        auto answer = ask({0, "HELLO", {"1"}, {}, {}}, settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        if (answer->fields != std::vector<std::string>{"1"})
+            return broken("the controller's module speaks another version of the protocol than 1");
+        return RobotIdentity{"abb-rapid", "ABB", answer->line3, answer->line2};
+    }
+    Expected<void> same_robot() {
+        if (auto open = connected(); !open) return open;
+        return robot_.check([this] { return ask_identity(); }, where_);
+    }
     Expected<void> check_frame_name(const std::string& name) const {
         if (abb::is_rapid_identifier(name)) return {};
         return input_error(fmt::format("\"{}\" is no name of a work object", name), where_,
@@ -201,6 +219,7 @@ class AbbRapidLink final : public RobotLink {
         received_.clear();
         starts_.clear();
         triggers_.clear();
+        next_trigger_ = 0;
         if (wait_.count() == 0) wait_ = settings_.backoff;
         not_before_ = Clock::now() + wait_;
     }
@@ -238,6 +257,7 @@ class AbbRapidLink final : public RobotLink {
         starts_.clear();
         next_trigger_ = 0;
         start_count_.reset();
+        robot_.connected_anew();
         return {};
     }
 
@@ -274,7 +294,8 @@ class AbbRapidLink final : public RobotLink {
                 return device_error(fmt::format("start signal {} came after {}", *count, *start_count_),
                                     where_, "a start signal was lost; the part has to be started again");
             start_count_ = *count;
-            starts_.push_back({event.line2, now_ns()});
+            const std::int64_t now = now_ns();
+            starts_.push_back({event.line2, now, quiet_ns_ == 0 ? now : quiet_ns_});
             return {};
         }
         if (event.word == "END") {
@@ -302,15 +323,16 @@ class AbbRapidLink final : public RobotLink {
 
     // Waits for one event. Silence leaves the connection up unless half a message came.
     Expected<void> next_event(Clock::time_point until) {
-        if (auto open = connected(); !open) return open;
+        if (auto open = connected(); !open) return tl::unexpected(fell_silent(open.error()));
         auto message = receive(until);
         if (!message) {
             if (is_silence(message.error()) && received_.empty()) {
+                quiet_ns_ = now_ns();
                 Error error = message.error();
                 error.where = where_;
                 return tl::unexpected(error);
             }
-            return lost(message.error());
+            return lost(fell_silent(message.error()));
         }
         if (message->number != 0)
             return broken(fmt::format("answer {} came and nothing was asked", message->number));
@@ -341,6 +363,7 @@ class AbbRapidLink final : public RobotLink {
             if (message->number != request.number)
                 return broken(fmt::format("answer {} came to request {}", message->number, request.number));
             wait_ = Milliseconds(0);  // it answers: the next loss begins with the shortest wait
+            quiet_ns_ = now_ns();
             if (message->word == "NO")
                 return device_error(
                     fmt::format("the controller refuses {}: {}", request.word, message->line2), where_);
@@ -363,6 +386,8 @@ class AbbRapidLink final : public RobotLink {
     bool ended_ = false;
     std::uint32_t number_ = 0, next_trigger_ = 0;  // 0 = no measuring of this connection
     std::optional<std::uint32_t> start_count_;
+    SameRobot robot_;
+    std::int64_t quiet_ns_ = 0;  // when nothing more was waiting to be heard; 0 = never
     Milliseconds wait_{0};
     Clock::time_point not_before_{};
 };

@@ -4,17 +4,25 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <optional>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "devices/exchange/settings.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/eki_telegram.h"
 #include "devices/net/socket.h"
+#include "devices/same_robot.h"
 
 namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostNewcomers = 8;
+constexpr Timeout kHelloTime{1000}, kLook{10};
 
 std::int64_t now_ns() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
@@ -30,7 +38,7 @@ class EkiLink final : public RobotLink {
 
     Expected<RobotIdentity> identity() override {
         if (auto ready = connected(Clock::now() + timeout_); !ready) return tl::unexpected(ready.error());
-        return RobotIdentity{"kuka-eki", "KUKA", hello_.part, hello_.name};
+        return robot_.told(identity_of(hello_));
     }
 
     Expected<RobotMode> mode() override {
@@ -50,16 +58,21 @@ class EkiLink final : public RobotLink {
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         auto start = wait_event(starts_, Clock::now() + timeout);
         if (!start) return tl::unexpected(start.error());
-        return StartSignal{start->telegram.part, start->time_ns};
+        return StartSignal{start->telegram.part, start->time_ns, start->not_before_ns};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         triggers_.clear();
         last_trigger_ = 0;
-        return only_error(ask({.kind = "measure", .name = program_signature(moves)}));
+        auto started = only_error(ask({.kind = "measure", .name = program_signature(moves)}));
+        measuring_ = started.has_value();
+        return started;
     }
 
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
+        if (!measuring_)
+            return device_error("the connection was lost while the part was measured", where_,
+                                "measure the part again");
         auto event = wait_event(triggers_, Clock::now() + timeout);
         if (!event) return tl::unexpected(event.error());
         const EkiTelegram& t = event->telegram;
@@ -96,15 +109,23 @@ class EkiLink final : public RobotLink {
     }
 
     std::vector<std::string> take_notices() override {
-        if (strangers_ == 0) return {};
-        return {fmt::format("{} connections of an unknown peer were refused, the last of {}",
-                            std::exchange(strangers_, 0), stranger_)};
+        auto notices = std::exchange(notices_, {});
+        if (strangers_ > 0)
+            notices.push_back(fmt::format("{} connections of an unknown peer were refused, the last of {}",
+                                          std::exchange(strangers_, 0), stranger_));
+        return notices;
     }
 
   private:
     struct Event {
         EkiTelegram telegram;
-        std::int64_t time_ns = 0;
+        std::int64_t time_ns = 0, not_before_ns = 0;
+    };
+    // Somebody who has connected and has not said yet who it is.
+    struct Newcomer {
+        TcpConnection connection;
+        Clock::time_point until;
+        EkiSplitter splitter{"Robot"};
     };
 
     // What came over a broken stream means nothing any more.
@@ -113,6 +134,7 @@ class EkiLink final : public RobotLink {
         splitter_.clear();
         starts_.clear();
         triggers_.clear();
+        measuring_ = false;
     }
     tl::unexpected<Error> fail(Error error) {
         drop();
@@ -127,42 +149,91 @@ class EkiLink final : public RobotLink {
         return {};
     }
 
-    // The controller's connection; others are closed and told.
-    Expected<TcpConnection> accept(Clock::time_point until) {
-        for (;;) {
-            auto connection = listener_.accept(left(until));
-            if (!connection || robot_address_.empty()) return connection;
+    static RobotIdentity identity_of(const EkiTelegram& hello) {
+        return {"kuka-eki", "KUKA", hello.part, hello.name};
+    }
+    static std::string who(const EkiTelegram& hello, const TcpConnection& connection) {
+        return fmt::format("{} at {}", hello.name, connection.peer());
+    }
+
+    // Waits until `until` for somebody to connect.
+    void welcome(Clock::time_point until) {
+        while (auto connection = listener_.accept(left(until))) {
             const std::string peer = connection->peer();
-            if (peer.substr(0, peer.rfind(':')) == robot_address_) return connection;
-            ++strangers_;
-            stranger_ = peer;
+            const bool known = robot_address_.empty() || peer.substr(0, peer.rfind(':')) == robot_address_;
+            if (known && newcomers_.size() < kMostNewcomers)
+                newcomers_.push_back({std::move(*connection), Clock::now() + std::min(timeout_, kHelloTime)});
+            else
+                refuse(peer);
+            until = Clock::now();
         }
+    }
+    void refuse(const std::string& peer) {
+        ++strangers_;
+        stranger_ = peer;
+    }
+
+    enum class Said { nothing_yet, hello, nonsense };
+    // What a newcomer has said by now.
+    Said hear(Newcomer& newcomer, EkiTelegram& hello) const {
+        std::array<char, 4096> buffer;
+        while (const auto got =
+                   newcomer.connection.receive_some(std::as_writable_bytes(std::span(buffer)), Timeout(0)))
+            if (!newcomer.splitter.add({buffer.data(), *got})) return Said::nonsense;
+        if (std::string document; newcomer.splitter.next(document)) {
+            auto telegram = parse_eki_telegram(document);
+            if (!telegram || telegram->kind != "hello" || telegram->name.empty()) return Said::nonsense;
+            hello = std::move(*telegram);
+            return Said::hello;
+        }
+        return Clock::now() < newcomer.until ? Said::nothing_yet : Said::nonsense;
+    }
+
+    // The robot is who says hello; a connection that says nothing or something else costs it nothing. A
+    // second one takes over only when the first does not answer any more.
+    void meet() {
+        for (auto newcomer = newcomers_.begin(); newcomer != newcomers_.end();) {
+            EkiTelegram hello;
+            const Said said = hear(*newcomer, hello);
+            if (said == Said::nothing_yet) {
+                ++newcomer;
+                continue;
+            }
+            const std::string peer = newcomer->connection.peer();
+            if (said == Said::nonsense) {
+                refuse(peer);
+            } else if (connection_ && still_answers()) {
+                notices_.push_back(fmt::format("a second robot was refused, {}: the first one answers",
+                                               who(hello, newcomer->connection)));
+            } else {
+                if (connection_)
+                    notices_.push_back(fmt::format("{} has taken over from {}, which answers no more",
+                                                   who(hello, newcomer->connection),
+                                                   who(hello_, *connection_)));
+                drop();
+                hello_ = std::move(hello);
+                connection_.emplace(std::move(newcomer->connection));
+                splitter_ = std::move(newcomer->splitter);
+                robot_.connected_anew();
+            }
+            newcomer = newcomers_.erase(newcomer);
+        }
+    }
+    bool still_answers() {
+        const bool answers =
+            exchange({.kind = "state"}, Clock::now() + std::min(timeout_, kHelloTime)).has_value();
+        return answers && connection_;
     }
 
     // A connection whose hello has come.
     Expected<void> connected(Clock::time_point until) {
-        if (auto newer = accept(Clock::now())) {
-            drop();
-            connection_.emplace(std::move(*newer));
-        }
-        if (connection_ && greeted_ && connection_->is_open()) return {};
-        if (!connection_ || !connection_->is_open()) {
-            drop();
-            auto accepted = accept(until);
-            if (!accepted)
+        for (welcome(Clock::now());; welcome(std::min(until, Clock::now() + kLook))) {
+            meet();
+            if (connection_ && connection_->is_open()) return {};
+            if (Clock::now() >= until)
                 return device_error(std::string(kNoAnswer) + ": no robot has connected", where_,
                                     "start SEAMWRIGHT_SERVE on the controller");
-            connection_.emplace(std::move(*accepted));
         }
-        greeted_ = false;
-        auto hello = receive(until);
-        if (!hello) return tl::unexpected(hello.error());
-        if (hello->kind != "hello" || hello->name.empty())
-            return fail({ErrorKind::device, "the robot did not say who it is", where_,
-                         "load seamwright.src of this version on the controller"});
-        hello_ = std::move(*hello);
-        greeted_ = true;
-        return {};
     }
 
     // The next telegram. Silence in the middle of one breaks the stream; between two it does not.
@@ -178,6 +249,7 @@ class EkiLink final : public RobotLink {
                     return fail({ErrorKind::device,
                                  std::string(kNoAnswer) + ": a telegram broke off in the middle", where_,
                                  "check the connection to the controller"});
+                quiet_ns_ = now_ns();
                 return tl::unexpected(got.error());
             }
             if (auto added = splitter_.add({buffer.data(), *got}); !added) return fail(added.error());
@@ -192,16 +264,18 @@ class EkiLink final : public RobotLink {
         if (telegram.kind != "start" && telegram.kind != "trigger") return false;
         auto& events = telegram.kind == "start" ? starts_ : triggers_;
         if (events.size() >= 1000) return fail({ErrorKind::device, "1000 events wait unread", where_, ""});
-        events.push_back({std::move(telegram), now_ns()});
+        const std::int64_t now = now_ns();
+        events.push_back({std::move(telegram), now, quiet_ns_ == 0 ? now : quiet_ns_});
         return true;
     }
 
     Expected<Event> wait_event(std::deque<Event>& events, Clock::time_point until) {
         if (auto ready = connected(std::max(until, Clock::now())); !ready)
-            return tl::unexpected(ready.error());
+            return tl::unexpected(fell_silent(ready.error()));
         while (events.empty()) {
             auto telegram = receive(until);
-            if (!telegram) return tl::unexpected(telegram.error());
+            if (!telegram)
+                return tl::unexpected(connection_ ? telegram.error() : fell_silent(telegram.error()));
             if (telegram->kind == "error")
                 return device_error("the controller reports: " + telegram->text, where_);
             if (telegram->kind == "done" && &events == &triggers_)
@@ -216,6 +290,20 @@ class EkiLink final : public RobotLink {
     Expected<EkiTelegram> ask(EkiTelegram command) {
         const auto until = Clock::now() + timeout_;
         if (auto ready = connected(until); !ready) return tl::unexpected(ready.error());
+        static const std::set<std::string, std::less<>> kHarmless = {"state", "read"};
+        const bool harmless =
+            kHarmless.contains(command.kind) ||
+            (command.kind == "confirm" && command.name != to_string(PartVerdict::corrected));
+        if (!harmless)
+            if (auto same =
+                    robot_.check([&] { return Expected<RobotIdentity>(identity_of(hello_)); }, where_);
+                !same)
+                return tl::unexpected(same.error());
+        return exchange(std::move(command), until);
+    }
+
+    // Command and answer on the connection that there is.
+    Expected<EkiTelegram> exchange(EkiTelegram command, Clock::time_point until) {
         command.id = ++last_id_;
         if (auto sent = connection_->send(bytes_of(write_eki("Sensor", command)), left(until)); !sent)
             return fail(sent.error());
@@ -234,6 +322,7 @@ class EkiLink final : public RobotLink {
                      fmt::format("the controller answered \"{} {} {}\" to \"{} {} {}\"", telegram->kind,
                                  telegram->id, telegram->name, command.kind, command.id, command.name),
                      where_, "load seamwright.src of this version on the controller"});
+            quiet_ns_ = now_ns();
             return telegram;
         }
     }
@@ -244,10 +333,14 @@ class EkiLink final : public RobotLink {
     const Timeout timeout_;
     std::uint64_t strangers_ = 0;  // since they were told
     std::string stranger_;
-    std::optional<TcpConnection> connection_;
+    std::vector<std::string> notices_;
+    std::vector<Newcomer> newcomers_;
+    std::optional<TcpConnection> connection_;  // has said hello
     EkiSplitter splitter_{"Robot"};
     EkiTelegram hello_;
-    bool greeted_ = false;
+    SameRobot robot_;
+    bool measuring_ = false;     // started on this connection
+    std::int64_t quiet_ns_ = 0;  // when nothing more was waiting to be heard; 0 = never
     std::deque<Event> starts_, triggers_;
     std::int64_t last_id_ = 0, last_trigger_ = 0;
 };

@@ -4,7 +4,7 @@
 // kvp_message.h.
 //
 // Settings, defaults: {"address": the controller's, "port": 7000, "timeout_ms": 1000 (connection, and every
-// answer), "poll_ms": 10 (start signal and triggers), "retry_ms": 100, "retry_most_ms": 5000 (back-off,
+// answer), "poll_ms": 10 (start signal and triggers), "retry_ms": 100, "retry_most_ms": 500 (back-off,
 // doubling)}.
 //
 // A region's frame is one of the module's (SW_NAME) or any variable of type FRAME by its own name

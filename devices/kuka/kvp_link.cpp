@@ -6,12 +6,14 @@
 #include <map>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "devices/exchange/settings.h"
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/kvp_message.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
+#include "devices/same_robot.h"
 
 namespace seamwright {
 namespace {
@@ -20,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 struct KvpSettings {
     std::string address;
-    int port = 7000, timeout_ms = 1000, poll_ms = 10, retry_ms = 100, retry_most_ms = 5000;
+    int port = 7000, timeout_ms = 1000, poll_ms = 10, retry_ms = 100, retry_most_ms = 500;
 };
 
 class KvpLink final : public RobotLink {
@@ -32,10 +34,9 @@ class KvpLink final : public RobotLink {
           back_off_(settings_.retry_ms) {}
 
     Expected<RobotIdentity> identity() override {
-        auto values = read({"$KR_SERIALNO", "$TRAFONAME[]"});
-        if (!values) return tl::unexpected(values.error());
-        return RobotIdentity{"kuka-kvp", "KUKA", string_from_krl((*values)[1]),
-                             string_from_krl((*values)[0])};
+        auto now = ask_identity();
+        if (!now) return now;
+        return robot_.told(*now);
     }
 
     Expected<RobotMode> mode() override {
@@ -57,13 +58,14 @@ class KvpLink final : public RobotLink {
     Expected<Pose> base_from_flange() override { return read_pose("$POS_ACT"); }
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
-        auto called = poll_until(timeout, [&]() -> Expected<bool> { return read_bool("SW_CALL"); });
+        auto called = poll_until(timeout, [&] { return called_now(); });
         if (!called) return tl::unexpected(called.error());
         auto part = read({"SW_PART[]"});
         if (!part) return tl::unexpected(part.error());
         if (auto taken = write({{"SW_CALL", "FALSE"}}); !taken) return tl::unexpected(taken.error());
         const std::string id = string_from_krl((*part)[0]);
-        return StartSignal{id == "-" ? "" : id, now_ns()};
+        const std::int64_t now = now_ns();
+        return StartSignal{id == "-" ? "" : id, now, std::exchange(quiet_ns_, now)};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
@@ -120,20 +122,26 @@ class KvpLink final : public RobotLink {
             return input_error("the frame is not finite or beyond 100 m", name);
         auto variable = frame_variable(name);
         if (!variable) return tl::unexpected(variable.error());
+        if (auto same = same_robot(); !same) return same;
         return write({{"SW_RELEASED", "FALSE"}, {*variable, krl_from_frame(base_from_frame)}});
     }
 
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
         const bool released = verdict == PartVerdict::corrected;
+        if (released)
+            if (auto same = same_robot(); !same) return same;
         if (auto told = write({{"SW_RELEASED", released ? "TRUE" : "FALSE"}}); !told) return told;
         auto back = read_bool("SW_RELEASED");
         if (!back) return tl::unexpected(back.error());
         if (*back != released) return device_error("the controller did not keep the verdict", where_);
+        (void)called_now();  // from here on the next call is as old as it is heard; its Error is the next
+                             // call's
         return {};
     }
 
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
+        if (auto same = same_robot(); !same) return same;
         auto now = mode();
         if (!now) return tl::unexpected(now.error());
         if (*now != RobotMode::manual_reduced)
@@ -150,6 +158,22 @@ class KvpLink final : public RobotLink {
     }
 
   private:
+    Expected<RobotIdentity> ask_identity() {
+        auto values = read({"$KR_SERIALNO", "$TRAFONAME[]"});
+        if (!values) return tl::unexpected(values.error());
+        return RobotIdentity{"kuka-kvp", "KUKA", string_from_krl((*values)[1]),
+                             string_from_krl((*values)[0])};
+    }
+    Expected<void> same_robot() {
+        if (auto ready = connected(); !ready) return ready;
+        return robot_.check([this] { return ask_identity(); }, where_);
+    }
+    Expected<bool> called_now() {
+        auto called = read_bool("SW_CALL");
+        if (called && !*called) quiet_ns_ = now_ns();
+        return called;
+    }
+
     static std::int64_t now_ns() {
         return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
     }
@@ -181,6 +205,7 @@ class KvpLink final : public RobotLink {
         back_off_ = Timeout(settings_.retry_ms);
         stream_.clear();
         connection_.emplace(std::move(*made));
+        robot_.connected_anew();
         return {};
     }
 
@@ -300,7 +325,7 @@ class KvpLink final : public RobotLink {
     Expected<void> poll_until(std::chrono::milliseconds timeout, const Ready& ready) {
         for (const auto until = Clock::now() + timeout;;) {
             auto now = ready();
-            if (!now) return tl::unexpected(now.error());
+            if (!now) return tl::unexpected(fell_silent(now.error()));
             if (*now) return {};
             if (Clock::now() >= until) return device_error(kNoAnswer, where_);
             std::this_thread::sleep_for(std::min(Timeout(settings_.poll_ms), left(until)));
@@ -317,6 +342,8 @@ class KvpLink final : public RobotLink {
     std::uint16_t last_id_ = 0;
     std::int64_t told_ = 0;
     std::optional<std::map<std::string, std::string>> names_;
+    SameRobot robot_;
+    std::int64_t quiet_ns_ = 0;  // when nobody called; 0 = not known
 };
 
 }  // namespace

@@ -43,6 +43,14 @@ Expected<std::string> Dashboard::line(Clock::time_point until) {
 }
 
 Expected<std::string> Dashboard::ask(const std::string& question) {
+    const bool old = connection_.has_value();
+    auto answer = ask_once(question);
+    // A connection that the controller closed since (it was switched off) says nothing of the controller now.
+    if (!answer && old && !is_silence(answer.error())) answer = ask_once(question);
+    return answer;
+}
+
+Expected<std::string> Dashboard::ask_once(const std::string& question) {
     const auto until = Clock::now() + timeout_;
     if (!connection_) {
         auto made = TcpConnection::connect(address_, port_, timeout_);

@@ -12,11 +12,13 @@ namespace seamwright::ur {
 class Dashboard {
   public:
     Dashboard(std::string address, std::uint16_t port, Timeout timeout);
-    // Connects where needed. Error (device): not reachable, silence, a line over 1000 bytes; the connection
-    // is dropped and the next question connects anew.
+    // Connects where needed, anew where the other side has closed. Error (device): not reachable, silence, a
+    // line over 1000 bytes; the connection is dropped and the next question connects anew.
     Expected<std::string> ask(const std::string& question);
+    void close() { connection_.reset(); }
 
   private:
+    Expected<std::string> ask_once(const std::string& question);
     Expected<std::string> line(std::chrono::steady_clock::time_point until);
     tl::unexpected<Error> fail(Error error);
 

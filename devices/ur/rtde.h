@@ -16,7 +16,7 @@
 //
 // Settings, defaults: {"address": "127.0.0.1", "port": 30004, "dashboard_port": 29999, "timeout_ms": 1000
 // (connection and every answer), "move_timeout_ms": 60000 (move_to(), which answers when the robot stands),
-// "frequency_hz": 125, "first_register": 24 (0 to 36), "retry_ms": 100, "retry_most_ms": 5000 (back-off,
+// "frequency_hz": 125, "first_register": 24 (0 to 36), "retry_ms": 100, "retry_most_ms": 500 (back-off,
 // doubling)}.
 //
 // Failure: what comes too late, out of turn, of wrong length or beyond 100 m drops the connection, so that

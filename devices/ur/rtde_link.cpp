@@ -11,6 +11,8 @@
 #include "devices/exchange/settings.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
+#include "devices/same_robot.h"
+#include "devices/silence.h"
 #include "devices/ur/dashboard.h"
 #include "devices/ur/module.h"
 #include "devices/ur/rtde.h"
@@ -29,7 +31,7 @@ constexpr Timeout kStale{100};  // older state is waited for anew
 struct RtdeSettings {
     std::string address = "127.0.0.1";
     int port = 30004, dashboard_port = 29999, timeout_ms = 1000, move_timeout_ms = 60000,
-        first_register = ur::kFirstRegister, retry_ms = 100, retry_most_ms = 5000;
+        first_register = ur::kFirstRegister, retry_ms = 100, retry_most_ms = 500;
     double frequency_hz = 125;
 };
 
@@ -55,11 +57,9 @@ class RtdeLink final : public RobotLink {
           back_off_(settings_.retry_ms) {}
 
     Expected<RobotIdentity> identity() override {
-        auto model = dashboard_.ask("get robot model");
-        if (!model) return tl::unexpected(model.error());
-        auto serial = dashboard_.ask("get serial number");
-        if (!serial) return tl::unexpected(serial.error());
-        return RobotIdentity{"ur-rtde", "Universal Robots", *model, *serial};
+        auto now = ask_identity();
+        if (!now) return now;
+        return robot_.told(*now);
     }
 
     Expected<RobotMode> mode() override {
@@ -102,10 +102,11 @@ class RtdeLink final : public RobotLink {
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         auto called = wait_until(timeout, [](const State& s) { return s.numbers[ur::kCall] == 1; });
         if (!called) return tl::unexpected(called.error());
+        const std::int64_t not_before = quiet_ns_;
         std::array<std::int32_t, 4> part{};
         std::copy_n(state_->numbers.begin() + ur::kPart, 4, part.begin());
         if (auto taken = ask(Command::taken); !taken) return tl::unexpected(taken.error());
-        return StartSignal{ur::part_from_registers(part), now_ns()};
+        return StartSignal{ur::part_from_registers(part), now_ns(), not_before};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
@@ -147,6 +148,7 @@ class RtdeLink final : public RobotLink {
         if (!base_from_frame.matrix().allFinite() ||
             base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
             return input_error("the frame is not finite or beyond 100 m", name);
+        if (auto same = same_robot(); !same) return same;
         auto written =
             named(name, ask(Command::write, ur::frame_number(name), 0, 0, ur::ur_pose(base_from_frame)));
         if (!written) return tl::unexpected(written.error());
@@ -155,6 +157,8 @@ class RtdeLink final : public RobotLink {
 
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
         const bool released = verdict == PartVerdict::corrected;
+        if (released)
+            if (auto same = same_robot(); !same) return same;
         auto told = ask(Command::verdict, released ? 1 : verdict == PartVerdict::refused ? 2 : 3);
         if (!told) return tl::unexpected(told.error());
         if ((state_->numbers[ur::kReleased] == 1) != released)
@@ -164,6 +168,7 @@ class RtdeLink final : public RobotLink {
 
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
+        if (auto same = same_robot(); !same) return same;
         auto there =
             ask(Command::move, 0, 0, 0, ur::ur_pose(base_from_flange), Timeout(settings_.move_timeout_ms));
         if (!there) return tl::unexpected(there.error());
@@ -171,6 +176,18 @@ class RtdeLink final : public RobotLink {
     }
 
   private:
+    Expected<RobotIdentity> ask_identity() {
+        auto model = dashboard_.ask("get robot model");
+        if (!model) return tl::unexpected(model.error());
+        auto serial = dashboard_.ask("get serial number");
+        if (!serial) return tl::unexpected(serial.error());
+        return RobotIdentity{"ur-rtde", "Universal Robots", *model, *serial};
+    }
+    Expected<void> same_robot() {
+        if (auto ready = connected(); !ready) return ready;
+        return robot_.check([this] { return ask_identity(); }, where_);
+    }
+
     static std::int64_t now_ns() {
         return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
     }
@@ -180,6 +197,7 @@ class RtdeLink final : public RobotLink {
 
     tl::unexpected<Error> fail(Error error) {
         connection_.reset();
+        dashboard_.close();  // of the same controller: who answers is asked there, so anew
         state_.reset();
         stream_.clear();
         error.where = where_;
@@ -322,6 +340,7 @@ class RtdeLink final : public RobotLink {
             number_ = static_cast<std::int32_t>(now_ns() / 1000 % 1'000'000'000) + 1;
             if (auto ready = negotiate(Clock::now() + timeout_); ready) {
                 back_off_ = Timeout(settings_.retry_ms);
+                robot_.connected_anew();
                 return {};
             } else {
                 made = tl::unexpected(ready.error());
@@ -361,6 +380,7 @@ class RtdeLink final : public RobotLink {
                 s.bad_pose = offset.error();
         }
         s.at = Clock::now();
+        if (s.numbers[ur::kCall] == 0) quiet_ns_ = now_ns();
         state_ = s;
         return {};
     }
@@ -409,10 +429,11 @@ class RtdeLink final : public RobotLink {
     Expected<void> wait_until(std::chrono::milliseconds timeout, const Ready& ready) {
         const auto until = Clock::now() + timeout;
         auto state = newest();
-        if (!state) return tl::unexpected(state.error());
+        if (!state) return tl::unexpected(fell_silent(state.error()));
         while (!ready(*state_)) {
             if (Clock::now() >= until) return device_error(kNoAnswer, where_);
-            if (auto next = next_state(Clock::now() + timeout_); !next) return next;
+            if (auto next = next_state(Clock::now() + timeout_); !next)
+                return tl::unexpected(fell_silent(next.error()));
         }
         return {};
     }
@@ -474,6 +495,8 @@ class RtdeLink final : public RobotLink {
     std::int32_t number_ = 0;
     std::vector<std::string> spots_;
     std::size_t told_ = 0;
+    SameRobot robot_;
+    std::int64_t quiet_ns_ = 0;  // when nobody called; 0 = not known
 };
 
 }  // namespace

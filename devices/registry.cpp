@@ -1,5 +1,6 @@
 #include "devices/registry.h"
 
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -98,6 +99,24 @@ auto call(const std::vector<Driver>& drivers, const char* what, const std::strin
 Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
                                                      const nlohmann::json& settings, DeviceSession& session) {
     return call(sensor_drivers(), "sensor driver", driver, &SensorDriver::open, settings, session);
+}
+
+Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
+                                                     const nlohmann::json& settings, DeviceSession& session,
+                                                     const Patience& patience) {
+    using Clock = std::chrono::steady_clock;
+    const auto until = Clock::now() + patience.most;
+    auto tell_at = Clock::now();
+    for (;;) {
+        auto sensor = open_sensor(driver, settings, session);
+        if (sensor || !is_in_use(sensor.error()) || Clock::now() >= until || patience.cancel.stop_requested())
+            return sensor;
+        if (patience.progress && Clock::now() >= tell_at) {
+            patience.progress(sensor.error().sentence());
+            tell_at += std::chrono::seconds(1);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
 }
 
 Expected<std::unique_ptr<RobotLink>> open_robot(const std::string& driver, const nlohmann::json& settings,

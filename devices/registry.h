@@ -1,8 +1,11 @@
 #pragma once
 // Drivers by name. Adding a sensor or a robot is one folder and one line in registry.cpp.
 
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +50,16 @@ const std::vector<ProgramWriter>& program_writers();
 // Opens by driver name; an unknown name is an Error that lists the known ones.
 Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
                                                      const nlohmann::json& settings, DeviceSession& session);
+// The same, trying again while another program controls the sensor: one that was killed does until the
+// camera's heartbeat time-out (3 s unless set) has run out. `progress` is told so once a second.
+struct Patience {
+    std::chrono::milliseconds most{6000};
+    std::stop_token cancel = {};
+    std::function<void(const std::string& text)> progress = {};
+};
+Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
+                                                     const nlohmann::json& settings, DeviceSession& session,
+                                                     const Patience& patience);
 Expected<std::unique_ptr<RobotLink>> open_robot(const std::string& driver, const nlohmann::json& settings,
                                                 DeviceSession& session);
 

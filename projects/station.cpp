@@ -430,7 +430,7 @@ void Station::use(const Project& project) {
     impl_->project = project;
 }
 
-Expected<void> Station::connect() {
+Expected<void> Station::connect(const Patience& patience) {
     Impl& i = *impl_;
     i.disconnect();
     const auto alone = [](const auto& setups) {
@@ -449,7 +449,7 @@ Expected<void> Station::connect() {
         return tl::unexpected(std::move(error));
     };
     for (const SensorSetup& setup : i.project.sensors) {
-        auto sensor = open_sensor(setup.driver, setup.settings, i.session);
+        auto sensor = open_sensor(setup.driver, setup.settings, i.session, patience);
         if (!sensor) return give_up(sensor.error(), "sensor " + setup.id);
         if (i.recorder) {
             auto source = i.recorded_as("sensor " + setup.id, [&] {

@@ -57,7 +57,8 @@ class Station {
     // Opens every device of the project through the registry and notes who answered in the project
     // (SensorSetup::identity, RobotSetup::identity). All or nothing. Real devices are refused while another
     // program has those of this file (projects/file_use.h).
-    Expected<void> connect();
+    // A sensor that another program still controls is waited for as `patience` says.
+    Expected<void> connect(const Patience& patience = {});
     // The same with devices made elsewhere (tests, a simulation already running).
     void connect(std::map<std::string, std::unique_ptr<ProfileSource>> sensors,
                  std::map<std::string, std::unique_ptr<RobotLink>> robots);

@@ -64,8 +64,11 @@ class Watch {
     void pause() {
         const auto until = std::chrono::steady_clock::now() + retry_;
         retry_ = std::min(2 * retry_, options_.retry_longest);
-        while (std::chrono::steady_clock::now() < until && !options_.cancel.stop_requested())
-            std::this_thread::sleep_for(std::min(kCancelSlice, retry_));
+        while (!options_.cancel.stop_requested()) {
+            const auto left = until - std::chrono::steady_clock::now();
+            if (left <= left.zero()) break;
+            std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(kCancelSlice, left));
+        }
     }
 
     // An outage is told and recorded once, however many attempts it lasts.
@@ -119,6 +122,8 @@ class Watch {
                 tell("warning", "robot", "robot " + setup.id + ": " + notice);
             if (start) {
                 ready();
+                newest(*robot, setup.id, *start);
+                if (expired(*robot, setup.id, *start)) return std::nullopt;
                 return std::optional(*start);
             }
             if (start.error().kind == ErrorKind::usage) return tl::unexpected(start.error());
@@ -129,6 +134,39 @@ class Watch {
         }
         ready();
         return std::nullopt;
+    }
+
+    // The newest of the calls that wait.
+    void newest(RobotLink& robot, const std::string& id, StartSignal& start) {
+        while (auto newer = robot.wait_start(std::chrono::milliseconds(0))) {
+            missed(id, start, fmt::format("part {}: a newer call came before it was measured", name(start)));
+            start = *newer;
+        }
+    }
+
+    // Whether nobody knows what stands there by now; the robot is told then, so that the line goes on.
+    bool expired(RobotLink& robot, const std::string& id, const StartSignal& start) {
+        const std::int64_t called_ns = start.not_before_ns != 0 ? start.not_before_ns : start.host_time_ns;
+        const auto age =
+            std::chrono::steady_clock::now().time_since_epoch() - std::chrono::nanoseconds(called_ns);
+        if (called_ns == 0 || age <= options_.start_expiry) return false;
+        const std::string why =
+            fmt::format("part {}: the call may be {:.0f} s old, another part may stand there; call again",
+                        name(start), std::chrono::duration<double>(age).count());
+        missed(id, start, why);
+        if (auto told = robot.confirm(PartVerdict::refused, why); !told)
+            tell("warning", "robot", "robot " + id + ": " + told.error().sentence());
+        return true;
+    }
+
+    void missed(const std::string& id, const StartSignal& start, const std::string& why) {
+        ++counts_.missed;
+        (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, "robot " + id, why});
+        tell("warning", "missed", why, {{"part", start.part_id}});
+    }
+
+    static std::string name(const StartSignal& start) {
+        return start.part_id.empty() ? "(no name)" : start.part_id;
     }
 
     Expected<void> measure(const std::string& part_id) {

@@ -19,6 +19,7 @@ struct WatchCounts {
     std::int64_t corrected = 0,
                  refused = 0;  // pushed and acknowledged (or, in a dry run, judged ok); refused
     std::int64_t failed = 0, alarms = 0, lost = 0;  // runs with a device failure; pushes gone wrong; outages
+    std::int64_t missed = 0;  // calls that were not measured: too old, or overtaken by a newer one
 };
 
 enum class WatchState { connecting, waiting, measuring, lost, stopped };
@@ -28,7 +29,7 @@ std::string_view to_string(WatchState state);
 struct WatchEvent {
     std::string utc;    // ISO 8601
     std::string level;  // info | warning | alarm
-    std::string event;  // connected | lost | back | robot | start | spot | run | stopped
+    std::string event;  // connected | lost | back | robot | start | missed | spot | run | stopped
     std::string text;   // one sentence
     nlohmann::json data = nlohmann::json::object();
     WatchState state = WatchState::connecting;
@@ -41,7 +42,10 @@ struct WatchOptions {
     std::int64_t parts = 0;      // end after so many; 0 = never
     std::int64_t keep_runs = 0;  // older runs are deleted from the file; 0 = keep all
     AcquireLimits limits;
-    std::chrono::milliseconds retry_first{500}, retry_longest{10000};  // doubles between attempts
+    // A call that may be older (StartSignal::not_before_ns), after an outage, is refused: another part may
+    // stand there by now. Of several that wait the newest alone counts.
+    std::chrono::milliseconds start_expiry{10000};
+    std::chrono::milliseconds retry_first{100}, retry_longest{500};  // doubles between attempts
     std::stop_token
         cancel;  // heard within kCancelSlice; a part in the middle ends as cancelled, the robot is told
     std::function<void(const WatchEvent&)> tell;  // on the watching thread

@@ -20,7 +20,7 @@
 //    "socket_buffer": 0,       bytes, 0: eight frames, at most 32 MiB (the kernel's rmem_max caps it)
 //    "buffers": 8,             frames on the way from the wire, and as many handed out
 //    "timeout_ms": 1000,       of a software trigger's frame, and of a reconnection's first answer
-//    "reconnect_ms": 100, "reconnect_most_ms": 5000,  back-off, doubling
+//    "reconnect_ms": 100, "reconnect_most_ms": 1000,  back-off, doubling
 //    "heartbeat_ms": 500}      how often the camera is asked whether it is there; 0: Aravis' own heartbeat
 //    only
 //

@@ -27,7 +27,7 @@ struct GenicamSettings {
     bool packet_socket = false, packet_resend = true;
     std::size_t socket_buffer = 0;
     std::chrono::milliseconds packet_timeout{20}, frame_retention{100}, timeout{1000}, reconnect{100},
-        reconnect_most{5000}, heartbeat{500};
+        reconnect_most{1000}, heartbeat{500};
     std::string camera_name() const;  // "camera 192.168.1.20", for sentences
 };
 Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& settings);

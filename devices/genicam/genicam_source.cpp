@@ -448,8 +448,22 @@ Expected<void> GenicamSource::start() {
         lost = lost_;
     }
     if (lost) bury();
-    if (!camera_)
-        if (auto done = reconnect(settings_.timeout); !done) return done;
+    if (camera_) {
+        if (auto done = start_stream(); done) {
+            running_ = true;
+            return {};
+        }
+        bury();  // it may have been switched off and on since, which no heartbeat has told yet
+    }
+    // A part waits: whatever attempts failed before, now is the next.
+    // The camera may still hold our own lost connection for a moment.
+    for (const auto until = Clock::now() + settings_.timeout;;) {
+        next_attempt_ = Clock::now();
+        auto done = reconnect(settings_.timeout);
+        if (done) break;
+        if (!is_in_use(done.error()) || Clock::now() >= until) return done;
+        std::this_thread::sleep_for(milliseconds(50));
+    }
     if (auto done = start_stream(); !done) return done;
     running_ = true;
     return {};

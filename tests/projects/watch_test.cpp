@@ -35,7 +35,14 @@ class Watching : public testing::Test {
             texts += e.text + "\n";
         };
     }
-    void part(const std::string& id) { cell->starts.push_back(StartSignal{id, 0}); }
+    // Called when the part before is through.
+    void part(const std::string& id) {
+        cell->starts.push_back(StartSignal{id, now_ns()});
+        cell->starts.push_back(device_error(kNoAnswer));
+    }
+    static std::int64_t now_ns() {
+        return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+    }
 
     TemporaryFolder folder;
     std::unique_ptr<FakeCell> cell = make_fake_cell();
@@ -85,6 +92,55 @@ TEST_F(Watching, SurvivesALostRobotAndTellsItOnce) {
     EXPECT_EQ(std::count_if(events->begin(), events->end(),
                             [](const EventRecord& e) { return e.kind == EventKind::alarm; }),
               1);
+}
+
+TEST_F(Watching, OfSeveralCallsThatWaitTheNewestIsMeasured) {
+    for (const char* id : {"CAR-1", "CAR-2", "CAR-3"}) cell->starts.push_back(StartSignal{id, now_ns()});
+    options.parts = 1;
+    auto counts = watch(*station, options);
+    ASSERT_TRUE(counts) << counts.error().sentence();
+    EXPECT_EQ(counts->missed, 2);
+    EXPECT_EQ(counts->corrected, 1);
+    EXPECT_EQ(station->file().runs()->at(0).part_id, "CAR-3");
+    EXPECT_THAT(cell->verdicts, ElementsAre(PartVerdict::corrected))
+        << "one verdict for the part that stands there";
+    EXPECT_THAT(told,
+                ElementsAre("warning missed", "warning missed", "info start", "info run", "info stopped"));
+    EXPECT_THAT(texts, HasSubstr("part CAR-1: a newer call came before it was measured"));
+    const auto events = station->file().events();
+    EXPECT_EQ(std::count_if(events->begin(), events->end(),
+                            [](const EventRecord& e) {
+                                return e.kind == EventKind::refusal && e.subject == "robot R1";
+                            }),
+              2);
+}
+
+TEST_F(Watching, ACallThatMayBeTooOldIsRefusedSoThatTheLineGoesOn) {
+    using std::chrono::seconds;
+    const auto ago = [](seconds s) { return now_ns() - std::chrono::nanoseconds(s).count(); };
+    // Heard this moment, but for a minute nobody has heard the controller at all.
+    cell->starts.push_back(StartSignal{"CAR-1", now_ns(), ago(seconds(60))});
+    cell->starts.push_back(device_error(kNoAnswer));
+    // Heard long ago: the station was busy.
+    cell->starts.push_back(StartSignal{"CAR-2", ago(seconds(30))});
+    cell->starts.push_back(device_error(kNoAnswer));
+    // A short outage: the same part stands there.
+    cell->starts.push_back(StartSignal{"CAR-3", now_ns(), ago(seconds(2))});
+    options.parts = 1;
+    auto counts = watch(*station, options);
+    ASSERT_TRUE(counts) << counts.error().sentence();
+    EXPECT_EQ(counts->missed, 2);
+    EXPECT_EQ(counts->parts, 1);
+    EXPECT_EQ(station->file().runs()->at(0).part_id, "CAR-3");
+    EXPECT_THAT(cell->verdicts,
+                ElementsAre(PartVerdict::refused, PartVerdict::refused, PartVerdict::corrected));
+    EXPECT_THAT(texts, HasSubstr("part CAR-1: the call may be 60 s old, another part may stand there"));
+    options.start_expiry = seconds(100);
+    cell->starts.push_back(StartSignal{"CAR-4", now_ns(), ago(seconds(60))});
+    counts = watch(*station, options);
+    ASSERT_TRUE(counts);
+    EXPECT_EQ(counts->missed, 0);
+    EXPECT_EQ(counts->corrected, 1);
 }
 
 TEST_F(Watching, SurvivesALostSensor) {

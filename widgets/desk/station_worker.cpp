@@ -109,10 +109,10 @@ void StationWorker::attach_feed(Station& station) {
 }
 
 void StationWorker::connect_devices() {
-    post(tr("Connecting"), [this](Station& station, const std::stop_token&) {
+    post(tr("Connecting"), [this](Station& station, const std::stop_token& cancel) {
         feed_.detach();
         connect_trouble_.clear();
-        auto connected = station.connect();
+        auto connected = station.connect({.cancel = cancel});
         if (!connected) {
             connect_trouble_ = shown_error(connected.error()).toStdString();
             emit failed(shown_error(tr("The devices were not connected."), connected.error()));

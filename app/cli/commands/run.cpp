@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "app/cli/command.h"
@@ -31,6 +32,7 @@ struct RunArguments {
     bool push = false, dry_run = false, keep_images = false, watch = false;
     std::string log, record;
     std::int64_t parts = 0, keep_runs = 0;
+    double start_expiry_s = 10;
 };
 
 // One line on the screen: rewritten in place at a terminal, one a change elsewhere.
@@ -47,8 +49,8 @@ void print_status(const WatchEvent& e) {
 }
 
 json counts_json(const WatchCounts& c) {
-    return {{"parts", c.parts},   {"corrected", c.corrected}, {"refused", c.refused},
-            {"failed", c.failed}, {"alarms", c.alarms},       {"outages", c.lost}};
+    return {{"parts", c.parts},   {"corrected", c.corrected}, {"refused", c.refused}, {"failed", c.failed},
+            {"alarms", c.alarms}, {"outages", c.lost},        {"missed", c.missed}};
 }
 
 json event_json(const WatchEvent& e) {
@@ -100,6 +102,7 @@ Expected<Answer> watch_project(const RunArguments& a) {
     options.keep_images = a.keep_images;
     options.parts = a.parts;
     options.keep_runs = a.keep_runs;
+    options.start_expiry = std::chrono::milliseconds(std::llround(1000 * a.start_expiry_s));
     options.cancel = stop_on_signal();
     auto recorder = open_recorder(a.record, {.images = true});
     if (!recorder) return tl::unexpected(recorder.error());
@@ -136,12 +139,15 @@ Expected<Answer> run(const RunArguments& a) {
     auto recorder = open_recorder(a.record, {.images = true});
     if (!recorder) return tl::unexpected(recorder.error());
     station->record_to(*recorder);
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
     RunOptions options;
     options.part_id = a.part;
     options.push = a.push;
     options.keep_images = a.keep_images;
     options.cancel = stop_on_signal();
+    const Patience patience{.cancel = options.cancel, .progress = [](const std::string& text) {
+                                fmt::print(stderr, "waiting: {}\n", text);
+                            }};
+    if (auto connected = station->connect(patience); !connected) return tl::unexpected(connected.error());
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
     };
@@ -232,6 +238,14 @@ void add_run(CommandLine& line) {
     command->add_option("--keep", a->keep_runs, "With --watch: keep only so many runs in the project")
         ->needs(watching)
         ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--start-expiry", a->start_expiry_s,
+                     "With --watch: refuse a call that may be older, after an outage; another part may stand "
+                     "there by then")
+        ->needs(watching)
+        ->check(CLI::Range(0.1, 3600.0))
+        ->type_name("SECONDS")
+        ->capture_default_str();
     command->add_option("--log", a->log, "With --watch: one JSON object an event, rotated at 10 MiB")
         ->needs(watching)
         ->type_name("FILE");

@@ -5,6 +5,7 @@
 
 #include "devices/cell_server.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/genicam/wire_camera.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/door.h"
 #include "projects/acquire.h"
@@ -15,9 +16,10 @@ namespace seamwright {
 
 struct ServedCell {
     std::shared_ptr<SimulatedCell> cell;
-    std::optional<CellServer> server;
+    CellServerOptions sensor_options, robot_options;
+    std::optional<CellServer> sensor, robot;  // each may be taken away and started again by its options
     std::optional<Station> station;
-    SimulatedController& controller() { return *server->controllers().front().second; }
+    SimulatedController& controller() { return *robot->controllers().front().second; }
 };
 
 struct ServedCellOptions {
@@ -51,19 +53,33 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     SensorSetup sensor;
     sensor.id = "A";
     sensor.driver = "genicam";
-    sensor.settings = {{"address", "127.0.0.1"}, {"hardware_trigger", true}, {"buffers", 32}};
+    sensor.settings = {{"hardware_trigger", true}, {"buffers", 32}};
     nlohmann::json ports;
     if (options.gocator) {
         for (const char* name : {"control_port", "data_port", "ascii_port"})
             ports[name] = TcpListener::listen("127.0.0.1", 0)->port();
         sensor.driver = "gocator";
-        sensor.settings.update({{"control_port", ports["control_port"]}, {"data_port", ports["data_port"]}});
+        sensor.settings.update({{"address", "127.0.0.1"},
+                                {"control_port", ports["control_port"]},
+                                {"data_port", ports["data_port"]}});
+        served.sensor_options.gocator = ports;
+    } else {
+        served.sensor_options.camera_address = kFreeAddress;
     }
+    auto sensor_server = CellServer::start(served.sensor_options, served.cell);
+    if (!sensor_server) return tl::unexpected(sensor_server.error());
+    served.sensor.emplace(std::move(*sensor_server));
+    if (!options.gocator)
+        sensor.settings["address"] = served.sensor_options.camera_address = served.sensor->camera_address();
     sensor.calibration_id = "truth";
     RobotSetup robot;
     robot.id = "R1";
     robot.driver = options.driver;
     robot.settings = {{"port", port}};
+    nlohmann::json controller = {{"port", port}, {"trigger_interval_ms", options.trigger_interval_ms}};
+    if (options.driver == "ur-rtde")
+        robot.settings["dashboard_port"] = controller["dashboard_port"] =
+            TcpListener::listen("127.0.0.1", 0)->port();
     Calibration c;
     c.id = "truth";
     c.method = "simulated truth";
@@ -96,17 +112,11 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     p.robots = {robot};
     p.calibrations = {c};
 
-    CellServerOptions serve;
-    if (options.gocator)
-        serve.gocator = ports;
-    else
-        serve.camera_address = "127.0.0.1";
-    serve.controllers = {
-        {options.driver, {{"port", port}, {"trigger_interval_ms", options.trigger_interval_ms}}}};
-    serve.program = measuring_program(p, "R1");
-    auto server = CellServer::start(serve, served.cell);
-    if (!server) return tl::unexpected(server.error());
-    served.server.emplace(std::move(*server));
+    served.robot_options.controllers = {{options.driver, controller}};
+    served.robot_options.program = measuring_program(p, "R1");
+    auto robot_server = CellServer::start(served.robot_options, served.cell);
+    if (!robot_server) return tl::unexpected(robot_server.error());
+    served.robot.emplace(std::move(*robot_server));
 
     auto created = ProjectFile::create(file, p, true);
     if (!created) return tl::unexpected(created.error());
@@ -125,11 +135,11 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     if (auto saved = station.edit(p); !saved) return tl::unexpected(saved.error());
     if (options.lost_packets_per_mille > 0) {  // from here on
         station.disconnect();
-        served.server.reset();
-        serve.camera = {{"lost_packets_per_mille", options.lost_packets_per_mille}};
-        auto lossy = CellServer::start(serve, served.cell);
+        served.sensor.reset();
+        served.sensor_options.camera = {{"lost_packets_per_mille", options.lost_packets_per_mille}};
+        auto lossy = CellServer::start(served.sensor_options, served.cell);
         if (!lossy) return tl::unexpected(lossy.error());
-        served.server.emplace(std::move(*lossy));
+        served.sensor.emplace(std::move(*lossy));
         if (auto connected = station.connect(); !connected) return tl::unexpected(connected.error());
     }
     return served;

@@ -45,6 +45,16 @@ void widen_receive_buffer(guint16 port, int bytes) {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
+// Takes leave of a camera. Aravis' heartbeat thread holds the device while it tells that the control is lost;
+// were its hold the last one, the thread would join itself, which ends the program. So the last is ours.
+void release(ArvCamera* camera) {
+    if (!camera) return;
+    GPtr<ArvDevice> device(static_cast<ArvDevice*>(g_object_ref(arv_camera_get_device(camera))));
+    g_object_unref(camera);
+    for (int i = 0; i < 1000 && g_atomic_int_get(&G_OBJECT(device.get())->ref_count) > 1; ++i)
+        std::this_thread::sleep_for(milliseconds(10));
+}
+
 std::int64_t now_ns() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
 }
@@ -243,6 +253,8 @@ GenicamSource::~GenicamSource() {
     something_.notify_all();
     if (watcher_.joinable()) watcher_.join();
     if (camera_) g_signal_handlers_disconnect_by_data(arv_camera_get_device(camera_.get()), this);
+    chunks_.reset();
+    release(camera_.release());
 }
 
 Expected<void> GenicamSource::connect() {
@@ -297,7 +309,7 @@ void GenicamSource::bury() {
     burials_.push_back(
         std::async(std::launch::async, [camera = camera_.release(), stream = stream_.release()] {
             if (stream) g_object_unref(stream);
-            g_object_unref(camera);
+            release(camera);
         }));
     chunks_.reset();
     next_attempt_ = Clock::now();

@@ -160,11 +160,15 @@ class EkiLink final : public RobotLink {
     void welcome(Clock::time_point until) {
         while (auto connection = listener_.accept(left(until))) {
             const std::string peer = connection->peer();
-            const bool known = robot_address_.empty() || peer.substr(0, peer.rfind(':')) == robot_address_;
-            if (known && newcomers_.size() < kMostNewcomers)
-                newcomers_.push_back({std::move(*connection), Clock::now() + std::min(timeout_, kHelloTime)});
-            else
+            if (!robot_address_.empty() && peer.substr(0, peer.rfind(':')) != robot_address_) {
                 refuse(peer);
+            } else {
+                if (newcomers_.size() == kMostNewcomers) {  // who came first has had its time
+                    refuse(newcomers_.front().connection.peer());
+                    newcomers_.erase(newcomers_.begin());
+                }
+                newcomers_.push_back({std::move(*connection), Clock::now() + std::min(timeout_, kHelloTime)});
+            }
             until = Clock::now();
         }
     }

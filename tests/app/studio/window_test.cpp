@@ -172,7 +172,7 @@ TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {
     // They reach the robot's program and are there when the file is opened again.
     EXPECT_EQ(measuring_program(desk.project(), desk.project().robots.front().id).at(1).via.size(), 2U);
     ASSERT_TRUE(desk.save());
-    auto file = ProjectFile::open(path("demo.seam"), FileAccess::read_only);
+    auto file = ProjectFile::open(path("demo.seam").toStdString(), FileAccess::read_only);
     ASSERT_TRUE(file) << file.error().sentence();
     EXPECT_EQ(file->load()->spots.at(1).via.size(), 2U);
 }

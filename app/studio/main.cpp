@@ -6,6 +6,7 @@
 
 #include "app/studio/main_window.h"
 #include "app/studio/studio.h"
+#include "widgets/picture_file.h"
 
 int main(int argc, char** argv) {
     QApplication application(argc, argv);
@@ -49,10 +50,9 @@ int main(int argc, char** argv) {
         studio.window().show_step(seamwright::kSteps[static_cast<std::size_t>(n - 1)]);
     if (parser.isSet(picture))
         QTimer::singleShot(3000, &application, [&] {
-            const bool written = studio.window().grab().save(parser.value(picture));
-            if (!written)
-                std::fprintf(stderr, "seamwright-studio: %s cannot be written\n",
-                             qPrintable(parser.value(picture)));
+            const auto written = seamwright::write_picture(studio.window().grab().toImage(),
+                                                           parser.value(picture).toStdString());
+            if (!written) std::fprintf(stderr, "seamwright-studio: %s\n", written.error().sentence().c_str());
             QApplication::exit(written ? 0 : 3);
         });
     return QApplication::exec();

@@ -23,7 +23,7 @@
 #include "app/studio/event_list.h"
 #include "app/studio/reuse_dialogs.h"
 #include "app/studio/studio.h"
-#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
 #include "projects/exchange.h"
 #include "projects/hand_over.h"
 #include "widgets/errors.h"
@@ -598,11 +598,9 @@ void MainWindow::import_project() {
     if (!may_leave()) return;
     const QString from = QFileDialog::getOpenFileName(this, tr("Import project"), {}, tr("JSON (*.json)"));
     if (from.isEmpty()) return;
-    auto text = read_text_file(from.toStdString());
-    if (!text) return tell(shown_error(tr("Nothing was imported."), text.error()));
-    const auto json = nlohmann::json::parse(*text, nullptr, false);
-    if (json.is_discarded()) return tell(tr("%1 is no JSON").arg(from));
-    auto project = seamwright::import_project(json, from.toStdString());
+    const auto json = read_json_file(from.toStdString());
+    if (!json) return tell(shown_error(tr("Nothing was imported."), json.error()));
+    auto project = seamwright::import_project(*json, from.toStdString());
     if (!project) return tell(shown_error(tr("Nothing was imported."), project.error()));
     const QString file = QFileDialog::getSaveFileName(this, tr("Save the imported project as"), {},
                                                       tr("Seamwright projects (*.seam)"));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -17,12 +18,26 @@
 namespace seamwright {
 namespace csv {
 
-inline std::string_view trimmed(std::string_view s) {
+inline std::string_view blanks_off(std::string_view s) {
     const auto first = s.find_first_not_of(" \t");
     if (first == std::string_view::npos) return {};
-    s = s.substr(first, s.find_last_not_of(" \t") - first + 1);
+    return s.substr(first, s.find_last_not_of(" \t") - first + 1);
+}
+inline std::string_view trimmed(std::string_view s) {
+    s = blanks_off(s);
     if (s.size() >= 2 && s.front() == '"' && s.back() == '"') s = trimmed(s.substr(1, s.size() - 2));
     return s;
+}
+
+// A text as one field (RFC 4180): in quotes, its own quotes doubled, where it holds what ends a field or a
+// line, or blanks about it.
+inline std::string field(std::string_view text) {
+    const bool plain = text.find_first_of(",\"\r\n;\t") == std::string_view::npos &&
+                       (text.empty() || (text.front() != ' ' && text.back() != ' '));
+    if (plain) return std::string(text);
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
 }
 
 // For messages: short and printable, whatever the file holds.
@@ -120,9 +135,13 @@ class CsvTable {
 
     bool has(std::size_t wanted) const { return columns_[wanted] >= 0; }
 
-    // As written, without blanks and quotes about it.
-    std::string_view text(std::size_t wanted) const {
-        return csv::trimmed(fields_[static_cast<std::size_t>(columns_[wanted])]);
+    // Without blanks about it and, where it stands in quotes, without those; two quotes inside are one.
+    std::string text(std::size_t wanted) const {
+        const std::string_view field = csv::blanks_off(fields_[static_cast<std::size_t>(columns_[wanted])]);
+        if (field.size() < 2 || field.front() != '"' || field.back() != '"') return std::string(field);
+        std::string text(field.substr(1, field.size() - 2));
+        for (std::size_t at = 0; (at = text.find("\"\"", at)) != std::string::npos; ++at) text.erase(at, 1);
+        return text;
     }
 
     // NaN for an empty field or "nan".
@@ -168,11 +187,17 @@ class CsvTable {
         for (std::size_t w = 0; w < required; ++w) s += (w ? "," : "") + std::string(wanted[w]);
         return s + optional_;
     }
+    // A comma inside quotes belongs to the field.
     void split(std::string_view line) {
         fields_.clear();
         std::size_t begin = 0;
         for (;;) {
-            const auto comma = line.find(',', begin);
+            std::size_t from = line.find_first_not_of(" \t", begin);
+            if (from != std::string_view::npos && line[from] == '"') {
+                do from = line.find('"', from + 1);
+                while (from != std::string_view::npos && line.substr(from, 2) == "\"\"" && ++from);
+            }
+            const auto comma = line.find(',', from == std::string_view::npos ? begin : std::max(from, begin));
             fields_.push_back(line.substr(begin, comma - begin));
             if (comma == std::string_view::npos || fields_.size() > 4096) break;
             begin = comma + 1;

@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <optional>
 
 namespace seamwright {
 namespace {
@@ -20,6 +22,37 @@ struct Descriptor {
 
 std::string system_message() {
     return std::strerror(errno);
+}
+
+// errno says why not.
+bool write_all(int fd, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t put = ::write(fd, text.data(), text.size());
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) return false;
+        text.remove_prefix(static_cast<std::size_t>(put));
+    }
+    return true;
+}
+
+// The number of the descriptor of this process that a name like /dev/stdout or /dev/fd/3 means.
+std::optional<int> own_descriptor(const std::filesystem::path& path) {
+    std::filesystem::path at = path;
+    for (int i = 0; i < 8; ++i) {
+        std::error_code code;
+        const auto folder = std::filesystem::canonical(
+            at.has_parent_path() ? at.parent_path() : std::filesystem::path("."), code);
+        int number = 0;
+        const std::string name = at.filename().string();
+        const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
+        if (!code && folder == fmt::format("/proc/{}/fd", ::getpid()) && problem == std::errc() &&
+            end == name.data() + name.size())
+            return number;
+        const auto next = std::filesystem::read_symlink(at, code);
+        if (code) return std::nullopt;
+        at = next.is_absolute() ? next : at.parent_path() / next;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -51,13 +84,40 @@ Expected<std::string> read_text_file(const std::filesystem::path& path, std::siz
     return text;
 }
 
+std::filesystem::path behind_links(const std::filesystem::path& path) {
+    constexpr int kMostLinks = 40;  // as the kernel
+    std::filesystem::path at = path;
+    for (int i = 0; i < kMostLinks; ++i) {
+        std::error_code code;
+        const auto next = std::filesystem::read_symlink(at, code);
+        if (code) return at;
+        at = next.is_absolute() ? next : at.parent_path() / next;
+    }
+    return at;
+}
+
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
     if (path.filename().empty()) return file_error("names no file", path.string(), "give the path of a file");
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        return file_error("is a folder, not a file", path.string());
-    std::string temporary = path.string() + ".XXXXXX";
-    Descriptor file{::mkstemp(temporary.data())};
+    const auto failed = [&](const std::string& message) {
+        return file_error("cannot be written (" + message + ")", path.string());
+    };
+    struct stat old {};
+    const bool exists = ::stat(path.c_str(), &old) == 0;
+    if (!exists && errno == ELOOP) return failed(system_message());
+    if (exists && S_ISDIR(old.st_mode)) return file_error("is a folder, not a file", path.string());
+    if (const auto own = own_descriptor(path)) {
+        // Not opened anew: that would write at the start of a file that the shell has written to.
+        if (!write_all(*own, text)) return failed(system_message());
+        return {};
+    }
+    if (exists && !S_ISREG(old.st_mode)) {
+        Descriptor through{::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY)};
+        if (through.fd < 0 || !write_all(through.fd, text)) return failed(system_message());
+        return {};
+    }
+    const std::filesystem::path target = behind_links(path);
+    std::string temporary = target.string() + ".XXXXXX";
+    Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
     if (file.fd < 0) {
         return file_error("cannot be written (" + system_message() + ")", path.string(),
                           "check that the folder exists and is writable");
@@ -65,20 +125,13 @@ Expected<void> write_text_file(const std::filesystem::path& path, std::string_vi
     const auto fail = [&] {
         const std::string message = system_message();
         ::unlink(temporary.c_str());
-        return file_error("cannot be written (" + message + ")", path.string());
+        return failed(message);
     };
-    std::size_t done = 0;
-    while (done < text.size()) {
-        const ssize_t put = ::write(file.fd, text.data() + done, text.size() - done);
-        if (put < 0 && errno == EINTR) continue;
-        if (put <= 0) return fail();
-        done += static_cast<std::size_t>(put);
-    }
-    // mkstemp gives 0600; a file that already stood there keeps its rights, a new one gets the process's
+    if (!write_all(file.fd, text)) return fail();
+    // mkostemp gives 0600; a file that already stood there keeps its rights, a new one gets the process's
     // usual ones.
-    struct stat old {};
     mode_t mode = 0;
-    if (::stat(path.c_str(), &old) == 0) {
+    if (exists) {
         mode = old.st_mode & 07777;
     } else {
         const mode_t mask = ::umask(0);
@@ -86,8 +139,8 @@ Expected<void> write_text_file(const std::filesystem::path& path, std::string_vi
         mode = 0666 & ~mask;
     }
     if (::fchmod(file.fd, mode) != 0 || ::fsync(file.fd) != 0) return fail();
-    if (::rename(temporary.c_str(), path.c_str()) != 0) return fail();
-    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    if (::rename(temporary.c_str(), target.c_str()) != 0) return fail();
+    const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
     Descriptor entry{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
     if (entry.fd >= 0)
         ::fsync(entry.fd);  // the rename itself; refused by some network file systems, which is harmless

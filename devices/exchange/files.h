@@ -17,9 +17,17 @@ inline constexpr std::size_t kTextFileLimit = std::size_t{256} << 20;  // bytes
 Expected<std::string> read_text_file(const std::filesystem::path& path,
                                      std::size_t limit_bytes = kTextFileLimit);
 
-// All or nothing: written beside `path`, flushed to disk and renamed over it, so that a crash leaves either
-// the old file or the new one. A link is replaced by a file. Error (file) when the folder is missing or not
-// writable.
+// The only function by which our programs write a file.
+//
+// A regular file, or a new one: all or nothing, written beside it, flushed to disk and renamed over it, so
+// that a crash leaves either the old file or the new one. A link stays: what it leads to is written so. A
+// device, a FIFO and a descriptor of this process (/dev/stdout, /dev/fd/3, /proc/self/fd/1) stay too: written
+// through, as a shell writes, and a FIFO is waited for until somebody reads it. Error (file) when the folder
+// is missing or not writable.
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text);
+
+// Where a file of this name comes to stand: behind the links that the name leads through, which need not lead
+// to a file yet. `path` itself where it is no link.
+std::filesystem::path behind_links(const std::filesystem::path& path);
 
 }  // namespace seamwright

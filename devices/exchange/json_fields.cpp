@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <utility>
 
 namespace seamwright {
 namespace {
@@ -26,39 +26,90 @@ const char* type_name(const nlohmann::json& json) {
     }
 }
 
+// Builds the document from the parser's events and ends the parse at the first thing that no document of ours
+// has, before memory is taken for what follows.
+class DocumentBuilder final : public nlohmann::json_sax<nlohmann::json> {
+  public:
+    nlohmann::json document;
+    std::string syntax, twice;  // what is wrong; empty: nothing
+    bool too_deep = false;
+
+    bool null() override { return put(nullptr); }
+    bool boolean(bool value) override { return put(value); }
+    bool number_integer(number_integer_t value) override { return put(value); }
+    bool number_unsigned(number_unsigned_t value) override { return put(value); }
+    bool number_float(number_float_t value, const string_t&) override { return put(value); }
+    bool string(string_t& value) override { return put(std::move(value)); }
+    bool binary(binary_t&) override { return false; }  // not in JSON text
+    bool start_object(std::size_t) override { return open(nlohmann::json::object()); }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t) override { return open(nlohmann::json::array()); }
+    bool end_array() override { return close(); }
+    bool key(string_t& name) override {
+        if (twice.empty() && open_.back()->contains(name)) twice = name;
+        key_ = std::move(name);
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
+        // "[json.exception.parse_error.101] parse error at line 1, column 4: ..." without the library's own
+        // tag.
+        syntax = e.what();
+        if (const auto tag = syntax.find("] "); tag != std::string::npos) syntax.erase(0, tag + 2);
+        return false;
+    }
+
+  private:
+    template <class Value>
+    nlohmann::json& add(Value&& value) {
+        if (open_.empty()) return document = std::forward<Value>(value);
+        nlohmann::json& in = *open_.back();
+        if (in.is_array()) return in.emplace_back(std::forward<Value>(value));
+        return in[key_] = std::forward<Value>(value);
+    }
+    template <class Value>
+    bool put(Value&& value) {
+        add(std::forward<Value>(value));
+        return true;
+    }
+    bool open(nlohmann::json container) {
+        too_deep = open_.size() >= kDeepestJson;
+        if (!too_deep) open_.push_back(&add(std::move(container)));
+        return !too_deep;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    std::vector<nlohmann::json*> open_;  // each the last entry of the one before, so that none moves
+    std::string key_;
+};
+
 }  // namespace
 
 Expected<nlohmann::json> parse_json(std::string_view text, const std::string& where) {
-    using nlohmann::json;
-    constexpr int kDeepest = 64;
+    if (text.size() > kTextFileLimit)
+        return input_error(fmt::format("the JSON is longer than {} MiB", kTextFileLimit >> 20), where);
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    std::vector<std::set<std::string>> keys;  // of the objects that are open
-    std::string twice;
-    bool too_deep = false;
-    const json::parser_callback_t watch = [&](int depth, json::parse_event_t event, json& parsed) {
-        if (depth > kDeepest) too_deep = true;
-        if (event == json::parse_event_t::object_start) keys.emplace_back();
-        if (event == json::parse_event_t::object_end) keys.pop_back();
-        if (event == json::parse_event_t::key) {
-            const auto& key = parsed.get_ref<const std::string&>();
-            if (!keys.back().insert(key).second && twice.empty()) twice = key;
-        }
-        return !too_deep;
+    DocumentBuilder builder;
+    const bool whole = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
+    if (builder.too_deep)
+        return input_error(fmt::format("the JSON is nested deeper than {}", kDeepestJson), where);
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) builder.syntax = "the text is empty";
+    if (!whole) return input_error("is no JSON (" + builder.syntax + ")", where);
+    if (!builder.twice.empty())
+        return input_error("the key \"" + builder.twice + "\" is given twice in one object", where);
+    return std::move(builder.document);
+}
+
+std::size_t json_depth(const nlohmann::json& json) {
+    const auto depth = [](const auto& self, const nlohmann::json& value, std::size_t above) -> std::size_t {
+        if (!value.is_structured() || above > kDeepestJson) return above;
+        std::size_t deepest = above + 1;
+        for (const nlohmann::json& item : value) deepest = std::max(deepest, self(self, item, above + 1));
+        return deepest;
     };
-    try {
-        json parsed = json::parse(text.begin(), text.end(), watch);
-        if (too_deep) return input_error(fmt::format("the JSON is nested deeper than {}", kDeepest), where);
-        if (!twice.empty())
-            return input_error("the key \"" + twice + "\" is given twice in one object", where);
-        return parsed;
-    } catch (const json::exception& e) {
-        // "[json.exception.parse_error.101] parse error at line 1, column 4: ..." without the library's own
-        // tag.
-        std::string message = e.what();
-        if (const auto tag = message.find("] "); tag != std::string::npos) message.erase(0, tag + 2);
-        if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) message = "the text is empty";
-        return input_error("is no JSON (" + message + ")", where);
-    }
+    return depth(depth, json, 0);
 }
 
 Expected<nlohmann::json> read_json_file(const std::filesystem::path& path, std::size_t limit_bytes) {

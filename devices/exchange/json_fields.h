@@ -14,10 +14,15 @@
 
 namespace seamwright {
 
-// Strict JSON. Error (input) with line and column: syntax, comments, a key given twice in one object, numbers
-// beyond double, nesting deeper than 64, bytes that are no UTF-8. A UTF-8 byte order mark is skipped. `where`
-// names the file.
+inline constexpr std::size_t kDeepestJson = 64;
+
+// Strict JSON; whatever reads JSON from outside reads it with this one function. Error (input) with line and
+// column: syntax, comments, a key given twice in one object, numbers beyond double, nesting deeper than 64
+// (ends the parse: what a document of ours holds can be copied, written and destroyed by recursion), text
+// beyond kTextFileLimit, bytes that are no UTF-8. A UTF-8 byte order mark is skipped. `where` names the file.
 Expected<nlohmann::json> parse_json(std::string_view text, const std::string& where);
+// How many objects and arrays stand in one another, none = 0; counts no further than beyond kDeepestJson.
+std::size_t json_depth(const nlohmann::json& json);
 Expected<nlohmann::json> read_json_file(const std::filesystem::path& path,
                                         std::size_t limit_bytes = kTextFileLimit);
 

@@ -84,8 +84,7 @@ Expected<ApplicationPath> parse_path_csv(std::string_view text, PathNotation not
         }
         const auto pose = pose_of(v, notation, columns.mm, table.at());
         if (!pose) return tl::unexpected(pose.error());
-        path.points.push_back(
-            {*pose, path.regions_named ? std::string(table.text(columns.numbers)) : std::string()});
+        path.points.push_back({*pose, path.regions_named ? table.text(columns.numbers) : std::string()});
     }
     if (path.points.empty()) return input_error("the path has no points", where);
     return path;
@@ -120,7 +119,7 @@ std::string path_csv(const ApplicationPath& path, PathNotation notation) {
             const Eigen::Vector3d w = ur_from_rotation(r);
             fmt::format_to(std::back_inserter(out), ",{},{},{}", w.x(), w.y(), w.z());
         }
-        if (path.regions_named) put("," + point.region_id);
+        if (path.regions_named) put("," + csv::field(point.region_id));
         put("\n");
     }
     return fmt::to_string(out);

@@ -21,9 +21,10 @@ class SettingsReader {
   public:
     SettingsReader(const nlohmann::json& json, std::string where) : json_(json), where_(std::move(where)) {}
     void only(std::initializer_list<std::string_view> known) { keep(only_fields(json_, known, where_)); }
+    // A default stands as it is: it may say that there is none.
     void number(const char* key, double& value, double low, double high) {
-        if (failed()) return;
-        const auto read = json_number_or(json_, key, value, where_);
+        if (failed() || (json_.is_object() && !json_.contains(key))) return;
+        const auto read = json_number(json_, key, where_);
         if (!read) return keep(tl::make_unexpected(read.error()));
         if (!(*read >= low && *read <= high)) {
             return keep(input_error(fmt::format("{} is out of range {} to {}", *read, low, high),

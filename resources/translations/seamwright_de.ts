@@ -218,14 +218,6 @@
         <translation>die Projektdatei ließ sich nicht auf den neuen Stand bringen</translation>
     </message>
     <message>
-        <source>cannot be written</source>
-        <translation>lässt sich nicht schreiben</translation>
-    </message>
-    <message>
-        <source>choose a folder that you may write to</source>
-        <translation>einen Ordner wählen, in den geschrieben werden darf</translation>
-    </message>
-    <message>
         <source>choose another name</source>
         <translation>einen anderen Namen wählen</translation>
     </message>
@@ -804,6 +796,22 @@
     <message>
         <source>place the body in 10 or more positions over the whole field of view</source>
         <translation>den Körper an 10 oder mehr Stellen über das ganze Messfeld setzen</translation>
+    </message>
+    <message>
+        <source>the laser points span %1 mm, which looks like micrometres</source>
+        <translation>die Laserpunkte erstrecken sich über %1 mm, das sieht nach Mikrometern aus</translation>
+    </message>
+    <message>
+        <source>the points stand %1 mm apart and span %2 mm, which looks like metres</source>
+        <translation>die Punkte liegen %1 mm auseinander und erstrecken sich über %2 mm, das sieht nach Metern aus</translation>
+    </message>
+    <message>
+        <source>the id of a %1 is longer than %2 bytes</source>
+        <translation>ein Name (%1) ist länger als %2 Bytes</translation>
+    </message>
+    <message>
+        <source>give a shorter name</source>
+        <translation>kürzer benennen</translation>
     </message>
     <message>
         <source>the laser points span %1 mm, which looks like metres</source>
@@ -1922,8 +1930,24 @@
         <translation>seinen Job zu starten</translation>
     </message>
     <message>
-        <source>check power and cable</source>
-        <translation>Versorgung und Kabel prüfen</translation>
+        <source>check power, cable and address of the sensor</source>
+        <translation>Strom, Kabel und Adresse des Sensors prüfen</translation>
+    </message>
+    <message>
+        <source>no answer in time: the sensor did not %1 its job within %2 s</source>
+        <translation>keine Antwort in der Zeit: der Sensor hat seinen Job nicht ausgeführt (%1) innerhalb von %2 s</translation>
+    </message>
+    <message>
+        <source>look on the sensor&apos;s own page; start_timeout_ms is how long to wait</source>
+        <translation>auf der eigenen Seite des Sensors nachsehen; start_timeout_ms sagt, wie lange gewartet wird</translation>
+    </message>
+    <message>
+        <source>given up before the sensor answered</source>
+        <translation>aufgegeben, bevor der Sensor geantwortet hat</translation>
+    </message>
+    <message>
+        <source>a %1 message says it has %2 profiles</source>
+        <translation>eine Nachricht (%1) nennt %2 Profile</translation>
     </message>
     <message>
         <source>&quot;%1&quot; is no name of a frame</source>
@@ -2972,6 +2996,38 @@
     <message>
         <source>a value is missing in the %1</source>
         <translation>%1: ein Wert fehlt</translation>
+    </message>
+    <message>
+        <source>the %1 was replaced or deleted while it was in use</source>
+        <translation>%1: im Gebrauch ersetzt oder gelöscht</translation>
+    </message>
+    <message>
+        <source>close it and open what stands there now</source>
+        <translation>schließen und öffnen, was jetzt dort steht</translation>
+    </message>
+    <message>
+        <source>the checksum of an entry is wrong: the file is damaged</source>
+        <translation>die Prüfsumme eines Eintrags ist falsch: die Datei ist beschädigt</translation>
+    </message>
+    <message>
+        <source>the entry is longer than %1 MiB</source>
+        <translation>der Eintrag ist länger als %1 MiB</translation>
+    </message>
+    <message>
+        <source>where the lock of the project belongs stands something else</source>
+        <translation>wo die Sperre des Projekts hingehört, steht etwas anderes</translation>
+    </message>
+    <message>
+        <source>move it away</source>
+        <translation>dort wegnehmen</translation>
+    </message>
+    <message>
+        <source>xyz contradicts the matrix</source>
+        <translation>xyz widerspricht der Matrix</translation>
+    </message>
+    <message>
+        <source>the JSON is longer than %1 MiB</source>
+        <translation>das JSON ist länger als %1 MiB</translation>
     </message>
     <message>
         <source>the %1 is cut short</source>
@@ -7361,10 +7417,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Import project</source>
         <translation>Projekt einlesen</translation>
-    </message>
-    <message>
-        <source>%1 is no JSON</source>
-        <translation>%1 ist kein JSON</translation>
     </message>
     <message>
         <source>Save the imported project as</source>

@@ -2,10 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+#include <tuple>
 
 #include "core/geometry/pose.h"
 #include "tests/app/run_program.h"
@@ -332,6 +336,113 @@ TEST_F(Cli, HostileProfilesAreRefused) {
     expect_refused({"filter", write("a.csv", "x_mm,z_mm\n1,2\n3;4\n"), "--out", out}, "3");
     expect_refused({"filter", write("a.csv", "x_mm,z_mm\n1,2\nfoo,4\n"), "--out", out}, "foo");
     EXPECT_FALSE(std::filesystem::exists(out)) << "nothing may be half-written";
+}
+
+std::string in_unit(double mm_each, const std::string& csv) {
+    std::istringstream in(csv);
+    std::string line, out;
+    std::getline(in, line);
+    out = line + "\n";
+    while (std::getline(in, line)) {
+        const auto comma = line.find(',');
+        out += std::to_string(std::stod(line.substr(0, comma)) / mm_each) + ",";
+        if (comma + 1 < line.size()) out += std::to_string(std::stod(line.substr(comma + 1)) / mm_each);
+        out += "\n";
+    }
+    return out;
+}
+
+TEST_F(Cli, ProfilesInAnotherUnitAreSuspectedUnlessTheUnitIsSaid) {
+    const std::string out = (folder / "out.csv").string(), mm = write("mm.csv", step_profile());
+    for (const auto& [unit, mm_each, word] :
+         {std::tuple{"m", 1000.0, "looks like metres"}, std::tuple{"um", 1e-3, "looks like micrometres"}}) {
+        const std::string in = write("in.csv", in_unit(mm_each, step_profile()));
+        for (const std::vector<std::string>& command : {std::vector<std::string>{"filter", in, "--out", out},
+                                                        {"feature", in, "--kind", "contour-end"},
+                                                        {"match", "--template", in, "--scene", in}}) {
+            expect_refused(command, word);
+            expect_refused(command, "--unit");
+        }
+        const json left =
+            answer({"feature", in, "--unit", unit, "--kind", "contour-end", "--side", "right"}, 0);
+        EXPECT_NEAR(left["point"][0].get<double>(), 29.9, 0.1) << unit;
+        EXPECT_EQ(answer({"filter", in, "--unit", unit, "--out", out}, 0)["segments"], 2) << unit;
+    }
+    EXPECT_FALSE(
+        answer({"filter", write("in.csv", in_unit(1000, step_profile())), "--unit", "mm", "--out", out}, 0)
+            .empty())
+        << "whoever says so means it";
+    expect_refused({"filter", mm, "--unit", "inch", "--out", out}, "--unit");
+}
+
+// A hundred thousand arrays in one another: no reader may follow them to the bottom of its stack.
+TEST_F(Cli, DeepJsonIsRefusedByEveryCommandThatReadsJson) {
+    for (const auto& [open, close] : {std::pair{"[", "]"}, {"{\"a\":", "}"}}) {
+        std::string text;
+        for (int i = 0; i < 100000; ++i) text += open;
+        text += "1";
+        for (int i = 0; i < 100000; ++i) text += close;
+        const std::string deep = write("deep.json", text);
+        const std::string inside = write("inside.json", "{\"spots\":" + text + "}");
+        const std::string new_file = (folder / "new.seam").string();
+        std::vector<std::vector<std::string>> commands{{"correct", deep},
+                                                       {"correct", inside},
+                                                       {"plan", deep},
+                                                       {"panel", deep},
+                                                       {"sim-cell", deep},
+                                                       {"import", new_file, "--from", deep},
+                                                       {"import", new_file, "--from", inside}};
+        for (const char* method :
+             {"lens", "camera", "laser-plane", "lut", "tcp-sphere", "plate", "static", "hand-eye"})
+            commands.push_back({"calibrate", method, deep});
+        // Pose files beside the images, and the list of a recording.
+        std::filesystem::create_directories(folder / "images");
+        std::ofstream(folder / "images" / "1.json") << text;
+        std::ofstream(folder / "images" / "1.csv") << step_profile();
+        commands.push_back({"import", new_file, "--from", (folder / "images").string()});
+        for (const auto& command : commands) {
+            const ProgramResult r = run(command);
+            EXPECT_TRUE(r.exit_code == 2 || r.exit_code == 3)
+                << command[0] << " " << command[1] << ": " << r.exit_code;
+            EXPECT_THAT(r.err, HasSubstr("nested deeper than 64")) << command[0] << " " << command[1];
+        }
+        // On the command line and on standard input.
+        const std::string short_deep = text.substr(0, 40000);
+        expect_refused({"import", new_file, "--from", (folder / "images").string(), "--flange-from-sensor",
+                        "{\"matrix\":" + short_deep},
+                       "nested deeper than 64");
+        const std::string part = write("part.txt", "part " + short_deep + "\nstop\n");
+        const int status = std::system(("'" SEAMWRIGHT_PROGRAM "' sim-cell --camera '' <'" + part + "' >'" +
+                                        (folder / "cell.txt").string() + "' 2>&1")
+                                           .c_str());
+        EXPECT_TRUE(WIFEXITED(status)) << "sim-cell ended by a signal";
+    }
+}
+
+TEST_F(Cli, AnswersAreWrittenThroughToWhatIsNoFile) {
+    const std::string job = write("job.json", door_job(5, displacement()).dump());
+    const auto answer_in = [&](const std::string& target) { return run({"correct", job, "--json", target}); };
+    ASSERT_EQ(::mkfifo((folder / "fifo").c_str(), 0600), 0);
+    std::string got;
+    std::thread reader([&] { got = slurp(folder / "fifo"); });
+    EXPECT_EQ(answer_in((folder / "fifo").string()).exit_code, 0);
+    reader.join();
+    EXPECT_EQ(json::parse(got)["status"], "ok");
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "fifo"));
+
+    std::filesystem::create_symlink("far.json", folder / "link.json");
+    EXPECT_EQ(answer_in((folder / "link.json").string()).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.json"));
+    EXPECT_EQ(json::parse(slurp(folder / "far.json"))["status"], "ok");
+
+    const auto shown = answer_in("/dev/stdout");
+    EXPECT_EQ(shown.exit_code, 0) << shown.err;
+    EXPECT_EQ(json::parse(shown.out)["status"], "ok");
+    EXPECT_TRUE(std::filesystem::exists("/dev/stdout"));
+    EXPECT_TRUE(std::filesystem::is_symlink("/dev/stdout"));
+    EXPECT_EQ(answer_in("/dev/null").exit_code, 0);
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    EXPECT_EQ(answer_in("/dev/full").exit_code, 3);
 }
 
 TEST_F(Cli, ProjectFilesAreMadeToldAndChecked) {

@@ -3,6 +3,7 @@
 #include <QTimer>
 #include <algorithm>
 
+#include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/calibrate/session.h"
@@ -301,7 +302,8 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (!use) return tl::unexpected(use.error());
     keep_newest();
     // The old file keeps what was saved there; runs go along.
-    const auto part = std::filesystem::path(path.string() + ".part");
+    const auto target = behind_links(path);
+    const auto part = std::filesystem::path(target.string() + ".part");
     std::error_code failed;
     if (auto copied = file_->copy_to(part); !copied) return copied;
     {
@@ -310,7 +312,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
         if (auto saved = copy->save(project_); !saved) return saved;
     }
     discard_recovery(path);  // of a file that is replaced; must not meet the one that takes its name
-    std::filesystem::rename(part, path, failed);
+    std::filesystem::rename(part, target, failed);
     if (failed) return file_error("the file cannot be replaced: " + failed.message(), path.string());
     drop_kept();
     recovery_writer_.flush();

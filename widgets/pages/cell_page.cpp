@@ -5,6 +5,7 @@
 #include <QFileDialog>
 #include <QInputDialog>
 
+#include "devices/exchange/json_fields.h"
 #include "devices/simulated/random.h"
 #include "projects/fields.h"
 #include "projects/measure.h"
@@ -77,7 +78,7 @@ CellPage::CellPage(Desk& desk, const Views& views)
     settings_state_ = make_text({});
     box().addWidget(settings_state_);
     connect(settings_, &QPlainTextEdit::textChanged, this, [this] {
-        const bool ok = nlohmann::json::accept(settings_->toPlainText().toStdString());
+        const bool ok = parse_json(settings_->toPlainText().toStdString(), {}).has_value();
         set_verdict(*settings_state_, ok ? QString() : tr("refused: this is no JSON"),
                     ok ? Tone::plain : Tone::alarm);
         apply_->setEnabled(ok && !chosen().empty());
@@ -322,17 +323,17 @@ void CellPage::rename_device() {
 }
 
 void CellPage::apply() {
-    const auto settings = nlohmann::json::parse(settings_->toPlainText().toStdString(), nullptr, false);
-    if (settings.is_discarded()) return;
+    const auto settings = parse_json(settings_->toPlainText().toStdString(), {});
+    if (!settings) return;
     if (sensor_chosen()) {
         SensorSetup s = *find_sensor(desk_.project(), chosen());
         s.driver = driver_->currentText().toStdString();
-        s.settings = settings;
+        s.settings = *settings;
         done(desk_.edit(s, tr("settings")));
     } else {
         RobotSetup r = *find_robot(desk_.project(), chosen());
         r.driver = driver_->currentText().toStdString();
-        r.settings = settings;
+        r.settings = *settings;
         r.required_mode = kModes[static_cast<std::size_t>(std::max(0, mode_->currentIndex()))];
         done(desk_.edit(r, tr("settings")));
     }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/geometry/notation.h"
+#include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
 #include "projects/measure.h"
 #include "widgets/errors.h"
@@ -408,11 +409,6 @@ void RunPage::export_csv() {
         "run,part,started_utc,push,status,region,region_status,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,sigma_x_mm,"
         "sigma_y_mm,"
         "sigma_z_mm,sigma_a_deg,sigma_b_deg,sigma_c_deg,gate_passed,push_status\n";
-    const auto quoted = [](const std::string& s) {
-        std::string out = "\"";
-        for (char c : s) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-        return out + "\"";
-    };
     for (auto it = summaries_.rbegin(); it != summaries_.rend(); ++it) {
         auto run = desk_.run(it->number);
         if (!run) {
@@ -421,8 +417,8 @@ void RunPage::export_csv() {
         }
         for (const RegionRecord& r : run->regions) {
             text +=
-                fmt::format("{},{},{},{},{},{},{}", run->number, quoted(run->part_id), run->started_utc,
-                            run->push ? 1 : 0, to_string(run->status), quoted(r.region_id),
+                fmt::format("{},{},{},{},{},{},{}", run->number, csv::field(run->part_id), run->started_utc,
+                            run->push ? 1 : 0, to_string(run->status), csv::field(r.region_id),
                             r.correction ? to_string(r.correction->status) : std::string_view("not_solved"));
             if (r.correction) {
                 for (double v : six(r.correction->displacement.workobject_from_movedworkobject))

@@ -15,6 +15,7 @@
 #include <map>
 
 #include "widgets/flow_layout.h"
+#include "widgets/picture_file.h"
 #include "widgets/scene/scene_canvas.h"
 #include "widgets/scene/scene_managers.h"
 #include "widgets/style.h"
@@ -466,9 +467,7 @@ QImage SceneView::picture() {
 Expected<void> SceneView::save_picture(const std::filesystem::path& png) {
     const QImage image = picture();
     if (image.isNull()) return device_error("no OpenGL picture", "3D view", "use a display with OpenGL 3.2");
-    if (!image.save(QString::fromStdString(png.string()), "PNG"))
-        return file_error("cannot be written", png.string(), "choose a folder that you may write to");
-    return {};
+    return write_picture(image, png);
 }
 
 QPointF SceneView::to_screen(const Eigen::Vector3d& point_workobject_mm) const {

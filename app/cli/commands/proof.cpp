@@ -9,6 +9,7 @@
 #include "app/cli/command.h"
 #include "app/cli/signal_watch.h"
 #include "core/geometry/notation.h"
+#include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/known_shift.h"
@@ -98,7 +99,7 @@ std::string csv_of(const KnownShift& proof) {
         for (const ShiftOutcome& o : test.regions) {
             const std::string head =
                 fmt::format("{},{},{},{},{},{}", kKinds[static_cast<std::size_t>(test.kind)],
-                            "XYZ"[test.axis], test.amount, test.run, o.region_id, o.ok ? 1 : 0);
+                            "XYZ"[test.axis], test.amount, test.run, csv::field(o.region_id), o.ok ? 1 : 0);
             if (o.deviations_mm.empty()) text += head + ",,,,\n";
             for (std::size_t i = 0; i + 2 < o.deviations_mm.size(); i += 3)
                 text += fmt::format("{},{},{:.6f},{:.6f},{:.6f}\n", head, i / 3 + 1, o.deviations_mm[i],

@@ -129,7 +129,9 @@ json obey(CellServer& server, const std::string& line, bool& stop) {
     if (word == "start") {
         for (const auto& [name, controller] : server.controllers()) controller->press_start(rest);
     } else if (word == "part") {
-        auto part = parse_part_state(json::parse(rest, nullptr, false));
+        const auto state = parse_json(rest, "part");
+        if (!state) return refuse(state.error().sentence());
+        auto part = parse_part_state(*state);
         if (!part) return refuse(part.error().sentence());
         server.cell().set_part(*part);
     } else if (word == "mode") {
@@ -153,10 +155,9 @@ json obey(CellServer& server, const std::string& line, bool& stop) {
 Expected<Answer> sim_cell(const SimCellArguments& a) {
     json settings = json::object();
     if (!a.settings.empty()) {
-        auto text = read_text_file(a.settings);
-        if (!text) return tl::unexpected(text.error());
-        settings = json::parse(*text, nullptr, false);
-        if (settings.is_discarded()) return input_error("this is no JSON", a.settings);
+        auto read = read_json_file(a.settings);
+        if (!read) return tl::unexpected(read.error());
+        settings = std::move(*read);
     }
     const auto stop = stop_on_signal();
     auto server = serve(a, settings);

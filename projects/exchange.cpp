@@ -30,6 +30,7 @@ std::string file_stem(const std::string& id, std::set<std::string>& taken) {
         stem += plain ? c : '_';
     }
     if (stem.empty()) stem = "spot";
+    stem.resize(std::min<std::size_t>(stem.size(), 100));  // a file's name holds 255 bytes
     std::string unique = stem;
     for (int i = 2; !taken.insert(unique).second; ++i) unique = fmt::format("{}_{}", stem, i);
     return unique;

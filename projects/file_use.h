@@ -16,7 +16,8 @@ namespace seamwright {
 class FileUse {
   public:
     enum class For { desk, devices };
-    // Error (usage): another one has it; says which program, process, computer and since when.
+    // Error (usage): another one has it; says which program, process, computer and since when. Error (file):
+    // something else stands in the place of the lock.
     static Expected<FileUse> take(const std::filesystem::path& file, For what);
     FileUse(FileUse&& other) noexcept;
     FileUse& operator=(FileUse&& other) noexcept;

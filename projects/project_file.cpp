@@ -14,6 +14,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "devices/exchange/files.h"
 #include "projects/project_file_detail.h"
 #include "projects/schema.h"
 
@@ -106,7 +107,9 @@ fs::path beside(const fs::path& path, const char* what) {
 // meet the file that takes its name.
 Expected<void> prepare_replacing(const fs::path& path) {
     std::error_code code;
-    if (fs::is_regular_file(path, code) && fs::file_size(path, code) == 0) return {};
+    if (!fs::is_regular_file(path, code))
+        return file_error("this is no file", path.string(), "choose a .seam file");
+    if (fs::file_size(path, code) == 0) return {};
     auto old = Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile);
     if (!old) return tl::unexpected(old.error());
     auto id = old->integer("PRAGMA application_id");
@@ -137,7 +140,8 @@ Expected<void> finish_new(Expected<void> done, const fs::path& made, const fs::p
 }
 
 // Brings an older file up to date on a copy, which takes the name of the original when it has passed.
-Expected<void> migrate_file(Database& original, const fs::path& path) {
+Expected<void> migrate_file(Database& original, const fs::path& name) {
+    const fs::path path = behind_links(name);
     const fs::path made = beside(path, "migrating");
     // Holds off other writers; the copy is read through a second connection, which this lock lets pass.
     if (auto locked = original.execute("BEGIN IMMEDIATE"); !locked) return locked;
@@ -179,7 +183,8 @@ const fs::path& ProjectFile::path() const {
     return impl_->path;
 }
 
-Expected<ProjectFile> ProjectFile::create(const fs::path& path, const Project& project, bool replace) {
+Expected<ProjectFile> ProjectFile::create(const fs::path& name, const Project& project, bool replace) {
+    const fs::path path = behind_links(name);
     std::error_code code;
     const bool exists = fs::exists(path, code);
     if (fs::is_directory(path, code)) return file_error("this is a folder", path.string(), "name a file");
@@ -199,10 +204,11 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& path, const Project& p
         return transaction->commit();
     };
     if (auto done = finish_new(work(), made, path, replace); !done) return tl::unexpected(done.error());
-    return open(path);
+    return open(name);
 }
 
-Expected<void> ProjectFile::copy_to(const fs::path& path) const {
+Expected<void> ProjectFile::copy_to(const fs::path& name) const {
+    const fs::path path = behind_links(name);
     const fs::path made = beside(path, "new");
     const auto work = [&]() -> Expected<void> {
         auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);

@@ -3,8 +3,12 @@
 //
 // Identity: application_id "Seam" (0x5365616D), user_version = number of the last migration (schema.h).
 // Opening refuses, with one sentence (ErrorKind::file): what is no SQLite database, another program's, a
-// newer version's, truncated or damaged (SQLite's own check, foreign keys, tables that differ from what the
-// migrations make, so that triggers or views somebody planted never run).
+// newer version's, truncated or damaged (SQLite's own check, foreign keys, a row that contradicts its
+// checksum (row_checksum.h), tables that differ from what the migrations make, so that triggers or views
+// somebody planted never run). What a link leads to is the project; the link stays.
+//
+// Place: a file whose name leads to another file by now, or to none, is not written to any more: every save_*
+// and append_* is an Error (file) then. So a push, whose attempt is recorded first, sends nothing.
 //
 // Crash safety: rollback journal, synchronous = FULL. Every save_*/append_* is one transaction; a process
 // killed at any instant leaves the last committed state, which the next open restores from the journal beside
@@ -32,6 +36,10 @@
 #include "projects/run.h"
 
 namespace seamwright {
+
+// Of a sensor, robot, calibration, spot, region or panel job, in bytes of UTF-8: a robot's text (RAPID: 80)
+// and the name of a file that is made of it hold so much and some words more.
+inline constexpr std::size_t kLongestId = 64;
 
 enum class FileAccess { read_write, read_only };
 
@@ -90,7 +98,8 @@ class ProjectFile {
     Expected<void> copy_to(const std::filesystem::path& path) const;
 
     Expected<Project> load() const;
-    // Only rows that changed are written. Refuses (input) two entities of one id and empty ids.
+    // Only rows that changed are written. Refuses (input) two entities of one id, empty ids and new ones of
+    // more than kLongestId bytes.
     Expected<void> save(const Project& project);
 
     // A whole run. Returns its number; events of the record get it too.

@@ -2,6 +2,7 @@
 // Shared by the parts of the project file: project_file.cpp (making, opening, migrating), project_rows.cpp
 // (the project's entities), project_runs.cpp (runs, setups, events).
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <string_view>
 
 #include "devices/capture/sqlite.h"
+#include "devices/exchange/json_fields.h"
 #include "projects/project_file.h"
 #include "projects/project_json.h"
 
@@ -41,20 +43,25 @@ Expected<std::string> row_text(const T& value, const std::string& where, const R
     const nlohmann::json document = to_json_document(value, form.archive);
     if (auto again = from_json_document<T>(document, where, form.archive); !again)
         return tl::unexpected(again.error());
-    if (form.of_a_run) return dump_messages(document);
-    return dump_document(document, where);
+    // A row also stands a few steps down in the setup of a run and in an export, which are read with the same
+    // limit.
+    constexpr std::size_t kAroundRow = 4;
+    if (json_depth(document) > kDeepestJson - (form.of_a_run ? 0 : kAroundRow))
+        return input_error(fmt::format("the JSON is nested deeper than {}", kDeepestJson - kAroundRow),
+                           where);
+    auto text =
+        form.of_a_run ? Expected<std::string>(dump_messages(document)) : dump_document(document, where);
+    if (text && text->size() > kTextFileLimit)
+        return input_error(fmt::format("the entry is longer than {} MiB", kTextFileLimit >> 20), where);
+    return text;
 }
 
 template <class T>
 Expected<T> row_value(const std::string& text, const std::string& where, const std::string& path,
                       const RowForm& form) {
-    nlohmann::json document;
-    try {
-        document = nlohmann::json::parse(text);
-    } catch (const nlohmann::json::exception&) {
-        return file_error("an entry of the project file cannot be read", path + ": " + where);
-    }
-    auto value = from_json_document<T>(document, where, form.archive);
+    const auto document = parse_json(text, where);
+    if (!document) return file_error("an entry of the project file cannot be read", path + ": " + where);
+    auto value = from_json_document<T>(*document, where, form.archive);
     if (!value) {
         Error error = value.error();
         error.kind = ErrorKind::file;

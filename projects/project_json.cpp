@@ -1,5 +1,6 @@
 #include "projects/project_json.h"
 
+#include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 
 namespace seamwright {
@@ -48,11 +49,14 @@ nlohmann::json JsonWriter::encode(const Pose& pose) {
 void JsonReader::decode(const nlohmann::json& json, Pose& pose) {
     if (!json.is_object()) return expected("a pose", json);
     const auto field = json.find("matrix");
-    if (field == json.end()) {
+    if (options_.rigid_poses || field == json.end()) {
         auto parsed = parse_pose(json, path_);
-        if (!parsed) return fail(parsed.error().what, parsed.error().mend);
+        if (!parsed) {
+            if (!error_) error_ = parsed.error();
+            return;
+        }
         pose = *parsed;
-        return;
+        if (field == json.end()) return;
     }
     Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
     if (field->is_array() && field->size() == 4 && field->front().is_array()) {
@@ -66,14 +70,15 @@ void JsonReader::decode(const nlohmann::json& json, Pose& pose) {
     }
     if (error_) return;
     if (options_.rigid_poses) {
-        const Expected<Pose> rigid = pose_from_matrix(m, path_);
-        if (!rigid) {
-            fail(rigid.error().what, rigid.error().mend);
-            return;
-        }
         // The stored bits are kept when they are a rotation to rounding; a hand-written one is made
         // orthonormal.
-        if ((rigid->matrix() - m).cwiseAbs().maxCoeff() > 1e-9) m = rigid->matrix();
+        if ((pose.matrix() - m).cwiseAbs().maxCoeff() > 1e-9) m = pose.matrix();
+    } else if (const auto xyz = json.find("xyz"); xyz != json.end()) {
+        // A result need not be rigid, so that its angles may say nothing; what stands beside it was written
+        // with it all the same.
+        Eigen::Vector3d beside = Eigen::Vector3d::Zero();
+        decode(*xyz, beside);
+        if (!error_ && !(beside - m.topRightCorner<3, 1>()).isZero(0)) fail("xyz contradicts the matrix");
     }
     pose.matrix() = m;
     pose.makeAffine();
@@ -568,7 +573,7 @@ std::string dump_messages(const nlohmann::json& document) {
 }
 
 std::string utf8_text(const std::string& text) {
-    return nlohmann::json::parse(dump_messages(text)).get<std::string>();
+    return parse_json(dump_messages(text), {})->get<std::string>();
 }
 
 }  // namespace seamwright

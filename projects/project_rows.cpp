@@ -4,13 +4,27 @@
 
 #include "devices/capture/profile_blob.h"
 #include "projects/project_file_detail.h"
+#include "projects/row_checksum.h"
 
 namespace seamwright {
 namespace {
 
-Expected<void> unique_ids(const std::vector<std::string>& ids, const char* kind) {
+// An id that an older version let pass stays.
+Expected<void> check_ids(Database& db, const char* table, const std::vector<std::string>& ids,
+                         const char* kind) {
     std::set<std::string> seen;
     for (const std::string& id : ids) {
+        if (id.size() > kLongestId) {
+            auto known = db.prepare(fmt::format("SELECT 1 FROM {} WHERE id = ?", table));
+            if (!known) return tl::unexpected(known.error());
+            known->bind(1, id);
+            auto there = known->step();
+            if (!there) return tl::unexpected(there.error());
+            known->reset();
+            if (!*there)
+                return input_error(fmt::format("the id of a {} is longer than {} bytes", kind, kLongestId),
+                                   fmt::format("{}...", utf8_text(id.substr(0, 32))), "give a shorter name");
+        }
         if (id.empty()) return input_error(fmt::format("a {} has no id", kind), {}, "give every one a name");
         if (!seen.insert(id).second)
             return input_error(fmt::format("two {}s are called \"{}\"", kind, id), {}, "rename one");
@@ -51,17 +65,19 @@ template <class T, class Bind>
 Expected<void> save_rows(Database& db, const char* table, const std::vector<std::string>& columns,
                          const std::vector<T>& items, Bind bind) {
     if (auto done = delete_others(db, table, ids_of(items)); !done) return done;
-    std::string names = "id, position", marks = "?, ?", sets = "position = excluded.position",
+    std::string names = "id, position", values = "?1, ?2", sets = "position = excluded.position",
                 differs = "position IS NOT excluded.position";
+    int number = 2;
     for (const std::string& c : columns) {
         names += ", " + c;
-        marks += ", ?";
+        values += fmt::format(", ?{}", ++number);
         sets += fmt::format(", {0} = excluded.{0}", c);
         differs += fmt::format(" OR {0} IS NOT excluded.{0}", c);
     }
-    auto s = db.prepare(
-        fmt::format("INSERT INTO {0} ({1}) VALUES ({2}) ON CONFLICT (id) DO UPDATE SET {3} WHERE {4}", table,
-                    names, marks, sets, differs));
+    auto s = db.prepare(fmt::format(
+        "INSERT INTO {0} ({1}, checksum) VALUES ({2}, row_checksum({2})) ON CONFLICT (id) DO UPDATE "
+        "SET {3}, checksum = excluded.checksum WHERE {4}",
+        table, names, values, sets, differs));
     if (!s) return tl::unexpected(s.error());
     std::int64_t position = 0;
     for (const T& item : items) {
@@ -99,15 +115,18 @@ Expected<void> load_rows(Database& db, const char* sql, const char* kind, std::v
 }  // namespace
 
 Expected<void> save_rows_of(Database& db, const Project& project) {
-    for (const auto& unique :
-         {unique_ids(ids_of(project.sensors), "sensor"), unique_ids(ids_of(project.robots), "robot"),
-          unique_ids(ids_of(project.calibrations), "calibration"), unique_ids(ids_of(project.spots), "spot"),
-          unique_ids(ids_of(project.regions), "region"), unique_ids(ids_of(project.panel_jobs), "panel job")})
-        if (!unique) return unique;
+    for (const auto& sound : {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
+                              check_ids(db, "robots", ids_of(project.robots), "robot"),
+                              check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
+                              check_ids(db, "spots", ids_of(project.spots), "spot"),
+                              check_ids(db, "regions", ids_of(project.regions), "region"),
+                              check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job")})
+        if (!sound) return sound;
 
     auto name = db.prepare(
-        "INSERT INTO project (id, name, created_utc) VALUES (1, ?, ?) "
-        "ON CONFLICT (id) DO UPDATE SET name = excluded.name WHERE name IS NOT excluded.name");
+        "INSERT INTO project (id, name, created_utc, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2)) "
+        "ON CONFLICT (id) DO UPDATE SET name = excluded.name, checksum = row_checksum(id, excluded.name, "
+        "created_utc) WHERE name IS NOT excluded.name");
     if (!name) return tl::unexpected(name.error());
     if (auto text = dump_document(project.name, "project name"); !text) return tl::unexpected(text.error());
     name->bind(1, project.name);
@@ -115,8 +134,9 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     if (auto done = name->run(); !done) return done;
 
     auto required = db.prepare(
-        "INSERT INTO requirements (id, body) VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET body = "
-        "excluded.body WHERE body IS NOT excluded.body");
+        "INSERT INTO requirements (id, body, checksum) VALUES (1, ?1, row_checksum(1, ?1)) ON CONFLICT (id) "
+        "DO "
+        "UPDATE SET body = excluded.body, checksum = excluded.checksum WHERE body IS NOT excluded.body");
     if (!required) return tl::unexpected(required.error());
     auto required_text = row_text(project.requirements, "requirements", kRow);
     if (!required_text) return tl::unexpected(required_text.error());
@@ -124,9 +144,11 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     if (auto done = required->run(); !done) return done;
 
     auto part = db.prepare(
-        "INSERT INTO part (id, body, mesh) VALUES (1, ?, ?) ON CONFLICT (id) DO UPDATE SET body = "
-        "excluded.body, "
-        "mesh = excluded.mesh WHERE body IS NOT excluded.body OR mesh IS NOT excluded.mesh");
+        "INSERT INTO part (id, body, mesh, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2)) ON CONFLICT "
+        "(id) "
+        "DO UPDATE SET body = excluded.body, mesh = excluded.mesh, checksum = excluded.checksum WHERE body "
+        "IS NOT "
+        "excluded.body OR mesh IS NOT excluded.mesh");
     if (!part) return tl::unexpected(part.error());
     auto part_text = row_text(project.part, "part", kRow);
     if (!part_text) return tl::unexpected(part_text.error());
@@ -201,6 +223,9 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
 }
 
 Expected<Project> load_rows_of(Database& db) {
+    for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
+                              "regions", "panel_jobs"})
+        if (auto sound = check_rows(db, table); !sound) return tl::unexpected(sound.error());
     Project project;
     auto name = db.prepare("SELECT name FROM project");
     if (!name) return tl::unexpected(name.error());

@@ -4,6 +4,7 @@
 
 #include "devices/capture/profile_blob.h"
 #include "projects/project_file_detail.h"
+#include "projects/row_checksum.h"
 #include "projects/schema.h"
 
 namespace seamwright {
@@ -17,12 +18,14 @@ Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t
     s->bind(3, to_string(event.kind));
     s->bind(4, utf8_text(event.subject));
     s->bind(5, utf8_text(event.text));
-    return s->run();
+    if (auto done = s->run(); !done) return done;
+    return seal_row(db, "events", "id", db.last_rowid());
 }
 
 Expected<void> insert_regions(Database& db, const RunRecord& run, std::int64_t number) {
     auto s = db.prepare(
-        "INSERT INTO run_regions (run, position, region_id, gate_passed, body) VALUES (?, ?, ?, ?, ?)");
+        "INSERT INTO run_regions (run, position, region_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, "
+        "?4, ?5, row_checksum(?1, ?2, ?3, ?4, ?5))");
     if (!s) return tl::unexpected(s.error());
     for (std::size_t i = 0; i < run.regions.size(); ++i) {
         const RegionRecord& region = run.regions[i];
@@ -42,7 +45,9 @@ Expected<void> insert_panel(Database& db, const RunRecord& run, std::int64_t num
     if (!run.panel) return {};
     auto text = row_text(*run.panel, "panel job " + run.panel->job_id, kResult);
     if (!text) return tl::unexpected(text.error());
-    auto s = db.prepare("INSERT INTO run_panels (run, job_id, gate_passed, body) VALUES (?, ?, ?, ?)");
+    auto s = db.prepare(
+        "INSERT INTO run_panels (run, job_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, ?4, "
+        "row_checksum(?1, ?2, ?3, ?4))");
     if (!s) return tl::unexpected(s.error());
     s->bind(1, number);
     s->bind(2, run.panel->job_id);
@@ -97,8 +102,9 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
 // Those spots that `wanted` says by their position.
 template <class Wanted>
 Expected<void> insert_spots(Database& db, const RunRecord& run, std::int64_t number, const Wanted& wanted) {
-    auto spot =
-        db.prepare("INSERT INTO run_spots (run, position, spot_id, status, body) VALUES (?, ?, ?, ?, ?)");
+    auto spot = db.prepare(
+        "INSERT INTO run_spots (run, position, spot_id, status, body, checksum) VALUES (?1, ?2, ?3, ?4, ?5, "
+        "row_checksum(?1, ?2, ?3, ?4, ?5))");
     if (!spot) return tl::unexpected(spot.error());
     for (std::size_t i = 0; i < run.spots.size(); ++i) {
         if (!wanted(i)) continue;
@@ -214,7 +220,9 @@ Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
     insert->bind(1, setup.crc_);
     insert->bind(2, setup.text_);
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());
-    return db.last_rowid();
+    const std::int64_t id = db.last_rowid();
+    if (auto done = seal_row(db, "setups", "id", id); !done) return tl::unexpected(done.error());
+    return id;
 }
 
 // Within the caller's transaction.
@@ -233,7 +241,9 @@ Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSe
     s->bind(6, utf8_text(run.message));
     s->bind(7, *setup_number);
     if (auto done = s->run(); !done) return tl::unexpected(done.error());
-    return impl_->db.last_rowid();
+    const std::int64_t number = impl_->db.last_rowid();
+    if (auto done = seal_row(impl_->db, "runs", "number", number); !done) return tl::unexpected(done.error());
+    return number;
 }
 
 Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Project& setup) {
@@ -291,6 +301,7 @@ Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasure
     if (!row) return tl::unexpected(row.error());
     if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
     if (auto done = s->run(); !done) return done;
+    if (auto done = seal_row(impl_->db, "runs", "number", run.number); !done) return done;
     if (auto done = insert_rest(impl_->db, run, run.number, stored); !done) return done;
     return transaction->commit();
 }
@@ -310,6 +321,7 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
     if (!row) return tl::unexpected(row.error());
     if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
     if (auto done = s->run(); !done) return done;
+    if (auto done = seal_row(db, "runs", "number", run.number); !done) return done;
     for (const char* outcome :
          {"DELETE FROM run_regions WHERE run = ?", "DELETE FROM run_panels WHERE run = ?"}) {
         auto remove = db.prepare(outcome);
@@ -323,8 +335,12 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
 }
 
 Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
     if (auto done = insert_event(impl_->db, event, event.run); !done) return tl::unexpected(done.error());
-    return impl_->db.last_rowid();
+    const std::int64_t id = impl_->db.last_rowid();
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return id;
 }
 
 Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
@@ -349,11 +365,13 @@ Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, co
     s->bind(5, *text);
     if (auto done = s->run(); !done) return tl::unexpected(done.error());
     const std::int64_t id = db.last_rowid();
+    if (auto done = seal_row(db, "evidence", "id", id); !done) return tl::unexpected(done.error());
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return id;
 }
 
 Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const {
+    if (auto sound = check_rows(impl_->db, "evidence"); !sound) return tl::unexpected(sound.error());
     auto s = impl_->db.prepare("SELECT id, utc, kind, setup, body FROM evidence WHERE id > ? ORDER BY id");
     if (!s) return tl::unexpected(s.error());
     s->bind(1, after);
@@ -384,6 +402,7 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
 }
 
 Expected<std::vector<RunSummary>> ProjectFile::runs() const {
+    if (auto sound = check_rows(impl_->db, "runs"); !sound) return tl::unexpected(sound.error());
     auto s = impl_->db.prepare(
         "SELECT number, part_id, started_utc, finished_utc, push, status, message, setup, "
         "(SELECT count(*) FROM run_spots WHERE run = number), "
@@ -415,6 +434,9 @@ Expected<std::vector<RunSummary>> ProjectFile::runs() const {
 
 Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_captures) const {
     Database& db = impl_->db;
+    if (auto sound = check_rows(db, "runs", "number", number); !sound) return tl::unexpected(sound.error());
+    for (const char* table : {"run_spots", "run_regions", "run_panels"})
+        if (auto sound = check_rows(db, table, "run", number); !sound) return tl::unexpected(sound.error());
     auto s = db.prepare(
         "SELECT part_id, started_utc, finished_utc, push, status, message FROM runs WHERE number = ?");
     if (!s) return tl::unexpected(s.error());
@@ -460,6 +482,8 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
 }
 
 Expected<Project> ProjectFile::load_setup(std::int64_t setup) const {
+    if (auto sound = check_rows(impl_->db, "setups", "id", setup); !sound)
+        return tl::unexpected(sound.error());
     auto s = impl_->db.prepare("SELECT body FROM setups WHERE id = ?");
     if (!s) return tl::unexpected(s.error());
     s->bind(1, setup);
@@ -472,6 +496,8 @@ Expected<Project> ProjectFile::load_setup(std::int64_t setup) const {
 }
 
 Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
+    if (auto sound = check_rows(impl_->db, "runs", "number", number); !sound)
+        return tl::unexpected(sound.error());
     auto s = impl_->db.prepare("SELECT setup FROM runs WHERE number = ?");
     if (!s) return tl::unexpected(s.error());
     s->bind(1, number);
@@ -484,6 +510,8 @@ Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
 }
 
 Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
+    if (auto sound = check_rows(impl_->db, "events", run ? "run" : nullptr, run); !sound)
+        return tl::unexpected(sound.error());
     auto s = impl_->db.prepare(
         run ? "SELECT id, utc, run, kind, subject, text FROM events WHERE run = ? ORDER BY id"
             : "SELECT id, utc, run, kind, subject, text FROM events ORDER BY id");
@@ -508,10 +536,13 @@ Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
 }
 
 Expected<void> ProjectFile::delete_run(std::int64_t number) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
     auto s = impl_->db.prepare("DELETE FROM runs WHERE number = ?");
     if (!s) return tl::unexpected(s.error());
     s->bind(1, number);
-    return s->run();
+    if (auto done = s->run(); !done) return done;
+    return transaction->commit();
 }
 
 std::vector<Error> ProjectFile::check() const {

@@ -6,6 +6,8 @@
 #include <map>
 #include <mutex>
 
+#include "projects/row_checksum.h"
+
 namespace seamwright {
 namespace {
 
@@ -154,8 +156,45 @@ CREATE TABLE run_panels (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 4> kMigrations{
-    {{1, kVersion1}, {2, kVersion2}, {3, kVersion3}, {4, kVersion4}}};
+constexpr std::int32_t kChecksums = 5;  // the first version with them
+// Every row says what it should be (row_checksum.h).
+constexpr const char* kVersion5 = R"sql(
+ALTER TABLE project ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE requirements ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE part ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE sensors ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE robots ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE calibrations ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE spots ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE regions ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE panel_jobs ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE setups ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE runs ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE run_spots ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE run_regions ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE run_panels ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE events ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE evidence ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
+UPDATE project SET checksum = row_checksum(id, name, created_utc);
+UPDATE requirements SET checksum = row_checksum(id, body);
+UPDATE part SET checksum = row_checksum(id, body, mesh);
+UPDATE sensors SET checksum = row_checksum(id, position, driver, body);
+UPDATE robots SET checksum = row_checksum(id, position, driver, body);
+UPDATE calibrations SET checksum = row_checksum(id, position, sensor_id, robot_id, created_utc, verdict, body);
+UPDATE spots SET checksum = row_checksum(id, position, sensor_id, robot_id, body, reference_profile, template_profile);
+UPDATE regions SET checksum = row_checksum(id, position, frame_name, body);
+UPDATE panel_jobs SET checksum = row_checksum(id, position, frame_name, body);
+UPDATE setups SET checksum = row_checksum(id, crc, body);
+UPDATE runs SET checksum = row_checksum(number, part_id, started_utc, finished_utc, push, status, message, setup);
+UPDATE run_spots SET checksum = row_checksum(run, position, spot_id, status, body);
+UPDATE run_regions SET checksum = row_checksum(run, position, region_id, gate_passed, body);
+UPDATE run_panels SET checksum = row_checksum(run, job_id, gate_passed, body);
+UPDATE events SET checksum = row_checksum(id, utc, run, kind, subject, text);
+UPDATE evidence SET checksum = row_checksum(id, utc, kind, subject, setup, body);
+)sql";
+
+constexpr std::array<Migration, 5> kMigrations{
+    {{1, kVersion1}, {2, kVersion2}, {3, kVersion3}, {4, kVersion4}, {5, kVersion5}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.
@@ -225,7 +264,7 @@ Expected<void> check_structure(Database& db, std::int32_t version) {
     if (!found) return tl::unexpected(found.error());
     if (*found != *wanted) return damaged("its tables are not those of a project");
 
-    auto check = db.prepare("PRAGMA quick_check(1)");
+    auto check = db.prepare("PRAGMA integrity_check(1)");
     if (!check) return tl::unexpected(check.error());
     auto row = check->step();
     if (!row) return tl::unexpected(row.error());
@@ -237,6 +276,10 @@ Expected<void> check_structure(Database& db, std::int32_t version) {
     row = keys->step();
     if (!row) return tl::unexpected(row.error());
     if (*row) return damaged("a row refers to one that is not there");
+    keys->reset();
+    if (version >= kChecksums)
+        for (const ChecksummedTable& table : checksummed_tables())
+            if (auto sound = check_rows(db, table.name); !sound) return sound;
     return {};
 }
 

@@ -25,8 +25,8 @@ std::int32_t current_version();
 // serves tests.
 Expected<void> migrate(Database& db, std::int32_t until = current_version());
 
-// Refuses what is not a sound project file: application id, version 1..current, SQLite's quick check, foreign
-// keys, and exactly the tables that the migrations make.
+// Refuses what is not a sound project file: application id, version 1..current, SQLite's integrity check,
+// foreign keys, exactly the tables that the migrations make, and a row that contradicts its checksum.
 Expected<std::int32_t> check_identity(Database& db);  // returns the version
 Expected<void> check_structure(Database& db, std::int32_t version);
 

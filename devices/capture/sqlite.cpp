@@ -1,7 +1,10 @@
 #include "devices/capture/sqlite.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <zlib.h>
 
+#include <array>
 #include <cassert>
 #include <filesystem>
 #include <set>
@@ -43,6 +46,38 @@ tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& pat
                 fmt::format("the {} failed ({})", kind, db ? sqlite3_errmsg(db) : sqlite3_errstr(code)),
                 path);
     }
+}
+
+// What a value is, how long, and its bytes, so that no two rows of one table are the same to it by where a
+// value ends.
+void row_checksum(sqlite3_context* context, int count, sqlite3_value** values) {
+    uLong crc = crc32_z(0, nullptr, 0);
+    const auto take = [&](const void* bytes, std::size_t size) {
+        crc = crc32_z(crc, static_cast<const Bytef*>(bytes), size);
+    };
+    const auto little_endian = [](std::uint64_t number) {
+        std::array<unsigned char, 8> bytes;
+        for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(number), number >>= 8;
+        return bytes;
+    };
+    for (int i = 0; i < count; ++i) {
+        const int type = sqlite3_value_type(values[i]);
+        std::array<unsigned char, 8> number{};
+        const void* bytes = number.data();
+        std::size_t size = number.size();
+        if (type == SQLITE_INTEGER) {
+            number = little_endian(static_cast<std::uint64_t>(sqlite3_value_int64(values[i])));
+        } else if (type != SQLITE_NULL) {  // a text, a blob, or a fraction as the text that it is written as
+            bytes = type == SQLITE_BLOB ? sqlite3_value_blob(values[i]) : sqlite3_value_text(values[i]);
+            size = static_cast<std::size_t>(sqlite3_value_bytes(values[i]));
+            if (!bytes && size > 0) return sqlite3_result_error_nomem(context);
+        }
+        const auto kind = static_cast<unsigned char>(type);
+        take(&kind, 1);
+        take(little_endian(size).data(), 8);
+        if (size > 0) take(bytes, size);
+    }
+    sqlite3_result_int64(context, static_cast<sqlite3_int64>(crc));
 }
 
 }  // namespace
@@ -148,6 +183,7 @@ Expected<Database> Database::open(const std::string& path, int flags, std::strin
         sqlite3_open_v2(path.c_str(), &raw, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
     db.db_.reset(raw);
     if (code != SQLITE_OK) return sqlite_error(raw, code, path, kind);
+    db.number_ = number_of(path);
     sqlite3_busy_timeout(raw, kBusyMs);
     sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, kMaxValueBytes);
     sqlite3_limit(raw, SQLITE_LIMIT_ATTACHED, 0);
@@ -156,6 +192,10 @@ Expected<Database> Database::open(const std::string& path, int flags, std::strin
     for (const int option : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_DQS_DML, SQLITE_DBCONFIG_DQS_DDL,
                              SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
         sqlite3_db_config(raw, option, 0, nullptr);
+    const int made = sqlite3_create_function_v2(raw, "row_checksum", -1,
+                                                SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY,
+                                                nullptr, row_checksum, nullptr, nullptr, nullptr);
+    if (made != SQLITE_OK) return sqlite_error(raw, made, path, kind);
     auto set = db.execute(
         "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0; PRAGMA synchronous = FULL; PRAGMA temp_store = "
         "MEMORY");
@@ -238,6 +278,18 @@ Expected<void> Database::check_length() {
     return {};
 }
 
+std::optional<Database::FileNumber> Database::number_of(const std::string& path) {
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0) return std::nullopt;
+    return FileNumber{info.st_dev, info.st_ino};
+}
+
+Expected<void> Database::check_place() const {
+    if (!number_ || number_of(path_) == number_) return {};
+    return file_error(fmt::format("the {} was replaced or deleted while it was in use", kind_), path_,
+                      "close it and open what stands there now");
+}
+
 Expected<Database::Tables> Database::tables() {
     auto s = prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
     if (!s) return tl::unexpected(s.error());
@@ -252,6 +304,7 @@ Expected<Database::Tables> Database::tables() {
 }
 
 Expected<Transaction> Transaction::begin(Database& db) {
+    if (auto there = db.check_place(); !there) return tl::unexpected(there.error());
     auto begun = db.execute("BEGIN IMMEDIATE");
     if (!begun) return tl::unexpected(begun.error());
     return Transaction(db);

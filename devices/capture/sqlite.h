@@ -77,7 +77,8 @@ class Statement {
 class Database {
   public:
     // `flags` as of sqlite3_open_v2. Hardened: defensive, untrusted schema, no double-quoted strings, cell
-    // checks. `kind` is what the sentences of its Errors call the file.
+    // checks. `kind` is what the sentences of its Errors call the file. Statements may call
+    // row_checksum(VALUE, ...): CRC-32 over type, length and bytes of each value in turn.
     static Expected<Database> open(const std::string& path, int flags, std::string_view kind = "file");
 
     Expected<void> execute(const std::string& sql);  // one or more statements without bindings
@@ -93,6 +94,10 @@ class Database {
     // after the first read, which rolls a killed writer's journal back, and with the rollback journal only:
     // the end of the file may still be in a log.
     Expected<void> check_length();
+    // Error when the file's name leads to another file by now, or to none: moved, deleted or replaced while
+    // it is open. Whatever is written then is lost with the last program that has it open; no transaction
+    // begins.
+    Expected<void> check_place() const;
     // Name and SQL of all tables, indices, triggers and views.
     using Tables = std::set<std::pair<std::string, std::string>>;
     Expected<Tables> tables();
@@ -106,9 +111,16 @@ class Database {
     std::unique_ptr<sqlite3, Close> db_;
     std::shared_ptr<FreeStatements> free_ = std::make_shared<FreeStatements>();  // goes before db_
     std::string path_, kind_;
+    struct FileNumber {
+        std::uint64_t device, inode;
+        bool operator==(const FileNumber&) const = default;
+    };
+    static std::optional<FileNumber> number_of(const std::string& path);
+    std::optional<FileNumber> number_;  // none: in memory
 };
 
-// BEGIN IMMEDIATE; rolled back unless committed.
+// BEGIN IMMEDIATE; refused where the file is no longer where it was (check_place); rolled back unless
+// committed.
 class Transaction {
   public:
     static Expected<Transaction> begin(Database& db);

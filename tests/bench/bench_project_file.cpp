@@ -92,6 +92,48 @@ void BM_LoadProfiles(benchmark::State& state) {
 }
 BENCHMARK(BM_LoadProfiles)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+// A run as the station stores it on a line that pushes: begun, what was measured, judged with its events, the
+// outcome. What a robot waits for is the disk and this.
+void BM_CommittedRun(benchmark::State& state) {
+    TemporaryFolder folder;
+    const Project project = sample_project();
+    auto file = ProjectFile::create(folder / "a.seam", project);
+    const auto setup = RunSetup::of(project);
+    if (!file || !setup) return state.SkipWithError("the file cannot be written");
+    file->keep_write_ahead(true);
+    RunRecord run = sample_run(1, 12, 300);
+    for (auto _ : state) {
+        const auto number = file->begin_run(run, *setup);
+        if (!number) return state.SkipWithError("the run cannot be stored");
+        run.number = *number;
+        StoredMeasurements stored;
+        const bool kept = file->append_measured(run, stored) && file->finish_run(run, stored) &&
+                          file->append_event({0, "", run.number, EventKind::push, "edge", "written"}) &&
+                          file->update_run(run);
+        if (!kept) return state.SkipWithError("the run cannot be stored");
+    }
+}
+BENCHMARK(BM_CommittedRun)->Unit(benchmark::kMicrosecond)->UseRealTime();
+
+// A file of a day: a thousand runs.
+void BM_Open(benchmark::State& state) {
+    TemporaryFolder folder;
+    const Project project = sample_project();
+    {
+        auto file = ProjectFile::create(folder / "a.seam", project);
+        if (!file) return state.SkipWithError("the file cannot be written");
+        file->keep_write_ahead(true);
+        const RunRecord run = sample_run(1, 12, 300);
+        for (int i = 0; i < 1000; ++i)
+            if (!file->append_run(run, project)) return state.SkipWithError("the run cannot be stored");
+    }
+    for (auto _ : state) {
+        const auto file = ProjectFile::open(folder / "a.seam", FileAccess::read_only);
+        if (!file || !file->load()) return state.SkipWithError("the file cannot be opened");
+    }
+}
+BENCHMARK(BM_Open)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 }  // namespace
 
 int main(int argc, char** argv) {

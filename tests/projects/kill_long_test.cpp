@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "tests/projects/flipped_bits_test.h"
 #include "tests/projects/kill_test.h"
 
 namespace seamwright {
@@ -10,6 +11,14 @@ TEST(KillLong, TwoHundredKills) {
 
 TEST(KillLong, TwoHundredKillsWithWriteAheadLog) {
     kill_while_appending(200, 4, true);
+}
+
+TEST(FlippedBitsLong, OfTheFile) {
+    flip_bits_of_the_file(10000, 3);
+}
+
+TEST(FlippedBitsLong, OfTheRows) {
+    flip_bits_of_the_rows(5000, 4);
 }
 
 }  // namespace seamwright

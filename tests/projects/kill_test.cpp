@@ -1,5 +1,6 @@
 #include "tests/projects/kill_test.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sqlite3.h>
@@ -10,6 +11,7 @@
 #include <cstring>
 
 #include "projects/project_file.h"
+#include "projects/row_checksum.h"
 #include "tests/projects/sample_project.h"
 
 namespace seamwright {
@@ -108,6 +110,14 @@ void set_blob_checksum(std::vector<std::byte>& blob) {
     const auto crc = static_cast<std::uint32_t>(
         crc32_z(0, reinterpret_cast<const Bytef*>(blob.data()) + 16, blob.size() - 16));
     std::memcpy(blob.data() + 12, &crc, 4);
+}
+
+void seal_all_rows(const std::filesystem::path& path) {
+    auto db = Database::open(path.string(), SQLITE_OPEN_READWRITE).value();
+    for (const ChecksummedTable& table : checksummed_tables())
+        EXPECT_TRUE(
+            db.execute(fmt::format("UPDATE {} SET checksum = row_checksum({})", table.name, table.columns)))
+            << table.name;
 }
 
 void make_old_version(const std::filesystem::path& path, int version) {

@@ -17,6 +17,9 @@ void kill_while_appending(int kills, unsigned seed, bool write_ahead);
 // Puts the right checksum on a changed blob.
 void set_blob_checksum(std::vector<std::byte>& blob);
 
+// Gives every row of a changed project file its checksum.
+void seal_all_rows(const std::filesystem::path& path);
+
 // A project file of an older schema version from tests/data/version<N>.sql.
 void make_old_version(const std::filesystem::path& path, int version);
 

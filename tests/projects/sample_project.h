@@ -311,6 +311,38 @@ inline PanelRecord sample_panel_record(unsigned seed) {
     return panel;
 }
 
+inline Evidence sample_evidence(int kind) {
+    Evidence e;
+    if (kind == 0) {
+        FrozenContour f;
+        f.spot_id = "S2";
+        f.status = AlignmentStatus::frozen;
+        f.yaw_deg = 1.0 / 3.0;
+        f.radius_mm = std::numeric_limits<double>::infinity();
+        f.offsets = {{-5, 0.01, -0.02, 0.003, 0.004, true}, {5, -0.01, 0.02, 0, 0, false}};
+        e.what = f;
+    } else if (kind == 1) {
+        ZeroShift z;
+        z.runs = {4, 5, 6};
+        z.regions = {{"edge", {1e-9, 2, 3, 4, 5, 6}, {0.1, 0, 0, 0, 0, 0}, {}, 0.25}};
+        e.what = z;
+    } else if (kind == 2) {
+        KnownShift k;
+        k.realised_by = ShiftBy::by_hand;
+        k.range_mm = 10;
+        k.tests = {{ShiftKind::both,
+                    2,
+                    -7.5,
+                    make_pose(rotation_exp({0, 0, 0.01}), {1, 2, 3}),
+                    9,
+                    {{"edge", false, std::nan(""), {}, "too few spots"}}}};
+        e.what = k;
+    } else {
+        e.what = HeadlessRun{12, "car", true, "line-pc"};
+    }
+    return e;
+}
+
 // Equality to the last bit, NaN equal to itself, through the complete and exact JSON form.
 template <class T>
 std::string exact_text(const T& value) {

@@ -91,6 +91,38 @@ TEST_F(StationRun, FindsTheDisplacementAndMovesTheFramesWithThePart) {
     EXPECT_EQ(record.captures.size(), 6u);
 }
 
+TEST_F(StationRun, AProjectFileThatIsReplacedDuringTheRunIsToldBeforeAnythingIsSent) {
+    const auto path = folder / "cell.seam";
+    for (const bool deleted : {false, true})
+        for (const bool asked : {false, true}) {
+            connect();
+            const auto take_away = [&] {
+                if (deleted) {
+                    std::filesystem::remove(path);
+                } else if (std::filesystem::exists(path)) {
+                    ASSERT_TRUE(ProjectFile::create(folder / "other.seam", cell->project, true));
+                    std::filesystem::rename(folder / "other.seam", path);
+                }
+            };
+            options = {};
+            options.push = true;
+            if (asked)
+                options.confirm_push = [&](const RunRecord&) {
+                    take_away();
+                    return true;
+                };
+            else
+                options.progress = [&](const RunProgress& progress) {
+                    if (progress.done == 3) take_away();
+                };
+            const auto record = station->run(options);
+            ASSERT_FALSE(record) << deleted << asked;
+            EXPECT_EQ(record.error().kind, ErrorKind::file);
+            EXPECT_THAT(record.error().sentence(), HasSubstr("replaced or deleted while it was in use"));
+            expect_nothing_written();
+        }
+}
+
 TEST_F(StationRun, DryRunWritesNothing) {
     const RunRecord record = run(false);
     EXPECT_EQ(record.status, RunStatus::ok);

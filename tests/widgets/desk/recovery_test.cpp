@@ -1,8 +1,10 @@
 #include "widgets/desk/recovery.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
+#include "projects/row_checksum.h"
 #include "tests/widgets/desk/desk_fixture.h"
 
 namespace seamwright {
@@ -407,6 +409,31 @@ TEST_F(RecoveryTest, ASecondDeskIsRefusedAndNothingIsLost) {
     ASSERT_TRUE(second.desk.open(file));
     EXPECT_EQ(second.desk.project().name, "edited again");
     EXPECT_TRUE(first.desk.open(other)) << "which the second has left";
+}
+
+// Somebody who computes checksums can still not make a window overflow its stack.
+TEST_F(RecoveryTest, AForgedFileIsRefusedInASentence) {
+    const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+    for (const char* table : {"sensors", "spots", "regions", "calibrations"}) {
+        const fs::path file = fresh("forged.seam"), other = fresh("other.seam");
+        {
+            auto db = Database::open(file.string(), SQLITE_OPEN_READWRITE).value();
+            ASSERT_TRUE(db.execute(
+                fmt::format("UPDATE {0} SET body = '{{\"id\":\"x\",\"settings\":{1}}}'", table, deep)));
+            for (const ChecksummedTable& t : checksummed_tables())
+                ASSERT_TRUE(
+                    db.execute(fmt::format("UPDATE {} SET checksum = row_checksum({})", t.name, t.columns)));
+        }
+        WatchedDesk me;
+        ASSERT_TRUE(me.desk.open(other));
+        const auto refused = me.desk.open(file);
+        ASSERT_FALSE(refused) << table;
+        EXPECT_THAT(refused.error().sentence(), HasSubstr("cannot be read"));
+        EXPECT_EQ(me.desk.path(), other);
+        me.desk.close();
+        fs::remove(file);
+        fs::remove(other);
+    }
 }
 
 }  // namespace

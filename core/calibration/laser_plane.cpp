@@ -7,6 +7,7 @@
 
 #include "core/calibration/camera.h"
 #include "core/calibration/pose_set.h"
+#include "core/profile/units.h"
 
 namespace seamwright {
 namespace {
@@ -64,9 +65,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     if (count() < 4)
         return input_error(fmt::format("{} pairs are too few, at least 4 are needed", count()), "pairs",
                            "place the body in 10 or more positions over the whole field of view");
-    if (extent > 0 && extent < 1)
-        return input_error(fmt::format("the laser points span {:.3f} mm, which looks like metres", extent),
-                           "pairs", "give x and z in millimetres");
+    if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
     static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
     const auto undetermined = [&](const std::string& why) {
         report.judgement = {Verdict::undetermined, why,

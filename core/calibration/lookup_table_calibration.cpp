@@ -15,6 +15,7 @@
 #include "core/calibration/pose_set.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
+#include "core/profile/units.h"
 
 namespace seamwright {
 namespace {
@@ -728,9 +729,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     if (count < 6)
         return input_error(fmt::format("{} pairs are too few, at least 6 are needed", count), "pairs",
                            "measure 25 or more positions over the whole field of view");
-    if (extent > 0 && extent < 1)
-        return input_error(fmt::format("the laser points span {:.3f} mm, which looks like metres", extent),
-                           "pairs", "give x and z in millimetres");
+    if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
 
     const char* spread = "measure 25 or more positions over the whole field of view, near and far";
     const auto undetermined = [&](std::string reason) {

@@ -10,14 +10,44 @@
 #include "app/cli/feature_setting.h"
 #include "app/cli/result_json.h"
 #include "core/profile/filter.h"
+#include "core/profile/units.h"
 #include "devices/exchange/profile_csv.h"
 
 namespace seamwright::cli {
 namespace {
 
-// A profile as it comes from a sensor is filtered first; one that carries its segments is taken at its word.
-Expected<Profile> read_filtered(const std::string& file, const FilterOptions& options) {
+// --unit: what the numbers of the file are in. Empty: millimetres, unless they look otherwise.
+double mm_of_unit(const std::string& unit) {
+    return unit == "m" ? 1000 : unit == "um" ? 1e-3 : 1;
+}
+void convert_to_mm(Profile& profile, const std::string& unit) {
+    for (auto* column : {&profile.x_mm, &profile.z_mm})
+        for (double& value : *column) value *= mm_of_unit(unit);
+}
+Expected<void> check_unit(const Profile& profile, const std::string& file, const std::string& unit) {
+    if (!unit.empty()) return {};
+    auto ok = check_profile_millimetres(profile, file);
+    if (!ok) ok.error().mend += ", or say what they are in with --unit";
+    return ok;
+}
+void add_unit(CLI::App* command, std::string& unit) {
+    command
+        ->add_option("--unit", unit, "What lengths in the profiles are in: mm (as the header says), m or um")
+        ->check(CLI::IsMember({"mm", "m", "um"}));
+}
+
+Expected<Profile> read_in_unit(const std::string& file, const std::string& unit) {
     auto profile = read_profile_csv(file);
+    if (!profile) return profile;
+    if (auto ok = check_unit(*profile, file, unit); !ok) return tl::unexpected(ok.error());
+    convert_to_mm(*profile, unit);
+    return profile;
+}
+
+// A profile as it comes from a sensor is filtered first; one that carries its segments is taken at its word.
+Expected<Profile> read_filtered(const std::string& file, const std::string& unit,
+                                const FilterOptions& options) {
+    auto profile = read_in_unit(file, unit);
     if (!profile) return profile;
     if (!profile->filtered())
         if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
@@ -37,8 +67,9 @@ void add_filter_options(CLI::App* command, FilterOptions& o) {
         ->capture_default_str();
 }
 
-Expected<Answer> filter(const std::string& in, const std::string& out, const FilterOptions& options) {
-    auto profile = read_profile_csv(in);
+Expected<Answer> filter(const std::string& in, const std::string& out, const std::string& unit,
+                        const FilterOptions& options) {
+    auto profile = read_in_unit(in, unit);
     if (!profile) return tl::unexpected(profile.error());
     if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
     if (auto written = write_profile_csv(out, *profile); !written) return tl::unexpected(written.error());
@@ -69,7 +100,7 @@ std::string flag(const std::string& parameter) {
 }
 
 struct FeatureArguments {
-    std::string file, kind = "contour-end", template_file;
+    std::string file, kind = "contour-end", template_file, unit;
     std::vector<double> reference;
     std::map<std::string, std::string> values;
     FilterOptions filter;
@@ -89,7 +120,7 @@ Expected<Answer> feature(const FeatureArguments& a) {
     if (a.kind == "template") {
         if (a.template_file.empty())
             return usage_error("the kind \"template\" needs --template T.csv", "--template");
-        auto contour = read_filtered(a.template_file, a.filter);
+        auto contour = read_filtered(a.template_file, a.unit, a.filter);
         if (!contour) return tl::unexpected(contour.error());
         recipe.template_profile = std::move(*contour);
         if (a.reference.size() == 2) recipe.template_reference_mm = {a.reference[0], a.reference[1]};
@@ -98,7 +129,7 @@ Expected<Answer> feature(const FeatureArguments& a) {
     }
     auto finder = make_feature_finder(recipe);
     if (!finder) return tl::unexpected(finder.error());
-    auto profile = read_filtered(a.file, a.filter);
+    auto profile = read_filtered(a.file, a.unit, a.filter);
     if (!profile) return tl::unexpected(profile.error());
     const Feature found = (*finder)->find(*profile);
     Answer answer;
@@ -109,7 +140,7 @@ Expected<Answer> feature(const FeatureArguments& a) {
 }
 
 struct MatchArguments {
-    std::string template_file, scene_file;
+    std::string template_file, scene_file, unit;
     std::vector<double> window;  // mm, mm, deg
     std::vector<double> reference;
     FilterOptions filter;
@@ -125,9 +156,9 @@ Eigen::Vector2d middle(const Profile& profile) {
 }
 
 Expected<Answer> match(const MatchArguments& a) {
-    auto contour = read_filtered(a.template_file, a.filter);
+    auto contour = read_filtered(a.template_file, a.unit, a.filter);
     if (!contour) return tl::unexpected(contour.error());
-    auto scene = read_filtered(a.scene_file, a.filter);
+    auto scene = read_filtered(a.scene_file, a.unit, a.filter);
     if (!scene) return tl::unexpected(scene.error());
     const Eigen::Vector2d reference =
         a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(*contour);
@@ -151,9 +182,14 @@ Expected<Answer> match(const MatchArguments& a) {
     return answer;
 }
 
-Expected<Answer> align(const std::string& file, const AlignmentOptions& options) {
+Expected<Answer> align(const std::string& file, const std::string& unit, const AlignmentOptions& options) {
     auto pass = read_align_csv(file);
     if (!pass) return tl::unexpected(pass.error());
+    for (TravelProfile& p : *pass) {
+        if (auto ok = check_unit(p.profile, file, unit); !ok) return tl::unexpected(ok.error());
+        convert_to_mm(p.profile, unit);
+        p.travel_mm *= mm_of_unit(unit);
+    }
     for (TravelProfile& p : *pass)
         if (auto done = filter_profile(p.profile, FilterOptions{}); !done)
             return tl::unexpected(done.error());
@@ -170,7 +206,7 @@ Expected<Answer> align(const std::string& file, const AlignmentOptions& options)
 
 void add_filter(CommandLine& line) {
     struct Arguments {
-        std::string in, out;
+        std::string in, out, unit;
         FilterOptions options;
     };
     auto a = std::make_shared<Arguments>();
@@ -180,8 +216,9 @@ void add_filter(CommandLine& line) {
                  "  adds the columns valid (1/0) and segment (0.., -1 for outliers and missing returns)");
     command->add_option("in", a->in, "Profile: x_mm,z_mm[,intensity]")->required()->type_name("IN.csv");
     command->add_option("--out", a->out, "Where the marked profile goes")->required()->type_name("OUT.csv");
+    add_unit(command, a->unit);
     add_filter_options(command, a->options);
-    line.on(command, [a] { return filter(a->in, a->out, a->options); });
+    line.on(command, [a] { return filter(a->in, a->out, a->unit, a->options); });
 }
 
 void add_feature(CommandLine& line) {
@@ -210,6 +247,7 @@ void add_feature(CommandLine& line) {
             text += fmt::format(" [{}]", k.name);
         }
     for (const auto& [name, text] : help) command->add_option(flag(name), a->values[name], text);
+    add_unit(command, a->unit);
     add_filter_options(command, a->filter);
     line.on(command, [a] { return feature(*a); });
 }
@@ -233,13 +271,14 @@ void add_match(CommandLine& line) {
                      "Landmark x,z of the window in mm (default: the template's middle)")
         ->delimiter(',')
         ->expected(2);
+    add_unit(command, a->unit);
     add_filter_options(command, a->filter);
     line.on(command, [a] { return match(*a); });
 }
 
 void add_align(CommandLine& line) {
     struct Arguments {
-        std::string file;
+        std::string file, unit;
         AlignmentOptions options;
     };
     auto a = std::make_shared<Arguments>();
@@ -253,7 +292,8 @@ void add_align(CommandLine& line) {
         ->capture_default_str();
     command->add_option("--window-mm", a->options.window_mm, "Travel that is judged, +- mm")
         ->capture_default_str();
-    line.on(command, [a] { return align(a->file, a->options); });
+    add_unit(command, a->unit);
+    line.on(command, [a] { return align(a->file, a->unit, a->options); });
 }
 
 }  // namespace seamwright::cli

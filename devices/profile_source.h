@@ -33,6 +33,9 @@ class ProfileSource {
     virtual SensorIdentity identity() const = 0;
     virtual Expected<void> start() = 0;
     virtual void stop() = 0;
+    // From any thread: a start() or a reconnection that waits for the device ends with an Error at once, also
+    // one that begins before the next stop(). For drivers whose device may take longer than a person waits.
+    virtual void give_up() {}
     // Software trigger: one frame follows. `spot_id` is carried through to Frame::spot_id.
     virtual Expected<void> trigger(const std::string& spot_id) = 0;
     // "All": the next frame in order, for runs and recorders. Silence is an Error (kind device) after

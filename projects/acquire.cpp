@@ -181,13 +181,14 @@ SoftwareTriggered::~SoftwareTriggered() {
 }
 
 StartedSensors::~StartedSensors() {
+    watches_.clear();
     for (ProfileSource* sensor : started_) sensor->stop();
 }
 
-Expected<void> StartedSensors::start(ProfileSource& sensor) {
-    auto started = sensor.start();
-    if (started) started_.push_back(&sensor);
-    return started;
+Expected<void> StartedSensors::start(ProfileSource& sensor, const std::stop_token& cancel) {
+    watches_.emplace_back(cancel, [&sensor] { sensor.give_up(); });
+    started_.push_back(&sensor);  // one that did not start is stopped too: it may have got half the way
+    return sensor.start();
 }
 
 }  // namespace seamwright

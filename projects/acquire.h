@@ -2,6 +2,7 @@
 // From a robot's trigger to the sensor's frame: one way for runs, teaching and passes.
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -88,17 +89,19 @@ class SoftwareTriggered {
     double before_ = 0;
 };
 
-// Stops every started sensor, however the work ends.
+// Stops every started sensor, however the work ends; a sensor that keeps its start waiting is given up when
+// `cancel` is asked for.
 class StartedSensors {
   public:
     StartedSensors() = default;
     StartedSensors(const StartedSensors&) = delete;
     StartedSensors& operator=(const StartedSensors&) = delete;
     ~StartedSensors();
-    Expected<void> start(ProfileSource& sensor);
+    Expected<void> start(ProfileSource& sensor, const std::stop_token& cancel = {});
 
   private:
     std::vector<ProfileSource*> started_;
+    std::deque<std::stop_callback<std::function<void()>>> watches_;  // go first
 };
 
 }  // namespace seamwright

@@ -157,7 +157,7 @@ struct Station::Impl {
                 sensor_ids.push_back(spot.sensor_id);
         }
         for (const std::string& id : sensor_ids) {
-            if (auto on = job.started_sensors.start(*sensors.at(id)); !on) return on;
+            if (auto on = job.started_sensors.start(*sensors.at(id), job.options.cancel); !on) return on;
             job.frames.try_emplace(id, *sensors.at(id), *find_sensor(project, id));
         }
         for (const std::string& id : robot_ids) {

@@ -51,6 +51,7 @@ class RecordedSensor final : public ProfileSource {
     SensorIdentity identity() const override { return sensor_->identity(); }
     Expected<void> start() override { return sensor_->start(); }
     void stop() override { sensor_->stop(); }
+    void give_up() override { sensor_->give_up(); }
     Expected<void> trigger(const std::string& spot_id) override { return sensor_->trigger(spot_id); }
     Expected<FramePtr> wait_next(std::chrono::milliseconds timeout) override {
         auto frame = sensor_->wait_next(timeout);
@@ -176,16 +177,19 @@ void RecordingSession::stop() {
 }
 
 void RecordingSession::pump(Sensor s) {
+    constexpr std::chrono::seconds kPatience{2};
     ProfileCandidates candidates;
     std::string told;
-    auto due = Clock::now();
+    auto due = Clock::now(), fired_or_seen = due;
     while (!stop_) {
         std::optional<Error> failure;
         auto timeout = kSlice;
         if (s.trigger_hz > 0) {
             const auto now = Clock::now();
             if (now >= due) {
-                if (auto fired = s.sensor->trigger(""); !fired) failure = fired.error();
+                auto fired = s.sensor->trigger("");
+                if (!fired) failure = fired.error();
+                if (fired || is_silence(*failure) || is_disconnect(*failure)) fired_or_seen = now;
                 due = std::max(due + std::chrono::duration_cast<Clock::duration>(
                                          std::chrono::duration<double>(1 / s.trigger_hz)),
                                now - kSlice);
@@ -196,6 +200,7 @@ void RecordingSession::pump(Sensor s) {
         auto frame = s.sensor->wait_next(timeout);
         if (frame && *frame) {
             ++frames_;
+            fired_or_seen = Clock::now();
             const bool found = s.candidates && !(*frame)->image.empty() &&
                                (*frame)->status == FrameStatus::ok && s.candidates(**frame, candidates);
             recorder_->frame(s.source, **frame, found ? &candidates : nullptr);
@@ -209,9 +214,19 @@ void RecordingSession::pump(Sensor s) {
             told = failure->what;
             note_text(*recorder_, s.source, CaptureEventKind::note, failure->sentence());
         }
+        if (s.trigger_hz > 0 && failure && Clock::now() - fired_or_seen > kPatience) {
+            const std::lock_guard lock(mutex_);
+            if (!refusal_) refusal_ = std::move(failure);
+            break;
+        }
         if (failure) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     --live_;
+}
+
+std::optional<Error> RecordingSession::refusal() const {
+    const std::lock_guard lock(mutex_);
+    return refusal_;
 }
 
 void RecordingSession::listen(Robot r) {

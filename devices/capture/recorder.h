@@ -134,6 +134,9 @@ class RecordingSession {
     void stop();
     // False when every sensor has come to its end (a replayed recording).
     bool running() const { return live_ > 0; }
+    // Of a sensor that has refused its software triggers for 2 s and has sent no frame meanwhile; it is given
+    // up. A connection that is lost is no refusal: it may come back.
+    std::optional<Error> refusal() const;
     std::uint64_t frames() const { return frames_; }  // that came from the sensors
 
   private:
@@ -146,6 +149,8 @@ class RecordingSession {
     std::atomic<bool> stop_ = false;
     std::atomic<int> live_ = 0;
     std::atomic<std::uint64_t> frames_ = 0;
+    mutable std::mutex mutex_;  // what follows
+    std::optional<Error> refusal_;
 };
 
 }  // namespace seamwright

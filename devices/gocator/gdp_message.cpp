@@ -65,6 +65,8 @@ Expected<Head> head_of(std::string_view content, std::size_t least_attributes, s
     if (attributes < least_attributes || content.size() < head.data) return too_short(what, content.size());
     head.count = at<std::uint32_t>(content, 2);
     head.width = at<std::uint32_t>(content, 6);
+    if (head.count > kMostProfiles)
+        return device_error(fmt::format("a {} message says it has {} profiles", what, head.count), kWhere);
     const std::size_t bytes = content.size() - head.data;
     // No product of two numbers from outside before both are known to be small.
     if (head.count > bytes || head.width > bytes || head.count * head.width * bytes_per_point > bytes)

@@ -25,6 +25,8 @@ namespace seamwright::gdp {
 
 inline constexpr std::uint16_t kControlPort = 3190, kDataPort = 3196;
 inline constexpr std::size_t kLongestMessage = 16 << 20;  // a longer one is no message of a profile sensor
+inline constexpr std::size_t kMostProfiles =
+    4096;  // of one message; empty ones cost it no bytes, but us memory
 
 enum class Command : std::uint16_t {
     stop = 0x1001,

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <mutex>
 
 #include "devices/exchange/settings.h"
@@ -20,6 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kPingPeriod{1};
+constexpr const char* kLookAtSensor = "check power, cable and address of the sensor";
 
 struct Settings {
     std::string address, output = "profiles", serial;
@@ -28,7 +30,7 @@ struct Settings {
     std::vector<std::pair<int, int>> points{{0, 1}};
     gocator::AsciiFormat format;
     bool hardware_trigger = false;
-    Timeout timeout{1000}, reconnect{100}, reconnect_most{5000};
+    Timeout timeout{1000}, start_timeout{15000}, reconnect{100}, reconnect_most{5000};
     std::size_t buffers = 8;
     bool ascii() const { return output == "ascii"; }
 };
@@ -55,8 +57,8 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
     Settings s;
     SettingsReader read(json, "settings");
     read.only({"address", "control_port", "data_port", "output", "source", "points", "format", "delimiter",
-               "terminator", "invalid", "serial", "hardware_trigger", "timeout_ms", "reconnect_ms",
-               "reconnect_most_ms", "buffers"});
+               "terminator", "invalid", "serial", "hardware_trigger", "timeout_ms", "start_timeout_ms",
+               "reconnect_ms", "reconnect_most_ms", "buffers"});
     read.text("address", s.address);
     read.text("output", s.output);
     read.text("serial", s.serial);
@@ -68,8 +70,9 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
     read.text("terminator", s.format.terminator);
     read.text("invalid", s.format.invalid);
     read.truth("hardware_trigger", s.hardware_trigger);
-    int timeout = 1000, reconnect = 100, most = 5000;
+    int timeout = 1000, start_timeout = 15000, reconnect = 100, most = 5000;
     read.whole("timeout_ms", timeout, 50, 60000);
+    read.whole("start_timeout_ms", start_timeout, 50, 120000);
     read.whole("reconnect_ms", reconnect, 10, 60000);
     read.whole("reconnect_most_ms", most, 10, 600000);
     read.whole("buffers", s.buffers, 2, 1000);
@@ -87,6 +90,7 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
     if (auto format = gocator::check_format(s.format); !format) return tl::unexpected(format.error());
     if (s.data_port == 0) s.data_port = s.ascii() ? gocator::kAsciiPort : gdp::kDataPort;
     s.timeout = Timeout(timeout);
+    s.start_timeout = Timeout(std::max(timeout, start_timeout));
     s.reconnect = Timeout(reconnect);
     s.reconnect_most = Timeout(std::max(reconnect, most));
     return s;
@@ -95,14 +99,15 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
 class GocatorSource final : public ProfileSource {
   public:
     explicit GocatorSource(Settings settings) : s_(std::move(settings)), pool_(s_.buffers) {}
-    ~GocatorSource() override { stop(); }
+    ~GocatorSource() override { end(); }
 
     Expected<void> connect() {
         const std::lock_guard control(control_mutex_);
         auto connection = TcpConnection::connect(s_.address, s_.control_port, s_.timeout);
-        if (!connection) return tl::unexpected(connection.error());
+        if (!connection) return of_sensor(connection.error(), s_.control_port);
         control_.emplace(std::move(*connection));
         control_stream_.clear();
+        late_answers_.clear();
         gdp::Command command = gdp::Command::system_info;
         auto answer = ask(command);
         if (answer && answer->status != gdp::kDone) answer = ask(command = gdp::Command::system_info_v1);
@@ -129,7 +134,7 @@ class GocatorSource final : public ProfileSource {
     }
 
     Expected<void> start() override {
-        stop();
+        end();
         const std::lock_guard stream(stream_mutex_);
         auto started = connected() ? Expected<void>() : connect();
         if (started) started = begin();
@@ -139,14 +144,12 @@ class GocatorSource final : public ProfileSource {
     }
 
     void stop() override {
-        const std::lock_guard stream(stream_mutex_);  // wait_next() comes to its end first
-        if (running_ && connected()) (void)ask(gdp::Command::stop);
-        running_ = false;
-        data_.reset();
-        ready_.clear();
-        const std::lock_guard lock(mutex_);
-        waiting_spots_.clear();
+        given_up_ = true;  // a reconnection under way
+        end();
+        given_up_ = false;
     }
+
+    void give_up() override { given_up_ = true; }
 
     Expected<void> trigger(const std::string& spot_id) override {
         if (!running_) return device_error("the sensor is not started", where());
@@ -187,7 +190,7 @@ class GocatorSource final : public ProfileSource {
             if (!got && is_silence(got.error())) break;
             if (!got) {
                 lost();
-                return device_error(kDisconnected, where());
+                return device_error(kDisconnected, where(), kLookAtSensor);
             }
             stream_.append(reinterpret_cast<const char*>(buffer.data()), *got);
         }
@@ -195,7 +198,8 @@ class GocatorSource final : public ProfileSource {
             next_ping_ = Clock::now() + kPingPeriod;
             if (!ask(gdp::Command::ping, std::string(8, '\0'))) {
                 lost();
-                return device_error(fmt::format("{}: it does not answer", kDisconnected), where());
+                return device_error(fmt::format("{}: it does not answer", kDisconnected), where(),
+                                    kLookAtSensor);
             }
         }
         return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()), where(),
@@ -217,6 +221,17 @@ class GocatorSource final : public ProfileSource {
     Expected<void> set(const std::string& parameter, double) override { return no_parameter(parameter); }
 
   private:
+    void end() {
+        const std::lock_guard stream(stream_mutex_);  // wait_next() comes to its end first
+        // Nothing waits for the job's end but the next start, which asks for it again.
+        if (running_ && connected()) (void)ask(gdp::Command::stop);
+        running_ = false;
+        data_.reset();
+        ready_.clear();
+        const std::lock_guard lock(mutex_);
+        waiting_spots_.clear();
+    }
+
     std::string where() const { return fmt::format("Gocator {}:{}", s_.address, s_.control_port); }
     tl::unexpected<Error> no_parameter(const std::string& name) const {
         return usage_error("there is no parameter \"" + name + "\"", where(),
@@ -231,39 +246,74 @@ class GocatorSource final : public ProfileSource {
         return control_.has_value();
     }
 
+    // The transport speaks of whoever is on the other side.
+    tl::unexpected<Error> of_sensor(Error error, std::uint16_t port) const {
+        error.where = fmt::format("Gocator {}:{}", s_.address, port);
+        error.mend = kLookAtSensor;
+        return tl::unexpected(std::move(error));
+    }
+
     Expected<gdp::Reply> ask(gdp::Command command, std::string_view arguments = {}) {
+        return ask(command, arguments, s_.timeout, false);
+    }
+    Expected<gdp::Reply> ask(gdp::Command command, std::string_view arguments, Timeout timeout,
+                             bool until_given_up) {
+        constexpr Timeout kSlice{50};
         const std::lock_guard control(control_mutex_);
-        if (!control_) return device_error(kDisconnected, where());
+        if (!control_) return device_error(kDisconnected, where(), kLookAtSensor);
         if (auto sent = control_->send(bytes_of(gdp::command_bytes(command, arguments)), s_.timeout); !sent)
-            return tl::unexpected(sent.error());
-        const auto until = Clock::now() + s_.timeout;
+            return of_sensor(sent.error(), s_.control_port);
+        const auto until = Clock::now() + timeout;
         for (;;) {
             auto reply = gdp::take_reply(control_stream_);
             if (!reply) return tl::unexpected(reply.error());
-            if (*reply && (*reply)->command == static_cast<std::uint16_t>(command)) return **reply;
-            if (*reply) continue;  // the late answer to a command given up
+            if (*reply) {
+                auto& late = late_answers_[(*reply)->command];
+                if (late > 0)
+                    --late;  // to a command given up
+                else if ((*reply)->command == static_cast<std::uint16_t>(command))
+                    return **reply;
+                continue;
+            }
             const auto left = std::chrono::duration_cast<Timeout>(until - Clock::now());
-            if (left.count() <= 0) return device_error(kNoAnswer, where());
+            if (left.count() <= 0 || (until_given_up && given_up_)) {
+                ++late_answers_[static_cast<std::uint16_t>(command)];
+                if (left.count() > 0) return device_error("given up before the sensor answered", where());
+                return device_error(kNoAnswer, where(), kLookAtSensor);
+            }
             std::array<std::byte, 4096> buffer;
-            const auto got = control_->receive_some(buffer, left);
-            if (!got) return tl::unexpected(got.error());
+            const auto got = control_->receive_some(buffer, std::min(left, kSlice));
+            if (!got && is_silence(got.error())) continue;
+            if (!got) return of_sensor(got.error(), s_.control_port);
             control_stream_.append(reinterpret_cast<const char*>(buffer.data()), *got);
         }
+    }
+
+    // Starts or stops the job, for which a sensor takes its time.
+    Expected<gdp::Reply> ask_job(gdp::Command command) {
+        auto answer = ask(command, {}, s_.start_timeout, true);
+        if (!answer && is_silence(answer.error()))
+            return device_error(fmt::format("{}: the sensor did not {} its job within {:g} s", kNoAnswer,
+                                            command == gdp::Command::start ? "start" : "stop",
+                                            static_cast<double>(s_.start_timeout.count()) / 1000),
+                                where(),
+                                "look on the sensor's own page; start_timeout_ms is how long to wait");
+        return answer;
     }
 
     // Stopped first, so that its frames count from zero, and the data connection made in between, so that
     // nothing of before comes.
     Expected<void> begin() {
-        if (auto stopped = ask(gdp::Command::stop); !stopped) return tl::unexpected(stopped.error());
+        if (auto stopped = ask_job(gdp::Command::stop); !stopped) return tl::unexpected(stopped.error());
         auto data = TcpConnection::connect(s_.address, s_.data_port, s_.timeout);
-        if (!data) return tl::unexpected(data.error());
+        if (!data) return of_sensor(data.error(), s_.data_port);
         data_.emplace(std::move(*data));
         stream_.clear();
         group_ = {};
         offset_ = next_;
         passed_over_ = false;
         next_ping_ = Clock::now() + kPingPeriod;
-        auto started = ask(gdp::Command::start);
+        auto started = ask_job(gdp::Command::start);
         if (!started) return tl::unexpected(started.error());
         if (started->status != gdp::kDone) return refused("start its job", started->status);
         return {};
@@ -280,7 +330,7 @@ class GocatorSource final : public ProfileSource {
     }
 
     Expected<void> reconnect() {
-        if (Clock::now() < retry_at_) return device_error(kDisconnected, where(), "check power and cable");
+        if (Clock::now() < retry_at_) return device_error(kDisconnected, where(), kLookAtSensor);
         auto made = connect();
         if (made) made = begin();
         if (!made) {
@@ -288,7 +338,7 @@ class GocatorSource final : public ProfileSource {
             backoff_ = std::min(std::max(2 * backoff_, s_.reconnect), s_.reconnect_most);
             retry_at_ = Clock::now() + backoff_;
             if (made.error().what.starts_with(kDisconnected) || is_silence(made.error()))
-                return device_error(kDisconnected, where(), "check power and cable");
+                return device_error(kDisconnected, where(), kLookAtSensor);
             return made;
         }
         backoff_ = Timeout(0);
@@ -433,7 +483,8 @@ class GocatorSource final : public ProfileSource {
     std::recursive_mutex control_mutex_;  // control connection: commands come from two threads
     std::optional<TcpConnection> control_, data_;
     std::string control_stream_, stream_;
-    std::atomic<bool> running_ = false;
+    std::map<std::uint16_t, int> late_answers_;  // of commands that were not waited for to the end
+    std::atomic<bool> running_ = false, given_up_ = false;
     bool passed_over_ = false;
     Group group_;
     std::deque<FramePtr> ready_;

@@ -40,6 +40,7 @@ struct ServedGocator::Impl {
     std::atomic<int> losing = 0;
     std::atomic<bool> cutting = false;
     bool running = false;
+    std::chrono::milliseconds start_time{0};
     std::uint64_t frames = 0;
     Frame frame{};
     StripePeaks peaks{};
@@ -81,11 +82,13 @@ struct ServedGocator::Impl {
             gdp::Reply reply{(*request)->command, gdp::kDone, {}};
             switch (static_cast<gdp::Command>(reply.command)) {
                 case gdp::Command::start:
+                    std::this_thread::sleep_for(start_time);
                     running = true;
                     frames = 0;
                     cell->arm(true);
                     break;
                 case gdp::Command::stop:
+                    if (running) std::this_thread::sleep_for(start_time);
                     running = false;
                     cell->arm(false);
                     break;
@@ -184,13 +187,15 @@ Expected<std::unique_ptr<ServedGocator>> ServedGocator::open(std::shared_ptr<Sim
     std::uint16_t control_port = gdp::kControlPort, data_port = gdp::kDataPort,
                   ascii_port = gocator::kAsciiPort;
     std::uint32_t serial = 12345;
+    int start_ms = 0;
     SettingsReader read(settings, "gocator");
-    read.only({"address", "control_port", "data_port", "ascii_port", "serial", "format"});
+    read.only({"address", "control_port", "data_port", "ascii_port", "serial", "format", "start_ms"});
     read.text("address", address);
     read.text("format", format);
     read.whole("control_port", control_port, 0, 65535);
     read.whole("data_port", data_port, 0, 65535);
     read.whole("ascii_port", ascii_port, 0, 65535);
+    read.whole("start_ms", start_ms, 0, 15000);
     read.whole("serial", serial, 1, 4294967295.0);
     if (read.failed()) return tl::unexpected(read.error());
     if (auto known = gocator::check_format({format}); !known) return tl::unexpected(known.error());
@@ -208,7 +213,8 @@ Expected<std::unique_ptr<ServedGocator>> ServedGocator::open(std::shared_ptr<Sim
                                                .control = {std::move(*control), {}},
                                                .data = {std::move(*data), {}},
                                                .ascii = {std::move(*ascii), {}},
-                                               .tool = std::move(*tool)});
+                                               .tool = std::move(*tool),
+                                               .start_time = std::chrono::milliseconds(start_ms)});
     impl->thread = std::jthread([i = impl.get()](const std::stop_token& stop) { i->serve(stop); });
     return std::unique_ptr<ServedGocator>(new ServedGocator(std::move(impl)));
 }

@@ -9,7 +9,8 @@
 // clients a port.
 //
 // Settings, all optional, with defaults: {"address": "127.0.0.1", "control_port": 3190, "data_port": 3196,
-// "ascii_port": 8190 (each 0 = any free one), "serial": 12345, "format": "" (as in ascii_result.h)}
+// "ascii_port": 8190 (each 0 = any free one), "serial": 12345, "format": "" (as in ascii_result.h),
+// "start_ms": 0 (what it takes to start and to stop its job; a real one up to 15000)}
 
 #include <cstdint>
 #include <memory>

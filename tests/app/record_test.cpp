@@ -37,6 +37,36 @@ class Record : public testing::Test {
     }
 };
 
+TEST_F(Record, ASensorThatRefusesItsTriggersIsToldAndEndsIt) {
+    const std::string capture = (folder / "refused.capture").string();
+    const auto begun = std::chrono::steady_clock::now();
+    const auto r = run_program(
+        {"record", project, "--out", capture, "--no-robots", "--trigger-hz", "20", "--profiles", "5"},
+        folder);
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
+    EXPECT_EQ(r.exit_code, 3) << r.out;
+    EXPECT_THAT(r.err, HasSubstr("the robot has not moved anywhere yet"));
+    EXPECT_EQ(answer_of({"check", capture})["status"], "ok") << "what there is of it is whole";
+}
+
+TEST_F(Record, NamesInTablesAreOneField) {
+    const std::string exported = (folder / "project.json").string(), again = (folder / "again.seam").string(),
+                      table = (folder / "shift.csv").string();
+    answer_of({"export", project, "--out", exported, "--with-taught"});
+    json text = json::parse(std::ifstream(exported));
+    text["runs"] = json::array();
+    text["events"] = json::array();
+    text["project"]["regions"][0]["id"] = "edge, \"left\"";
+    std::ofstream(exported) << text.dump();
+    answer_of({"import", again, "--from", exported});
+    (void)run_program({"known-shift", again, "--range-mm", "1", "--step-mm", "1", "--range-deg", "0.1",
+                       "--step-deg", "0.1", "--csv", table},
+                      folder);
+    const std::string rows = slurp(table);
+    EXPECT_THAT(rows, HasSubstr(",\"edge, \"\"left\"\"\","));
+    EXPECT_THAT(rows, HasSubstr("translation,X,"));
+}
+
 TEST_F(Record, ARunIsMeasuredAgainFromItsCapture) {
     const std::string capture = (folder / "run.capture").string();
     const json run = answer_of({"run", project, "--part", "CAR-7", "--record", capture});

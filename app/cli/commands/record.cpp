@@ -117,13 +117,14 @@ Expected<Answer> record(const RecordArguments& a) {
     auto running = RecordingSession::start(*recorder, std::move(from), beside);
     if (!running) return tl::unexpected(running.error());
     const auto begun = Clock::now();
-    std::optional<Error> failure;
+    std::optional<Error> failure, refused;
     while (!stop.stop_requested() && !failure) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         if (a.seconds > 0 && Clock::now() - begun >= std::chrono::duration<double>(a.seconds)) break;
         if (a.profiles > 0 && (*running)->frames() >= a.profiles) break;
         if (!sensors->empty() && !(*running)->running()) break;
         failure = (*recorder)->status().failure;
+        if (!failure) failure = refused = (*running)->refusal();
     }
     (*running)->stop();
     Answer answer;
@@ -131,6 +132,7 @@ Expected<Answer> record(const RecordArguments& a) {
                    {"seconds", std::chrono::duration<double>(Clock::now() - begun).count()}};
     if (auto told = tell_recording(recorder->get(), a.out, answer); !told)
         return tl::unexpected(told.error());
+    if (refused) return tl::unexpected(*refused);
     if (!sensors->empty() && (*running)->frames() == 0) {
         answer.exit_code = kExitVerdict;
         answer.json["status"] = "no frames";

@@ -153,6 +153,26 @@ TEST(GdpMessage, CountsThatOverflowAreRefused) {
     EXPECT_FALSE(parse_profiles(Type::uniform, ""));
 }
 
+// 16 MiB that say 16 million profiles of no point: each would cost some hundred bytes here.
+TEST(GdpMessage, EmptyProfilesAreBounded) {
+    for (const int count_byte : {0x00, 0x01}) {  // 4096 and 4097 and a little
+        std::string content = head(32);
+        content[2] = static_cast<char>(count_byte), content[3] = 0x10, content[4] = content[5] = 0;
+        content[6] = 0;  // width
+        content.resize(kLongestMessage - 6);
+        const bool all = count_byte == 0;
+        EXPECT_EQ(parse_profiles(Type::points, content).has_value(), all);
+        EXPECT_EQ(parse_profiles(Type::uniform, content).has_value(), all);
+        EXPECT_EQ(parse_intensities(content).has_value(), all);
+    }
+    std::string content = head(32);
+    content[2] = content[3] = 0, content[4] = static_cast<char>(0xf0), content[6] = 0;  // 15 728 640
+    content.resize(kLongestMessage - 6);
+    const auto read = parse_profiles(Type::points, content);
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().sentence().find("15728640 profiles"), std::string::npos);
+}
+
 TEST(GdpMessage, SystemInfoOfBothLayouts) {
     std::string info = bytes({0x39, 0x30, 0, 0, 192, 168, 1, 10}) + "Gocator2330";
     info.resize(40, '\0');

@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
 #include <thread>
 
 #include "core/features/feature.h"
@@ -19,6 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 class Gocator : public testing::Test {
   protected:
@@ -207,6 +211,157 @@ TEST_F(Gocator, ForeignServerIsRefusedInWords) {
     const auto sensor = try_open({{"control_port", listener->port()}});
     ASSERT_FALSE(sensor);
     EXPECT_THAT(sensor.error().sentence(), HasSubstr("are those of a Gocator"));
+}
+
+// --- a sensor by hand: its bytes as the manual prints them, not as our own code writes them
+
+class HandSensor {
+  public:
+    struct Asked {
+        int command, nth;  // of its kind, from 0
+    };
+    // Answers every command with success, after as long as `wait` says; no answer at all: nullopt.
+    using Wait = std::function<std::optional<std::chrono::milliseconds>(Asked)>;
+    HandSensor(std::string address, std::uint16_t control_port, std::uint16_t data_port, Wait wait)
+        : control_(TcpListener::listen(address, control_port).value()),
+          data_(TcpListener::listen(address, data_port).value()),
+          wait_(std::move(wait)),
+          thread_([this](const std::stop_token& stop) { serve(stop); }) {}
+    std::uint16_t control_port() const { return control_.port(); }
+    std::uint16_t data_port() const { return data_.port(); }
+
+  private:
+    void serve(const std::stop_token& stop) {
+        std::optional<TcpConnection> client, data;
+        std::map<int, int> count;
+        std::string in;
+        while (!stop.stop_requested()) {
+            if (auto come = control_.accept(5ms)) client.emplace(std::move(*come)), in.clear();
+            if (auto come = data_.accept(5ms)) data.emplace(std::move(*come));
+            std::array<std::byte, 512> buffer;
+            if (!client) continue;
+            const auto got = client->receive_some(buffer, 5ms);
+            if (!got && !is_silence(got.error())) client.reset();
+            if (!got) continue;
+            in.append(reinterpret_cast<const char*>(buffer.data()), *got);
+            for (std::size_t size; in.size() >= 6 && (size = byte(in, 0) + 256 * byte(in, 1)) <= in.size();
+                 in.erase(0, size)) {
+                const auto command = static_cast<int>(byte(in, 4) + 256 * byte(in, 5));
+                const auto wait = wait_({command, count[command]++});
+                if (!wait) continue;
+                std::this_thread::sleep_for(*wait);
+                std::string answer = in.substr(4, 2) + std::string("\1\0\0\0", 4);  // id, status 1
+                if (command == 0x4010) {
+                    answer += std::string("\x3C\0", 2) +
+                              std::string("\x39\x30\0\0", 4) +  // size 60, serial 12345
+                              std::string("\xC0\xA8\1\x0A", 4) + "Gocator 2130" + std::string(20, '\0') +
+                              std::string("\6\0\1\0", 4) + std::string(4, '\0') + std::string(12, '\0') +
+                              std::string(20, '\0');
+                }
+                const std::size_t whole = answer.size() + 4;
+                const std::string sized{static_cast<char>(whole & 0xff), static_cast<char>(whole >> 8), 0, 0};
+                (void)client->send(bytes_of(sized + answer), 1s);
+            }
+        }
+    }
+    static std::size_t byte(const std::string& s, std::size_t at) {
+        return static_cast<unsigned char>(s[at]);
+    }
+
+    TcpListener control_, data_;
+    Wait wait_;
+    std::jthread thread_;
+};
+
+constexpr int kStop = 0x1001, kStart = 0x100D;
+
+json settings_of(const HandSensor& sensor, json more = json::object()) {
+    json all = {
+        {"address", "127.0.0.1"}, {"control_port", sensor.control_port()}, {"data_port", sensor.data_port()}};
+    all.update(more);
+    return all;
+}
+
+TEST(GocatorByHand, AnAddressIsEnough) {
+    const HandSensor hand("127.77.0.3", 3190, 3196, [](auto) { return 0ms; });
+    DeviceSession session;
+    auto sensor = open_gocator_sensor({{"address", "127.77.0.3"}}, session);
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    EXPECT_EQ((*sensor)->identity().serial, "12345");
+    EXPECT_EQ((*sensor)->identity().model, "Gocator 2130");
+    EXPECT_TRUE((*sensor)->start());
+}
+
+TEST(GocatorByHand, StartAndStopMayTakeTheirTime) {
+    const HandSensor hand("127.0.0.1", 0, 0, [](HandSensor::Asked a) {
+        return a.command == kStop || a.command == kStart ? 400ms : 0ms;
+    });
+    DeviceSession session;
+    auto sensor = open_gocator_sensor(settings_of(hand, {{"timeout_ms", 100}}), session);
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    for (int i = 0; i < 2; ++i) {
+        const auto started = (*sensor)->start();
+        ASSERT_TRUE(started) << started.error().sentence();
+        const auto before = std::chrono::steady_clock::now();
+        (*sensor)->stop();  // its answer comes when nobody waits for it, and is not taken for the next one's
+        EXPECT_LT(std::chrono::steady_clock::now() - before, 300ms);
+    }
+}
+
+TEST(GocatorByHand, AStartIsWaitedForNoLongerThanItsTimeOut) {
+    const HandSensor hand("127.0.0.1", 0, 0, [](HandSensor::Asked a) {
+        return a.command == kStart ? std::nullopt : std::optional(0ms);
+    });
+    DeviceSession session;
+    auto sensor =
+        open_gocator_sensor(settings_of(hand, {{"timeout_ms", 100}, {"start_timeout_ms", 500}}), session);
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    const auto started = (*sensor)->start();
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().sentence(), HasSubstr("the sensor did not start its job within 0.5 s"));
+    EXPECT_THAT(started.error().sentence(), Not(HasSubstr("controller")));
+}
+
+TEST(GocatorByHand, AStartCanBeGivenUp) {
+    const HandSensor hand("127.0.0.1", 0, 0, [](HandSensor::Asked a) {
+        return a.command == kStart && a.nth == 0 ? std::nullopt : std::optional(0ms);
+    });
+    DeviceSession session;
+    auto sensor = open_gocator_sensor(settings_of(hand), session);
+    ASSERT_TRUE(sensor) << sensor.error().sentence();
+    const auto before = std::chrono::steady_clock::now();
+    std::jthread person([&] {
+        std::this_thread::sleep_for(200ms);
+        (*sensor)->give_up();
+    });
+    const auto started = (*sensor)->start();
+    EXPECT_LT(std::chrono::steady_clock::now() - before, 2s);
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().sentence(), HasSubstr("given up before the sensor answered"));
+    EXPECT_FALSE((*sensor)->start()) << "until it is stopped";
+    (*sensor)->stop();
+    EXPECT_TRUE((*sensor)->start());
+}
+
+TEST(GocatorByHand, IsASensorInEverySentence) {
+    DeviceSession session;
+    const auto nobody =
+        open_gocator_sensor({{"address", "127.77.0.4"}, {"control_port", 9}, {"timeout_ms", 100}}, session);
+    ASSERT_FALSE(nobody);
+    EXPECT_THAT(nobody.error().sentence(), HasSubstr("sensor"));
+    EXPECT_THAT(nobody.error().sentence(), Not(HasSubstr("controller")));
+    const HandSensor mute("127.0.0.1", 0, 0, [](auto) { return std::optional<std::chrono::milliseconds>(); });
+    const auto silent = open_gocator_sensor(settings_of(mute, {{"timeout_ms", 100}}), session);
+    ASSERT_FALSE(silent);
+    EXPECT_THAT(silent.error().sentence(), HasSubstr("sensor"));
+    EXPECT_THAT(silent.error().sentence(), Not(HasSubstr("controller")));
+}
+
+TEST_F(Gocator, TakesItsTimeToStartAsARealOneDoes) {
+    serve({{"start_ms", 700}});
+    auto sensor = open();  // waits half a second for other answers
+    ASSERT_TRUE(sensor->trigger("A"));
+    EXPECT_TRUE(next(*sensor));
 }
 
 TEST_F(Gocator, SettingsAreChecked) {

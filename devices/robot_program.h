@@ -21,6 +21,7 @@ struct ProgramRequest {
     std::vector<MeasuringMove> moves;  // in the order of measuring
     std::vector<ApplicationFrame> frames;
     nlohmann::json settings = nlohmann::json::object();  // of the project's robot: addresses, ports, numbers
+    std::string driver = {};                             // of the project's robot
 };
 
 struct ProgramFile {

@@ -20,6 +20,7 @@ Expected<ProgramRequest> program_request(const Project& project, const std::stri
     ProgramRequest request;
     request.project = project.name;
     request.settings = robot->settings;
+    request.driver = robot->driver;
     request.moves = measuring_program(project, robot->id);
     if (request.moves.empty())
         return input_error("no spot of it is enabled", "robot " + robot->id, "teach a spot first");

@@ -3,7 +3,7 @@
 // (resources/robot/abb), moves by EGMMoveL and EGMMoveC and sends an EgmRobot message by UDP at its sample
 // rate (multiples of 4 ms; EGMActMove \SampleRate, 24 to 48 ms is usual); Seamwright listens on port 6510 and
 // answers each with an EgmSensorPathCorr. Messages: egm_message.h; ramp, alarms and lost packets:
-// devices/cyclic/server.h; frames and common settings: devices/cyclic/link.h. Set "cycle_ms" to the sample
+// devices/cyclic/corrector.h; frames and common settings: devices/cyclic/link.h. Set "cycle_ms" to the sample
 // rate.
 //
 // What the controller does with a path correction: it shifts the programmed position across the path. Only y
@@ -14,8 +14,15 @@
 // planned positions (of the measured ones less the correction where none are planned); until it is known zero
 // is told. At a corner path coordinates turn at once: what is told follows with the ramp's speed.
 //
+// EGM does not tell whether an answer came in time: the newest one is taken, and kept where none comes. So
+// each step is a quarter of the limit of a cycle, and three answers in a row may be lost (corrector.h). In
+// force is what the measured pose shows against the planned one, across the path: a robot that stands has no
+// direction of travel yet and one guided by joints no planned pose, so neither is confirmed, and confirm()
+// says why.
+//
 // Nothing is corrected unless motors are on, RAPID runs and the MCI state is RUNNING; leaving that under a
-// correction is an alarm. EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
+// correction is an alarm, unless the path had come to its end and EGM is STOPPED: then the path is over
+// (permission() `taken`). EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
 // fault.
 //
 // Further settings (defaults): {"frame": "path" | "sensor", "tcp_from_sensor": POSE identity}. "sensor" tells
@@ -36,11 +43,14 @@ Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings
                                                   OpenRobot open_robot);
 
 // The robot's side. Settings: {"address": "127.0.0.1", "port": 6510, "cycle_ms": 4, "late_limit": 100 (cycles
-// without an answer until EGM stops: CommTimeout), "max_translation_mm": 20, "restart_ms": 700, "speed_mm_s":
-// 100, "straight": false (a line instead of a circle), "slow_ms": 300, "measuring": {"driver", "settings"}}.
-// Faults: silent, slow, half_message and disconnect as for RSI; wrong_answer is a message of another type;
-// reject_write ends EGM with MCI_ERROR as soon as a correction comes; out_of_range tells positions that no
-// robot has. released() is true while a correction is in force.
+// without an answer until EGM stops: CommTimeout), "max_translation_mm": 20, "restart_ms": 700,
+// "ramp_out_ms": 200 (in which a stopped EGM leads the correction away), "speed_mm_s": 100, "straight": false
+// (a line instead of a circle), "application": true, "path_s": 2 (the path ends so long after a correction
+// came, EGM stops, and begins anew; false: it never ends), "slow_ms": 300, "measuring": {"driver",
+// "settings"}}. Faults: silent, slow, half_message and disconnect as for RSI; wrong_answer is a message of
+// another type; reject_write ends EGM with MCI_ERROR as soon as a correction comes; out_of_range tells
+// positions that no robot has. released() is true while a correction is in force, and once the path is over
+// (taken()).
 class SimulatedEgm : public SimulatedController {
   public:
     struct Sample {

@@ -20,11 +20,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t kHistory = 20000;
+constexpr int kStandsAtEnd_ms = 100;
 
 struct Options {
     std::string address = "127.0.0.1";
-    int port = 6510, cycle_ms = 4, late_limit = 100, restart_ms = 700, slow_ms = 300;
-    double max_translation_mm = 20;
+    int port = 6510, cycle_ms = 4, late_limit = 100, restart_ms = 700, slow_ms = 300, ramp_out_ms = 200;
+    double max_translation_mm = 20, path_s = 2;
+    bool application = true;
     SimulatedPath path;
 };
 
@@ -58,10 +60,15 @@ class Egm final : public SimulatedEgm {
         std::uint64_t cycle = 0;
         std::uint32_t seqno = 0;
         bool half_sent = false;
-        int off_ms = 0;  // EGM is stopped with an error for so long
+        int off_ms = 0;       // EGM is stopped for so long yet
+        int standing_ms = 0;  // at the end of the path
+        double left_ms = -1;  // of the path, once a correction is in force
+        EgmMci stopped = EgmMci::error;
         while (!stop_) {
             next += milliseconds(options_.cycle_ms);
-            ++cycle;
+            const bool at_end = options_.application && left_ms == 0;
+            if (!at_end) ++cycle;
+            ++clock_;
             const ControllerFault kind = fault();
             if (kind == ControllerFault::slow) {
                 for (int waited = 0; waited < options_.slow_ms && !stop_; waited += 10)
@@ -69,6 +76,7 @@ class Egm final : public SimulatedEgm {
                 const auto missed = static_cast<std::uint32_t>(options_.slow_ms / options_.cycle_ms);
                 seqno += missed;
                 cycle += missed;
+                clock_ += missed;
             }
             next = std::max(next, Clock::now() + milliseconds(1));
             const double time = static_cast<double>(cycle) * options_.cycle_ms / 1e3;
@@ -76,11 +84,11 @@ class Egm final : public SimulatedEgm {
             const Eigen::Vector3d travel = options_.path.tangent(time);
             EgmState s;
             s.seqno = ++seqno;
-            s.tm_ms = static_cast<std::uint32_t>(cycle) * static_cast<std::uint32_t>(options_.cycle_ms);
+            s.tm_ms = static_cast<std::uint32_t>(clock_) * static_cast<std::uint32_t>(options_.cycle_ms);
             s.planned = programmed;
             s.measured = corrected(programmed, travel);
             s.motors_on = s.rapid_running = true;
-            s.mci = off_ms > 0 ? EgmMci::error : EgmMci::running;
+            s.mci = off_ms > 0 ? stopped : EgmMci::running;
             if (kind == ControllerFault::out_of_range) {
                 s.planned->translation().x() = 1e9;
                 s.measured->translation().z() = std::numeric_limits<double>::infinity();
@@ -91,16 +99,35 @@ class Egm final : public SimulatedEgm {
             const bool answered = await_answer(next, s.tm_ms);
             without_answer_ = answered ? 0 : without_answer_ + 1;
             if (off_ms > 0) {
+                // What is told is not taken; what was in force is led out in ramp_out_ms.
+                const Eigen::Vector3d step =
+                    out_ * (static_cast<double>(options_.cycle_ms) / options_.ramp_out_ms);
+                in_force_ = in_force_.norm() <= step.norm() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                                            : Eigen::Vector3d(in_force_ - step);
                 told_.setZero();
                 off_ms -= options_.cycle_ms;
                 without_answer_ = 0;
+                if (off_ms <= 0) in_force_.setZero();
+            } else {
+                in_force_ = told_;
             }
             const bool correcting = !told_.isZero(0);
-            if (without_answer_ > options_.late_limit || told_.norm() > options_.max_translation_mm ||
+            if (correcting && left_ms < 0) left_ms = options_.path_s * 1000;
+            if (left_ms > 0) left_ms = std::max(0.0, left_ms - options_.cycle_ms);
+            standing_ms = at_end ? standing_ms + options_.cycle_ms : 0;
+            const bool over = standing_ms > kStandsAtEnd_ms;
+            if (over || without_answer_ > options_.late_limit || told_.norm() > options_.max_translation_mm ||
                 (kind == ControllerFault::reject_write && correcting)) {
-                ++stops_;
+                if (over)
+                    take();
+                else
+                    ++stops_;
+                stopped = over ? EgmMci::stopped : EgmMci::error;
+                out_ = in_force_;
                 told_.setZero();
                 without_answer_ = 0;
+                left_ms = -1;
+                standing_ms = 0;
                 off_ms = options_.restart_ms;
                 withdraw();
             } else if (correcting && !released()) {
@@ -109,7 +136,7 @@ class Egm final : public SimulatedEgm {
                 withdraw();
             }
             const std::lock_guard lock(mutex_);
-            history_.push_back({programmed, corrected(programmed, travel), told_, travel});
+            history_.push_back({programmed, corrected(programmed, travel), in_force_, travel});
             if (history_.size() > kHistory) history_.pop_front();
         }
     }
@@ -118,7 +145,7 @@ class Egm final : public SimulatedEgm {
     Pose corrected(const Pose& programmed, const Eigen::Vector3d& travel) const {
         Pose pose = programmed;
         if (const auto path = reference_from_path(travel, programmed.linear().col(2)))
-            pose.translation() += told_.y() * path->col(1) + told_.z() * path->col(2);
+            pose.translation() += in_force_.y() * path->col(1) + in_force_.z() * path->col(2);
         return pose;
     }
 
@@ -169,7 +196,8 @@ class Egm final : public SimulatedEgm {
     const Options options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
-    Eigen::Vector3d told_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d told_ = Eigen::Vector3d::Zero(), in_force_ = told_, out_ = told_;
+    std::uint64_t clock_ = 0;  // cycles
     int without_answer_ = 0;
     std::atomic<std::uint64_t> stops_ = 0;
     mutable std::mutex mutex_;
@@ -183,10 +211,11 @@ class Egm final : public SimulatedEgm {
 Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<SimulatedCell> cell,
                                                              const nlohmann::json& settings,
                                                              StartController start_controller) {
-    if (auto ok = only_fields(settings,
-                              {"address", "port", "cycle_ms", "late_limit", "max_translation_mm",
-                               "restart_ms", "speed_mm_s", "straight", "slow_ms", "measuring"},
-                              "");
+    if (auto ok = only_fields(
+            settings,
+            {"address", "port", "cycle_ms", "late_limit", "max_translation_mm", "restart_ms", "speed_mm_s",
+             "straight", "slow_ms", "ramp_out_ms", "application", "path_s", "measuring"},
+            "");
         !ok)
         return tl::unexpected(ok.error());
     Options o;
@@ -197,6 +226,7 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
                                      {"cycle_ms", &o.cycle_ms},
                                      {"late_limit", &o.late_limit},
                                      {"restart_ms", &o.restart_ms},
+                                     {"ramp_out_ms", &o.ramp_out_ms},
                                      {"slow_ms", &o.slow_ms}}) {
         auto number = json_number_or(settings, key, *value, "");
         if (!number) return tl::unexpected(number.error());
@@ -205,6 +235,7 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
     }
     for (const auto& [key, value] :
          {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
+          {"path_s", &o.path_s},
           {"speed_mm_s", &o.path.speed_mm_s}}) {
         auto number = json_number_or(settings, key, *value, "");
         if (!number) return tl::unexpected(number.error());
@@ -214,6 +245,9 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
     auto straight = json_bool_or(settings, "straight", false, "");
     if (!straight) return tl::unexpected(straight.error());
     o.path.straight = *straight;
+    auto application = json_bool_or(settings, "application", o.application, "");
+    if (!application) return tl::unexpected(application.error());
+    o.application = *application;
     auto measuring = start_measuring_controller(settings, std::move(cell), start_controller);
     if (!measuring) return measuring;
     auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);

@@ -15,8 +15,13 @@ namespace seamwright {
 namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-constexpr std::uint64_t kAcknowledged = 3;  // cycles that followed the whole correction without complaint
+constexpr std::uint64_t kAcknowledged = 5;  // cycles in which the robot showed the whole correction
 constexpr double kSameMm = 1e-6, kSameRad = 1e-8;
+
+// Of "192.168.1.5:59152".
+std::string address_of(const std::string& endpoint) {
+    return endpoint.substr(0, endpoint.rfind(':'));
+}
 
 Expected<double> number_within(const nlohmann::json& json, const char* key, double otherwise, double low,
                                double high) {
@@ -49,6 +54,9 @@ Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& setting
                                                     "max_late",
                                                     "session_gap_ms",
                                                     "max_path_speed_mm_s",
+                                                    "follow_tolerance_mm",
+                                                    "follow_tolerance_deg",
+                                                    "follow_ms",
                                                     "measuring"};
     if (!settings.is_object()) return input_error("the settings are no object", "settings");
     for (const auto& [key, value] : settings.items()) {
@@ -90,6 +98,9 @@ Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& setting
         {"max_late", 10, 1, 1000, nullptr, &s.max_late},
         {"session_gap_ms", 500, 20, 60000, nullptr, &s.session_gap_ms},
         {"max_path_speed_mm_s", 3000, 1, 1e5, &s.max_path_speed_mm_s, nullptr},
+        {"follow_tolerance_mm", 0.2, 1e-3, 10, &s.follow_tolerance_mm, nullptr},
+        {"follow_tolerance_deg", 0.1, 1e-4, 5, &s.follow_tolerance_deg, nullptr},
+        {"follow_ms", 500, 10, 10000, nullptr, &s.follow_ms},
     };
     for (const Number& n : numbers) {
         const auto value = number_within(settings, n.key, n.otherwise, n.low, n.high);
@@ -197,9 +208,46 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
 
 Expected<RobotIdentity> CyclicLink::identity() {
     if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
-    if (measuring_) return measuring_->identity();
-    if (auto state = fresh_state(); !state) return tl::unexpected(state.error());
-    return RobotIdentity{settings_.driver, settings_.brand, "", ""};
+    const std::uint64_t session = server_->state().session;
+    RobotIdentity identity{settings_.driver, settings_.brand, "", ""};
+    if (measuring_) {
+        auto told = measuring_->identity();
+        if (!told) return told;
+        identity = *told;
+    } else if (auto state = fresh_state(); !state) {
+        return tl::unexpected(state.error());
+    }
+    identified_ = Identified{identity, address_of(server_->robot()), session};
+    return identity;
+}
+
+// Who answers may have changed since identity() was asked: nothing is written before it is known again.
+Expected<void> CyclicLink::same_robot() {
+    if (!identified_ || server_->state().session == identified_->session) return {};
+    const Identified before = *identified_;
+    auto now = identity();
+    if (!now) return tl::unexpected(now.error());
+    if (*now == before.identity && (before.address.empty() || identified_->address == before.address))
+        return {};
+    identified_ = before;
+    return device_error(
+        fmt::format("the robot at {} is another one than at {}", server_->robot(), before.address),
+        settings_.driver, "open the project's robot again");
+}
+
+Expected<Permission> CyclicLink::permission() {
+    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    switch (server_->state().path) {
+        case PathPhase::none:
+            return Permission::none;
+        case PathPhase::waiting:
+            return Permission::given;
+        case PathPhase::running:
+            return Permission::running;
+        case PathPhase::over:
+            return Permission::taken;
+    }
+    return Permission::none;
 }
 
 Expected<RobotMode> CyclicLink::mode() {
@@ -254,6 +302,7 @@ Expected<Pose> CyclicLink::read_frame(const std::string& name) {
 
 Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base_from_frame) {
     if (auto ok = no_alarm(); !ok) return ok;
+    if (auto ok = same_robot(); !ok) return ok;
     const auto taught = settings_.taught.find(name);
     if (taught == settings_.taught.end())
         return input_error("no frame of this name is in the settings", name, "add it under \"frames\"");
@@ -294,9 +343,13 @@ Expected<void> CyclicLink::apply() {
     }
     auto state = fresh_state();
     if (!state) return tl::unexpected(state.error());
+    if (state->packet.missing)
+        return device_error(fmt::format("the robot's packets carry no {}", state->packet.missing),
+                            settings_.driver, "without it nobody knows what the robot does; send it too");
     if (!state->packet.running)
         return device_error("the controller does not take corrections: it is not running", settings_.driver,
                             "start its program");
+    if (auto ok = same_robot(); !ok) return ok;
     const Pose& r = settings_.base_from_reference;
     server_->set_target(b ? Pose(r.inverse() * *b * r) : Pose::Identity());
     const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
@@ -304,10 +357,16 @@ Expected<void> CyclicLink::apply() {
         if (auto ok = no_alarm(); !ok) return ok;
         state = fresh_state();
         if (!state) return tl::unexpected(state.error());
-        if (state->steady > kAcknowledged) return {};
-        if (Clock::now() >= deadline)
+        if (state->steady > kAcknowledged) {
+            server_->await_path();
+            return {};
+        }
+        if (Clock::now() >= deadline) {
+            if (const char* why = server_->why_not_told())
+                return device_error(fmt::format("the correction is not in force: {}", why), settings_.driver);
             return device_error(std::string(kNoAnswer) + ": the correction is not in force",
                                 settings_.driver);
+        }
         std::this_thread::sleep_for(milliseconds(2));
     }
 }
@@ -317,7 +376,8 @@ Expected<void> CyclicLink::back_to_zero() {
     const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
     while (true) {
         const CyclicServer::State state = server_->state();
-        if (state.zero) return {};
+        // Where nobody asks, nothing is in force; what a robot holds that speaks again is judged then.
+        if (state.zero || state.silent) return {};
         if (auto ok = no_alarm(); !ok) return ok;
         if (Clock::now() >= deadline)
             return device_error(std::string(kNoAnswer) + ": the correction could not be led back to zero",
@@ -331,6 +391,7 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
         server_->withdraw();
         return ok;
     }
+    server_->forget_path();
     auto done = verdict == PartVerdict::corrected ? apply() : back_to_zero();
     if (!done) {
         server_->withdraw();
@@ -356,6 +417,7 @@ std::vector<std::string> CyclicLink::take_notices() {
         notices.push_back(fmt::format("{} datagrams of an unknown peer were refused, the last of {}",
                                       strangers - strangers_told_, server_->last_stranger()));
     strangers_told_ = strangers;
+    for (std::string& takeover : server_->take_takeovers()) notices.push_back(std::move(takeover));
     return notices;
 }
 

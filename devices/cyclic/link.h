@@ -16,13 +16,20 @@
 //    object), "flange_from_tcp": POSE identity (tool whose TCP it tells), "max_translation_mm": 10,
 //    "max_rotation_deg": 2, "speed_mm_s": 20, "speed_deg_s": 2, "acceleration_mm_s2": 100,
 //    "acceleration_deg_s2": 10, "max_late": 10, "session_gap_ms": 500, "max_path_speed_mm_s": 3000,
-//    "measuring": {"driver": a robot driver, "settings": {...}}}
+//    "follow_tolerance_mm": 0.2, "follow_tolerance_deg": 0.1, "follow_ms": 500 (the robot must show what it
+//    was told within the tolerance, and not fail to for so long), "measuring": {"driver": a robot driver,
+//    "settings": {...}}}
 // identity, mode, start signal, measuring, triggers and moves are those of the measuring link. Without one
 // the identity is the brand's alone, the mode what the cyclic packets tell, and measuring is refused.
 //
 // Limits are checked twice: when a frame is written (rotation of B, and its offset at the origin of the
-// taught frame), and in every cycle at the programmed position. Alarms of server.h are told, once, by the
+// taught frame), and in every cycle at the programmed position. Alarms of corrector.h are told, once, by the
 // next call whatever it is; the correction is being withdrawn by then.
+//
+// confirm(corrected) returns when the robot has shown the whole correction. permission() is then `given`
+// until its path moves, `running` while it does, which needs this link in every cycle, and `taken` when the
+// path has come to its end. After a new session the identity is asked again, of the measuring link and by the
+// peer's address, before anything is written or confirmed.
 
 #include <initializer_list>
 #include <map>
@@ -71,6 +78,7 @@ class CyclicLink : public RobotLink {
     Expected<Pose> read_frame(const std::string& name) override;
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override;
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override;
+    Expected<Permission> permission() override;
     Expected<void> move_to(const Pose& base_from_flange) override;
     std::vector<std::string> take_notices() override;
 
@@ -83,11 +91,18 @@ class CyclicLink : public RobotLink {
     Expected<CyclicServer::State> fresh_state();
     Expected<void> apply();
     Expected<void> back_to_zero();
+    Expected<void> same_robot();
 
     const CyclicLinkSettings settings_;
     std::unique_ptr<CyclicServer> server_;
     std::unique_ptr<RobotLink> measuring_;  // may be null
     std::map<std::string, Pose> written_;
+    struct Identified {
+        RobotIdentity identity;
+        std::string address;
+        std::uint64_t session = 0;
+    };
+    std::optional<Identified> identified_;  // what identity() answered last
     std::uint64_t strangers_told_ = 0;
 };
 

@@ -37,8 +37,13 @@ void CorrectionRamp::set_target(const Pose& displacement) {
     pending_ = true;
 }
 
-void CorrectionRamp::reset() {
+void CorrectionRamp::reset(const CyclicCorrection& held) {
     from_ = to_ = now_ = target_ = {};
+    now_.t = held.offset_mm;
+    now_.turn = held.turn_rad;
+    now_.zero = held.offset_mm.isZero(0) && held.turn_rad.isZero(0);
+    from_ = to_ = now_;
+    target_ = now_;
     s_ = 1;
     step_ = 0;
     pending_ = false;

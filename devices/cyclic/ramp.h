@@ -11,7 +11,8 @@
 // `speed_deg_s`, and from one cycle to the next neither speed changes by more than acceleration * cycle. The
 // last step lands on the end exactly (the stopping distance of discrete steps n(n+1)/2 a dt^2 is solved, not
 // approximated). While the path runs, L(s) dp of the path's own motion is added; that part is the displaced
-// path, not the ramp. A new end in the middle brakes on the old line first.
+// path, not the ramp. A new end in the middle brakes on the old line first. A ramp is a value: who does not
+// know yet whether the robot took a step keeps the one before it.
 
 #include <Eigen/Core>
 
@@ -34,7 +35,10 @@ class CorrectionRamp {
   public:
     CorrectionRamp(RampLimits limits, double cycle_s);
     void set_target(const Pose& displacement);  // identity = withdraw
-    void reset();                               // at zero, standing: the robot has dropped its correction
+    // Standing at this correction wherever the path is; what was wanted is forgotten. Nothing: at zero, the
+    // robot has dropped its correction.
+    void reset(const CyclicCorrection& held = {});
+    void stand() { step_ = 0; }  // the robot stood for a cycle: its speed begins anew from zero
     // One cycle on; the correction for the programmed position.
     CyclicCorrection step(const Eigen::Vector3d& position_mm);
     CyclicCorrection at(const Eigen::Vector3d& position_mm) const;  // as it is, without a step
@@ -51,8 +55,8 @@ class CorrectionRamp {
     static State blend(const State& a, const State& b, double s);
     void begin();
 
-    const RampLimits limits_;
-    const double cycle_s_;
+    RampLimits limits_;
+    double cycle_s_;
     State from_, to_, now_, target_;
     double s_ = 1, step_ = 0;  // step_: of s in the last cycle
     bool pending_ = false;     // target_ is another end than to_

@@ -7,6 +7,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/settings.h"
 #include "devices/kuka/program.h"
+#include "devices/kuka/rsi_program.h"
 #include "kuka_resources.h"
 
 namespace seamwright {
@@ -42,6 +43,7 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 }  // namespace
 
 Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request) {
+    if (request.driver == "kuka-rsi") return write_rsi_program(request);
     if (request.moves.size() > kMostSpots)
         return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
                            request.project, fmt::format("measure at most {} in one program", kMostSpots));

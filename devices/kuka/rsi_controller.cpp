@@ -24,12 +24,13 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t kHistory = 20000;
 constexpr std::uint64_t kFirstIpoc = 4208163634;
+constexpr int kStandsAtEnd_ms = 100;  // seamwright_rsi.src waits so before RSI_OFF
 
 struct Options {
     std::string address = "127.0.0.1", sen_type = "ImFree";
-    int port = 49152, cycle_ms = 4, late_limit = 100, restart_ms = 100, slow_ms = 300;
-    bool relative = false, tool = false;
-    double max_translation_mm = 20;
+    int port = 49152, cycle_ms = 4, late_limit = 100, restart_ms = 100, slow_ms = 300, following_ms = 8;
+    bool relative = false, tool = false, hold_on = true, sums_late = false, application = true;
+    double max_translation_mm = 20, path_s = 2;
     SimulatedPath path;
 };
 
@@ -76,21 +77,31 @@ class Rsi final : public SimulatedRsi {
         return make_pose(turn * programmed.linear(), programmed.translation() + offset);
     }
 
+    // RSI_ON: the correction is zero, the path at its beginning.
     void begin_session() {
-        sum_ = {};
+        sum_ = last_ = {};
         late_ = 0;
         late_in_row_ = 0;
+        path_ms_ = 0;
+        stands_ms_ = 0;
+        release_ = false;
+        shown_.clear();
         withdraw();
     }
+
+    bool ended() const { return options_.application && path_ms_ >= options_.path_s * 1000; }
+    bool on_path() const { return options_.application && (release_ || path_ms_ > 0) && !ended(); }
 
     void run() {
         auto next = Clock::now();
         begin_session();
         std::uint64_t ipoc = kFirstIpoc;
         bool half_sent = false;
+        const auto cycle = static_cast<std::uint64_t>(options_.cycle_ms);
         while (!stop_) {
             next += milliseconds(options_.cycle_ms);
-            ipoc += static_cast<std::uint64_t>(options_.cycle_ms);
+            ipoc += cycle;
+            if (!options_.application || on_path()) path_ms_ += static_cast<double>(cycle);
             const ControllerFault kind = fault();
             if (kind == ControllerFault::slow) {
                 for (int waited = 0; waited < options_.slow_ms && !stop_; waited += 10)
@@ -102,22 +113,20 @@ class Rsi final : public SimulatedRsi {
                 const auto cycles = behind / milliseconds(options_.cycle_ms) + 1;
                 next += cycles * milliseconds(options_.cycle_ms);
                 if (kind == ControllerFault::slow) {
-                    ipoc += static_cast<std::uint64_t>(cycles * options_.cycle_ms);
-                    late_ += static_cast<std::uint64_t>(cycles);
-                    late_total_ += static_cast<std::uint64_t>(cycles);
+                    ipoc += static_cast<std::uint64_t>(cycles) * cycle;
+                    for (int i = 0; i < cycles; ++i) missed();
                 }
             }
             // The controller's time is its cycle stamp: a pause of this machine stops both.
-            const double time = static_cast<double>(ipoc - kFirstIpoc) / 1e3;
-            const Pose programmed = options_.path.at(time);
-            const Pose actual = corrected(programmed);
+            const Pose programmed = options_.path.at(path_ms_ / 1e3);
+            const Pose actual = lagging(corrected(programmed));
             if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
                 half_sent = false;
             const bool wild = kind == ControllerFault::out_of_range;
-            const std::string text =
-                fmt::format("<Rob Type=\"KUKA\">{}{}<Delay D=\"{}\" /><DiL>0</DiL><IPOC>{}</IPOC></Rob>",
-                            frame("RIst", actual, wild ? 1e9 : 1), frame("RSol", programmed, wild ? 1e9 : 1),
-                            late_, kind == ControllerFault::wrong_answer ? kFirstIpoc : ipoc);
+            const std::string text = fmt::format(
+                "<Rob Type=\"KUKA\">{}{}<Delay D=\"{}\" /><DiL>0</DiL><Path>{}</Path><IPOC>{}</IPOC></Rob>",
+                frame("RIst", actual, wild ? 1e9 : 1), frame("RSol", programmed, wild ? 1e9 : 1), late_,
+                on_path() ? 1 : 0, kind == ControllerFault::wrong_answer ? kFirstIpoc : ipoc);
             const Endpoint to{options_.address, static_cast<std::uint16_t>(options_.port)};
             switch (kind) {
                 case ControllerFault::silent:
@@ -130,19 +139,19 @@ class Rsi final : public SimulatedRsi {
                 default:
                     (void)socket_.send_to(bytes_of(text), to);
             }
-            const bool in_time = await_answer(next, std::to_string(ipoc));
-            if (in_time) {
+            if (await_answer(next, std::to_string(ipoc))) {
                 late_in_row_ = 0;
+                if (!options_.sums_late) late_ = 0;
             } else {
-                ++late_;
-                ++late_total_;
-                ++late_in_row_;
+                missed();
             }
             const bool correcting = std::any_of(sum_.begin(), sum_.end(), [](double x) { return x != 0; });
             const double size = Eigen::Vector3d(sum_[0], sum_[1], sum_[2]).norm();
-            if (late_in_row_ > options_.late_limit || size > options_.max_translation_mm ||
+            const bool over = ended() && (stands_ms_ += options_.cycle_ms) > kStandsAtEnd_ms;
+            if (over) take();  // RSI_OFF; the next part's program switches it on again
+            if (over || late_in_row_ > options_.late_limit || size > options_.max_translation_mm ||
                 (kind == ControllerFault::reject_write && correcting)) {
-                ++stops_;
+                if (!over) ++stops_;
                 begin_session();
                 for (int off = 0; off < options_.restart_ms && !stop_; off += 10) {
                     std::this_thread::sleep_for(milliseconds(10));
@@ -151,14 +160,40 @@ class Rsi final : public SimulatedRsi {
                 next = Clock::now();
                 continue;
             }
-            if (correcting && !released())
+            const bool may_run = options_.application ? release_ : correcting;
+            if (may_run && !released())
                 take_verdict(PartVerdict::corrected);
-            else if (!correcting && released())
+            else if (!may_run && !correcting && released())
                 withdraw();
             const std::lock_guard lock(mutex_);
             history_.push_back({programmed, corrected(programmed), sum_, ipoc});
             if (history_.size() > kHistory) history_.pop_front();
         }
+    }
+
+    // A cycle without an answer in time: HOLDON takes the last RKorr once more, else it is zero.
+    void missed() {
+        ++late_;
+        ++late_total_;
+        ++late_in_row_;
+        if (!options_.hold_on) last_ = {};
+        take_correction();
+    }
+
+    void take_correction() {
+        for (std::size_t k = 0; k < 6; ++k) sum_[k] = options_.relative ? sum_[k] + last_[k] : last_[k];
+        // Sums of decimals: what rounding of the addition leaves is no correction.
+        if (options_.relative)
+            for (double& x : sum_)
+                if (std::abs(x) < 1e-10) x = 0;
+    }
+
+    // The servos follow.
+    Pose lagging(const Pose& commanded) {
+        shown_.push_front(commanded);
+        const auto lag = static_cast<std::size_t>(options_.following_ms / options_.cycle_ms);
+        while (shown_.size() > lag + 1) shown_.pop_back();
+        return shown_.back();
     }
 
     // Takes answers until the next cycle is due; true if the one to this cycle was among them.
@@ -179,12 +214,9 @@ class Rsi final : public SimulatedRsi {
                 !sen->rkorr->usable)
                 continue;
             answered = true;
-            for (std::size_t k = 0; k < 6; ++k)
-                sum_[k] = options_.relative ? sum_[k] + sen->rkorr->xyzabc[k] : sen->rkorr->xyzabc[k];
-            // Sums of decimals: what rounding of the addition leaves is no correction.
-            if (options_.relative)
-                for (double& x : sum_)
-                    if (std::abs(x) < 1e-10) x = 0;
+            last_ = sen->rkorr->xyzabc;
+            release_ = sen->release.value_or(false);
+            take_correction();
         }
         std::this_thread::sleep_until(until);
         return answered;
@@ -193,9 +225,12 @@ class Rsi final : public SimulatedRsi {
     const Options options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
-    std::array<double, 6> sum_{};
-    std::uint64_t late_ = 0;
-    int late_in_row_ = 0;
+    std::array<double, 6> sum_{}, last_{};
+    std::uint64_t late_ = 0;  // as Delay D tells
+    int late_in_row_ = 0, stands_ms_ = 0;
+    double path_ms_ = 0;
+    bool release_ = false;
+    std::deque<Pose> shown_;
     std::atomic<std::uint64_t> stops_ = 0, late_total_ = 0;
     mutable std::mutex mutex_;
     std::deque<Sample> history_;
@@ -210,28 +245,39 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
                                                               StartController start_controller) {
     if (auto ok = only_fields(settings,
                               {"address", "port", "cycle_ms", "mode", "reference", "sen_type", "late_limit",
-                               "max_translation_mm", "restart_ms", "speed_mm_s", "slow_ms", "measuring"},
+                               "max_translation_mm", "restart_ms", "speed_mm_s", "slow_ms", "following_ms",
+                               "hold_on", "delay", "application", "path_s", "measuring"},
                               "");
         !ok)
         return tl::unexpected(ok.error());
     Options o;
-    std::string mode = "absolute", reference = "base";
+    std::string mode = "absolute", reference = "base", delay = "run_length";
     for (const auto& [key, value] : {std::pair<const char*, std::string*>{"address", &o.address},
                                      {"sen_type", &o.sen_type},
                                      {"mode", &mode},
-                                     {"reference", &reference}}) {
+                                     {"reference", &reference},
+                                     {"delay", &delay}}) {
         auto text = json_string_or(settings, key, *value, "");
         if (!text) return tl::unexpected(text.error());
         *value = *text;
     }
     if (mode != "absolute" && mode != "relative") return input_error("not absolute or relative", "mode");
     if (reference != "base" && reference != "tool") return input_error("not base or tool", "reference");
+    if (delay != "run_length" && delay != "sum") return input_error("not run_length or sum", "delay");
     o.relative = mode == "relative";
+    o.sums_late = delay == "sum";
+    for (const auto& [key, value] : {std::pair<const char*, bool*>{"hold_on", &(o.hold_on = !o.relative)},
+                                     {"application", &o.application}}) {
+        auto read = json_bool_or(settings, key, *value, "");
+        if (!read) return tl::unexpected(read.error());
+        *value = *read;
+    }
     o.tool = reference == "tool";
     for (const auto& [key, value] : {std::pair<const char*, int*>{"port", &o.port},
                                      {"cycle_ms", &o.cycle_ms},
                                      {"late_limit", &o.late_limit},
                                      {"restart_ms", &o.restart_ms},
+                                     {"following_ms", &o.following_ms},
                                      {"slow_ms", &o.slow_ms}}) {
         auto number = json_number_or(settings, key, *value, "");
         if (!number) return tl::unexpected(number.error());
@@ -240,6 +286,7 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
     }
     for (const auto& [key, value] :
          {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
+          {"path_s", &o.path_s},
           {"speed_mm_s", &o.path.speed_mm_s}}) {
         auto number = json_number_or(settings, key, *value, "");
         if (!number) return tl::unexpected(number.error());

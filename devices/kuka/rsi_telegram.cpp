@@ -159,6 +159,7 @@ struct Reader {
     bool ipoc_seen = false;
     std::optional<std::uint64_t> delay;
     std::optional<std::int64_t> digital_in;
+    std::optional<bool> on_path, release;
 
     FrameReader* frame(std::string_view element) {
         return element == "RIst" ? &rist : element == "RSol" ? &rsol : element == "RKorr" ? &rkorr : nullptr;
@@ -193,10 +194,10 @@ struct Reader {
             if (!ipoc.empty()) return "the IPOC is given twice";
             ipoc = without_blanks(value);
         }
-        if (element == "DiL") {
-            std::int64_t d = 0;
-            if (number(value, d)) digital_in = d;
-        }
+        std::int64_t d = 0;
+        if (element == "DiL" && number(value, d)) digital_in = d;
+        if (element == "Path" && number(value, d)) on_path = d != 0;
+        if (element == "Release" && number(value, d)) release = d != 0;
         return nullptr;
     }
 };
@@ -225,6 +226,7 @@ Expected<RsiRob> parse_rsi_rob(std::span<const std::byte> datagram) {
     r.ipoc.copy(rob.ipoc_text.data(), r.ipoc.size());
     rob.delay = r.delay;
     rob.digital_in = r.digital_in;
+    rob.on_path = r.on_path;
     return rob;
 }
 
@@ -237,17 +239,23 @@ Expected<RsiSen> parse_rsi_sen(std::span<const std::byte> datagram) {
     if (const char* wrong = r.rkorr.finish(sen.rkorr)) return refused(wrong);
     sen.type = r.type;
     sen.ipoc = r.ipoc;
+    sen.release = r.release;
     return sen;
 }
 
 std::string_view write_rsi_sen(std::span<char> buffer, std::string_view type,
-                               const std::array<double, 6>& rkorr, int decimals, std::string_view ipoc) {
+                               const std::array<double, 6>& rkorr, int decimals, std::string_view ipoc,
+                               std::optional<bool> release) {
     const auto written = fmt::format_to_n(
         buffer.data(), buffer.size(),
         "<Sen Type=\"{}\"><RKorr X=\"{:.{}f}\" Y=\"{:.{}f}\" Z=\"{:.{}f}\" A=\"{:.{}f}\" B=\"{:.{}f}\" "
-        "C=\"{:.{}f}\" /><IPOC>{}</IPOC></Sen>",
+        "C=\"{:.{}f}\" />{}<IPOC>{}</IPOC></Sen>",
         type, rkorr[0], decimals, rkorr[1], decimals, rkorr[2], decimals, rkorr[3], decimals, rkorr[4],
-        decimals, rkorr[5], decimals, ipoc);
+        decimals, rkorr[5], decimals,
+        !release   ? ""
+        : *release ? "<Release>1</Release>"
+                   : "<Release>0</Release>",
+        ipoc);
     if (written.size > buffer.size()) return {};
     return {buffer.data(), written.size};
 }

@@ -32,8 +32,9 @@ struct RsiRob {
     std::array<char, 21> ipoc_text{};  // as it came, ends with 0
     std::uint64_t ipoc = 0;
     std::optional<RsiFrame> rist, rsol;
-    std::optional<std::uint64_t> delay;      // <Delay D="">: answers that came late
+    std::optional<std::uint64_t> delay;      // <Delay D="">: answers that came late, in a row until now
     std::optional<std::int64_t> digital_in;  // <DiL>
+    std::optional<bool> on_path;             // <Path>: seamwright_rsi.src runs the application's path
 };
 
 // Does not allocate unless it fails. Refused: what is no well-formed document with root Rob, nesting beyond
@@ -44,13 +45,15 @@ struct RsiSen {
     std::string type;  // <Sen Type="">
     std::string ipoc;
     std::optional<RsiFrame> rkorr;
+    std::optional<bool> release;
 };
 // The other side's reading of an answer.
 Expected<RsiSen> parse_rsi_sen(std::span<const std::byte> datagram);
 
 // Writes the answer with `decimals` digits after the point into `buffer`; empty if it does not fit. `type`
-// must be an XML name.
+// must be an XML name. `release`: the element that lets seamwright_rsi.src run the path.
 std::string_view write_rsi_sen(std::span<char> buffer, std::string_view type,
-                               const std::array<double, 6>& rkorr, int decimals, std::string_view ipoc);
+                               const std::array<double, 6>& rkorr, int decimals, std::string_view ipoc,
+                               std::optional<bool> release = {});
 
 }  // namespace seamwright

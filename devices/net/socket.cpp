@@ -289,6 +289,11 @@ Expected<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Endpoint& 
     return size;
 }
 
+bool UdpSocket::has_datagram() const {
+    error_code e;
+    return !impl_->closed && impl_->socket.available(e) > 0 && !e;
+}
+
 void UdpSocket::close() {
     impl_->closed = true;
 }

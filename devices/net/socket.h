@@ -90,6 +90,7 @@ class UdpSocket {
     Expected<void> send_to(std::span<const std::byte> datagram, const Endpoint& to);
     // One datagram; longer ones than the buffer are refused, never cut.
     Expected<std::size_t> receive(std::span<std::byte> buffer, Endpoint& from, Timeout timeout);
+    bool has_datagram() const;  // the next receive() would not wait
     void close();
 
   private:

@@ -2370,6 +2370,70 @@
         <translation>die kartesische Istposition senden</translation>
     </message>
     <message>
+        <source>the robot at %1 is another one than at %2</source>
+        <translation>der Roboter unter %1 ist ein anderer als unter %2</translation>
+    </message>
+    <message>
+        <source>open the project&apos;s robot again</source>
+        <translation>den Roboter des Projekts neu öffnen</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s packets carry no %1</source>
+        <translation>die Pakete des Roboters tragen kein %1</translation>
+    </message>
+    <message>
+        <source>without it nobody knows what the robot does; send it too</source>
+        <translation>ohne das weiß niemand, was der Roboter tut; es mitsenden</translation>
+    </message>
+    <message>
+        <source>the correction is not in force: %1</source>
+        <translation>die Korrektur wirkt nicht: %1</translation>
+    </message>
+    <message>
+        <source>the robot fell silent under a correction</source>
+        <translation>der Roboter ist unter einer Korrektur verstummt</translation>
+    </message>
+    <message>
+        <source>too many late or lost packets under a correction</source>
+        <translation>zu viele verspätete oder verlorene Pakete unter einer Korrektur</translation>
+    </message>
+    <message>
+        <source>the robot repeats old cycle numbers</source>
+        <translation>der Roboter wiederholt alte Zyklusnummern</translation>
+    </message>
+    <message>
+        <source>the robot began a new session under a correction</source>
+        <translation>der Roboter hat unter einer Korrektur eine neue Sitzung begonnen</translation>
+    </message>
+    <message>
+        <source>the robot has dropped the correction by itself</source>
+        <translation>der Roboter hat die Korrektur von selbst fallen lassen</translation>
+    </message>
+    <message>
+        <source>the robot does not follow: it shows a correction of %1 mm and %2 degrees where it took %3 mm and %4 degrees</source>
+        <translation>der Roboter folgt nicht: er zeigt eine Korrektur von %1 mm und %2 Grad, wo er %3 mm und %4 Grad übernommen hat</translation>
+    </message>
+    <message>
+        <source>the robot was found with a correction of %1 mm that was not told it; it is led back</source>
+        <translation>der Roboter wurde mit einer Korrektur von %1 mm angetroffen, die ihm nicht gesagt worden ist; sie wird zurückgeführt</translation>
+    </message>
+    <message>
+        <source>the controller left the state in which it takes corrections</source>
+        <translation>die Steuerung hat den Zustand verlassen, in dem sie Korrekturen annimmt</translation>
+    </message>
+    <message>
+        <source>the robot&apos;s position jumped further than it can move</source>
+        <translation>die Position des Roboters ist weiter gesprungen, als er fahren kann</translation>
+    </message>
+    <message>
+        <source>the correction left its limit on the way</source>
+        <translation>die Korrektur hat unterwegs ihre Grenze verlassen</translation>
+    </message>
+    <message>
+        <source>the robot tells a position that it cannot have</source>
+        <translation>der Roboter nennt eine Position, die er nicht haben kann</translation>
+    </message>
+    <message>
         <source>a cyclic correction alone cannot measure</source>
         <translation>eine zyklische Korrektur allein kann nicht messen</translation>
     </message>

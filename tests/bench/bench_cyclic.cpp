@@ -25,7 +25,7 @@ void answer(benchmark::State& state, Open open, Start start) {
                       {"max_late", 1000},
                       {"frames", {{"PATH", {{"base_from_frame", pose_json(taught)}}}}}},
                      session, nullptr);
-    auto robot = start(nullptr, {{"port", port}, {"late_limit", 1000}}, nullptr);
+    auto robot = start(nullptr, {{"port", port}, {"late_limit", 1000}, {"application", false}}, nullptr);
     if (!link || !robot || !(*link)->write_frame("PATH", moved)) {
         state.SkipWithError("cannot open");
         return;

@@ -299,6 +299,7 @@ TEST(Texts, WhatTheLayersBelowRefuseIsInTheList) {
                                              "devices/kuka/eki_controller.cpp",
                                              "devices/kuka/program.cpp",
                                              "devices/kuka/rsi_controller.cpp",
+                                             "devices/kuka/rsi_program.cpp",
                                              "devices/ur/program.cpp",
                                              "devices/exchange/path_csv.cpp",
                                              "devices/cyclic/measuring.cpp",

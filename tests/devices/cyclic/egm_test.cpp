@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -161,7 +162,7 @@ EgmPair open_egm(const nlohmann::json& more_robot,
                                {"confirm_timeout_ms", 4000},
                                {"session_gap_ms", 500}};
     settings.update(more_link);
-    nlohmann::json robot = {{"port", port}, {"restart_ms", 400}, {"slow_ms", 60}};
+    nlohmann::json robot = {{"port", port}, {"restart_ms", 400}, {"slow_ms", 60}, {"application", false}};
     robot.update(more_robot);
     DeviceSession session;
     EgmPair pair;
@@ -262,6 +263,62 @@ INSTANTIATE_TEST_SUITE_P(
                     EgmFaultCase{ControllerFault::disconnect, "fell silent under a correction"},
                     EgmFaultCase{ControllerFault::reject_write, "left the state"},
                     EgmFaultCase{ControllerFault::out_of_range, "a position that it cannot have"}));
+
+TEST(Egm, ARobotThatStandsIsNotConfirmed) {
+    EgmPair pair = open_egm({{"speed_mm_s", 0}}, {{"confirm_timeout_ms", 600}});
+    ASSERT_TRUE(pair.link->write_frame("PATH", egm_written()));
+    const auto refused = pair.link->confirm(PartVerdict::corrected, "");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("the robot stands"));
+    EXPECT_FALSE(pair.controller->released());
+}
+
+TEST(Egm, ARobotGuidedByJointsIsNotConfirmed) {
+    const std::uint16_t port = UdpSocket::bind("127.0.0.1", 0)->port();
+    DeviceSession session;
+    auto link =
+        open_abb_egm({{"port", port}, {"frames", {{"PATH", {{"base_from_frame", pose_json(kEgmTaught)}}}}}},
+                     session, nullptr);
+    ASSERT_TRUE(link);
+    UdpSocket robot = *UdpSocket::bind("127.0.0.1", 0);
+    std::atomic<bool> stop = false;
+    std::thread asking([&] {
+        for (std::uint32_t n = 1; !stop; ++n) {
+            const std::string joints = message(1, number(1, n) + number(2, 4 * n) + number(3, 2)) +
+                                       message(4, number(1, 1)) + message(5, number(1, 3)) +
+                                       message(8, number(1, 2));
+            (void)robot.send_to(bytes_of(joints), {"127.0.0.1", port});
+            std::this_thread::sleep_for(milliseconds(4));
+        }
+    });
+    std::this_thread::sleep_for(milliseconds(50));
+    ASSERT_TRUE((*link)->write_frame("PATH", egm_written()));
+    const auto refused = (*link)->confirm(PartVerdict::corrected, "");
+    stop = true;
+    asking.join();
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("carry no planned Cartesian pose"));
+}
+
+TEST(Egm, ThePathIsTakenAtItsEnd) {
+    EgmPair pair = open_egm({{"application", true}, {"path_s", 1}, {"restart_ms", 800}});
+    ASSERT_TRUE(pair.link->write_frame("PATH", egm_written()));
+    const auto confirmed = pair.link->confirm(PartVerdict::corrected, "");
+    ASSERT_TRUE(confirmed) << confirmed.error().sentence();
+    Expected<Permission> permission = Permission::none;
+    bool ran = false;
+    const auto deadline = Clock::now() + milliseconds(6000);
+    while (Clock::now() < deadline) {
+        permission = pair.link->permission();
+        ASSERT_TRUE(permission) << permission.error().sentence();
+        ran = ran || *permission == Permission::running;
+        if (*permission == Permission::taken) break;
+        std::this_thread::sleep_for(milliseconds(5));
+    }
+    EXPECT_TRUE(ran);
+    EXPECT_EQ(*permission, Permission::taken);
+    EXPECT_TRUE(pair.controller->taken());
+}
 
 }  // namespace
 }  // namespace seamwright

@@ -7,12 +7,14 @@
 // (SimulatedCell::follow), so whatever exposes sees the robot where it is. The sensor's trigger input is
 // wired to one digital output: its rising edge fires the sensor at the place where the arm then is.
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <thread>
 #include <vector>
@@ -26,6 +28,7 @@ struct ArmSettings {
     double rotation_deg_s = 180;
     double time_scale = 1;   // 2 = twice as fast as real; for tests that ask nothing of time
     int trigger_output = 1;  // wired to the sensor
+    bool driven = false;     // time passes by advance() alone, in the cycles of who executes a program
 };
 
 // What a program wants done where the path passes a place, on the arm's thread. `at` is exactly that place.
@@ -58,6 +61,10 @@ class SimulatedArm {
     bool wait(std::size_t pending, const std::stop_token& stop) const;
     // Stands at once and forgets the moves that wait.
     void halt();
+    // A driven arm's time goes on by that much; events happen on the caller's thread.
+    void advance(double seconds);
+    // Somebody moved the robot there by other means. Nothing while a move is under way.
+    void place(const Pose& base_from_flange);
 
     void set_output(int number, bool on);
     bool output(int number) const;
@@ -65,6 +72,8 @@ class SimulatedArm {
   private:
     struct Line;  // a move with its times
     void run(const std::stop_token& stop);
+    double clock_s() const;  // precondition: locked
+    bool tick();             // brings the motion up to the clock; false where none is left
 
     const std::shared_ptr<SimulatedCell> cell_;
     const ArmSettings settings_;
@@ -75,6 +84,9 @@ class SimulatedArm {
     Pose here_;
     Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
     double speed_ = 0;  // carried into the next move
+    const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+    double driven_s_ = 0;
+    std::optional<double> ended_s_;  // when the last move did: the next one goes on from there
     std::map<int, bool> outputs_;
     std::jthread thread_;  // last
 };

@@ -80,4 +80,11 @@ void SimulatedController::take_verdict(PartVerdict verdict) {
     released_ = verdict == PartVerdict::corrected;
 }
 
+void SimulatedController::tell(bool released, bool taken, std::optional<PartVerdict> verdict) {
+    const std::lock_guard lock(mutex_);
+    released_ = released;
+    taken_ = taken;
+    verdict_ = verdict;
+}
+
 }  // namespace seamwright

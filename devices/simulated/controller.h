@@ -59,6 +59,8 @@ class SimulatedController {
     void withdraw();     // not released, unless the application has taken it
     bool take();         // by the application, once it is released; says whether it was
     void take_verdict(PartVerdict verdict);
+    // For a program that is executed: all three as its variables say.
+    void tell(bool released, bool taken, std::optional<PartVerdict> verdict);
 
   private:
     std::atomic<ControllerFault> fault_ = ControllerFault::none;

@@ -24,8 +24,17 @@ std::string_view refusal(std::int32_t status) {
             return "a path runs in the frames";
         case Status::not_teaching:
             return "moving by command wants the program sw_teach() to run";
+        case Status::not_waiting:
+            return "no robot program waits in sw_measure()";
+        case Status::unknown_command:
+            return "its module does not know the request";
     }
     return "for a reason that this version does not know";
+}
+
+std::optional<State> state_from(std::int32_t number) {
+    if (number < 0 || number % 10 > 3 || number / 10 > 3) return std::nullopt;
+    return State{static_cast<Permitted>(number % 10), static_cast<Phase>(number / 10)};
 }
 
 std::int32_t frame_number(std::string_view name) {

@@ -21,7 +21,7 @@
 namespace seamwright::ur {
 
 inline constexpr int kFirstRegister = 24, kLastRegister = 47;
-inline constexpr std::int32_t kModuleVersion = 530101;  // in kModule while the module runs
+inline constexpr std::int32_t kModuleVersion = 530201;  // in kModule while the module runs
 inline constexpr int kMostSpots = 64, kMostFrames = 32;
 
 // Integer registers that the module writes, counted from the first.
@@ -31,15 +31,26 @@ enum Output : int {
     kStatus,
     kSignatureHigh,  // of the measuring program (program_signature())
     kSignatureLow,
-    kFired,  // triggers of the present part
-    kCall,   // 1: the line calls for a part
-    kPart,   // its id in 4 registers, part_registers()
-    kReleased = kPart + 4,
+    kFired,              // triggers of the present part
+    kCall,               // the number of the line's call for a part, 0 = none
+    kPart,               // its id in 4 registers, part_registers()
+    kState = kPart + 4,  // Permitted + 10 * Phase
     kOutputs
 };
+// Of the permission to run paths, and what the robot program is at.
+enum class Permitted : std::int32_t { no, given, taken, used_up };
+enum class Phase : std::int32_t { elsewhere, waits_for_start, measures, waits_for_verdict };
+struct State {
+    Permitted permitted = Permitted::no;
+    Phase phase = Phase::elsewhere;
+};
+std::optional<State> state_from(std::int32_t number);
 // And those that Seamwright writes. The pose of a request and of its answer: 6 doubles, metres and rotation
 // vector.
-enum Input : int { kNumber, kCommand, kArgument, kHigh, kLow, kInputs };
+//
+// kSession differs from connection to connection and kBeat counts on while one lasts, five times a second or
+// more often: without them for a second the module takes back what the robot program has not yet taken.
+enum Input : int { kNumber, kCommand, kArgument, kHigh, kLow, kSession, kBeat, kInputs };
 
 enum class Command : std::int32_t {
     read = 1,     // argument: frame; answers its pose
@@ -48,16 +59,18 @@ enum class Command : std::int32_t {
     trigger = 4,  // argument: number from 1; answers the pose at that trigger
     verdict = 5,  // argument: 1 corrected, 2 refused, 3 failed
     move = 6,     // with a pose; answered when the robot stands there
-    taken = 7     // the call was heard
+    taken = 7     // argument: number of the call that was heard
 };
 
 enum class Status : std::int32_t {
     done = 0,
     no_frame = 1,
     other_program = 2,
-    running = 3,      // the measuring program runs already
-    in_use = 4,       // a path runs in the frames: no write
-    not_teaching = 5  // moves want the program sw_teach() to run
+    running = 3,       // the measuring program runs already
+    in_use = 4,        // a path runs in the frames: no write
+    not_teaching = 5,  // moves want the program sw_teach() to run
+    not_waiting = 6,   // no robot program stands in sw_measure()
+    unknown_command = 7
 };
 // The refusal in words; empty for `done`.
 std::string_view refusal(std::int32_t status);

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 
 #include "devices/exchange/settings.h"
@@ -16,6 +17,13 @@ namespace seamwright {
 namespace {
 
 constexpr double kFastest_m_s = 2.0;
+constexpr double kMostBlend_mm = 20, kLeastBlend_mm = 1;  // at points on the way
+
+// How far before the middle of three points the robot may begin to round it off: blends that overlap are
+// refused by the controller.
+double blend_mm(double most, const Pose& before, const Pose& at, const Pose& after) {
+    return std::min({most, 0.4 * distance_mm(before, at), 0.4 * distance_mm(at, after)});
+}
 
 std::string script_pose(const Pose& pose) {
     const auto v = ur::ur_pose(pose);
@@ -28,18 +36,20 @@ Expected<void> check_pose(const Pose& pose, const std::string& where) {
     return input_error("a pose is not finite or beyond 100 m", where);
 }
 
-// As a comment may hold it.
-std::string plain(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text.substr(0, 79);
-}
-
-std::string filled(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
-    std::string out(text);
-    for (const auto& [name, value] : values)
-        if (const std::size_t at = out.find("@" + name + "@"); at != std::string::npos)
-            out.replace(at, name.size() + 2, value);
+// `text` with its @NAME@ replaced, in one pass: what is put in may hold such signs itself.
+std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& values) {
+    std::string out;
+    while (!text.empty()) {
+        const std::size_t at = text.find('@');
+        out += text.substr(0, at);
+        if (at == std::string_view::npos) break;
+        text.remove_prefix(at + 1);
+        const std::size_t end = text.find('@');
+        const auto value = values.find(text.substr(0, end));
+        assert(end != std::string_view::npos && value != values.end());  // our own file
+        out += value->second;
+        text.remove_prefix(end + 1);
+    }
     return out;
 }
 
@@ -60,6 +70,7 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
 
     std::string passes;
     int n = 0;
+    const Pose* last = nullptr;  // where the robot comes from; unknown before the first spot
     for (const MeasuringMove& move : request.moves) {
         const std::string where = "spot " + move.spot_id;
         if (!(move.speed_mm_s > 0 && move.speed_mm_s <= 1000 * kFastest_m_s))
@@ -67,9 +78,24 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
                                "give up to 2000 mm/s");
         for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
             if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
-        passes += fmt::format("  # spot {}\n  sw_pass({}, {}, {}, {}, {:.4f}, {})\n", plain(move.spot_id),
-                              ++n, script_pose(move.entry), script_pose(move.trigger), script_pose(move.exit),
-                              move.speed_mm_s / 1000, move.stop_at_trigger ? "True" : "False");
+        passes += fmt::format("    # spot {}\n", program_comment(move.spot_id));
+        for (std::size_t i = 0; i < move.via.size(); ++i) {
+            const Pose& at = move.via[i];
+            if (auto ok = check_pose(at, where); !ok) return tl::unexpected(ok.error());
+            double blend = last ? blend_mm(kMostBlend_mm, *last, at,
+                                           i + 1 < move.via.size() ? move.via[i + 1] : move.entry)
+                                : 0;
+            if (blend < kLeastBlend_mm) blend = 0;
+            passes +=
+                fmt::format("    movel({}, a=1.2, v=sw_travel, r={:.5f})\n", script_pose(at), blend / 1000);
+            last = &at;
+        }
+        // The speed is kept over the spot.
+        passes += fmt::format("    sw_pass({}, {}, {}, {}, {:.4f}, {:.5f}, {})\n", ++n,
+                              script_pose(move.entry), script_pose(move.trigger), script_pose(move.exit),
+                              move.speed_mm_s / 1000, blend_mm(2, move.entry, move.trigger, move.exit) / 1000,
+                              move.stop_at_trigger ? "True" : "False");
+        last = &move.exit;
     }
     std::map<std::int32_t, std::string> names;
     std::vector<std::string> numbers, frames;
@@ -84,8 +110,8 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
                 where, "name one of them otherwise");
         numbers.push_back(std::to_string(at->first));
         frames.push_back(script_pose(frame.base_from_frame));
-        list += fmt::format("# sw_activate({}): region {}, frame {}\n", frames.size(), plain(frame.region_id),
-                            plain(frame.name));
+        list += fmt::format("# sw_activate({}): region {}, frame {}\n", frames.size(),
+                            program_comment(frame.region_id), program_comment(frame.name));
     }
     const std::size_t count = frames.size();
     if (count == 0) numbers = {"0"}, frames = {script_pose(Pose::Identity())};  // URScript has no empty list
@@ -95,9 +121,10 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     const std::string project = fmt::format(
         "# project {}\n{}global sw_signature_high = {}\nglobal sw_signature_low = {}\nglobal sw_frame_count "
         "= {}\n"
+        "global sw_spot_count = {}\n"
         "global sw_names = [{}]\nglobal sw_frames = [{}]\nglobal sw_spot_at = [{}]\n",
-        plain(request.project), list, high, low, count, fmt::join(numbers, ", "), fmt::join(frames, ", "),
-        fmt::join(spots, ", "));
+        program_comment(request.project), list, high, low, count, n, fmt::join(numbers, ", "),
+        fmt::join(frames, ", "), fmt::join(spots, ", "));
     return std::vector<ProgramFile>{
         {"seamwright.script",
          filled(resources::seamwright_script, {{"ALPHABET", std::string(ur::part_alphabet())},
@@ -113,17 +140,15 @@ Expected<std::vector<ProgramFile>> write_ur_path(const PathProgramRequest& reque
     const std::vector<Pose>& points = request.frame_from_tool;
     std::string text = fmt::format(
         "# {}\n# the TCP is the caller's; bring the robot before the first point\n"
-        "def {}():\n  local frame = {}\n  local v = {:.4f}\n",
+        "def {}():\n  local sw_path_frame = {}\n  local sw_path_speed = {:.4f}\n",
         program_comment(request.comment), request.name, script_pose(request.base_from_frame),
         request.speed_mm_s / 1000);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        // Blends that overlap are refused by the controller.
-        double radius = 0;
-        if (i > 0 && i + 1 < points.size())
-            radius = std::min({request.rounding_mm, 0.4 * distance_mm(points[i - 1], points[i]),
-                               0.4 * distance_mm(points[i], points[i + 1])});
-        text += fmt::format("  movel(pose_trans(frame, {}), a=1.2, v=v, r={:.5f})\n", script_pose(points[i]),
-                            radius / 1000);
+        const double radius = i > 0 && i + 1 < points.size()
+                                  ? blend_mm(request.rounding_mm, points[i - 1], points[i], points[i + 1])
+                                  : 0;
+        text += fmt::format("  movel(pose_trans(sw_path_frame, {}), a=1.2, v=sw_path_speed, r={:.5f})\n",
+                            script_pose(points[i]), radius / 1000);
     }
     return std::vector<ProgramFile>{{request.name + ".script", text + "end\n"}};
 }

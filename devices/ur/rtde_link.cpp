@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "devices/exchange/settings.h"
 #include "devices/net/socket.h"
@@ -27,10 +29,14 @@ using rtde::Recipe;
 using ur::Command;
 
 constexpr Timeout kStale{100};  // older state is waited for anew
+constexpr Timeout kBeat{100};   // module.h
+// What sw_teach() drives at least.
+constexpr double kTeach_mm_s = 100, kTeach_deg_s = 10;
+constexpr int kPlaying = 2;
 
 struct RtdeSettings {
     std::string address = "127.0.0.1";
-    int port = 30004, dashboard_port = 29999, timeout_ms = 1000, move_timeout_ms = 60000,
+    int port = 30004, dashboard_port = 29999, timeout_ms = 1000, move_timeout_ms = 0,
         first_register = ur::kFirstRegister, retry_ms = 100, retry_most_ms = 500;
     double frequency_hz = 125;
 };
@@ -54,18 +60,25 @@ class RtdeLink final : public RobotLink {
           where_(fmt::format("ur-rtde {}:{}", settings_.address, settings_.port)),
           timeout_(settings_.timeout_ms),
           dashboard_(settings_.address, static_cast<std::uint16_t>(settings_.dashboard_port), timeout_),
-          back_off_(settings_.retry_ms) {}
+          back_off_(settings_.retry_ms),
+          keeper_([this](const std::stop_token& stop) { keep(stop); }) {}
 
     Expected<RobotIdentity> identity() override {
+        const std::lock_guard lock(mutex_);
         auto now = ask_identity();
         if (!now) return now;
         return robot_.told(*now);
     }
 
     Expected<RobotMode> mode() override {
+        const std::lock_guard lock(mutex_);
+        return present_mode();
+    }
+
+    Expected<RobotMode> present_mode() {
         auto state = coming();
         if (!state) return tl::unexpected(state.error());
-        constexpr int kRobotRunning = 7, kProgramPlaying = 2;
+        constexpr int kRobotRunning = 7;
         switch ((*state)->safety_mode) {
             case 1:  // normal
             case 2:
@@ -82,8 +95,7 @@ class RtdeLink final : public RobotLink {
             default:
                 return RobotMode::unknown;
         }
-        if ((*state)->robot_mode != kRobotRunning || (*state)->runtime != kProgramPlaying)
-            return RobotMode::stopped;
+        if ((*state)->robot_mode != kRobotRunning || (*state)->runtime != kPlaying) return RobotMode::stopped;
         auto remote = dashboard_.ask("is in remote control");  // CB3 does not know the question
         if (!remote) return tl::unexpected(remote.error());
         if (remote->starts_with("true")) return RobotMode::external;
@@ -93,6 +105,11 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<Pose> base_from_flange() override {
+        const std::lock_guard lock(mutex_);
+        return flange();
+    }
+
+    Expected<Pose> flange() {
         auto state = coming();
         if (!state) return tl::unexpected(state.error());
         if ((*state)->bad_pose) return fail(*(*state)->bad_pose);
@@ -100,17 +117,20 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
-        auto called = wait_until(timeout, [](const State& s) { return s.numbers[ur::kCall] == 1; });
+        const std::lock_guard lock(mutex_);
+        auto called = wait_until(timeout, [](const State& s) { return s.numbers[ur::kCall] != 0; });
         if (!called) return tl::unexpected(called.error());
         const std::int64_t not_before = quiet_ns_;
+        const std::int32_t call = state_->numbers[ur::kCall];
         std::array<std::int32_t, 4> part{};
         std::copy_n(state_->numbers.begin() + ur::kPart, 4, part.begin());
-        if (auto taken = ask(Command::taken); !taken) return tl::unexpected(taken.error());
+        if (auto taken = ask(Command::taken, call); !taken) return tl::unexpected(taken.error());
         return StartSignal{ur::part_from_registers(part), now_ns(), not_before};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
-        auto now = mode();
+        const std::lock_guard lock(mutex_);
+        auto now = present_mode();
         if (!now) return tl::unexpected(now.error());
         if (*now == RobotMode::stopped || *now == RobotMode::fault)
             return device_error("the robot is stopped", where_, "start its program on the controller");
@@ -118,18 +138,27 @@ class RtdeLink final : public RobotLink {
         told_ = 0;
         for (const MeasuringMove& move : moves) spots_.push_back(move.spot_id);
         const auto [high, low] = ur::signature_numbers(program_signature(moves));
+        // The robot program may be on its way to sw_measure(); the module refuses where it is elsewhere.
+        (void)wait_until(timeout_, [](const State& s) {
+            const auto state = ur::state_from(s.numbers[ur::kState]);
+            return s.runtime != kPlaying || !state || state->phase != ur::Phase::elsewhere;
+        });
         auto started = ask(Command::measure, 0, high, low);
         if (!started) return tl::unexpected(started.error());
         return {};
     }
 
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
+        const std::lock_guard lock(mutex_);
         auto fired = wait_until(timeout, [this](const State& s) {
-            return s.numbers[ur::kFired] != static_cast<std::int32_t>(told_);
+            return s.numbers[ur::kFired] != static_cast<std::int32_t>(told_) || measuring_ended(s);
         });
         if (!fired) return tl::unexpected(fired.error());
         const std::int64_t heard_ns = now_ns();
         const std::int32_t count = state_->numbers[ur::kFired];
+        if (count == static_cast<std::int32_t>(told_) || measuring_ended(*state_))
+            return device_error("the controller's program was stopped while it measured", where_,
+                                "start it on the controller and measure the part again");
         if (count < static_cast<std::int32_t>(told_) || count > static_cast<std::int32_t>(spots_.size()))
             return fail({ErrorKind::device,
                          fmt::format("the controller counts {} triggers after {}", count, told_), where_,
@@ -141,10 +170,12 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
+        const std::lock_guard lock(mutex_);
         return named(name, ask(Command::read, ur::frame_number(name)));
     }
 
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
+        const std::lock_guard lock(mutex_);
         if (!base_from_frame.matrix().allFinite() ||
             base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
             return input_error("the frame is not finite or beyond 100 m", name);
@@ -156,21 +187,54 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
+        const std::lock_guard lock(mutex_);
         const bool released = verdict == PartVerdict::corrected;
         if (released)
             if (auto same = same_robot(); !same) return same;
         auto told = ask(Command::verdict, released ? 1 : verdict == PartVerdict::refused ? 2 : 3);
         if (!told) return tl::unexpected(told.error());
-        if ((state_->numbers[ur::kReleased] == 1) != released)
+        const auto state = ur::state_from(state_->numbers[ur::kState]);
+        if (!state || (state->permitted != ur::Permitted::no) != released)
             return device_error("the controller did not keep the verdict", where_);
         return {};
     }
 
+    Expected<Permission> permission() override {
+        const std::lock_guard lock(mutex_);
+        auto now = coming();
+        if (!now) return tl::unexpected(now.error());
+        const State& s = **now;
+        if (s.numbers[ur::kModule] != ur::kModuleVersion || s.runtime != kPlaying) return Permission::none;
+        const auto state = ur::state_from(s.numbers[ur::kState]);
+        if (!state)
+            return fail({ErrorKind::device,
+                         fmt::format("{} is no state of the module", s.numbers[ur::kState]),
+                         {},
+                         "only one program may use these registers"});
+        switch (state->permitted) {
+            case ur::Permitted::no:
+                return Permission::none;
+            case ur::Permitted::given:
+                return Permission::given;
+            case ur::Permitted::taken:
+            case ur::Permitted::used_up:
+                return Permission::taken;
+        }
+        return Permission::none;
+    }
+
     Expected<void> move_to(const Pose& base_from_flange) override {
+        const std::lock_guard lock(mutex_);
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
         if (auto same = same_robot(); !same) return same;
-        auto there =
-            ask(Command::move, 0, 0, 0, ur::ur_pose(base_from_flange), Timeout(settings_.move_timeout_ms));
+        auto at = flange();
+        if (!at) return tl::unexpected(at.error());
+        // Twice what the way takes at the programmed speed; a slider may have slowed the robot down.
+        const double way_s = distance_mm(*at, base_from_flange) / kTeach_mm_s +
+                             deg_from_rad(angle_rad(*at, base_from_flange)) / kTeach_deg_s;
+        Timeout timeout = timeout_ + Timeout(3000 + static_cast<std::int64_t>(2000 * way_s));
+        if (settings_.move_timeout_ms > 0) timeout = Timeout(settings_.move_timeout_ms);
+        auto there = ask(Command::move, 0, 0, 0, ur::ur_pose(base_from_flange), timeout);
         if (!there) return tl::unexpected(there.error());
         return {};
     }
@@ -195,9 +259,48 @@ class RtdeLink final : public RobotLink {
         return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - Clock::now()));
     }
 
+    // The program stands or begins anew, or its measuring does: no trigger is to come. A program that is
+    // paused goes on.
+    bool measuring_ended(const State& s) const {
+        constexpr std::uint32_t kStopping = 0, kStopped = 1;
+        if (s.runtime == kStopping || s.runtime == kStopped || s.safety_mode >= 3) return true;
+        const auto state = ur::state_from(s.numbers[ur::kState]);
+        return told_ < spots_.size() && state && state->phase != ur::Phase::measures &&
+               s.numbers[ur::kFired] <= static_cast<std::int32_t>(told_);
+    }
+
+    // Between the calls: the module hears that somebody is there, and the controller's packages are taken.
+    void keep(const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            std::this_thread::sleep_for(kBeat / 2);
+            const std::unique_lock lock(mutex_, std::try_to_lock);
+            if (!lock.owns_lock() || !connection_) continue;
+            auto ok = take_all();
+            if (ok) ok = beat();
+            if (!ok) lost_ = ok.error();
+        }
+    }
+
+    // The request is sent again as it was, with the next beat: none before the first on a connection.
+    Expected<void> beat() {
+        if (last_request_.empty() || Clock::now() < next_beat_) return {};
+        return send_request();
+    }
+    Expected<void> send_request() {
+        std::vector<rtde::Value> values = last_request_;
+        values[ur::kSession] = session_;
+        values[ur::kBeat] = ++beats_;
+        next_beat_ = Clock::now() + kBeat;
+        const std::string bytes =
+            rtde::package_bytes({rtde::Type::data, rtde::data_payload(inputs_, values)});
+        if (auto sent = connection_->send(bytes_of(bytes), timeout_); !sent) return fail(sent.error());
+        return {};
+    }
+
     tl::unexpected<Error> fail(Error error) {
         connection_.reset();
         dashboard_.close();  // of the same controller: who answers is asked there, so anew
+        last_request_.clear();
         state_.reset();
         stream_.clear();
         error.where = where_;
@@ -326,6 +429,8 @@ class RtdeLink final : public RobotLink {
     std::string heard() const { return said_.empty() ? "" : ", saying: " + said_; }
 
     Expected<void> connected() {
+        // Whoever asks next learns that the connection was lost meanwhile, before another is made.
+        if (lost_) return tl::unexpected(*std::exchange(lost_, std::nullopt));
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
             return device_error(std::string(kDisconnected) + ", the next attempt is due soon", where_,
@@ -338,6 +443,8 @@ class RtdeLink final : public RobotLink {
             said_.clear();
             // Far from the numbers of a connection that the module may still hold an unanswered request of.
             number_ = static_cast<std::int32_t>(now_ns() / 1000 % 1'000'000'000) + 1;
+            session_ = number_;
+            last_request_.clear();
             if (auto ready = negotiate(Clock::now() + timeout_); ready) {
                 back_off_ = Timeout(settings_.retry_ms);
                 robot_.connected_anew();
@@ -388,12 +495,12 @@ class RtdeLink final : public RobotLink {
     Expected<void> next_state(Clock::time_point until) {
         auto package = receive(until);
         if (!package) return tl::unexpected(package.error());
-        return take(*package);
+        if (auto taken = take(*package); !taken) return taken;
+        return beat();
     }
 
-    // What has come already, and the next package where that is too old.
-    Expected<const State*> newest() {
-        if (auto ready = connected(); !ready) return tl::unexpected(ready.error());
+    // What has come already.
+    Expected<void> take_all() {
         std::array<char, 4096> buffer;
         for (;;) {
             const auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)), Timeout(0));
@@ -406,10 +513,16 @@ class RtdeLink final : public RobotLink {
                 if ((*package)->type == rtde::Type::text)
                     said_ = rtde::text_of((*package)->payload, version_);
                 else if (auto taken = take(**package); !taken)
-                    return tl::unexpected(taken.error());
+                    return taken;
             }
-            if (!got) break;
+            if (!got) return {};
         }
+    }
+
+    // What has come already, and the next package where that is too old.
+    Expected<const State*> newest() {
+        if (auto ready = connected(); !ready) return tl::unexpected(ready.error());
+        if (auto taken = take_all(); !taken) return tl::unexpected(taken.error());
         if (!state_ || Clock::now() - state_->at > kStale)
             if (auto fresh = next_state(Clock::now() + timeout_); !fresh)
                 return tl::unexpected(fresh.error());
@@ -450,12 +563,10 @@ class RtdeLink final : public RobotLink {
                 "load what `seamwright robot-program --brand ur` writes and start the program");
         const std::int32_t before = (*state)->numbers[ur::kAnswered];
         number_ = number_ >= 2'000'000'000 ? 1 : number_ + 1;
-        std::vector<rtde::Value> values = {number_, static_cast<std::int32_t>(command), argument, high, low};
-        for (const double v : pose) values.emplace_back(v);
+        last_request_ = {number_, static_cast<std::int32_t>(command), argument, high, low, 0, 0};
+        for (const double v : pose) last_request_.emplace_back(v);
         const auto until = Clock::now() + timeout.value_or(timeout_);
-        const std::string bytes =
-            rtde::package_bytes({rtde::Type::data, rtde::data_payload(inputs_, values)});
-        if (auto sent = connection_->send(bytes_of(bytes), timeout_); !sent) return fail(sent.error());
+        if (auto sent = send_request(); !sent) return tl::unexpected(sent.error());
         for (;;) {
             if (auto next = next_state(std::min(until, Clock::now() + timeout_)); !next)
                 return tl::unexpected(next.error());
@@ -466,7 +577,7 @@ class RtdeLink final : public RobotLink {
                              fmt::format("answer {} came to request {}", answered, number_),
                              {},
                              "only one program may use these registers"});
-            if (state_->runtime != 2)  // the program stopped while it was at it
+            if (state_->runtime != kPlaying)  // the program stopped while it was at it
                 return fail(
                     {ErrorKind::device, "the controller's program was stopped before it answered", {}, {}});
             if (Clock::now() >= until)
@@ -481,6 +592,7 @@ class RtdeLink final : public RobotLink {
         return answer;
     }
 
+    std::mutex mutex_;  // all below
     const RtdeSettings settings_;
     const std::string where_;
     const Timeout timeout_;
@@ -493,10 +605,15 @@ class RtdeLink final : public RobotLink {
     Recipe outputs_, inputs_;
     std::optional<State> state_;
     std::int32_t number_ = 0;
+    std::int32_t session_ = 0, beats_ = 0;
+    Clock::time_point next_beat_{};
+    std::vector<rtde::Value> last_request_;
+    std::optional<Error> lost_;  // between two calls
     std::vector<std::string> spots_;
     std::size_t told_ = 0;
     SameRobot robot_;
     std::int64_t quiet_ns_ = 0;  // when nobody called; 0 = not known
+    std::jthread keeper_;        // last: everything above is there while it runs
 };
 
 }  // namespace
@@ -510,7 +627,7 @@ Expected<std::unique_ptr<RobotLink>> open_ur_rtde(const nlohmann::json& settings
     f.whole("port", s.port, 1, 65535);
     f.whole("dashboard_port", s.dashboard_port, 1, 65535);
     f.whole("timeout_ms", s.timeout_ms, 10, 60000);
-    f.whole("move_timeout_ms", s.move_timeout_ms, 10, 3600000);
+    f.whole("move_timeout_ms", s.move_timeout_ms, 0, 3600000);
     f.number("frequency_hz", s.frequency_hz, 1, 500);
     f.whole("first_register", s.first_register, 0, ur::kLastRegister + 1 - ur::kOutputs);
     f.whole("retry_ms", s.retry_ms, 1, 60000);

@@ -2314,6 +2314,18 @@
         <translation>%1 %2 ist keine Position eines Roboters</translation>
     </message>
     <message>
+        <source>the controller&apos;s program was stopped while it measured</source>
+        <translation>das Programm der Steuerung wurde beim Messen angehalten</translation>
+    </message>
+    <message>
+        <source>start it on the controller and measure the part again</source>
+        <translation>an der Steuerung starten und das Teil noch einmal messen</translation>
+    </message>
+    <message>
+        <source>the controller refuses: no robot program waits in sw_measure()</source>
+        <translation>die Steuerung lehnt ab: kein Roboterprogramm wartet in sw_measure()</translation>
+    </message>
+    <message>
         <source>%1 is not within %2 and %3</source>
         <translation>%1 liegt nicht zwischen %2 und %3</translation>
     </message>

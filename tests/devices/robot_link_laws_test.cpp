@@ -30,14 +30,27 @@ struct Brand {
     bool robot_is_client = false;
     std::string frame;                                                   // a name that its frames can have
     RobotMode external = RobotMode::external, fault = RobotMode::fault;  // how the brand tells these modes
+    double trigger_mm = 1e-3;  // between the programmed trigger and what is reported, along the travel
+    // Further settings of the controller: for all tests, with an application that never begins; and those
+    // with which it begins as soon as it may. Null: none yet.
+    nlohmann::json controller = nlohmann::json::object(), begins = nullptr;
 };
 void PrintTo(const Brand& brand, std::ostream* out) {
     *out << brand.name;
 }
-const std::vector<Brand> kBrands = {{"kuka-eki", true, "BASE_left"},
-                                    {"kuka-kvp", false, "BASE_left", RobotMode::external, RobotMode::stopped},
-                                    {"abb-rapid", false, "BASE_left", RobotMode::automatic},
-                                    {"ur-rtde", false, "BASE_left"}};
+const std::vector<Brand> kBrands = {
+    {"kuka-eki", true, "BASE_left"},
+    {"kuka-kvp", false, "BASE_left", RobotMode::external, RobotMode::stopped},
+    {"abb-rapid", false, "BASE_left", RobotMode::automatic},
+    // Fires in the cycle that passes the trigger: 2 ms at four times the speed.
+    {"ur-rtde",
+     false,
+     "BASE_left",
+     RobotMode::external,
+     RobotMode::fault,
+     1.0,
+     {{"time_scale", 4}, {"application_wait_ms", 3600000}},
+     {{"time_scale", 4}, {"application_wait_ms", 0}}}};
 
 std::vector<MeasuringMove> program() {
     std::vector<MeasuringMove> moves;
@@ -75,6 +88,7 @@ class RobotLaws : public testing::TestWithParam<Brand> {
         ASSERT_TRUE(cell->write_frame(GetParam().frame, taught));
         link_settings = {{"port", port}, {"timeout_ms", kTimeoutMs}};
         controller_settings = {{"port", port}, {"slow_ms", kTimeoutMs * 2}};
+        controller_settings.update(GetParam().controller);
         if (GetParam().name == "ur-rtde")
             link_settings["dashboard_port"] = controller_settings["dashboard_port"] = free_port();
         const auto start = [&] {
@@ -104,7 +118,10 @@ class RobotLaws : public testing::TestWithParam<Brand> {
             ASSERT_TRUE(trigger) << trigger.error().sentence();
             EXPECT_EQ(trigger->spot_id, move.spot_id);
             ASSERT_TRUE(trigger->base_from_flange);
-            EXPECT_LT(distance_mm(*trigger->base_from_flange, move.trigger), 1e-3);
+            const Eigen::Vector3d along = (move.exit.translation() - move.entry.translation()).normalized();
+            const Eigen::Vector3d off = trigger->base_from_flange->translation() - move.trigger.translation();
+            EXPECT_LT(std::abs(off.dot(along)), GetParam().trigger_mm);
+            EXPECT_LT((off - off.dot(along) * along).norm(), 1e-3);
             EXPECT_LT(angle_rad(*trigger->base_from_flange, move.trigger), 1e-5);
         }
     }
@@ -148,6 +165,7 @@ TEST_P(RobotLaws, AFrameIsReadBackAsWrittenAndReleasedByTheVerdictAlone) {
     EXPECT_EQ(controller->verdict(), PartVerdict::corrected);
     ASSERT_TRUE(link->confirm(PartVerdict::failed, "taken back"));
     EXPECT_FALSE(controller->released());
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // the robot program goes on to its next part
     ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
     ASSERT_TRUE(link->start_measuring(program()));
     EXPECT_FALSE(controller->released()) << "a new part begins";
@@ -272,6 +290,51 @@ TEST_P(RobotLaws, EveryFaultIsToldReleasesNothingAndPasses) {
         EXPECT_FALSE(controller->released());
         ASSERT_TRUE(link->write_frame(GetParam().frame, taught));
     }
+}
+
+// Whoever gave the permission and dies before the application took it has given nothing.
+TEST_P(RobotLaws, ALostLinkTakesBackWhatTheApplicationHasNotTaken) {
+    if (GetParam().begins.is_null()) GTEST_SKIP() << "its application cannot be held";
+    measure_all();
+    ASSERT_TRUE(link->write_frame(GetParam().frame, corrected));
+    ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    EXPECT_TRUE(controller->released()) << "it holds while the link lives, whether it is asked or not";
+    EXPECT_EQ(link->permission(), Permission::given);
+    link.reset();
+    const auto until = Clock::now() + std::chrono::seconds(5);
+    while (controller->released() && Clock::now() < until)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_FALSE(controller->released());
+    EXPECT_FALSE(controller->taken());
+}
+
+TEST_P(RobotLaws, WhatTheApplicationHasTakenStays) {
+    if (GetParam().begins.is_null()) GTEST_SKIP() << "its application cannot be held";
+    link.reset();
+    controller.reset();
+    controller_settings.update(GetParam().begins);
+    if (!GetParam().robot_is_client)
+        controller = std::move(start_controller(GetParam().name, cell, controller_settings).value());
+    link = std::move(open_robot(GetParam().name, link_settings, session).value());
+    if (GetParam().robot_is_client)
+        controller = std::move(start_controller(GetParam().name, cell, controller_settings).value());
+    ASSERT_TRUE(recovers());
+    measure_all();
+    ASSERT_TRUE(link->write_frame(GetParam().frame, corrected));
+    ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+    Expected<Permission> now = link->permission();
+    for (const auto until = Clock::now() + std::chrono::seconds(10);
+         now && *now != Permission::taken && Clock::now() < until; now = link->permission()) {
+        EXPECT_EQ(*now, Permission::given);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ASSERT_TRUE(now) << now.error().sentence();
+    EXPECT_EQ(*now, Permission::taken);
+    link.reset();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    EXPECT_TRUE(controller->released()) << "the part's path runs to its end";
+    EXPECT_TRUE(controller->taken());
 }
 
 INSTANTIATE_TEST_SUITE_P(Brands, RobotLaws, testing::ValuesIn(kBrands), [](const auto& brand) {

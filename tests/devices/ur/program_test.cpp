@@ -72,7 +72,7 @@ TEST(UrProgram, EverySpotIsPassedWhereTheProjectHasIt) {
     const ProgramRequest r = request();
     const std::string text = script_of(r);
     for (int i = 1; i <= 3; ++i) {
-        const std::string line = line_with(text, "  sw_pass(" + std::to_string(i) + ", ");
+        const std::string line = line_with(text, "    sw_pass(" + std::to_string(i) + ", ");
         const auto poses = poses_in(line);
         ASSERT_EQ(poses.size(), 3U) << line;
         const MeasuringMove& m = r.moves[static_cast<std::size_t>(i - 1)];
@@ -81,7 +81,8 @@ TEST(UrProgram, EverySpotIsPassedWhereTheProjectHasIt) {
             EXPECT_LT(distance_mm(poses[k], *wanted[k]), 2e-4);
             EXPECT_LT(angle_rad(poses[k], *wanted[k]), 1e-7);
         }
-        EXPECT_THAT(line, testing::EndsWith(i == 2 ? ", 0.1000, True)" : ", 0.1000, False)"));
+        EXPECT_THAT(line,
+                    testing::EndsWith(i == 2 ? ", 0.1000, 0.00200, True)" : ", 0.1000, 0.00200, False)"));
     }
     const auto frames = poses_in(line_with(text, "global sw_frames"));
     ASSERT_EQ(frames.size(), 2U);
@@ -110,12 +111,14 @@ TEST(UrProgram, RegistersAreThoseOfTheLink) {
                                                  {"sw_r_fired", ur::kFired},
                                                  {"sw_r_call", ur::kCall},
                                                  {"sw_r_part", ur::kPart},
-                                                 {"sw_r_released", ur::kReleased},
+                                                 {"sw_r_state", ur::kState},
                                                  {"sw_r_number", ur::kNumber},
                                                  {"sw_r_command", ur::kCommand},
                                                  {"sw_r_argument", ur::kArgument},
                                                  {"sw_r_high", ur::kHigh},
-                                                 {"sw_r_low", ur::kLow}};
+                                                 {"sw_r_low", ur::kLow},
+                                                 {"sw_r_session", ur::kSession},
+                                                 {"sw_r_beat", ur::kBeat}};
     for (const auto& [name, value] : expected)
         EXPECT_EQ(line_with(text, "global " + name + " = "),
                   "global " + name + " = " + std::to_string(value));

@@ -6,11 +6,15 @@
 
 #include <thread>
 
+#include "devices/controllers/ur/controller.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/cell.h"
+#include "devices/ur/dashboard.h"
 #include "devices/ur/module.h"
+#include "devices/ur/program.h"
 #include "devices/ur/rtde.h"
 #include "devices/ur/rtde_message.h"
+#include "tests/devices/temporary_folder.h"
 
 namespace seamwright {
 namespace {
@@ -33,6 +37,7 @@ std::vector<MeasuringMove> program(int spots) {
         m.spot_id = "S" + std::to_string(i);
         m.entry = m.trigger = m.exit =
             make_pose(rotation_exp({0.1 * i, 0.2, -0.3}), {800.0 + 10 * i, -200, 600});
+        m.exit.translation().y() += 20;
         moves.push_back(m);
     }
     return moves;
@@ -48,9 +53,9 @@ std::unique_ptr<RobotLink> link_to(std::uint16_t port,
     return std::move(*link);
 }
 
-std::unique_ptr<SimulatedController> controller(nlohmann::json settings) {
+std::unique_ptr<SimulatedController> controller(nlohmann::json settings, std::uint16_t dashboard = 0) {
     settings["port"] = 0;
-    settings["dashboard_port"] = TcpListener::listen("127.0.0.1", 0)->port();
+    settings["dashboard_port"] = dashboard != 0 ? dashboard : TcpListener::listen("127.0.0.1", 0)->port();
     cell()->set_mode(RobotMode::automatic);
     cell()->store_program(program(5));
     auto started = start_ur_rtde_controller(cell(), settings);
@@ -58,8 +63,18 @@ std::unique_ptr<SimulatedController> controller(nlohmann::json settings) {
     return std::move(*started);
 }
 
+// A folder of script files in which no robot program measures.
+std::string scripts_without_measuring() {
+    static const TemporaryFolder folder;
+    ProgramRequest request;
+    request.frames = {{"left", "left", Pose::Identity()}};
+    folder.write("seamwright.script", write_ur_program(request).value().front().text);
+    folder.write("application.script", "while True:\n  sync()\nend\n");
+    return folder.path().string();
+}
+
 TEST(UrRtde, OldControllersSpeakVersionOneAndTellNoOffset) {
-    auto robot = controller({{"protocol_version", 1}, {"tells_tcp_offset", false}});
+    auto robot = controller({{"protocol_version", 1}, {"tells_tcp_offset", false}, {"cb3", true}});
     auto link = link_to(robot->port());
     // No dashboard question is asked for what RTDE tells itself.
     cell()->move_to(program(5)[0].trigger);
@@ -71,7 +86,8 @@ TEST(UrRtde, OldControllersSpeakVersionOneAndTellNoOffset) {
 }
 
 TEST(UrRtde, TheToolIsTakenOffThePose) {
-    auto robot = controller({});
+    auto robot = controller({{"tool", {{"xyz", {10, -20, 150}}, {"abc", {5, 12, -20}}}},
+                             {"scripts", scripts_without_measuring()}});
     auto link = link_to(robot->port());
     cell()->move_to(program(2)[1].trigger);
     EXPECT_LT(distance_mm(*link->base_from_flange(), program(2)[1].trigger), 1e-6);
@@ -85,13 +101,70 @@ TEST(UrRtde, RegistersMayLieElsewhere) {
     EXPECT_THAT(elsewhere.error().sentence(), HasSubstr("seamwright.script does not run"));
 }
 
-TEST(UrRtde, MovesWantTheTeachProgram) {
+TEST(UrRtde, MovesWantTheTeachProgramAndTakeTheirTime) {
     auto robot = controller({});
-    auto link = link_to(robot->port());
+    cell()->move_to(program(1)[0].trigger);
+    // The time-out of an answer is shorter than the way: 100 mm at 0.1 m/s.
+    auto link = link_to(robot->port(), {{"timeout_ms", 500}});
     EXPECT_THAT(link->move_to(program(1)[0].trigger).error().sentence(), HasSubstr("sw_teach()"));
     cell()->set_mode(RobotMode::manual_reduced);
-    ASSERT_TRUE(link->move_to(program(3)[2].trigger));
-    EXPECT_LT(distance_mm(*link->base_from_flange(), program(3)[2].trigger), 1e-6);
+    Pose far = program(1)[0].trigger;
+    far.translation().y() += 100;
+    Expected<void> moved = link->move_to(far);
+    for (int i = 0; i < 50 && !moved; ++i) {  // until the other program runs
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        moved = link->move_to(far);
+    }
+    ASSERT_TRUE(moved) << moved.error().sentence();
+    EXPECT_LT(distance_mm(*link->base_from_flange(), far), 1e-6);
+}
+
+TEST(UrRtde, AStoppedProgramIsToldAtOnce) {
+    for (const char* how : {"fault", "stop", "restart"}) {
+        SCOPED_TRACE(how);
+        const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+        auto robot = controller({}, port);
+        cell()->set_mode(RobotMode::external);
+        auto link = link_to(robot->port(), {{"dashboard_port", port}});
+        ASSERT_TRUE(link->read_frame("left"));
+        auto started = link->start_measuring(program(5));
+        ASSERT_TRUE(started) << started.error().sentence();
+        ASSERT_TRUE(link->wait_trigger(std::chrono::seconds(10)));
+        if (how == std::string("fault")) {
+            cell()->set_mode(RobotMode::fault);
+        } else {
+            ur::Dashboard pendant("127.0.0.1", port, Timeout(1000));
+            EXPECT_EQ(pendant.ask("stop"), "Stopped");
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            if (how == std::string("restart")) {
+                EXPECT_EQ(pendant.ask("play"), "Starting program");
+            }
+        }
+        const auto begun = std::chrono::steady_clock::now();
+        Expected<TriggerEvent> event = link->wait_trigger(std::chrono::seconds(30));
+        while (event) event = link->wait_trigger(std::chrono::seconds(30));
+        EXPECT_EQ(event.error().kind, ErrorKind::device);
+        EXPECT_FALSE(is_silence(event.error())) << event.error().sentence();
+        EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
+    }
+}
+
+TEST(UrRtde, AStartWhileNoProgramWaitsIsRefused) {
+    const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+    auto robot = controller({{"scripts", scripts_without_measuring()}}, port);
+    auto link = link_to(robot->port(), {{"dashboard_port", port}});
+    auto started = link->start_measuring({});
+    ASSERT_FALSE(started);
+    EXPECT_THAT(started.error().sentence(), HasSubstr("no robot program waits in sw_measure()"));
+}
+
+TEST(UrRtde, ALinkThatIsNotAskedStaysAlive) {
+    auto robot = controller({});
+    auto link = link_to(robot->port());
+    ASSERT_TRUE(link->read_frame("left"));
+    ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_NE(link->permission().value_or(Permission::none), Permission::none);
 }
 
 TEST(UrRtde, RegistersOfAnotherProgramAreRefusedByName) {
@@ -115,7 +188,7 @@ TEST(UrRtde, RegistersOfAnotherProgramAreRefusedByName) {
                 answer += ",VECTOR6D";
             }
             if ((*package)->type == rtde::Type::setup_inputs) {
-                answer = std::string(1, '\0') + "INT32,IN_USE,INT32,INT32,INT32";
+                answer = std::string(1, '\0') + "INT32,IN_USE,INT32,INT32,INT32,INT32,INT32";
                 for (int i = 0; i < 6; ++i) answer += ",DOUBLE";
             }
             (void)client->send(bytes_of(rtde::package_bytes({(*package)->type, answer})), Timeout(500));

@@ -8,6 +8,12 @@
 // ratio is weighed by points and squared length, so that the sum is one of squared distances in px and noise
 // of one sigma has the right weight; a mere change of scale costs nothing.
 //
+// Wrong points and lines. Before the lens is known a line's points are told from reflections and the like by
+// a parabola (bent_line.h), then by the lens found: what lies farther than 5 robust sigma from its line is
+// left out and the lens solved again, until nothing changes. A line of which less than 60 % remains, or which
+// stays bent by 4 times what the middling line does (its plane is not flat there), is left out and named; no
+// more than a third of the lines.
+//
 // Determined: distortion and centre. Not determined: the focal length, and the centre where there is no
 // distortion (it is held to the middle of the image with a sigma of a tenth of the width). Degenerate: lines
 // through the centre only, lines in one corner, fewer than 3 lines.
@@ -35,15 +41,17 @@ struct LensResult {
     // fx = fy = half the diagonal, so that k1, k2 .. are those of the scaled radius; undistort() gives
     // straight lines.
     CameraModel lens;
-    double k1_px = 0, k2_px = 0;                                   // K1 (1/px^2) and K2 (1/px^4) of (4.1)
-    double straightness_before_px = 0, straightness_after_px = 0;  // rms distance from the fitted lines
+    double k1_px = 0, k2_px = 0;  // K1 (1/px^2) and K2 (1/px^4) of (4.1)
+    double straightness_before_px = 0,
+           straightness_after_px = 0;  // rms distance from the fitted lines, of points used
     double corner_shift_px = 0,
            corner_sigma_px = 0;  // distortion in the image's corner and its sigma (worst corner)
     CalibrationReport report;    // centre_u, centre_v (px), k1, k2 (scaled radius), k3, p1, p2
 };
 
 // Error: no size, lines with fewer than 5 points, NaN, points outside the image. Verdict undetermined: fewer
-// than 3 lines, or the distortion in a corner known to worse than 3 px.
+// than 3 lines, no lens that makes them straight, or the distortion in a corner known to worse than 3 px.
+// What was left out stands in the notes of report.poses and in the judgement.
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options);
 
 }  // namespace seamwright

@@ -244,21 +244,22 @@ struct Side {
     const char* letter;
     const char* id;
     int axis;
-    double values[3];
     double from_deg;
+    std::vector<double> few, dense;  // where its spots are
 };
-constexpr Side kSides[] = {{"T", "top", 0, {280, 530, 790}, 45},
-                           {"L", "latch", 1, {190, 340, 580}, -45},
-                           {"B", "bottom", 0, {220, 480, 720}, 225},
-                           {"H", "hinge", 1, {190, 340, 580}, 135}};
+const std::vector<Side>& sides() {
+    static const std::vector<Side> all = {{"T", "top", 0, 45, {280, 530, 790}, {240, 300, 760, 820}},
+                                          {"L", "latch", 1, -45, {190, 340, 580}, {160, 220, 530, 590}},
+                                          {"B", "bottom", 0, 225, {220, 480, 720}, {190, 250, 690, 750}},
+                                          {"H", "hinge", 1, 135, {190, 340, 580}, {160, 220, 530, 590}}};
+    return all;
+}
 
-}  // namespace
-
-std::vector<DoorSpot> default_door_spots() {
+std::vector<DoorSpot> spots_at(std::vector<double> Side::*places) {
     std::vector<DoorSpot> spots;
-    for (const Side& side : kSides) {
-        for (int i = 0; i < 3; ++i) {
-            const DoorEdge e = door_edge(arc_at(side.axis, side.values[i], side.from_deg));
+    for (const Side& side : sides()) {
+        for (std::size_t i = 0; i < (side.*places).size(); ++i) {
+            const DoorEdge e = door_edge(arc_at(side.axis, (side.*places)[i], side.from_deg));
             DoorSpot spot;
             spot.id = side.letter + std::to_string(i + 1);
             Eigen::Matrix3d r;
@@ -271,6 +272,23 @@ std::vector<DoorSpot> default_door_spots() {
         }
     }
     return spots;
+}
+
+}  // namespace
+
+std::vector<DoorSpot> default_door_spots() {
+    return spots_at(&Side::few);
+}
+
+std::vector<DoorSpot> dense_door_spots() {
+    return spots_at(&Side::dense);
+}
+
+std::vector<DoorRegion> dense_door_regions() {
+    return {{"top", {"T1", "T2", "T3", "T4", "H3", "H4", "L3", "L4"}},
+            {"latch", {"L1", "L2", "L3", "L4", "T3", "T4", "B3", "B4"}},
+            {"bottom", {"B1", "B2", "B3", "B4", "H1", "H2", "L1", "L2"}},
+            {"hinge", {"H1", "H2", "H3", "H4", "T1", "T2", "B1", "B2"}}};
 }
 
 std::vector<DoorRegion> default_door_regions() {

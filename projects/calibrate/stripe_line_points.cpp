@@ -1,8 +1,6 @@
 #include "projects/calibrate/stripe_line_points.h"
 
-#include <algorithm>
-
-#include "core/geometry/decompositions.h"
+#include "core/calibration/bent_line.h"
 #include "core/profile/filter.h"
 
 namespace seamwright {
@@ -29,25 +27,11 @@ Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, S
 }
 
 std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points) {
-    for (int round = 0; round < 4 && points.size() > 20; ++round) {
-        Eigen::MatrixXd a(points.size(), 3);
-        Eigen::VectorXd v(points.size());
-        for (Eigen::Index i = 0; i < v.size(); ++i) {
-            const Eigen::Vector2d& p = points[static_cast<std::size_t>(i)];
-            const double u = p.x() / 1000;
-            a.row(i) << 1, u, u * u;
-            v(i) = p.y();
-        }
-        const Eigen::VectorXd off = (v - a * least_squares(a, v).x).cwiseAbs();
-        std::vector<double> sorted(off.begin(), off.end());
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                         sorted.end());
-        const double limit = std::max(1.0, 6 * sorted[sorted.size() / 2]);
-        std::vector<Eigen::Vector2d> kept;
-        for (Eigen::Index i = 0; i < v.size(); ++i)
-            if (off(i) <= limit) kept.push_back(points[static_cast<std::size_t>(i)]);
-        points = std::move(kept);
-    }
+    const std::vector<char> on = on_bent_line(points);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (on[i]) points[kept++] = points[i];
+    points.resize(kept);
     return points;
 }
 

@@ -12,8 +12,8 @@ namespace seamwright {
 // The stripe, tracked through reflections: one point a column, in order. `peaks` is a buffer to reuse.
 Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, StripePeaks& peaks);
 
-// The stripe of a flat plate alone: lines of a lens bend like a parabola, and what stands beside the plate
-// lies off it.
+// The stripe of a flat plate alone, without what stands beside the plate and without reflections
+// (core/calibration/bent_line.h).
 std::vector<Eigen::Vector2d> on_the_plate(std::vector<Eigen::Vector2d> points);
 
 }  // namespace seamwright

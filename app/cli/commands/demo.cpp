@@ -4,7 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
@@ -74,6 +79,90 @@ Expected<Answer> demo(const DemoOptions& options) {
     return answer;
 }
 
+std::string sweep_text(const SweepRow& row) {
+    std::string text = fmt::format("seed {:>4}: {:<8}", row.seed, row.outcome);
+    if (row.outcome != "failed")
+        text += fmt::format("calibration {} {:.3f} mm, looked again {}", row.calibration_verdict,
+                            row.calibration_error_mm, row.looks_again);
+    if (!row.path.empty()) {
+        text += fmt::format("; {} pushed, 3 sigma", row.pushed);
+        for (const DemoStatistic& s : row.path)
+            text += fmt::format(" {} {:.3f}", s.region_id, s.after_three_sigma_mm);
+        text += fmt::format(", worst {:.3f} mm", row.path.back().after_max_mm);
+    }
+    if (!row.reason.empty()) text += fmt::format(" ({})", row.reason);
+    return text;
+}
+
+// How many of the seeds, in order, have a 3 sigma of at most `limit_mm` in a region.
+int within(const DemoSweep& sweep, std::size_t region, double limit_mm) {
+    return static_cast<int>(std::count_if(sweep.rows.begin(), sweep.rows.end(), [&](const SweepRow& row) {
+        return region < row.path.size() && row.path[region].after_three_sigma_mm <= limit_mm;
+    }));
+}
+
+Expected<Answer> sweep(const DemoOptions& options, std::uint64_t first, std::uint64_t last) {
+    const DemoSweep result = sweep_demo(
+        options, first, last, [](const SweepRow& row) { fmt::print(stderr, "{}\n", sweep_text(row)); });
+    Answer answer;
+    std::map<std::string, int> outcomes;
+    nlohmann::json rows = nlohmann::json::array(), pooled = nlohmann::json::array();
+    int measured = 0;
+    for (const SweepRow& row : result.rows) {
+        ++outcomes[row.outcome];
+        measured += !row.path.empty();
+        if (row.outcome == "failed") answer.exit_code = kExitVerdict;
+        rows.push_back({{"seed", row.seed},
+                        {"outcome", row.outcome},
+                        {"reason", row.reason},
+                        {"pushed", row.pushed},
+                        {"calibration_verdict", row.calibration_verdict},
+                        {"calibration_error_mm", row.calibration_error_mm},
+                        {"looks_again", row.looks_again},
+                        {"path", statistic_json(row.path)},
+                        {"seconds", row.seconds}});
+    }
+    for (const auto& [outcome, count] : outcomes)
+        answer.text += fmt::format("{} of {} seeds: {}\n", count, result.rows.size(), outcome);
+    if (!result.pooled.empty()) {
+        answer.text += statistic_text("deviation along the bead, pushed parts of all seeds", result.pooled);
+        answer.text +=
+            fmt::format("\nseeds of {} whose 3 sigma is at most\n  {:<10} {:>9} {:>9} {:>9} {:>11}\n",
+                        measured, "region", "0.10 mm", "0.12 mm", "0.15 mm", "largest mm");
+    }
+    for (std::size_t r = 0; r < result.pooled.size(); ++r) {
+        double largest = 0;
+        for (const SweepRow& row : result.rows)
+            if (r < row.path.size()) largest = std::max(largest, row.path[r].after_three_sigma_mm);
+        answer.text +=
+            fmt::format("  {:<10} {:>9} {:>9} {:>9} {:>11.3f}\n", result.pooled[r].region_id,
+                        within(result, r, 0.10), within(result, r, 0.12), within(result, r, 0.15), largest);
+        pooled.push_back(statistic_json({result.pooled[r]}).front());
+        pooled.back()["seeds"] = measured;
+        pooled.back()["seeds_within_a_tenth"] = within(result, r, 0.10);
+        pooled.back()["largest_three_sigma_mm"] = largest;
+    }
+    answer.json = {{"outcomes", outcomes}, {"seeds", rows}, {"pooled", pooled}};
+    return answer;
+}
+
+// "1..300", or one number.
+Expected<std::pair<std::uint64_t, std::uint64_t>> seed_range(const std::string& text) {
+    std::uint64_t first = 0, last = 0;
+    const char* const end = text.data() + text.size();
+    auto read = std::from_chars(text.data(), end, first);
+    bool ok = read.ec == std::errc();
+    last = first;
+    if (ok && read.ptr != end) {
+        ok = end - read.ptr > 2 && read.ptr[0] == '.' && read.ptr[1] == '.';
+        if (ok) read = std::from_chars(read.ptr + 2, end, last);
+    }
+    if (!ok || read.ec != std::errc() || read.ptr != end || last < first || last - first >= 1000000)
+        return usage_error(fmt::format("\"{}\" is no range of seeds", text), "--seeds",
+                           "write 1..300: first and last");
+    return std::pair(first, last);
+}
+
 }  // namespace
 
 void add_demo(CommandLine& line) {
@@ -85,8 +174,20 @@ void add_demo(CommandLine& line) {
     command->add_option("--seed", options->seed, "Every random number follows from it")
         ->capture_default_str();
     command->add_option("--parts", options->parts, "Displaced parts")
-        ->check(CLI::Range(1, 1000))
+        ->check(CLI::Range(0, 1000))
         ->capture_default_str();
+    auto seeds = std::make_shared<std::string>();
+    auto without = std::make_shared<std::vector<std::string>>();
+    command->add_option("--seeds", *seeds,
+                        "FIRST..LAST: the demo in-process with each of these seeds, one line each and what "
+                        "they have in\ncommon; with --parts 0 the calibrations alone");
+    std::vector<std::string> sources;
+    for (const DemoSource source : kDemoSources) sources.emplace_back(to_string(source));
+    command
+        ->add_option("--without", *without,
+                     "Takes sources of error out of the cell, to see what the others bring")
+        ->delimiter(',')
+        ->check(CLI::IsMember(sources));
     command->add_flag("!--in-process", options->loopback,
                       "Without the GigE Vision camera and the KUKA controller on the loopback address");
     command
@@ -98,7 +199,19 @@ void add_demo(CommandLine& line) {
                      "Where the simulated KUKA controller connects to; 0: a port that is found free")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
-    line.on(command, [options] { return demo(*options); });
+    line.on(command, [options, seeds, without]() -> Expected<Answer> {
+        for (const DemoSource source : kDemoSources)
+            if (std::count(without->begin(), without->end(), to_string(source)) > 0)
+                options->without.insert(source);
+        if (!seeds->empty()) {
+            const auto range = seed_range(*seeds);
+            if (!range) return tl::unexpected(range.error());
+            return sweep(*options, range->first, range->second);
+        }
+        if (options->parts == 0)
+            return usage_error("no part is no demo", "--parts", "give 1 or more, or --seeds");
+        return demo(*options);
+    });
 }
 
 }  // namespace seamwright::cli

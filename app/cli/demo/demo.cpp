@@ -22,6 +22,9 @@ namespace seamwright::cli {
 namespace {
 
 constexpr double kCurveTravelMm = 20;
+constexpr int kEdgeRepeats = 3;        // of the edge that the template is cut at: any one will do
+constexpr int kReferenceRepeats = 10;  // each with an arrival of its own: the robot's scatter averages out
+constexpr double kPassStepMm = 4;
 constexpr const char* kSensor = "A";
 constexpr const char* kRobot = "R1";
 constexpr int kUsualRobotPort = 54600;  // of kuka-eki
@@ -105,17 +108,22 @@ Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, c
     spot.jitter_mm = 3;
     spot.feature.kind = "contour-end";
     spot.feature.parameters = {{"side", 0.0}};
-    auto edge = teach_spot(station, spot, {});
+    TeachOptions repeated;
+    repeated.repeats = kEdgeRepeats;
+    auto edge = teach_spot(station, spot, repeated);
     if (!edge) return tl::unexpected(edge.error());
     const double x = edge->spot.reference_mm.x(), z = edge->spot.reference_mm.z();
     spot.feature.kind = "template";
     spot.feature.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
     spot.feature.template_profile = cut_out(edge->spot.reference_profile, x - 1, x + 40);
     spot.feature.template_reference_mm = {x, z};
-    auto taught = teach_spot(station, spot, {});
+    repeated.repeats = kReferenceRepeats;
+    auto taught = teach_spot(station, spot, repeated);
     if (!taught) return tl::unexpected(taught.error());
     spot = taught->spot;
-    auto pass = record_pass(station, spot, {});
+    PassOptions passing;
+    passing.step_mm = kPassStepMm;
+    auto pass = record_pass(station, spot, passing);
     if (!pass) return tl::unexpected(pass.error());
     AlignmentOptions alignment;
     alignment.jitter_mm = spot.jitter_mm;
@@ -150,7 +158,7 @@ Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLin
     for (const Region& region : project.regions) {
         auto pushed = robot.read_frame(region.frame_name);
         if (!pushed) return tl::unexpected(pushed.error());
-        for (const DoorSpot& spot : default_door_spots()) {
+        for (const DoorSpot& spot : dense_door_spots()) {
             if (door_side_of(spot.workobject_from_sensor.translation()) != region.id) continue;
             const Eigen::Matrix3d axes = spot.workobject_from_sensor.linear();
             part.spots.push_back(deviation(cell, region, *pushed, spot.workobject_from_sensor * spot.edge_mm,
@@ -194,7 +202,7 @@ Expected<void> reset_frames(RobotLink& robot, const Project& project) {
     return {};
 }
 
-PartState next_part(std::mt19937_64& random) {
+PartState next_part(std::mt19937_64& random, bool bent) {
     std::uniform_real_distribution<double> unit(-1, 1);
     Eigen::Vector3d t, w;
     for (int i = 0; i < 3; ++i) t[i] = 10 * unit(random);
@@ -202,36 +210,94 @@ PartState next_part(std::mt19937_64& random) {
     PartState part;
     part.workobject_from_movedworkobject = make_pose(rotation_exp(w), t);
     part.bend = {0.3 * unit(random), 0.2 * unit(random)};
+    if (!bent) part.bend = {};
     return part;
+}
+
+nlohmann::json cell_settings(const DemoOptions& options) {
+    // A board that stays in the field of view when the sensor tilts over it.
+    nlohmann::json settings = {{"seed", options.seed},
+                               {"board", {{"columns", 7}, {"rows", 6}, {"pitch_mm", 7}}}};
+    for (const DoorRegion& region : dense_door_regions())  // the frames that the application program runs in
+        settings["robot"]["frames"][frame_name(region.id)] =
+            pose_json(default_cell_settings().base_from_workobject);
+    if (options.without.contains(DemoSource::noise)) {
+        settings["noise"] = {
+            {"shot", false}, {"read_electrons", 0}, {"speckle", 0}, {"stray_probability", 0}};
+        settings["surface"] = {{"dark_share", 0}};
+    }
+    if (options.without.contains(DemoSource::repeatability))
+        settings["robot"]["repeatability_mm"] = settings["robot"]["repeatability_deg"] = 0;
+    if (options.without.contains(DemoSource::jitter)) settings["robot"]["trigger_jitter_mm"] = 0;
+    return settings;
+}
+
+// What a perfect calibration would find.
+DemoCalibration true_calibration(const SimulatedCell& cell) {
+    DemoCalibration demo;
+    demo.calibration.model = cell.sensor_model();
+    demo.calibration.flange_from_sensor = cell.flange_from_sensor();
+    demo.calibration.method = "simulated truth";
+    demo.calibration.verdict = "good";
+    return demo;
 }
 
 }  // namespace
 
+std::string_view to_string(DemoSource source) {
+    switch (source) {
+        case DemoSource::calibration:
+            return "calibration";
+        case DemoSource::noise:
+            return "noise";
+        case DemoSource::repeatability:
+            return "repeatability";
+        case DemoSource::jitter:
+            return "jitter";
+        case DemoSource::bend:
+            return "bend";
+    }
+    return "";
+}
+
+void DeviationTally::add(const DemoDeviation& d) {
+    before_max_mm = std::max(before_max_mm, d.before_mm.norm());
+    after_max_mm = std::max(after_max_mm, d.after_mm.norm());
+    for (double v : d.after_mm) n += 1, sum += v, squares += v * v;
+}
+
+DemoStatistic DeviationTally::statistic(const std::string& region_id) const {
+    DemoStatistic row;
+    row.region_id = region_id;
+    row.before_max_mm = before_max_mm;
+    row.after_max_mm = after_max_mm;
+    if (n > 1) {
+        row.after_mean_mm = sum / n;
+        row.after_three_sigma_mm = 3 * std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1)));
+    }
+    return row;
+}
+
+void add(const DemoOutcome& outcome, std::vector<DemoDeviation> DemoPart::*which,
+         std::vector<std::pair<std::string, DeviationTally>>& tallies) {
+    const auto of = [&](const std::string& name) -> DeviationTally& {
+        for (auto& [known, tally] : tallies)
+            if (known == name) return tally;
+        return tallies.emplace_back(name, DeviationTally{}).second;
+    };
+    for (const Region& r : outcome.project.regions) of(r.id);
+    of("all");
+    for (const DemoPart& part : outcome.parts)
+        if (part.pushed())
+            for (const DemoDeviation& d : part.*which) of(d.region_id).add(d), of("all").add(d);
+}
+
 std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
                                       std::vector<DemoDeviation> DemoPart::*which) {
+    std::vector<std::pair<std::string, DeviationTally>> tallies;
+    add(outcome, which, tallies);
     std::vector<DemoStatistic> rows;
-    std::vector<std::string> names;
-    for (const Region& r : outcome.project.regions) names.push_back(r.id);
-    names.push_back("all");
-    for (const std::string& name : names) {
-        DemoStatistic row;
-        row.region_id = name;
-        double n = 0, sum = 0, squares = 0;
-        for (const DemoPart& part : outcome.parts) {
-            if (!part.pushed()) continue;
-            for (const DemoDeviation& d : part.*which) {
-                if (name != "all" && d.region_id != name) continue;
-                row.before_max_mm = std::max(row.before_max_mm, d.before_mm.norm());
-                row.after_max_mm = std::max(row.after_max_mm, d.after_mm.norm());
-                for (double v : d.after_mm) n += 1, sum += v, squares += v * v;
-            }
-        }
-        if (n > 1) {
-            row.after_mean_mm = sum / n;
-            row.after_three_sigma_mm = 3 * std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1)));
-        }
-        rows.push_back(row);
-    }
+    for (const auto& [name, tally] : tallies) rows.push_back(tally.statistic(name));
     return rows;
 }
 
@@ -245,13 +311,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     DemoOutcome outcome;
     outcome.project_file = options.folder / "demo.seam";
     outcome.report_file = options.folder / "report.html";
-    // A board that stays in the field of view when the sensor tilts over it.
-    nlohmann::json settings = {{"seed", options.seed},
-                               {"board", {{"columns", 7}, {"rows", 6}, {"pitch_mm", 7}}}};
-    for (const DoorRegion& region :
-         default_door_regions())  // the frames that the application program runs in
-        settings["robot"]["frames"][frame_name(region.id)] =
-            pose_json(default_cell_settings().base_from_workobject);
+    nlohmann::json settings = cell_settings(options);
     auto opened = SimulatedCell::open(settings);
     if (!opened) return tl::unexpected(opened.error());
     const std::shared_ptr<SimulatedCell> cell = *opened;
@@ -287,9 +347,12 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     auto identity = served->devices.robot->identity();
     if (!identity) return tl::unexpected(identity.error());
     robot_setup.identity = *identity;
-    auto calibrated = calibrate_demo_sensor(world, *served->devices.sensor, *served->devices.robot);
+    auto calibrated = options.without.contains(DemoSource::calibration)
+                          ? Expected<DemoCalibration>(true_calibration(world))
+                          : calibrate_demo_sensor(world, *served->devices.sensor, *served->devices.robot);
     if (!calibrated) return tl::unexpected(calibrated.error());
     outcome.calibration = std::move(*calibrated);
+    if (options.parts == 0) return outcome;
     Calibration& calibration = outcome.calibration.calibration;
     calibration.id = "cal-1";
     calibration.sensor_id = kSensor;
@@ -312,7 +375,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     robots[kRobot] = std::move(served->devices.robot);
     station.connect(std::move(sensors), std::move(robots));
 
-    for (const DoorSpot& door : default_door_spots()) {
+    for (const DoorSpot& door : dense_door_spots()) {
         progress("teaching spot " + door.id);
         Spot spot;
         auto taught = teach(station, world.flange_for(door.workobject_from_sensor), door, spot);
@@ -320,7 +383,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         outcome.taught.push_back(std::move(*taught));
         project.spots.push_back(std::move(spot));
     }
-    for (const DoorRegion& door : default_door_regions()) {
+    for (const DoorRegion& door : dense_door_regions()) {
         Region region;
         region.id = door.id;
         region.spot_ids = door.spot_ids;
@@ -358,7 +421,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     for (int i = 0; i < options.parts; ++i) {
         progress(fmt::format("part {} of {}: displaced, measured, corrected, pushed", i + 1, options.parts));
         DemoPart part;
-        part.truth = next_part(random);
+        part.truth = next_part(random, !options.without.contains(DemoSource::bend));
         world.set_part(part.truth);
         if (auto reset = reset_frames(robot, project); !reset) return tl::unexpected(reset.error());
         RunOptions run;

@@ -3,10 +3,14 @@
 // correct, push, and judge the pushed frames against where the part truly is. Nothing here knows the truth
 // before that last step.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/alignment/alignment.h"
@@ -17,10 +21,23 @@
 
 namespace seamwright::cli {
 
+// A source of error that can be taken out of the cell, to see what the others bring (sweep, below).
+enum class DemoSource {
+    calibration,    // the sensor's true model and place in place of a calibration
+    noise,          // shot and read noise, speckle, stray reflections, dark patches
+    repeatability,  // of the robot's arrivals
+    jitter,         // of the trigger
+    bend            // of the part
+};
+inline constexpr std::array kDemoSources = {DemoSource::calibration, DemoSource::noise,
+                                            DemoSource::repeatability, DemoSource::jitter, DemoSource::bend};
+std::string_view to_string(DemoSource source);
+
 struct DemoOptions {
     std::filesystem::path folder = "demo";
     std::uint64_t seed = 1;
     int parts = 10;
+    std::set<DemoSource> without;
     // Over loopback: the sensor as a GigE Vision camera at this address, the robot as a KUKA controller that
     // connects by EthernetKRL. In-process otherwise: the same cell without cables between.
     bool loopback = true;
@@ -38,10 +55,12 @@ struct DemoCalibrationStep {
 struct DemoCalibration {
     Calibration calibration;  // goes into the project
     std::vector<DemoCalibrationStep> steps;
+    int looks_again = 0;  // frames taken once more, because a solution left them out
     double truth_mm = 0;  // error of the calibrated chain at the working distance, against the cell
 };
 
-// From frames of a plate and of a sphere, starting from nothing but the sizes of both.
+// From frames of a plate and of a sphere, starting from nothing but the sizes of both. What a solution leaves
+// out is looked at once more, as a person would.
 Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSource& sensor, RobotLink& robot);
 
 // Where a point of the taught path should be and where the pushed frame puts it, base frame, along-edge part
@@ -83,12 +102,40 @@ struct DemoStatistic {
     std::string region_id;
     double before_max_mm = 0, after_mean_mm = 0, after_three_sigma_mm = 0, after_max_mm = 0;
 };
-// Over the parts that were pushed; one row a region, then one for all ("all").
+// Across the edge and in height alike.
+struct DeviationTally {
+    double before_max_mm = 0, after_max_mm = 0, n = 0, sum = 0, squares = 0;
+    void add(const DemoDeviation& deviation);
+    DemoStatistic statistic(const std::string& region_id) const;
+};
+// Adds the parts that were pushed; one tally a region, then one for all ("all").
+void add(const DemoOutcome& outcome, std::vector<DemoDeviation> DemoPart::*which,
+         std::vector<std::pair<std::string, DeviationTally>>& tallies);
 std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
                                       std::vector<DemoDeviation> DemoPart::*which);
 
 Expected<DemoOutcome> run_demo(const DemoOptions& options,
                                const std::function<void(const std::string&)>& progress);
+
+// The demo over many seeds, in-process: what one seed ended with. `parts` of 0 calibrates alone.
+struct SweepRow {
+    std::uint64_t seed = 0;
+    std::string outcome;  // "ok", "refused" (a part was not pushed), "failed" (no further than the reason)
+    std::string reason;   // of the first refusal, or the error
+    int pushed = 0;
+    std::string calibration_verdict;
+    double calibration_error_mm = 0;
+    int looks_again = 0;              // frames that the calibrations took once more
+    std::vector<DemoStatistic> path;  // one row a region, then "all"; empty when nothing was pushed
+    double seconds = 0;
+};
+struct DemoSweep {
+    std::vector<SweepRow> rows;
+    std::vector<DemoStatistic> pooled;  // over all pushed parts of all seeds
+};
+// Overwrites the project file in options.folder with every seed. `each` hears of a row when it is done.
+DemoSweep sweep_demo(DemoOptions options, std::uint64_t first, std::uint64_t last,
+                     const std::function<void(const SweepRow&)>& each);
 
 // Self-contained HTML.
 std::string demo_report(const DemoOutcome& outcome);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/cli/demo/demo.h"
 #include "core/calibration/lens.h"
@@ -17,6 +18,28 @@ namespace seamwright::cli {
 namespace {
 
 constexpr double kPlateExposureUs = 6000;
+constexpr int kLooks = 3;  // at a view at most
+constexpr std::size_t kLeastLinePoints = 200;
+
+// Takes every view, solves, and takes those views once more that the solution left out: a person at the cell
+// would. `take(view)` -> Expected<void>; `solve(left_out)` -> Expected<result>, sets left_out[view].
+template <class Take, class Solve>
+auto solve_with_further_looks(std::size_t views, int& looks_again, const Take& take, const Solve& solve)
+    -> decltype(solve(std::declval<std::vector<char>&>())) {
+    std::vector<char> wanted(views, 1);
+    for (int look = 1;; ++look) {
+        for (std::size_t i = 0; i < views; ++i) {
+            if (!wanted[i]) continue;
+            if (auto taken = take(i); !taken) return tl::unexpected(taken.error());
+            looks_again += look > 1;
+        }
+        std::vector<char> left_out(views, 0);
+        auto solved = solve(left_out);
+        const bool complete = std::count(left_out.begin(), left_out.end(), 1) == 0;
+        if (look == kLooks || (solved && complete)) return solved;
+        wanted = complete ? std::vector<char>(views, 1) : left_out;  // no solution and nobody to blame: all
+    }
+}
 
 Expected<FramePtr> snap(ProfileSource& sensor) {
     if (auto fired = sensor.trigger(""); !fired) return tl::unexpected(fired.error());
@@ -86,28 +109,36 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     board.columns = cell.settings().board.columns;
     board.rows = cell.settings().board.rows;
     board.pitch_mm = cell.settings().board.pitch_mm;
-    std::vector<StripeObservation> observations;
-    for (std::size_t i = 0; i < plate_views().size(); ++i) {
+    std::vector<StripeObservation> observations(plate_views().size());
+    const auto take_plate = [&](std::size_t i) -> Expected<void> {
         StripeObservation observation;
         observation.id = fmt::format("plate{:02}", i + 1);
         observation.width = cell.settings().optics.width;
         observation.height = cell.settings().optics.height;
         observation.scan = ScanLines::columns;
         Pose base_from_flange;
-        if (auto set = expose(cell, sensor, 0, kPlateExposureUs); !set) return tl::unexpected(set.error());
+        if (auto set = expose(cell, sensor, 0, kPlateExposureUs); !set) return set;
         auto image = look(cell, sensor, robot, plate_views()[i], base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.board = find_board((*image)->image, board);
         observation.base_from_flange = base_from_flange;
-        if (auto set = expose(cell, sensor, 1, exposure_us); !set) return tl::unexpected(set.error());
+        if (auto set = expose(cell, sensor, 1, exposure_us); !set) return set;
         image = snap(sensor);  // the robot stands still between the two
         if (!image) return tl::unexpected(image.error());
         auto stripe = stripe_points((*image)->image, peaks);
         if (!stripe) return tl::unexpected(stripe.error());
         observation.stripe = std::move(*stripe);
-        observations.push_back(std::move(observation));
-    }
-    auto camera = calibrate_stripe_camera(observations, board, {});
+        observations[i] = std::move(observation);
+        return {};
+    };
+    auto camera = solve_with_further_looks(
+        observations.size(), demo.looks_again, take_plate, [&](std::vector<char>& left_out) {
+            auto solved = calibrate_stripe_camera(observations, board, {});
+            for (std::size_t i = 0; i < observations.size(); ++i)
+                left_out[i] = !observations[i].board ||
+                              (solved && !(solved->frames[i].used && solved->frames[i].stripe_used));
+            return solved;
+        });
     if (!camera) return tl::unexpected(camera.error());
     if (!camera->plane || !camera->flange_from_camera)
         return device_error(
@@ -123,19 +154,33 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
 
     // Lens: stripes on the plate at all heights are straight lines in the world; an independent look at the
     // distortion.
-    LensData lens;
-    lens.width = cell.settings().optics.width;
-    lens.height = cell.settings().optics.height;
-    for (const TargetPlace& view : line_views()) {
+    std::vector<std::vector<Eigen::Vector2d>> lines(line_views().size());
+    const auto take_line = [&](std::size_t i) -> Expected<void> {
         Pose base_from_flange;
-        auto image = look(cell, sensor, robot, view, base_from_flange);
+        auto image = look(cell, sensor, robot, line_views()[i], base_from_flange);
         if (!image) return tl::unexpected(image.error());
         auto line = stripe_points((*image)->image, peaks);
         if (!line) return tl::unexpected(line.error());
-        std::vector<Eigen::Vector2d> straight_line = on_the_plate(std::move(*line));
-        if (straight_line.size() >= 200) lens.lines.push_back(std::move(straight_line));
-    }
-    auto straight = calibrate_lens(lens, {});
+        lines[i] = on_the_plate(std::move(*line));
+        return {};
+    };
+    auto straight =
+        solve_with_further_looks(lines.size(), demo.looks_again, take_line, [&](std::vector<char>& left_out) {
+            LensData lens;
+            lens.width = cell.settings().optics.width;
+            lens.height = cell.settings().optics.height;
+            std::vector<std::size_t> view;
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                left_out[i] = lines[i].size() < kLeastLinePoints;
+                if (left_out[i]) continue;
+                lens.lines.push_back(lines[i]);
+                view.push_back(i);
+            }
+            auto solved = calibrate_lens(lens, {});
+            for (std::size_t i = 0; solved && i < view.size(); ++i)
+                left_out[view[i]] = !solved->report.poses[i].used;
+            return solved;
+        });
     if (!straight) return tl::unexpected(straight.error());
     demo.steps.push_back({"lens", straight->report,
                           fmt::format("stripes straight within {:.3f} px, before {:.3f} px",
@@ -143,22 +188,28 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
 
     // Sphere: where the sensor sits on the flange, with the laser's exposure.
     cell.set_scene(Scene::sphere);
-    std::vector<SphereObservation> sphere;
+    std::vector<SphereObservation> sphere(sphere_views().size());
     ProfileCandidates candidates;
-    for (std::size_t i = 0; i < sphere_views().size(); ++i) {
+    const auto take_sphere = [&](std::size_t i) -> Expected<void> {
         SphereObservation observation;
         auto image = look(cell, sensor, robot, sphere_views()[i], observation.base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.id = fmt::format("sphere{:02}", i + 1);
-        if (auto found = find_peaks((*image)->image, {}, peaks); !found) return tl::unexpected(found.error());
+        if (auto found = find_peaks((*image)->image, {}, peaks); !found) return found;
         to_millimetres(peaks, *c.model, candidates);
-        if (auto tracked = track_stripe(candidates, {}, observation.profile); !tracked)
-            return tl::unexpected(tracked.error());
-        sphere.push_back(std::move(observation));
-    }
+        if (auto tracked = track_stripe(candidates, {}, observation.profile); !tracked) return tracked;
+        sphere[i] = std::move(observation);
+        return {};
+    };
     TcpSphereOptions options;
     options.radius_mm = cell.settings().sphere_radius_mm;
-    auto tcp = calibrate_tcp_sphere(sphere, options);
+    auto tcp = solve_with_further_looks(sphere.size(), demo.looks_again, take_sphere,
+                                        [&](std::vector<char>& left_out) {
+                                            auto solved = calibrate_tcp_sphere(sphere, options);
+                                            for (std::size_t i = 0; solved && i < sphere.size(); ++i)
+                                                left_out[i] = !solved->report.poses[i].used;
+                                            return solved;
+                                        });
     if (!tcp) return tl::unexpected(tcp.error());
     if (tcp->status != TcpSphereStatus::ok)
         return device_error(

@@ -194,7 +194,7 @@ std::string demo_picture(const DemoOutcome& o) {
     for (std::size_t i = 0; i <= path.size(); ++i)
         taught.x.push_back(path[i % path.size()].x()), taught.y.push_back(path[i % path.size()].y());
     Series spots{"spots", {}, {}, Mark::crosses, colour::kBlue};
-    for (const DoorSpot& spot : default_door_spots()) {
+    for (const DoorSpot& spot : dense_door_spots()) {
         const Eigen::Vector3d p = spot.workobject_from_sensor * spot.edge_mm;
         spots.x.push_back(p.x()), spots.y.push_back(p.y());
     }

@@ -72,6 +72,71 @@ TEST(Lens, ALineLeftOutIsStillJudged) {
     EXPECT_NEAR(r->report.poses[5].rms_px, 0.1, 0.03) << "it took no part and fits";
 }
 
+// A reflection of a stretch of the stripe: beside it, tilted, and by a tracker taken for it.
+void reflect(std::vector<Eigen::Vector2d>& line, std::size_t from, std::size_t to, double shift_px,
+             double tilt) {
+    for (std::size_t i = from; i < to; ++i)
+        line[i].y() += shift_px + tilt * (static_cast<double>(i) - static_cast<double>(from));
+}
+
+TEST(Lens, ReflectionsOnSomeLinesDoNotBendTheLens) {
+    const auto clean = calibrate_lens(bent_lines(-0.2, 0.05, 0.1, 1), {});
+    ASSERT_TRUE(clean);
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        LensData d = bent_lines(-0.2, 0.05, 0.1, seed);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> u(-1, 1);
+        for (const std::size_t line : {0u, 2u, 3u, 5u}) {
+            auto& points = d.lines[line];
+            const auto from =
+                static_cast<std::size_t>(0.3 * (1 + u(random)) * static_cast<double>(points.size()));
+            reflect(points, from, from + points.size() * 2 / 5, std::copysign(25 + 13 * u(random), u(random)),
+                    0.5 * u(random));
+            std::erase_if(points, [](const auto& p) { return p.y() < 0 || p.y() > 480; });
+        }
+        const auto r = calibrate_lens(d, {});
+        ASSERT_TRUE(r) << "seed " << seed << ": " << r.error().sentence();
+        EXPECT_EQ(r->report.judgement.verdict, Verdict::good) << seed << ": " << r->report.judgement.reason;
+        EXPECT_NEAR(r->lens.k1, -0.2, 5 * r->report.parameters[2].sigma) << seed;
+        EXPECT_NEAR(r->lens.k2, 0.05, 5 * r->report.parameters[3].sigma) << seed;
+        EXPECT_LT(r->straightness_after_px, 0.12) << seed;
+        EXPECT_THAT(r->report.poses[3].note, HasSubstr("lie off it")) << seed;
+    }
+}
+
+TEST(Lens, ALineThatIsNoneIsLeftOutAndNamed) {
+    LensData d = bent_lines(-0.2, 0.05, 0.1, 1);
+    for (auto& p : d.lines[4]) p.y() += 6 * std::pow((p.x() - 330) / 330, 4);  // the plate is not flat there
+    auto& ragged = d.lines[9];
+    for (std::size_t i = 0; i < ragged.size(); ++i)
+        if (i % 9 < 4) ragged[i].x() += 40 + 17.0 * static_cast<double>(i % 7);  // hardly a line at all
+    const auto r = calibrate_lens(d, {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_FALSE(r->report.poses[4].used);
+    EXPECT_THAT(r->report.poses[4].note, HasSubstr("stays bent"));
+    EXPECT_FALSE(r->report.poses[9].used);
+    EXPECT_THAT(r->report.poses[9].note, HasSubstr("lie on one line"));
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::good);
+    EXPECT_THAT(r->report.judgement.reason, HasSubstr("left out as no straight lines: 4, 9"));
+    EXPECT_NEAR(r->lens.k1, -0.2, 5 * r->report.parameters[2].sigma);
+    for (const std::size_t i : {0u, 3u, 5u, 8u, 10u}) EXPECT_TRUE(r->report.poses[i].used) << i;
+}
+
+TEST(Lens, LinesThatNoLensStraightensGiveAVerdictNotAnError) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        LensData d{640, 480, {}};
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> u(0, 1);
+        for (int i = 0; i < 6; ++i) {
+            auto& line = d.lines.emplace_back();
+            for (int k = 0; k < 40; ++k) line.emplace_back(16.0 * k, 480 * u(random));
+        }
+        const auto r = calibrate_lens(d, {});
+        ASSERT_TRUE(r) << "seed " << seed << ": " << r.error().sentence();
+        EXPECT_GE(r->report.judgement.verdict, Verdict::poor) << seed;
+    }
+}
+
 TEST(Lens, RefusesBadLines) {
     auto d = bent_lines(-0.1, 0, 0.1, 4);
     d.lines[2][3].x() = std::nan("");

@@ -264,8 +264,6 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors", "all points of the line are the same"),
     QT_TRANSLATE_NOOP("Errors", "there is no line"),
     QT_TRANSLATE_NOOP("Errors", "give 5 or more lines over the whole image"),
-    QT_TRANSLATE_NOOP("Errors", "the lines cannot be undistorted"),
-    QT_TRANSLATE_NOOP("Errors", "check the points"),
     QT_TRANSLATE_NOOP("Errors", "a step of %1 px is not possible for %2x%3 pixels"),
     QT_TRANSLATE_NOOP("Errors", "give e.g. 8"),
     QT_TRANSLATE_NOOP("Errors", "%1 pairs are too many"),

@@ -854,14 +854,6 @@
         <translation>5 oder mehr Linien über das ganze Bild angeben</translation>
     </message>
     <message>
-        <source>the lines cannot be undistorted</source>
-        <translation>die Linien lassen sich nicht entzerren</translation>
-    </message>
-    <message>
-        <source>check the points</source>
-        <translation>Punkte prüfen</translation>
-    </message>
-    <message>
         <source>a step of %1 px is not possible for %2x%3 pixels</source>
         <translation>eine Schrittweite von %1 px ist für %2x%3 Pixel nicht möglich</translation>
     </message>

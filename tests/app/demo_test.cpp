@@ -62,6 +62,23 @@ TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
     EXPECT_NEAR(direct["before_max_mm"], all["before_max_mm"], 0.01) << "the same parts";
 }
 
+// Reflections lie on the lens lines of these three.
+TEST_F(Demo, CalibratesWhereReflectionsLieOnTheLensLines) {
+    for (const char* seeds : {"11", "22", "28"}) {
+        const ProgramResult r = run_program(
+            {"demo", "--dir", (folder / "out").string(), "--seeds", seeds, "--parts", "0", "--json", "-"},
+            folder);
+        ASSERT_EQ(r.exit_code, 0) << r.err;
+        const json row = json::parse(r.out)["seeds"].front();
+        EXPECT_EQ(row["outcome"], "ok") << row;
+        EXPECT_THAT((std::vector<std::string>{"good", "usable"}),
+                    testing::Contains(row["calibration_verdict"]));
+        EXPECT_LT(row["calibration_error_mm"].get<double>(), 0.4);
+    }
+    EXPECT_EQ(run_program({"demo", "--seeds", "9..3"}, folder).exit_code, 2);
+    EXPECT_EQ(run_program({"demo", "--parts", "0"}, folder).exit_code, 2);
+}
+
 // The plant in small: the cell as a process of its own, the runner waiting for the line's calls.
 TEST_F(Demo, TheRunnerServesTheLineOverRealProtocols) {
     const std::string out = (folder / "out").string(), project = out + "/demo.seam";

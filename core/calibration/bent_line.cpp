@@ -8,6 +8,7 @@
 #include "core/geometry/decompositions.h"
 
 namespace seamwright {
+namespace bent_line {
 namespace {
 
 constexpr int kTriples = 300, kRounds = 6;
@@ -74,8 +75,10 @@ Eigen::Vector3d least_median(const std::vector<Eigen::Vector2d>& own, std::vecto
 }
 
 }  // namespace
+}  // namespace bent_line
 
 std::vector<char> on_bent_line(const std::vector<Eigen::Vector2d>& points) {
+    using namespace bent_line;
     std::vector<char> on(points.size(), 1);
     if (points.size() < 8) return on;
     const std::vector<Eigen::Vector2d> own = in_own_axes(points);

@@ -12,6 +12,7 @@
 #include "core/numbers.h"
 
 namespace seamwright {
+namespace lens_lines {
 namespace {
 
 const std::string kExcluded = "excluded";
@@ -27,19 +28,20 @@ struct Spread {
     Eigen::Vector2d mean, normal;  // of the line
 };
 
-// Of the points with use[i] != 0.
-Spread spread_of(const std::vector<Eigen::Vector2d>& points, const std::vector<char>& use) {
+// Of the points by their weights.
+template <class Weights>
+Spread spread_of(const std::vector<Eigen::Vector2d>& points, const Weights& weight) {
     Spread s;
     s.mean.setZero();
     double n = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (use[i]) s.mean += points[i], n += 1;
+        if (weight[i] > 0) s.mean += weight[i] * points[i], n += weight[i];
     s.mean /= n;
     double xx = 0, xy = 0, yy = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!use[i]) continue;
+        if (!(weight[i] > 0)) continue;
         const Eigen::Vector2d d = points[i] - s.mean;
-        xx += d.x() * d.x(), xy += d.x() * d.y(), yy += d.y() * d.y();
+        xx += weight[i] * d.x() * d.x(), xy += weight[i] * d.x() * d.y(), yy += weight[i] * d.y() * d.y();
     }
     const double half = 0.5 * (xx + yy) / n, root = std::hypot(0.5 * (xx - yy), xy) / n;
     s.most = half + root;
@@ -52,22 +54,41 @@ Spread spread_of(const std::vector<Eigen::Vector2d>& points, const std::vector<c
 // One char a point: whether it is taken to lie on its line.
 using Support = std::vector<std::vector<char>>;
 
-// Signed distances in px of all points of a line from the line fitted to its support, brought back to its
-// length in the image (the ratio). False where the lens cannot be undone.
-bool distances(const std::vector<Eigen::Vector2d>& points, const std::vector<char>& on,
-               const CameraModel& lens, double focal, std::vector<Eigen::Vector2d>& straight,
-               std::vector<double>& out) {
+// Signed distances of all points of a line, in px of the image, from the line fitted to its support: the
+// distance in the undistorted plane over how far a pixel across the line reaches there. False where the lens
+// cannot be undone.
+bool distances(const std::vector<Eigen::Vector2d>& points, const std::vector<char>& on, const Intrinsics& k,
+               const CameraModel& lens, std::vector<Eigen::Vector2d>& straight,
+               std::vector<Eigen::Matrix2d>& across, std::vector<double>& weight, std::vector<double>& out) {
     straight.clear();
-    for (const auto& p : points) straight.push_back(focal * lens.undistort(p));
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (on[i] && !straight[i].allFinite()) return false;
-    Spread s = spread_of(straight, on);
-    const Spread raw = spread_of(points, on);
-    if (s.normal.dot(raw.normal) < 0) s.normal = -s.normal;  // one side for all, or derivatives jump
-    if (!(s.most > 0) || !std::isfinite(s.most)) return false;
-    const double scale = std::sqrt(raw.most / s.most);
+    across.clear();
+    weight.clear();
     out.clear();
-    for (const auto& p : straight) out.push_back(scale * s.normal.dot(p - s.mean));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        straight.push_back(lens.undistort(points[i]));
+        weight.push_back(on[i]);
+        if (!straight[i].allFinite()) {
+            if (on[i]) return false;
+            across.push_back(Eigen::Matrix2d::Identity());
+            continue;
+        }
+        Eigen::Vector2d pixel;
+        Eigen::Matrix<double, 2, 3> by_point;
+        project_with_jacobian(k, {straight[i].x(), straight[i].y(), 1}, pixel, &by_point, nullptr);
+        const Eigen::Matrix2d j = by_point.leftCols<2>();
+        across.emplace_back();
+        across.back() << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);  // inverse, transposed
+        across.back() /= j.determinant();
+    }
+    Spread s = spread_of(straight, weight);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (on[i]) weight[i] = 1 / (across[i] * s.normal).squaredNorm();
+    s = spread_of(straight, weight);
+    if (!(s.most > 0) || !std::isfinite(s.most)) return false;
+    if (s.normal.dot(spread_of(points, on).normal) < 0)
+        s.normal = -s.normal;  // one side for all, or derivatives jump
+    for (std::size_t i = 0; i < points.size(); ++i)
+        out.push_back(s.normal.dot(straight[i] - s.mean) / (across[i] * s.normal).norm());
     return true;
 }
 
@@ -91,7 +112,7 @@ class Lines {
         Eigen::Index at = 0;
         for (std::size_t i = 0; i < data_.lines.size(); ++i) {
             if (!used[i]) continue;
-            if (!distances(data_.lines[i], on[i], lens, k(0), straight_, off_)) return false;
+            if (!distances(data_.lines[i], on[i], k, lens, straight_, across_, weight_, off_)) return false;
             for (std::size_t j = 0; j < off_.size(); ++j)
                 if (on[i][j]) out(at++) = off_[j];
         }
@@ -113,14 +134,16 @@ class Lines {
     // Distances of all points of a line, used or not; empty where the lens cannot be undone.
     std::vector<double> all_distances(std::size_t line, const Intrinsics& k) {
         std::vector<double> out;
-        if (!distances(data_.lines[line], on[line], camera(k), k(0), straight_, out)) out.clear();
+        if (!distances(data_.lines[line], on[line], k, camera(k), straight_, across_, weight_, out))
+            out.clear();
         return out;
     }
 
   private:
     const LensData& data_;
     std::vector<Eigen::Vector2d> straight_;
-    std::vector<double> off_;
+    std::vector<Eigen::Matrix2d> across_;
+    std::vector<double> weight_, off_;
     Eigen::VectorXd plus_, minus_;
 
   public:
@@ -166,7 +189,7 @@ Solution solve(Lines& lines, Intrinsics k, const std::vector<int>& free, const E
                 gradient(j) += weight * (s.k(2 + j) - middle(j));
             }
             bool better = false, folded = false;
-            for (int attempt = 0; attempt < 12 && !better; ++attempt) {
+            for (int attempt = 0; attempt < 24 && !better; ++attempt) {
                 Eigen::MatrixXd damped = s.information;
                 damped.diagonal() *= 1 + damping;
                 const Eigen::VectorXd step = -solve_symmetric(damped, gradient);
@@ -176,14 +199,14 @@ Solution solve(Lines& lines, Intrinsics k, const std::vector<int>& free, const E
                 const double c = possible ? e.squaredNorm() + held(trial) : kInfinity;
                 if (c <= cost && lines.jacobian(trial, free, trial_jacobian)) {
                     better = true;
-                    s.converged = cost - c <= 1e-10 * cost + 1e-18;
+                    s.converged = cost - c <= 1e-7 * cost + 1e-18;  // a hundredth of a sigma
                     s.k = trial;
                     s.r = e;
                     jacobian.swap(trial_jacobian);
                     cost = c;
                     damping = std::max(damping * 0.1, 1e-12);
                 } else {
-                    folded = folded || !possible || c <= cost;
+                    folded = !possible || c <= cost;  // even a short step
                     damping *= 10;
                 }
             }
@@ -243,8 +266,10 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
 }
 
 }  // namespace
+}  // namespace lens_lines
 
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options) {
+    using namespace lens_lines;
     if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
         return input_error(fmt::format("an image of {}x{} pixels is not possible", data.width, data.height),
                            "size", "give [width, height] in pixels");

@@ -2,11 +2,14 @@
 // Lens distortion from straight laser lines on a plane (4.1.1): the lens is the one that makes them straight.
 //
 // Model (4.1)-(4.2): u_d = u_u (1 + K1 r^2 + K2 r^4) about the centre, r in px; inside the solver r is scaled
-// by half the image diagonal, or K1 and K2 would differ by ten orders of magnitude. Cost per line: the
-// Karhunen-Loeve ratio lambda_min / lambda_max of its undistorted points (4.3)-(4.4), corrected: centred
-// covariance, and the ratio of the smallest to the largest (the source prints lambda_min / lambda_min). The
-// ratio is weighed by points and squared length, so that the sum is one of squared distances in px and noise
-// of one sigma has the right weight; a mere change of scale costs nothing.
+// by half the image diagonal, or K1 and K2 would differ by ten orders of magnitude. Cost per line: its
+// Karhunen-Loeve residuals, that is the distances of its undistorted points from their own best line
+// (4.3)-(4.4, corrected: centred). A change of scale must cost nothing: the source divides lambda_min by
+// lambda_max of the whole line (and prints lambda_min / lambda_min). That rewards a lens which stretches the
+// ends of the lines until it folds, because it shrinks the noise of their middle against their length; where
+// distortion is weak, noise alone then leads there. So every point's distance is divided by its own stretch:
+// how far a pixel across the line reaches in the undistorted plane at that point. The sum is then one of
+// squared distances in the image, where the noise is the same everywhere.
 //
 // Wrong points and lines. Before the lens is known a line's points are told from reflections and the like by
 // a parabola (bent_line.h), then by the lens found: what lies farther than 5 robust sigma from its line is

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "projects/forecast.h"
 #include "projects/known_shift.h"
 #include "projects/measure.h"
@@ -410,11 +410,13 @@ Phrase name_of(CheckStatus status) {
 
 std::optional<double> days_between(const std::string& from_utc, const std::string& to_utc) {
     const auto read = [](const std::string& utc) -> std::optional<std::chrono::sys_days> {
-        int y = 0;
-        unsigned m = 0, d = 0;
-        if (std::sscanf(utc.c_str(), "%4d-%2u-%2u", &y, &m, &d) != 3) return std::nullopt;
-        const std::chrono::year_month_day day{std::chrono::year(y), std::chrono::month(m),
-                                              std::chrono::day(d)};
+        if (utc.size() < 10 || utc[4] != '-' || utc[7] != '-') return std::nullopt;
+        const std::string_view text(utc);
+        const auto y = number_from<int>(text.substr(0, 4));
+        const auto m = number_from<unsigned>(text.substr(5, 2)), d = number_from<unsigned>(text.substr(8, 2));
+        if (!y || !m || !d) return std::nullopt;
+        const std::chrono::year_month_day day{std::chrono::year(*y), std::chrono::month(*m),
+                                              std::chrono::day(*d)};
         if (!day.ok()) return std::nullopt;
         return std::chrono::sys_days(day);
     };

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "core/number_text.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/measure.h"
 
@@ -61,11 +61,21 @@ Expected<MirrorPlane> parse_mirror_plane(const std::string& text, double offset_
         plane.normal = Eigen::Vector3d::Unit(text[0] - 'x');
         return plane;
     }
-    std::istringstream in(text);
-    char comma1 = 0, comma2 = 0, rest = 0;
-    Eigen::Vector3d n;
-    in >> n.x() >> comma1 >> n.y() >> comma2 >> n.z();
-    if (!in || comma1 != ',' || comma2 != ',' || in >> rest || !n.allFinite() || n.norm() < 1e-9)
+    Eigen::Vector3d n = Eigen::Vector3d::Zero();
+    std::string_view rest(text);
+    bool understood = std::count(text.begin(), text.end(), ',') == 2;
+    for (int i = 0; i < 3 && understood; ++i) {
+        const auto end = std::min(rest.find(','), rest.size());
+        const std::string_view part = rest.substr(0, end);
+        const auto from = part.find_first_not_of(' '), to = part.find_last_not_of(' ');
+        const auto number = from == std::string_view::npos
+                                ? std::nullopt
+                                : number_from<double>(part.substr(from, to - from + 1));
+        understood = number.has_value();
+        n[i] = number.value_or(0);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    if (!understood || !n.allFinite() || n.norm() < 1e-9)
         return input_error("the mirror plane is not understood", text,
                            "give x, y, z or a normal such as 0.1,1,0");
     plane.normal = n.normalized();

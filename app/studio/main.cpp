@@ -2,6 +2,7 @@
 
 #include <QCommandLineParser>
 #include <QTimer>
+#include <clocale>
 #include <cstdio>
 
 #include "app/studio/main_window.h"
@@ -10,6 +11,7 @@
 
 int main(int argc, char** argv) {
     QApplication application(argc, argv);
+    std::setlocale(LC_NUMERIC, "C");  // Qt has set the desktop's: libraries that parse "1.5" would read 1
     QApplication::setApplicationName("studio");
     QApplication::setOrganizationName("seamwright");
     QApplication::setApplicationDisplayName("Seamwright");

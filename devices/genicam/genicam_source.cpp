@@ -16,6 +16,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/number_text.h"
 #include "devices/genicam/camera_features.h"
 #include "devices/genicam/frame_order.h"
 #include "devices/genicam/genicam.h"
@@ -31,7 +32,7 @@ namespace {
 void widen_receive_buffer(guint16 port, int bytes) {
     std::error_code failed;
     for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", failed)) {
-        const int fd = std::atoi(entry.path().filename().c_str());
+        const int fd = number_from<int>(entry.path().filename().string()).value_or(-1);
         int type = 0;
         sockaddr_in bound{};
         socklen_t size = sizeof type, length = sizeof bound;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/number_text.h"
+
 namespace seamwright::gdp {
 namespace {
 
@@ -248,7 +250,7 @@ Expected<SystemInfo> parse_system_info(Command command, std::string_view answer)
 std::string system_info_answer(const SystemInfo& info) {
     std::string out;
     put(out, std::uint16_t{52});
-    put(out, static_cast<std::uint32_t>(std::strtoul(info.serial.c_str(), nullptr, 10)));
+    put(out, number_from<std::uint32_t>(info.serial).value_or(0));
     put(out, std::uint32_t{0});
     out += info.model.substr(0, 31);
     out.resize(2 + 40, '\0');

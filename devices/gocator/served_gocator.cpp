@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/features/feature.h"
+#include "core/number_text.h"
 #include "core/profile/filter.h"
 #include "core/profile/peaks.h"
 #include "core/profile/sensor_model.h"
@@ -132,7 +133,7 @@ struct ServedGocator::Impl {
         send(data,
              gdp::message_bytes({static_cast<std::uint16_t>(gdp::Type::stamp), false,
                                  gdp::stamps_content({{number, time_us, 0,
-                                                       static_cast<std::uint32_t>(std::stoul(serial))}})}) +
+                                                       number_from<std::uint32_t>(serial).value_or(0)}})}) +
                  gdp::message_bytes(
                      {static_cast<std::uint16_t>(gdp::Type::points), true, gdp::points_content(profile)}));
         if (!ascii.clients.empty()) send(ascii, line_of(profile, number, time_us));

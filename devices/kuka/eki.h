@@ -1,5 +1,5 @@
 #pragma once
-// KUKA over EthernetKRL: the controller runs the KRL module seamwright.src (`seamwright robot-program --brand
+// KUKA over EthernetKRL: the controller runs the KRL modules of program.h (`seamwright robot-program --brand
 // kuka`) and connects to Seamwright, which listens. Telegrams: eki_telegram.h.
 //
 // Settings, defaults: {"listen": "127.0.0.1" (this computer's address in the robot's network), "port": 54600,
@@ -16,17 +16,9 @@
 #include "devices/device_session.h"
 #include "devices/robot_link.h"
 #include "devices/robot_program.h"
-#include "devices/simulated/cell.h"
-#include "devices/simulated/controller.h"
 
 namespace seamwright {
 
 Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& settings, DeviceSession& session);
-
-// The robot's side, before a simulated cell. Settings: {"address": "127.0.0.1", "port": 54600 (where
-// Seamwright listens), "slow_ms": 300, "trigger_interval_ms": 40 (between two spots: faster than a robot),
-// "approach_ms": 100 (to the first)}. Connects again when the connection is lost.
-Expected<std::unique_ptr<SimulatedController>> start_kuka_eki_controller(std::shared_ptr<SimulatedCell> cell,
-                                                                         const nlohmann::json& settings);
 
 }  // namespace seamwright

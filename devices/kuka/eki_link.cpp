@@ -7,12 +7,14 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "devices/exchange/settings.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/eki_telegram.h"
+#include "devices/kuka/move_time.h"
 #include "devices/net/socket.h"
 #include "devices/same_robot.h"
 
@@ -20,6 +22,7 @@ namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr Timeout kEkiReadyPoll{30};
 
 constexpr std::size_t kMostNewcomers = 8;
 constexpr Timeout kHelloTime{1000}, kLook{10};
@@ -52,6 +55,9 @@ class EkiLink final : public RobotLink {
     Expected<Pose> base_from_flange() override {
         auto state = ask({.kind = "state"});
         if (!state) return tl::unexpected(state.error());
+        if (!state->text.empty())
+            return device_error("the controller does not know the flange: " + state->text, where_,
+                                "select and start a program on the controller");
         return state->pose;
     }
 
@@ -62,11 +68,12 @@ class EkiLink final : public RobotLink {
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
-        triggers_.clear();
+        const EkiTelegram command{.kind = "measure", .name = program_signature(moves)};
+        auto started = ask_until_ready(command);
+        triggers_.clear();  // the new program's come after its answer
         last_trigger_ = 0;
-        auto started = only_error(ask({.kind = "measure", .name = program_signature(moves)}));
         measuring_ = started.has_value();
-        return started;
+        return only_error(started);
     }
 
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
@@ -96,16 +103,33 @@ class EkiLink final : public RobotLink {
         if (!base_from_frame.matrix().allFinite() ||
             base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
             return input_error("the frame is not finite or beyond 100 m", name);
-        return only_error(ask({.kind = "write", .name = name, .pose = base_from_frame}));
+        return only_error(ask_until_ready({.kind = "write", .name = name, .pose = base_from_frame}));
     }
 
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override {
-        return only_error(ask({.kind = "confirm", .name = std::string(to_string(verdict)), .text = text}));
+        confirmed_ = false;
+        auto told =
+            ask_until_ready({.kind = "confirm", .name = std::string(to_string(verdict)), .text = text});
+        confirmed_ = told && verdict == PartVerdict::corrected;
+        return only_error(told);
+    }
+
+    Expected<Permission> permission() override {
+        auto state = ask({.kind = "state"});
+        if (!state) return tl::unexpected(state.error());
+        if (state->part == "taken") return Permission::taken;
+        if (state->part == "given") return Permission::given;
+        if (state->part == "none") return Permission::none;
+        // A module of before this question: what is known is that it acknowledged on this connection.
+        return confirmed_ ? Permission::given : Permission::none;
     }
 
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
-        return only_error(ask({.kind = "move", .pose = base_from_flange}));
+        auto from = this->base_from_flange();
+        if (!from) return tl::unexpected(from.error());
+        return only_error(ask({.kind = "move", .pose = base_from_flange},
+                              timeout_ + kuka_move_time(*from, base_from_flange)));
     }
 
     std::vector<std::string> take_notices() override {
@@ -131,6 +155,7 @@ class EkiLink final : public RobotLink {
     // What came over a broken stream means nothing any more.
     void drop() {
         connection_.reset();
+        confirmed_ = false;
         splitter_.clear();
         starts_.clear();
         triggers_.clear();
@@ -236,7 +261,7 @@ class EkiLink final : public RobotLink {
             if (connection_ && connection_->is_open()) return {};
             if (Clock::now() >= until)
                 return device_error(std::string(kNoAnswer) + ": no robot has connected", where_,
-                                    "start SEAMWRIGHT_SERVE on the controller");
+                                    "start SEAMWRIGHT_SUB in the controller's submit interpreter");
         }
     }
 
@@ -291,8 +316,20 @@ class EkiLink final : public RobotLink {
         return event;
     }
 
-    Expected<EkiTelegram> ask(EkiTelegram command) {
-        const auto until = Clock::now() + timeout_;
+    // As ask(), again while the controller is about to be ready; all within one time-out.
+    Expected<EkiTelegram> ask_until_ready(const EkiTelegram& command) {
+        for (const auto until = Clock::now() + timeout_;;) {
+            auto answer = ask(command);
+            if (answer || answer.error().what.find(": " + std::string(kEkiNotReady)) == std::string::npos ||
+                Clock::now() + kEkiReadyPoll >= until)
+                return answer;
+            std::this_thread::sleep_for(kEkiReadyPoll);
+        }
+    }
+
+    Expected<EkiTelegram> ask(EkiTelegram command) { return ask(std::move(command), timeout_); }
+    Expected<EkiTelegram> ask(EkiTelegram command, Timeout timeout) {
+        const auto until = Clock::now() + timeout;
         if (auto ready = connected(until); !ready) return tl::unexpected(ready.error());
         static const std::set<std::string, std::less<>> kHarmless = {"state", "read"};
         const bool harmless =
@@ -318,14 +355,18 @@ class EkiLink final : public RobotLink {
             if (!kept) return tl::unexpected(kept.error());
             if (*kept || telegram->id < command.id) continue;  // an answer given too late
             if (telegram->kind == "error" && telegram->id == command.id)
-                return device_error(
-                    fmt::format("the controller refuses \"{}\": {}", command.kind, telegram->text), where_);
+                return device_error(fmt::format("the controller refuses \"{}\": {}",
+                                                command.kind == "read" || command.kind == "write"
+                                                    ? command.kind + " " + command.name
+                                                    : command.kind,
+                                                telegram->text),
+                                    where_);
             if (telegram->kind != "answer" || telegram->id != command.id || telegram->name != command.name)
                 return fail(
                     {ErrorKind::device,
                      fmt::format("the controller answered \"{} {} {}\" to \"{} {} {}\"", telegram->kind,
                                  telegram->id, telegram->name, command.kind, command.id, command.name),
-                     where_, "load seamwright.src of this version on the controller"});
+                     where_, "load seamwright_sub.sub of this version on the controller"});
             quiet_ns_ = now_ns();
             return telegram;
         }
@@ -345,6 +386,7 @@ class EkiLink final : public RobotLink {
     SameRobot robot_;
     bool measuring_ = false;     // started on this connection
     std::int64_t quiet_ns_ = 0;  // when nothing more was waiting to be heard; 0 = never
+    bool confirmed_ = false;     // "corrected", on this connection
     std::deque<Event> starts_, triggers_;
     std::int64_t last_id_ = 0, last_trigger_ = 0;
 };

@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "core/geometry/notation.h"
+#include "core/number_text.h"
 
 namespace seamwright {
 namespace {
 
+constexpr const char* kEkiNothing = "-";
 constexpr const char* kEkiWhere = "EthernetKRL telegram";
 constexpr std::array<const char*, 6> kPos = {"X", "Y", "Z", "A", "B", "C"};
 constexpr std::array kEkiModes = {
@@ -20,7 +22,7 @@ constexpr std::array kEkiModes = {
     std::pair{RobotMode::automatic, "#AUT"},     std::pair{RobotMode::external, "#EX"},
     std::pair{RobotMode::stopped, "#STOP"},      std::pair{RobotMode::fault, "#FAULT"}};
 
-Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
+Expected<EkiTelegram> parse(std::string_view document, std::string_view root_name) {
     pugi::xml_document xml;
     const auto parsed =
         xml.load_buffer(document.data(), document.size(), pugi::parse_default, pugi::encoding_utf8);
@@ -33,6 +35,7 @@ Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
     const auto text = [&](const char* name, std::string& value) {
         const auto attribute = root.attribute(name);
         value = attribute.value();
+        if (value == kEkiNothing) value.clear();
         return attribute && value.size() <= kEkiLongestTelegram;
     };
     if (!text("Kind", t.kind) || t.kind.empty() || !text("Name", t.name) || !text("Text", t.text))
@@ -49,10 +52,9 @@ Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
     for (std::size_t i = 0; i < 6; ++i) {
         const auto attribute = pos.attribute(kPos[i]);
         const std::string value = attribute.value();
-        char* end = nullptr;
-        v[i] = std::strtod(value.c_str(), &end);
-        if (value.empty() || *end)
-            return device_error(fmt::format("has no number Pos/{}", kPos[i]), kEkiWhere);
+        const auto number = number_from<double>(value);
+        if (!number) return device_error(fmt::format("has no number Pos/{}", kPos[i]), kEkiWhere);
+        v[i] = *number;
         if (!(std::abs(v[i]) <= (i < 3 ? 1e5 : 360.0)))
             return device_error(fmt::format("Pos/{} = {} is no position of a robot", kPos[i], value),
                                 kEkiWhere);
@@ -66,6 +68,7 @@ Expected<EkiTelegram> parse(std::string_view document, const char* root_name) {
 Expected<EkiTelegram> parse_eki_telegram(std::string_view document) {
     return parse(document, "Robot");
 }
+
 Expected<EkiTelegram> parse_eki_command(std::string_view document) {
     return parse(document, "Sensor");
 }
@@ -74,7 +77,8 @@ std::string write_eki(std::string_view root, const EkiTelegram& t) {
     pugi::xml_document xml;
     pugi::xml_node node = xml.append_child(std::string(root).c_str());
     const auto text = [&](const char* name, const std::string& value) {
-        node.append_attribute(name) = value.substr(0, kEkiLongestText).c_str();
+        // KRL has no empty string.
+        node.append_attribute(name) = value.empty() ? kEkiNothing : value.substr(0, kEkiLongestText).c_str();
     };
     text("Kind", t.kind);
     node.append_attribute("Id") = static_cast<long long>(t.id);
@@ -132,12 +136,6 @@ Expected<RobotMode> mode_from_eki(std::string_view mode) {
     for (const auto& [known, name] : kEkiModes)
         if (mode == name) return known;
     return device_error(fmt::format("\"{}\" is no operating mode", mode.substr(0, 20)), kEkiWhere);
-}
-
-std::string_view eki_from_mode(RobotMode mode) {
-    for (const auto& [known, name] : kEkiModes)
-        if (mode == known) return name;
-    return "#STOP";
 }
 
 }  // namespace seamwright

@@ -13,9 +13,12 @@
 // Kind from the robot: hello (first on every connection; Name serial number, Part robot model, Text
 // software), start (Part: its name), trigger (Name: spot, Id: counts up by one through a program, Pos: flange
 // in base at the trigger), answer (Id of the command; Name, Pos, Mode as asked), error (Id of the command;
-// Text: why), done. Kind to the robot: state (answer: Mode, Pos), read, write (Name: frame), measure (Name:
-// signature of the program), confirm (Name: verdict, Text for the smartPAD), move (Pos). X, Y, Z in mm, A, B,
-// C in degrees (KUKA's Z-Y'-X''). Every field is always there; what has no meaning is empty or 0.
+// Text: why; it begins with "not ready" where the same command may be done a moment later), done (the
+// measuring program has ended). Kind to the robot: state (answer: Mode, Pos; Part: none, given or taken, as
+// Permission; Text: why Pos is not known, if so), read, write (Name: frame), measure (Name: signature of the
+// program), confirm (Name: verdict, Text for the smartPAD), move (Pos; answered at its end). X, Y, Z in mm,
+// A, B, C in degrees (KUKA's Z-Y'-X''). Every field is always there; what has no meaning is "-" (KRL has no
+// empty string) or 0.
 
 #include <cstdint>
 #include <deque>
@@ -36,13 +39,14 @@ struct EkiTelegram {
 };
 
 inline constexpr std::size_t kEkiLongestTelegram =
-    8192;                                           // bytes; the controller's own limit is 3600 a string
+    8192;  // bytes; the controller's own limit is 3600 a string
+inline constexpr std::string_view kEkiNotReady = "not ready";
 inline constexpr std::size_t kEkiLongestText = 80;  // KRL strings of the module
 
 // From the robot: the document's root is Robot. Refuses other roots, missing or malformed fields, numbers
 // that are not finite, |X, Y, Z| > 1e5 mm, |A, B, C| > 360 degrees, strings that are too long.
 Expected<EkiTelegram> parse_eki_telegram(std::string_view document);
-// The controller's view of the same, for its simulation: the root is Sensor.
+// The same from the other end, for peers that stand in for a robot: the root is Sensor.
 Expected<EkiTelegram> parse_eki_command(std::string_view document);
 // One document. `root` is "Sensor" or "Robot". Strings are cut to kEkiLongestText, quotes and '<' escaped.
 std::string write_eki(std::string_view root, const EkiTelegram& telegram);
@@ -66,6 +70,5 @@ class EkiSplitter {
 
 // $MODE_OP with the program's state: "#T1", "#T2", "#AUT", "#EX"; "#STOP" and "#FAULT" are the module's.
 Expected<RobotMode> mode_from_eki(std::string_view mode);
-std::string_view eki_from_mode(RobotMode mode);
 
 }  // namespace seamwright

@@ -11,6 +11,7 @@
 #include "devices/exchange/settings.h"
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/kvp_message.h"
+#include "devices/kuka/move_time.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
 #include "devices/same_robot.h"
@@ -55,13 +56,43 @@ class KvpLink final : public RobotLink {
         return *stopped ? RobotMode::stopped : mode->second;
     }
 
-    Expected<Pose> base_from_flange() override { return read_pose("$POS_ACT"); }
+    // $POS_ACT is the active tool in the active base, those of the main run; both are read before and after
+    // it.
+    Expected<Pose> base_from_flange() override {
+        constexpr int kAttempts = 5;
+        const std::string suffix = main_run_suffix();
+        const std::string base = "$BASE" + suffix, tool = "$TOOL" + suffix, mode = "$IPO_MODE" + suffix;
+        for (int i = 0; i < kAttempts; ++i) {
+            auto answers = try_read({mode, base, tool, "$POS_ACT", base, tool});
+            if (!answers) return tl::unexpected(answers.error());
+            if ((*answers)[0].done && string_from_krl((*answers)[0].value) == "#TCP")
+                return device_error("the tool is fixed in the cell ($IPO_MODE #TCP): the flange is not told",
+                                    where_, "select a program whose tool is on the robot");
+            std::vector<Pose> poses;
+            for (std::size_t k = 1; k < answers->size(); ++k) {
+                const KvpAnswer& a = (*answers)[k];
+                static const std::array<const char*, 5> names = {"$BASE", "$TOOL", "$POS_ACT", "$BASE",
+                                                                 "$TOOL"};
+                if (!a.done)
+                    return device_error(std::string("the controller refuses to read ") + names[k - 1], where_,
+                                        "select and start a program, so that tool and base are active");
+                auto pose = frame_from_krl(a.value);
+                if (!pose) return fail(pose.error());
+                poses.push_back(*pose);
+            }
+            const auto same = [](const Pose& a, const Pose& b) { return a.isApprox(b, 1e-12); };
+            if (same(poses[0], poses[3]) && same(poses[1], poses[4]))
+                return poses[0] * poses[2] * poses[1].inverse();
+        }
+        return device_error("tool or base changed while the flange was read", where_, "read it again");
+    }
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         auto called = poll_until(timeout, [&] { return called_now(); });
         if (!called) return tl::unexpected(called.error());
         auto part = read({"SW_PART[]"});
         if (!part) return tl::unexpected(part.error());
+        if (auto withdrawn = begin_part(); !withdrawn) return tl::unexpected(withdrawn.error());
         if (auto taken = write({{"SW_CALL", "FALSE"}}); !taken) return tl::unexpected(taken.error());
         const std::string id = string_from_krl((*part)[0]);
         const std::int64_t now = now_ns();
@@ -79,16 +110,39 @@ class KvpLink final : public RobotLink {
         auto stopped = bool_from_krl((*state)[1]);
         if (!stopped) return fail(stopped.error());
         if (*stopped) return device_error("the robot is stopped", where_, "start it on its controller");
-        // The last program may be on its way out of the last spot.
+        // The application may be on its way out of the last part: a part without a verdict is given up.
+        bool given_up = false;
         auto idle = poll_until(timeout_, [&]() -> Expected<bool> {
-            auto busy = read_bool("SW_BUSY");
-            if (!busy) return busy;
-            return !*busy;
+            auto answers = try_read({"SW_WAITS", "SW_BUSY", "SW_TAKEN", "SW_TAKING"});
+            if (!answers) return tl::unexpected(answers.error());
+            if (!(*answers)[0].done) {  // a module of before SW_WAITS
+                auto busy = truth("SW_BUSY", (*answers)[1]);
+                if (!busy) return busy;
+                return !*busy;
+            }
+            auto waits = truth("SW_WAITS", (*answers)[0]), busy = truth("SW_BUSY", (*answers)[1]),
+                 taken = truth("SW_TAKEN", (*answers)[2]), taking = truth("SW_TAKING", (*answers)[3]);
+            for (const auto* answer : {&waits, &busy, &taken, &taking})
+                if (!*answer) return *answer;
+            if (!*waits && !*busy && !*taken && !*taking && !std::exchange(given_up, true))
+                if (auto up = try_write({{"SW_VERDICT", "4"}}); !up) return tl::unexpected(up.error());
+            return waits;
         });
         if (!idle && is_silence(idle.error()) && connection_)
-            return device_error("the measuring program runs already", where_);
+            return device_error("no program waits in SEAMWRIGHT_SPOTS", where_,
+                                "start the application on the controller");
         if (!idle) return idle;
-        return write({{"SW_FIRED", "0"}, {"SW_GO", "TRUE"}});
+        if (auto begun = begin_part(); !begun) return begun;
+        if (auto go = write({{"SW_FIRED", "0"}, {"SW_GO", "TRUE"}}); !go) return go;
+        auto gone = poll_until(timeout_, [&]() -> Expected<bool> {
+            auto waits_to_go = read_bool("SW_GO");
+            if (!waits_to_go) return waits_to_go;
+            return !*waits_to_go;
+        });
+        if (gone || !is_silence(gone.error()) || !connection_) return gone;
+        if (auto back = write({{"SW_GO", "FALSE"}}); !back) return back;
+        return device_error("the program that waited did not go on", where_,
+                            "start the application on the controller");
     }
 
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
@@ -123,20 +177,45 @@ class KvpLink final : public RobotLink {
         auto variable = frame_variable(name);
         if (!variable) return tl::unexpected(variable.error());
         if (auto same = same_robot(); !same) return same;
-        return write({{"SW_RELEASED", "FALSE"}, {*variable, krl_from_frame(base_from_frame)}});
+        if (auto ready = withdraw(); !ready) return ready;
+        return write({{*variable, krl_from_frame(base_from_frame)}});
     }
 
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
         const bool released = verdict == PartVerdict::corrected;
         if (released)
             if (auto same = same_robot(); !same) return same;
-        if (auto told = write({{"SW_RELEASED", released ? "TRUE" : "FALSE"}}); !told) return told;
-        auto back = read_bool("SW_RELEASED");
+        if (auto ready = withdraw(); !ready) {
+            // Said once more to an application that runs already: nothing changes.
+            if (auto now = permission(); released && now && *now == Permission::taken) return {};
+            return ready;
+        }
+        const char* number = released ? "1" : verdict == PartVerdict::refused ? "2" : "3";
+        if (auto told = try_write({{"SW_VERDICT", number}}); !told) return told;
+        if (!released) {
+            (void)called_now();  // from here on the next call is as old as it is heard
+            return {};
+        }
+        if (auto told = write({{"SW_RELEASED", "TRUE"}}); !told) return told;
+        auto back = permission();
         if (!back) return tl::unexpected(back.error());
-        if (*back != released) return device_error("the controller did not keep the verdict", where_);
+        if (*back == Permission::none) return device_error("the controller did not keep the verdict", where_);
         (void)called_now();  // from here on the next call is as old as it is heard; its Error is the next
                              // call's
         return {};
+    }
+
+    Expected<Permission> permission() override {
+        auto answers = try_read({"SW_TAKEN", "SW_RELEASED"});
+        if (!answers) return tl::unexpected(answers.error());
+        if ((*answers)[0].done) {
+            auto taken = truth("SW_TAKEN", (*answers)[0]);
+            if (!taken) return tl::unexpected(taken.error());
+            if (*taken) return Permission::taken;
+        }
+        auto released = truth("SW_RELEASED", (*answers)[1]);
+        if (!released) return tl::unexpected(released.error());
+        return *released ? Permission::given : Permission::none;
     }
 
     Expected<void> move_to(const Pose& base_from_flange) override {
@@ -146,9 +225,11 @@ class KvpLink final : public RobotLink {
         if (!now) return tl::unexpected(now.error());
         if (*now != RobotMode::manual_reduced)
             return device_error("moving by command wants T1 with the program SEAMWRIGHT running", where_);
+        auto from = this->base_from_flange();
+        if (!from) return tl::unexpected(from.error());
         if (auto sent = write({{"SW_MOVE_TO", krl_from_frame(base_from_flange)}, {"SW_MOVE", "TRUE"}}); !sent)
             return sent;
-        auto there = poll_until(timeout_, [&]() -> Expected<bool> {
+        auto there = poll_until(timeout_ + kuka_move_time(*from, base_from_flange), [&]() -> Expected<bool> {
             auto moving = read_bool("SW_MOVE");
             if (!moving) return moving;
             return !*moving;
@@ -169,9 +250,12 @@ class KvpLink final : public RobotLink {
         return robot_.check([this] { return ask_identity(); }, where_);
     }
     Expected<bool> called_now() {
-        auto called = read_bool("SW_CALL");
+        auto answers = try_read({"SW_CALL", "SW_WAITS"});
+        if (!answers) return tl::unexpected(answers.error());
+        auto called = truth("SW_CALL", (*answers)[0]);
         if (called && !*called) quiet_ns_ = now_ns();
-        return called;
+        if (!called || !*called || !(*answers)[1].done) return called;
+        return truth("SW_WAITS", (*answers)[1]);  // the program is there to measure it
     }
 
     static std::int64_t now_ns() {
@@ -186,6 +270,7 @@ class KvpLink final : public RobotLink {
         connection_.reset();
         stream_.clear();
         names_.reset();
+        main_run_.reset();
         error.where = where_;
         return tl::unexpected(std::move(error));
     }
@@ -255,6 +340,62 @@ class KvpLink final : public RobotLink {
             values.push_back(std::move((*answers)[i].value));
         }
         return values;
+    }
+
+    // The same; what the controller refuses is left to the caller.
+    Expected<std::vector<KvpAnswer>> try_read(const std::vector<std::string>& names) {
+        std::vector<KvpRequest> requests;
+        for (const std::string& name : names) requests.push_back({0, false, name, {}});
+        return ask(std::move(requests));
+    }
+    Expected<void> try_write(const std::vector<std::pair<std::string, std::string>>& values) {
+        std::vector<KvpRequest> requests;
+        for (const auto& [name, value] : values) requests.push_back({0, true, name, value});
+        auto answers = ask(std::move(requests));
+        if (!answers) return tl::unexpected(answers.error());
+        return {};
+    }
+    Expected<bool> truth(const char* name, const KvpAnswer& answer) {
+        if (!answer.done)
+            return device_error(std::string("the controller refuses to read ") + name, where_,
+                                "load seamwright.dat on the controller");
+        auto value = bool_from_krl(answer.value);
+        if (!value) return fail(value.error());
+        return value;
+    }
+
+    // The variables of the main run have _C behind their names; what cannot read them reads those of the
+    // advance run, which are the same while the robot stands. Asked once a connection.
+    std::string main_run_suffix() {
+        if (!main_run_) {
+            const auto answers = try_read({"$BASE_C", "$BASE"});
+            if (!answers || (!(*answers)[0].done && !(*answers)[1].done)) return "_C";
+            main_run_ = (*answers)[0].done;
+        }
+        return *main_run_ ? "_C" : "";
+    }
+
+    // Takes the permission back and says whether that came in time: an application that is taking it, or runs
+    // with it, keeps it and its frames (seamwright.src, SW_ACTIVATE).
+    Expected<void> withdraw() {
+        auto free = poll_until(timeout_, [&]() -> Expected<bool> {
+            if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return tl::unexpected(taken.error());
+            auto answers = try_read({"SW_TAKING", "SW_TAKEN", "SW_WAITS"});
+            if (!answers) return tl::unexpected(answers.error());
+            if (!(*answers)[0].done) return true;  // a module of before SW_TAKING
+            auto taking = truth("SW_TAKING", (*answers)[0]), has = truth("SW_TAKEN", (*answers)[1]),
+                 waits = truth("SW_WAITS", (*answers)[2]);
+            for (const auto* answer : {&taking, &has, &waits})
+                if (!*answer) return *answer;
+            return !*taking && (!*has || *waits);
+        });
+        if (!free && is_silence(free.error()) && connection_)
+            return device_error("the application runs with the frames already", where_);
+        return free;
+    }
+    Expected<void> begin_part() {
+        if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return taken;
+        return try_write({{"SW_TAKEN", "FALSE"}, {"SW_VERDICT", "0"}});
     }
 
     // In order; all are sent, the first refusal is told.
@@ -344,6 +485,7 @@ class KvpLink final : public RobotLink {
     std::optional<std::map<std::string, std::string>> names_;
     SameRobot robot_;
     std::int64_t quiet_ns_ = 0;  // when nobody called; 0 = not known
+    std::optional<bool> main_run_;
 };
 
 }  // namespace

@@ -32,6 +32,13 @@ std::string krl_frame(const Pose& pose) {
                        abc.a_deg, abc.b_deg, abc.c_deg);
 }
 
+std::string xml_text(const std::string& text) {
+    std::string out;
+    for (const char c : text)
+        out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+    return out;
+}
+
 std::string filled(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
     std::string out(text);
     for (const auto& [name, value] : values)
@@ -60,6 +67,12 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
     f.whole("flag_command", command, 1, 1024);
     if (f.failed()) return tl::unexpected(f.error());
 
+    if (listen == "0.0.0.0" || listen.empty() || listen.find_first_not_of("0123456789.") != std::string::npos)
+        return input_error("\"" + listen + "\" is no address that a controller connects to",
+                           "settings.listen", "give this computer's address in the robot's network");
+    if (alive == command)
+        return input_error("flag_alive and flag_command are one flag", "settings", "give two");
+
     std::string data = "DEFDAT SEAMWRIGHT_SPOTS PUBLIC\n", setup, path;
     int n = 0;
     for (const MeasuringMove& move : request.moves) {
@@ -69,7 +82,9 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         if (!(cp > 0 && cp <= kFastestCp))
             return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s),
                                "spot " + move.spot_id, "give up to 2000 mm/s");
-        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
+        std::vector<const Pose*> poses = {&move.entry, &move.trigger, &move.exit};
+        for (const Pose& via : move.via) poses.push_back(&via);
+        for (const Pose* pose : poses)
             if (!pose->matrix().allFinite() || pose->translation().cwiseAbs().maxCoeff() > 1e5)
                 return input_error("a pose is not finite or beyond 100 m", "spot " + move.spot_id);
         const std::string point = fmt::format("XSW_{:03}", n);
@@ -77,8 +92,12 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
             "; spot {}\nDECL FRAME {}_ENTRY={}\nDECL FRAME {}_SPOT={}\nDECL FRAME {}_EXIT={}\n", move.spot_id,
             point, krl_frame(move.entry), point, krl_frame(move.trigger), point, krl_frame(move.exit));
         setup += fmt::format("SW_SPOT[{},]=\"{}\"\n", n, move.spot_id);
-        path += fmt::format("; spot {}\n$VEL.CP=SW_TRAVEL\nLIN {}_ENTRY C_DIS\n$VEL.CP={:.4f}\n",
-                            move.spot_id, point, cp);
+        path += fmt::format("; spot {}\n$VEL.CP=SW_TRAVEL\n", move.spot_id);
+        for (std::size_t i = 0; i < move.via.size(); ++i) {
+            data += fmt::format("DECL FRAME {}_VIA{}={}\n", point, i + 1, krl_frame(move.via[i]));
+            path += fmt::format("LIN {}_VIA{} C_DIS\n", point, i + 1);
+        }
+        path += fmt::format("LIN {}_ENTRY C_DIS\n$VEL.CP={:.4f}\n", point, cp);
         if (move.stop_at_trigger)
             path += fmt::format(
                 "LIN {0}_SPOT\nWAIT SEC 0.3\nPULSE($OUT[SW_TRIGGER_OUT],TRUE,0.02)\n"
@@ -100,22 +119,23 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
             return tl::unexpected(ok.error());
         setup += fmt::format(
             "; region {}: SW_ACTIVATE({}) before its path\nSW_NAME[{},]=\"{}\"\nSW_FRAME[{}]={}\n",
-            frame.region_id, k, k, frame.name, k, krl_frame(frame.base_from_frame));
+            program_comment(frame.region_id), k, k, frame.name, k, krl_frame(frame.base_from_frame));
     }
     setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", k, program_signature(request.moves));
+    const std::string signature = program_signature(request.moves);
     const std::string program =
-        "&ACCESS RVO1\n&COMMENT Measuring program of " + request.project.substr(0, 60) +
-        "\nDEF SEAMWRIGHT_SPOTS()\nBAS(#INITMOV,0)\nSW_SETUP()\nSW_BEGIN_PART()\nSW_BUSY=TRUE\n"
-        "; the points are poses of the flange in the robot's base\n$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n"
-        "$APO.CDIS=5\n; straight from exit to the next entry: add via points where the sensor must go round "
-        "something\n" +
+        "&ACCESS RVO1\n&COMMENT Measuring program of " + program_comment(request.project).substr(0, 60) +
+        "\nDEF SEAMWRIGHT_SPOTS()\nIF NOT StrComp(SW_SIGNATURE[],\"" + signature +
+        "\",#CASE_SENS) THEN\n   SW_SETUP()\nENDIF\nSW_BEGIN_PART()\nBAS(#INITMOV,0)\n"
+        "; the points are poses of the flange in the robot's base; the application sets its $TOOL again\n"
+        "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n$APO.CDIS=5\n" +
         path +
-        "WAIT SEC 0\nSW_BUSY=FALSE\nSW_WAIT_AT_MOST(20.0)\nEND\n\n"
+        "WAIT SEC 0\nSW_END_PART(20.0)\nEND\n\n"
         "; Taught frames and names: call it once at the start of the application program.\nGLOBAL DEF "
         "SW_SETUP()\n" +
         setup + "END\n";
     const std::vector<std::pair<std::string, std::string>> values = {
-        {"ADDRESS", listen},
+        {"ADDRESS", xml_text(listen)},
         {"PORT", std::to_string(port)},
         {"TRIGGER_OUT", std::to_string(output)},
         {"FLAG_ALIVE", std::to_string(alive)},

@@ -4,8 +4,15 @@
 // Seamwright.xml and seamwright_sub.sub (a task of the submit interpreter) talk to Seamwright;
 // seamwright.src/.dat hold what measuring and application programs call; seamwright_spots.src/.dat are the
 // project's: entry, trigger and exit of every spot as flange poses in the robot's base, linear, triggered
-// path-synchronously at the spot (TRIGGER WHEN PATH), and the application frames. The application calls
-// SW_SETUP() once, SEAMWRIGHT_SPOTS() for each part and SW_ACTIVATE(n) before each region's path.
+// path-synchronously at the spot (TRIGGER WHEN PATH), its via points rounded off before the entry, and the
+// application frames.
+//
+// The application calls SW_SETUP() once, SEAMWRIGHT_SPOTS() for each part and SW_ACTIVATE(n) before each
+// region's path, where n counts the regions from 1. SEAMWRIGHT_SPOTS() calls for the part (its name in
+// SW_PART[]), waits until Seamwright lets it go and measures; the first SW_ACTIVATE waits for the verdict and
+// takes the permission (RobotLink). SW_CALLS=FALSE: it waits without a call; the line sets SW_CALL, or
+// Seamwright measures by command. SW_VERDICT tells an application that goes on without correction how the
+// part ended.
 //
 // Settings that it reads from the robot's: "listen" and "port" (where the controller connects to),
 // "trigger_output" (1), "flag_alive" (1), "flag_command" (2).
@@ -14,7 +21,8 @@
 
 namespace seamwright {
 
-// Error (input): more than 64 spots or 32 frames, names that KRL cannot hold, a speed over 2 m/s.
+// Error (input): more than 64 spots or 32 frames, names that KRL cannot hold, a speed over 2 m/s, a "listen"
+// that is no address of this computer.
 Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request);
 
 // NAME.src: sets $BASE to the points' frame, $VEL.CP and $APO.CDIS, and runs along the points. $TOOL is the

@@ -87,7 +87,12 @@ SimulatedArm::~SimulatedArm() = default;
 
 Pose SimulatedArm::position() const {
     const std::lock_guard lock(mutex_);
-    return here_;
+    return standing_or_here();
+}
+
+Pose SimulatedArm::standing_or_here() const {
+    const auto cell = !line_ && moves_.empty() ? cell_->reported_flange() : std::nullopt;
+    return cell ? *cell : here_;
 }
 
 Eigen::Vector3d SimulatedArm::velocity_mm_s() const {
@@ -126,8 +131,8 @@ void SimulatedArm::set_output(int number, bool on) {
     Eigen::Vector3d velocity;
     {
         const std::lock_guard lock(mutex_);
-        const bool rises = on && !std::exchange(outputs_[number], on);
-        if (!rises || number != settings_.trigger_output) return;
+        const bool was_on = std::exchange(outputs_[number], on);
+        if (!on || was_on || number != settings_.trigger_output) return;
         at = here_;
         velocity = velocity_;
     }
@@ -173,6 +178,8 @@ bool SimulatedArm::tick() {
         }
         const double now = clock_s();
         if (!line_) {
+            if (speed_ == 0)
+                if (const auto jogged = cell_->reported_flange()) here_ = *jogged;
             ArmMove next = std::move(moves_.front());
             moves_.pop_front();
             line_ = std::make_unique<Line>(std::move(next), here_, speed_, !moves_.empty(), settings_,
@@ -216,6 +223,8 @@ bool SimulatedArm::tick() {
     }
     if (ended) {  // after its events, so that who waits for the end finds them done
         const std::lock_guard lock(mutex_);
+        // It stands, where the scatter of an arrival has put it.
+        if (line_ && line_->v1 == 0) cell_->move_to(line_->move.base_from_flange);
         if (line_) {
             speed_ = line_->pace < 1 ? 0 : line_->v1;
             ended_s_ = line_->begin_s + line_->duration() / settings_.time_scale;

@@ -4,8 +4,10 @@
 // Moves are straight lines of the flange, one after the other; translation runs along a trapezoid of speed,
 // the rotation in step with it (or sets the pace where it takes longer). A move with `rounding_mm` does not
 // stop at its end: the speed is kept into the next one, and the corner is passed exactly. The cell follows
-// (SimulatedCell::follow), so whatever exposes sees the robot where it is. The sensor's trigger input is
-// wired to one digital output: its rising edge fires the sensor at the place where the arm then is.
+// (SimulatedCell::follow), so whatever exposes sees the robot where it is; where a move ends standing the
+// flange has the scatter of an arrival. Standing, the arm may be moved by hand (SimulatedCell::move_to). The
+// sensor's trigger input is wired to one digital output: its rising edge fires the sensor at the place where
+// the arm then is.
 
 #include <chrono>
 #include <condition_variable>
@@ -70,7 +72,8 @@ class SimulatedArm {
     bool output(int number) const;
 
   private:
-    struct Line;  // a move with its times
+    struct Line;                    // a move with its times
+    Pose standing_or_here() const;  // precondition: locked
     void run(const std::stop_token& stop);
     double clock_s() const;  // precondition: locked
     bool tick();             // brings the motion up to the clock; false where none is left

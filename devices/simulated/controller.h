@@ -46,11 +46,11 @@ class SimulatedController {
     ControllerFault fault() const { return fault_; }
     // May the application run with the frames as they are? See RobotLink. False from the making, from a start
     // of measuring and from a lost connection on; true from PartVerdict::corrected on.
-    bool released() const { return released_; }
+    virtual bool released() const { return released_; }
     // The application began with the frames as they are: from then on released() stays, whatever happens to
     // the connection, until the next part begins.
-    bool taken() const { return taken_; }
-    std::optional<PartVerdict> verdict() const;  // of the present part, as confirmed
+    virtual bool taken() const { return taken_; }
+    virtual std::optional<PartVerdict> verdict() const;  // of the present part, as confirmed
 
   protected:
     // For the protocols: the call for a part is told once.

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/geometry/notation.h"
+#include "core/number_text.h"
 
 namespace seamwright::ur {
 
@@ -45,8 +46,8 @@ std::int32_t frame_number(std::string_view name) {
 
 std::pair<std::int32_t, std::int32_t> signature_numbers(std::string_view signature) {
     const auto half = [&](std::size_t at) {
-        return static_cast<std::int32_t>(static_cast<std::uint32_t>(
-            std::strtoul(std::string(signature.substr(at, 8)).c_str(), nullptr, 16)));
+        return static_cast<std::int32_t>(
+            number_from<std::uint32_t>(signature.substr(std::min(at, signature.size()), 8), 16).value_or(0));
     };
     return {half(3), half(11)};  // behind "SW-"
 }

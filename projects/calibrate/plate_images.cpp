@@ -4,6 +4,8 @@
 #include <charconv>
 #include <set>
 
+#include "core/number_text.h"
+
 namespace seamwright {
 
 namespace fs = std::filesystem;
@@ -70,7 +72,7 @@ Expected<std::vector<fs::path>> plate_images(const fs::path& folder,
         for (auto i = s.rbegin(); i != s.rend() && std::isdigit(static_cast<unsigned char>(*i)); ++i)
             digits.insert(digits.begin(), *i);
         return std::tuple(s.substr(0, s.size() - digits.size()),
-                          digits.size() < 12 && !digits.empty() ? std::stoll(digits) : 0LL, s);
+                          digits.size() < 12 ? number_from<long long>(digits).value_or(0) : 0LL, s);
     };
     std::sort(images.begin(), images.end(),
               [&](const fs::path& a, const fs::path& b) { return key(a) < key(b); });

@@ -1958,8 +1958,56 @@
         <translation>keine Antwort in der Zeit: kein Roboter hat sich verbunden</translation>
     </message>
     <message>
-        <source>start SEAMWRIGHT_SERVE on the controller</source>
-        <translation>SEAMWRIGHT_SERVE auf der Steuerung starten</translation>
+        <source>start SEAMWRIGHT_SUB in the controller&apos;s submit interpreter</source>
+        <translation>SEAMWRIGHT_SUB im Submit-Interpreter der Steuerung starten</translation>
+    </message>
+    <message>
+        <source>the controller does not know the flange: %1</source>
+        <translation>die Steuerung kennt den Flansch nicht: %1</translation>
+    </message>
+    <message>
+        <source>select and start a program on the controller</source>
+        <translation>auf der Steuerung ein Programm anwählen und starten</translation>
+    </message>
+    <message>
+        <source>load seamwright_sub.sub of this version on the controller</source>
+        <translation>seamwright_sub.sub dieser Version auf die Steuerung laden</translation>
+    </message>
+    <message>
+        <source>the tool is fixed in the cell ($IPO_MODE #TCP): the flange is not told</source>
+        <translation>das Werkzeug steht fest in der Zelle ($IPO_MODE #TCP): der Flansch wird nicht gemeldet</translation>
+    </message>
+    <message>
+        <source>select a program whose tool is on the robot</source>
+        <translation>ein Programm anwählen, dessen Werkzeug am Roboter ist</translation>
+    </message>
+    <message>
+        <source>select and start a program, so that tool and base are active</source>
+        <translation>ein Programm anwählen und starten, damit Werkzeug und Basis gelten</translation>
+    </message>
+    <message>
+        <source>tool or base changed while the flange was read</source>
+        <translation>Werkzeug oder Basis haben gewechselt, während der Flansch gelesen wurde</translation>
+    </message>
+    <message>
+        <source>read it again</source>
+        <translation>noch einmal lesen</translation>
+    </message>
+    <message>
+        <source>no program waits in SEAMWRIGHT_SPOTS</source>
+        <translation>kein Programm wartet in SEAMWRIGHT_SPOTS</translation>
+    </message>
+    <message>
+        <source>start the application on the controller</source>
+        <translation>die Anwendung auf der Steuerung starten</translation>
+    </message>
+    <message>
+        <source>the program that waited did not go on</source>
+        <translation>das wartende Programm ging nicht weiter</translation>
+    </message>
+    <message>
+        <source>the application runs with the frames already</source>
+        <translation>die Anwendung läuft schon mit den Frames</translation>
     </message>
     <message>
         <source>the controller reports: %1</source>

@@ -25,7 +25,7 @@ struct ServedCell {
 struct ServedCellOptions {
     std::string driver = "kuka-eki";
     int width = 640, height = 512;
-    int trigger_interval_ms = 40;
+    double time_scale = 40;             // the robot's pace: about 40 ms from spot to spot
     double lost_packets_per_mille = 0;  // after teaching
     bool gocator = false;               // the sensor is a Gocator, not a GigE Vision camera
 };
@@ -76,7 +76,11 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     robot.id = "R1";
     robot.driver = options.driver;
     robot.settings = {{"port", port}};
-    nlohmann::json controller = {{"port", port}, {"trigger_interval_ms", options.trigger_interval_ms}};
+    nlohmann::json controller = {{"port", port}};
+    if (options.driver.starts_with("kuka-"))
+        controller["time_scale"] = options.time_scale;
+    else
+        controller["trigger_interval_ms"] = 1600 / options.time_scale;
     if (options.driver == "ur-rtde")
         robot.settings["dashboard_port"] = controller["dashboard_port"] =
             TcpListener::listen("127.0.0.1", 0)->port();

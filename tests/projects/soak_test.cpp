@@ -143,7 +143,7 @@ ServedCellOptions at_100_per_second() {
     ServedCellOptions options;
     options.width = 640;
     options.height = 512;
-    options.trigger_interval_ms = 10;
+    options.time_scale = 160;
     return options;
 }
 

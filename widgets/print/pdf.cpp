@@ -11,6 +11,7 @@
 #include <QTextObjectInterface>
 #include <QTextOption>
 #include <QTextTable>
+#include <clocale>
 #include <memory>
 
 #include "devices/exchange/files.h"
@@ -278,6 +279,7 @@ void ensure_application() {
     const QtMessageHandler before =
         qInstallMessageHandler([](QtMsgType, const QMessageLogContext&, const QString&) {});
     static QGuiApplication application(argc, argv);
+    std::setlocale(LC_NUMERIC, "C");  // Qt has set the desktop's: libraries that parse "1.5" would read 1
     qInstallMessageHandler(before);
 }
 

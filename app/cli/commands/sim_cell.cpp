@@ -9,6 +9,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/signal_watch.h"
+#include "core/number_text.h"
 #include "devices/cell_server.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
@@ -39,7 +40,7 @@ Expected<ServedController> controller_from(const std::string& text) {
     int port = -1;
     const auto digits = text.substr(colon + 1);
     if (!digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos)
-        port = std::stoi(digits);
+        port = number_from<int>(digits).value_or(-1);
     if (port < 0 || port > 65535)
         return usage_error("\"" + digits + "\" is no port", "--controller " + text, "give NAME or NAME:PORT");
     c.settings["port"] = port;

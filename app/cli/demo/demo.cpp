@@ -65,7 +65,9 @@ Expected<ServedDemo> serve_demo(const DemoOptions& options, const std::shared_pt
     if (!demo) return demo;
     CellServerOptions serve;
     serve.camera_address = options.camera_address;
-    serve.controllers = {{"kuka-eki", demo->robot_settings}};
+    nlohmann::json controller = demo->robot_settings;
+    controller["time_scale"] = 8;  // a pace that the camera can follow
+    serve.controllers = {{"kuka-eki", controller}};
     auto server = CellServer::start(serve, cell);
     if (!server) return tl::unexpected(server.error());
     demo->server.emplace(std::move(*server));
@@ -331,6 +333,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         return tl::unexpected(written.error());
 
     progress("calibrating the sensor on plate and sphere");
+    world.set_mode(RobotMode::manual_reduced);  // moved by command while calibrating and teaching
     Project& project = outcome.project;
     project.name = "Demo: door left";
     project.part = {"door left", "procedural door", {}, world.base_from_workobject()};
@@ -400,6 +403,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     if (auto written = write_text_file(options.folder / "bead.csv", taught_bead(world)); !written)
         return tl::unexpected(written.error());
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
+    world.set_mode(RobotMode::automatic);
     for (const Region& region : project.regions) {
         auto plan = plan_region(planned_observations(project, region), {});
         if (!plan) return tl::unexpected(plan.error());

@@ -296,7 +296,6 @@ TEST(Texts, WhatTheLayersBelowRefuseIsInTheList) {
                                              "devices/abb/rapid_controller.cpp",
                                              "devices/genicam/served_camera.cpp",
                                              "devices/genicam/wire_camera.cpp",
-                                             "devices/kuka/eki_controller.cpp",
                                              "devices/kuka/program.cpp",
                                              "devices/kuka/rsi_controller.cpp",
                                              "devices/kuka/rsi_program.cpp",

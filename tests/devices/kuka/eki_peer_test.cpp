@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "devices/controllers/kuka/controller.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/rsi.h"
 #include "devices/net/socket.h"

@@ -77,7 +77,7 @@ TEST(EkiTelegramTest, WritingAndReadingAreInverse) {
         EkiTelegram t{.kind = "write", .id = i, .name = "BASE \"<&'> left", .text = "grün"};
         t.pose = make_pose(rotation_exp(kPi * Eigen::Vector3d(unit(random), unit(random), unit(random))),
                            9000 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
-        auto back = parse_eki_command(write_eki("Sensor", t));
+        auto back = parse_eki_telegram(write_eki("Robot", t));
         ASSERT_TRUE(back) << back.error().sentence();
         EXPECT_EQ(back->name, t.name);
         EXPECT_EQ(back->text, t.text);

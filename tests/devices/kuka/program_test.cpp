@@ -146,6 +146,48 @@ TEST(KukaProgram, RefusesWhatTheModuleCannotHold) {
     refused(r, "not finite");
 }
 
+TEST(KukaProgram, ViaPointsArePassedBeforeTheEntryAtTravellingSpeed) {
+    ProgramRequest r = request();
+    const std::string before = program_signature(r.moves);
+    r.moves[1].via = {make_pose(rotation_exp({0, 0, 1}), {1000, 10, 900}),
+                      make_pose(rotation_exp({0, 0, 2}), {1001, 20, 900})};
+    EXPECT_NE(program_signature(r.moves), before);
+    auto files = files_of(r);
+    EXPECT_THAT(
+        files["seamwright_spots.src"],
+        HasSubstr(
+            "$VEL.CP=SW_TRAVEL\nLIN XSW_002_VIA1 C_DIS\nLIN XSW_002_VIA2 C_DIS\nLIN XSW_002_ENTRY C_DIS\n"));
+    EXPECT_THAT(files["seamwright_spots.dat"], HasSubstr("DECL FRAME XSW_002_VIA2={X 1001.0000,Y 20.0000,"));
+    r.moves[1].via[0].translation().x() = std::nan("");
+    EXPECT_FALSE(write_kuka_program(r));
+}
+
+TEST(KukaProgram, NamesAndAddressesCannotChangeTheFiles) {
+    ProgramRequest r = request();
+    r.project = "door\nHALT";
+    r.frames[0].region_id = "left\nHALT";
+    auto files = files_of(r);
+    EXPECT_EQ(files["seamwright_spots.src"].find("\nHALT"), std::string::npos);
+    for (const char* listen : {"", "0.0.0.0", "1.2.3.4</IP><IP>5.6.7.8", "my-computer"}) {
+        r.settings["listen"] = listen;
+        EXPECT_FALSE(write_kuka_program(r)) << listen;
+    }
+}
+
+TEST(PathProgram, IsNotNamedByAWordOfALanguageOrOfOurModules) {
+    PathProgramRequest r;
+    r.frame_from_tool = {Pose::Identity()};
+    EXPECT_TRUE(write_kuka_path(r));
+    for (const char* name : {"while", "END", "to", "return", "Pos", "robtarget", "def", "thread", "elif",
+                             "MoveL", "SEAMWRIGHT", "sw_fire"}) {
+        r.name = name;
+        auto files = write_kuka_path(r);
+        ASSERT_FALSE(files) << name;
+        EXPECT_THAT(files.error().sentence(), HasSubstr(name));
+        EXPECT_EQ(files.error().kind, ErrorKind::input);
+    }
+}
+
 TEST(ProgramSignature, TellsProgramsApart) {
     const auto moves = request().moves;
     const std::string signature = program_signature(moves);

@@ -7,6 +7,7 @@
 #include "devices/abb/egm.h"
 #include "devices/abb/program.h"
 #include "devices/abb/rapid.h"
+#include "devices/controllers/abb/controller.h"
 #include "devices/controllers/kuka/controller.h"
 #include "devices/controllers/ur/controller.h"
 #include "devices/genicam/genicam.h"

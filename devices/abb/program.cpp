@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "abb_resources.h"
 #include "core/geometry/notation.h"
 #include "devices/abb/rapid_message.h"
 #include "devices/exchange/settings.h"
+#include "devices/robot_words.h"
 
 namespace seamwright {
 namespace {
@@ -30,6 +32,78 @@ std::string robtarget(const std::string& name, const Pose& pose) {
         "    LOCAL CONST robtarget {}:=\n        [{},\n        "
         "[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];\n",
         name, rapid_pose(pose));
+}
+
+std::string folded(std::string name) {  // RAPID does not tell capital letters apart
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
+}
+
+// The module's names begin with sw or with s and the spot's number; what RAPID defines by number.
+bool is_taken_name(const std::string& name) {
+    const std::string text = folded(name);
+    const bool numbered = (text[0] == 'v' || text[0] == 'z') && text.size() > 1 &&
+                          text.find_first_not_of("0123456789", 1) == std::string::npos;
+    const bool spot =
+        text[0] == 's' && text.size() > 3 && std::isdigit(static_cast<unsigned char>(text[1])) != 0;
+    return is_robot_word(RobotLanguage::rapid, name) || numbered || spot || text.starts_with("sw") ||
+           text.starts_with("err_") || text.starts_with("op_") || text.starts_with("seamwright");
+}
+
+Expected<void> check_name(const std::string& name, const std::string& what, const std::string& where) {
+    if (!abb::is_rapid_identifier(name))
+        return input_error("\"" + name + "\" is no name of a " + what, where,
+                           "use a letter, then letters, digits and _, at most 32 characters");
+    if (is_taken_name(name))
+        return input_error("\"" + name + "\" is a word of RAPID itself or of Seamwright's modules", where,
+                           "choose another name");
+    return {};
+}
+
+// What the moves carry: the load of a tool that the controller has, or numbers.
+struct Load {
+    std::string tool;
+    double mass_kg = 0.001;
+    Eigen::Vector3d centre_mm{0, 0, 0.001}, inertia_kgm2{0, 0, 0};
+};
+Expected<Load> load_from(const nlohmann::json& settings) {
+    Load load;
+    SettingsReader f(settings, "settings");
+    f.text("tool", load.tool);
+    bool numbers = false;
+    f.object("load", [&](SettingsReader& r) {
+        numbers = true;
+        r.only({"mass_kg", "centre_mm", "inertia_kgm2"});
+        r.number("mass_kg", load.mass_kg, 0.001, 5000);
+        for (auto [key, value] : {std::pair<const char*, Eigen::Vector3d*>{"centre_mm", &load.centre_mm},
+                                  {"inertia_kgm2", &load.inertia_kgm2}}) {
+            if (r.failed() || !r.json().contains(key)) continue;
+            auto read = json_vector3(r.json(), key, "settings.load");
+            r.keep(read ? Expected<void>() : tl::make_unexpected(read.error()));
+            if (read) *value = *read;
+        }
+    });
+    if (f.failed()) return tl::unexpected(f.error());
+    if (!load.tool.empty() && numbers)
+        return input_error("the load is that of a tool or given in numbers", "settings",
+                           "give \"tool\" or \"load\"");
+    if (load.inertia_kgm2.minCoeff() < 0 || load.centre_mm.cwiseAbs().maxCoeff() > 1e4)
+        return input_error("a load of this centre or inertia cannot be", "settings.load");
+    if (!load.tool.empty())
+        if (auto named = check_name(load.tool, "tool", "settings.tool"); !named)
+            return tl::unexpected(named.error());
+    return load;
+}
+
+std::string load_lines(const Load& load) {
+    const auto& c = load.centre_mm;
+    const auto& i = load.inertia_kgm2;
+    return fmt::format(
+        "    ! The flange as tool, and what hangs on it{}\n    PERS tooldata "
+        "swTool:=[TRUE,[[0,0,0],[1,0,0,0]],\n        "
+        "[{:.3f},[{:.3f},{:.3f},{:.3f}],[1,0,0,0],{:.5f},{:.5f},{:.5f}]];\n",
+        load.tool.empty() ? std::string() : ": see SW_Load", load.mass_kg, c.x(), c.y(), c.z(), i.x(), i.y(),
+        i.z());
 }
 
 Expected<void> check_pose(const Pose& pose, const std::string& where) {
@@ -66,6 +140,8 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     f.text("address", address);
     f.whole("port", port, 1, 65535);
     if (f.failed()) return tl::unexpected(f.error());
+    const auto load = load_from(request.settings);
+    if (!load) return tl::unexpected(load.error());
     if (address.empty() || address.find_first_not_of("0123456789.") != std::string::npos)
         return input_error("\"" + address + "\" is no address", "settings.address",
                            "give it as four numbers");
@@ -80,13 +156,20 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
         if (!(move.speed_mm_s > 0 && move.speed_mm_s <= kFastest_mm_s))
             return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s), where,
                                "give up to 2000 mm/s");
-        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
+        std::vector<const Pose*> poses = {&move.entry, &move.trigger, &move.exit};
+        for (const Pose& pose : move.via) poses.push_back(&pose);
+        for (const Pose* pose : poses)
             if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
         const std::string point = fmt::format("s{:02}", ++n);
         targets += fmt::format("    ! spot {}\n", move.spot_id) + robtarget(point + "_entry", move.entry) +
                    robtarget(point + "_spot", move.trigger) + robtarget(point + "_exit", move.exit) +
                    fmt::format("    LOCAL CONST speeddata {}_speed:=[{:.3f},100,5000,1000];\n", point,
                                move.speed_mm_s);
+        for (std::size_t i = 0; i < move.via.size(); ++i) {
+            const std::string via = fmt::format("{}_via{}", point, i + 1);
+            targets += robtarget(via, move.via[i]);
+            passes += fmt::format("        SW_Via {};\n", via);
+        }
         names += fmt::format("{}\"{}\"", n == 1 ? "" : n % 4 == 1 ? ",\n        " : ",", move.spot_id);
         passes += fmt::format("        SW_Pass {},{}_entry,{}_spot,{}_exit,{}_speed,{};\n", n, point, point,
                               point, point, move.stop_at_trigger ? "TRUE" : "FALSE");
@@ -97,13 +180,9 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     std::set<std::string> known;
     for (const ApplicationFrame& frame : request.frames) {
         const std::string where = "frame of region " + frame.region_id;
-        if (!abb::is_rapid_identifier(frame.name))
-            return input_error("\"" + frame.name + "\" is no name of a work object", where,
-                               "use a letter, then letters, digits and _, at most 32 characters");
-        std::string folded = frame.name;  // RAPID does not tell capital letters apart
-        std::transform(folded.begin(), folded.end(), folded.begin(),
-                       [](unsigned char c) { return std::tolower(c); });
-        if (!known.insert(folded).second)
+        if (auto named = check_name(frame.name, "work object", where); !named)
+            return tl::unexpected(named.error());
+        if (!known.insert(folded(frame.name)).second)
             return input_error("two regions have the work object \"" + frame.name + "\"", where,
                                "name one of them otherwise");
         if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
@@ -114,11 +193,12 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     const std::string spots = fmt::format(
         "MODULE SeamwrightSpots\n    ! Measuring program of {}\n    PERS string swSignature:=\"{}\";\n    "
         "PERS num "
-        "swCount:={};\n    PERS string swSpotName{{64}}:=[\n        {}];\n{}{}\n    ! straight from exit to "
-        "the next entry: add "
-        "points where the sensor must go round something\n    PROC SW_Spots()\n{}    ENDPROC\nENDMODULE\n",
-        plain(request.project), program_signature(request.moves), request.moves.size(), names, objects,
-        targets, passes);
+        "swCount:={};\n    PERS string swSpotName{{64}}:=[\n        {}];\n{}{}{}\n    PROC SW_Load()\n{}    "
+        "ENDPROC\n\n"
+        "    PROC SW_Spots()\n{}    ENDPROC\nENDMODULE\n",
+        plain(request.project), program_signature(request.moves), request.moves.size(), names,
+        load_lines(*load), objects, targets,
+        load->tool.empty() ? "" : fmt::format("        swTool.tload:={}.tload;\n", load->tool), passes);
     return std::vector<ProgramFile>{
         {"SeamwrightServer.mod",
          filled(resources::SeamwrightServer_mod, {{"ADDRESS", address}, {"PORT", std::to_string(port)}})},
@@ -128,6 +208,13 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
 
 Expected<std::vector<ProgramFile>> write_abb_path(const PathProgramRequest& request) {
     if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
+    if (auto named = check_name(request.name, "program", "name"); !named)
+        return tl::unexpected(named.error());
+    static const std::set<std::string> own = {"frame", "speed", "rounding",
+                                              "point", "tool",  "i"};  // of the module
+    if (own.count(folded(request.name)) > 0)
+        return input_error("\"" + request.name + "\" is a word of RAPID itself or of Seamwright's modules",
+                           "name", "choose another name");
     const std::size_t count = request.frame_from_tool.size();
     std::string points;
     for (std::size_t i = 0; i < count; ++i)
@@ -138,16 +225,20 @@ Expected<std::vector<ProgramFile>> write_abb_path(const PathProgramRequest& requ
                                      ? fmt::format("[FALSE,{0:.2f},{1:.2f},{1:.2f},{2:.3f},{1:.2f},{2:.3f}]",
                                                    zone, 1.5 * zone, 0.15 * zone)
                                      : "[FALSE,0.3,0.3,0.3,0.03,0.3,0.03]";
+    // A loop of RAPID counts down where it begins above its end: a single point has none.
+    const std::string loop = count < 2 ? std::string()
+                                       : fmt::format(
+                                             "        FOR i FROM 1 TO {} DO\n            MoveL "
+                                             "point{{i}},speed,rounding,tool\\WObj:=frame;\n        ENDFOR\n",
+                                             count - 1);
     const std::string text = fmt::format(
         "MODULE {0}\n    ! {1}\n    LOCAL PERS wobjdata frame:=[FALSE,TRUE,\"\",[{2}],\n        "
         "[[0,0,0],[1,0,0,0]]];\n    LOCAL CONST speeddata speed:=[{3:.3f},100,5000,1000];\n    LOCAL CONST "
         "zonedata rounding:={4};\n    LOCAL CONST robtarget point{{{5}}}:=[\n{6}    ! bring the robot before "
-        "the first point\n    PROC {0}_run(PERS tooldata tool)\n        ConfL\\Off;\n        FOR i FROM 1 TO "
-        "{7} DO\n            MoveL point{{i}},speed,rounding,tool\\WObj:=frame;\n        ENDFOR\n        "
-        "MoveL "
+        "the first point\n    PROC {0}_run(PERS tooldata tool)\n        ConfL\\Off;\n{7}        MoveL "
         "point{{{5}}},speed,fine,tool\\WObj:=frame;\n        ConfL\\On;\n    ENDPROC\nENDMODULE\n",
         request.name, program_comment(request.comment), rapid_pose(request.base_from_frame),
-        request.speed_mm_s, rounding, count, points, count - 1);
+        request.speed_mm_s, rounding, count, points, loop);
     return std::vector<ProgramFile>{{request.name + ".mod", text}};
 }
 

@@ -4,14 +4,19 @@
 // robtargets of the flange in wobj0, triggered path-synchronously (TriggL), the application's work objects
 // with base_from_frame in `oframe`, and the signature.
 //
-// Settings that it reads from the robot's: "address" and "port" (where the server listens).
+// Settings that it reads from the robot's, all optional:
+//   "address": "192.168.125.1", "port": 1025        where the server listens
+//   "tool": NAME of a tooldata of T_ROB1, whose load the moves then carry, or
+//   "load": {"mass_kg", "centre_mm": [x, y, z], "inertia_kgm2": [x, y, z]}, in the flange's frame.
+// Without either the moves carry what tool0 does, 1 g: the controller then knows nothing of the sensor's
+// weight.
 
 #include "devices/robot_program.h"
 
 namespace seamwright {
 
-// Error (input): more than 64 spots or 32 frames, names that RAPID cannot hold, two frames of one name, a
-// speed over 2 m/s, a pose that is not finite or beyond 100 m.
+// Error (input): more than 64 spots or 32 frames, names that RAPID cannot hold, reserves or our modules use,
+// two frames of one name, a speed over 2 m/s, a pose that is not finite or beyond 100 m.
 Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request);
 
 // NAME.mod: PROC NAME_run(tool) along the points in a work object of its own.

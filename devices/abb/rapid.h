@@ -11,6 +11,13 @@
 // `oframe` of that work object when the verdict is `corrected`, and no path may run in it before.
 // read_frame() answers the staged frame while one is staged, else the work object itself.
 //
+// The permission is a token that the application (SW_Take, SW_Activate) or the server takes by one
+// TestAndSet: what permission() tells is who has it. While it is given and not taken the link must be heard
+// every 5 s (any request does; a link that waits asks every 0.5 s by itself), or the controller takes the
+// connection for lost. A module of the first version cannot tell; then permission() is refused.
+//
+// "tool" and "load" of the settings concern the written program (program.h).
+//
 // RAPID's num is single precision: a frame comes back off by at most half a unit in the last place, 0.00025
 // mm a coordinate up to 8 m, 0.0005 mm up to 16 m, and about 1e-5 degree. Both are below what the safety gate
 // allows. Poses travel with 4 decimals of a millimetre and 8 of a quaternion.
@@ -18,7 +25,7 @@
 // Settings, defaults:
 //   {"address": "127.0.0.1", "port": 1025,
 //    "timeout_ms": 1000            for each answer and for connecting,
-//    "move_timeout_ms": 60000      for move_to(), which answers when the robot stands,
+//    "move_timeout_ms": 60000      for move_to() beyond what the way takes at 20 % of SW_Teach's speed,
 //    "backoff_ms": 100, "backoff_max_ms": 500}   between attempts to connect, doubling
 //
 // Failure: a controller that is silent or answers half a message is known by is_silence(), and the connection
@@ -32,16 +39,9 @@
 
 #include "devices/device_session.h"
 #include "devices/robot_link.h"
-#include "devices/simulated/controller.h"
 
 namespace seamwright {
 
 Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settings, DeviceSession& session);
-
-// The same protocol from the controller's side, before a simulated cell; positions and quaternions go through
-// single precision as on the controller. Settings: {"address": "127.0.0.1", "port": 0, "slow_ms": 300,
-// "trigger_interval_ms": 20, "serial": that of the cell, "model": "IRB 6700 (simulated)"}.
-Expected<std::unique_ptr<SimulatedController>> start_abb_rapid(std::shared_ptr<SimulatedCell> cell,
-                                                               const nlohmann::json& settings);
 
 }  // namespace seamwright

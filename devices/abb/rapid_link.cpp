@@ -22,6 +22,10 @@ using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::size_t kEventLimit = 10000;  // events waiting: a controller that floods is refused
+constexpr Milliseconds kAlive{500};         // so often a link that waits is heard
+// SW_Teach: 100 mm/s and, of the zone of that speed, at least 45 degree/s; the speed may be overridden down
+// to 20 %.
+constexpr double kTeachSpeed_mm_s = 100, kTeachTurn_deg_s = 45, kSlowest = 0.2;
 
 struct LinkSettings {
     std::string address = "127.0.0.1";
@@ -31,9 +35,10 @@ struct LinkSettings {
 
 Expected<LinkSettings> parse_link_settings(const nlohmann::json& json) {
     const std::string where = "settings of abb-rapid";
-    if (auto ok = only_fields(
-            json, {"address", "port", "timeout_ms", "move_timeout_ms", "backoff_ms", "backoff_max_ms"},
-            where);
+    if (auto ok = only_fields(json,
+                              {"address", "port", "timeout_ms", "move_timeout_ms", "backoff_ms",
+                               "backoff_max_ms", "tool", "load"},
+                              where);
         !ok)
         return tl::unexpected(ok.error());
     LinkSettings s;
@@ -130,6 +135,7 @@ class AbbRapidLink final : public RobotLink {
         auto answer = ask({0, "MEASURE", {std::to_string(names.size()), program_signature(moves)}, {}, {}},
                           settings_.timeout);
         if (!answer) return tl::unexpected(answer.error());
+        starts_.clear();  // whatever was called for before is what is measured now
         return {};
     }
 
@@ -175,21 +181,38 @@ class AbbRapidLink final : public RobotLink {
         return {};
     }
 
+    Expected<Permission> permission() override {
+        auto answer = ask({0, "PERMIT", {}, {}, {}}, settings_.timeout);
+        if (!answer) return tl::unexpected(answer.error());
+        for (const auto& [word, permission] : {std::pair{"NONE", Permission::none},
+                                               {"GIVEN", Permission::given},
+                                               {"TAKEN", Permission::taken}})
+            if (answer->fields == std::vector<std::string>{word}) return permission;
+        return broken(fmt::format("the controller tells a permission that does not exist: \"{}\"",
+                                  fmt::join(answer->fields, " ")));
+    }
+
     Expected<void> move_to(const Pose& base_from_flange) override {
         Message request{0, "MOVE", {}, {}, {}};
         if (auto ok = put_pose(request, base_from_flange); !ok) return ok;
         if (auto same = same_robot(); !same) return same;
-        auto answer = ask(std::move(request), settings_.move_timeout);
+        auto from = this->base_from_flange();
+        if (!from) return tl::unexpected(from.error());
+        const double way_s = std::max(distance_mm(*from, base_from_flange) / kTeachSpeed_mm_s,
+                                      deg_from_rad(angle_rad(*from, base_from_flange)) / kTeachTurn_deg_s);
+        auto answer = ask(std::move(request),
+                          settings_.move_timeout + Milliseconds(static_cast<long>(1000 * way_s / kSlowest)));
         if (!answer) return tl::unexpected(answer.error());
         return {};
     }
 
   private:
     Expected<RobotIdentity> ask_identity() {
-        auto answer = ask({0, "HELLO", {"1"}, {}, {}}, settings_.timeout);
+        auto answer = ask({0, "HELLO", {"2"}, {}, {}}, settings_.timeout);
         if (!answer) return tl::unexpected(answer.error());
-        if (answer->fields != std::vector<std::string>{"1"})
-            return broken("the controller's module speaks another version of the protocol than 1");
+        const auto& version = answer->fields;
+        if (version.size() != 1 || (version[0] != "1" && version[0] != "2"))
+            return broken("the controller's module speaks another version of the protocol than 1 and 2");
         return RobotIdentity{"abb-rapid", "ABB", answer->line3, answer->line2};
     }
     Expected<void> same_robot() {
@@ -220,7 +243,9 @@ class AbbRapidLink final : public RobotLink {
         starts_.clear();
         triggers_.clear();
         next_trigger_ = 0;
-        if (wait_.count() == 0) wait_ = settings_.backoff;
+        // Longer and longer while nothing answers: who connects anew at once stands behind itself in the
+        // queue.
+        wait_ = wait_.count() == 0 ? settings_.backoff : std::min(wait_ * 2, settings_.backoff_max);
         not_before_ = Clock::now() + wait_;
     }
     tl::unexpected<Error> broken(std::string what) {
@@ -294,6 +319,7 @@ class AbbRapidLink final : public RobotLink {
                 return device_error(fmt::format("start signal {} came after {}", *count, *start_count_),
                                     where_, "a start signal was lost; the part has to be started again");
             start_count_ = *count;
+            starts_.clear();  // the robot calls for one part at a time: an older call is over
             const std::int64_t now = now_ns();
             starts_.push_back({event.line2, now, quiet_ns_ == 0 ? now : quiet_ns_});
             return {};
@@ -321,18 +347,23 @@ class AbbRapidLink final : public RobotLink {
         return {};
     }
 
-    // Waits for one event. Silence leaves the connection up unless half a message came.
+    // Waits for one event. Silence leaves the connection up unless half a message came. The controller is
+    // asked now and then meanwhile, so that each side knows that the other is there.
     Expected<void> next_event(Clock::time_point until) {
         if (auto open = connected(); !open) return tl::unexpected(fell_silent(open.error()));
-        auto message = receive(until);
+        const auto slice = std::min(until, std::max(asked_ + kAlive, Clock::now()));
+        auto message = receive(slice);
         if (!message) {
-            if (is_silence(message.error()) && received_.empty()) {
-                quiet_ns_ = now_ns();
+            if (!is_silence(message.error()) || !received_.empty()) return lost(fell_silent(message.error()));
+            quiet_ns_ = now_ns();
+            if (Clock::now() >= until) {
                 Error error = message.error();
                 error.where = where_;
                 return tl::unexpected(error);
             }
-            return lost(fell_silent(message.error()));
+            auto alive = ask({0, "PING", {}, {}, {}}, settings_.timeout);
+            if (!alive) return tl::unexpected(alive.error());
+            return {};
         }
         if (message->number != 0)
             return broken(fmt::format("answer {} came and nothing was asked", message->number));
@@ -347,7 +378,8 @@ class AbbRapidLink final : public RobotLink {
         if (auto open = connected(); !open) return tl::unexpected(open.error());
         number_ = number_ % abb::kHighestNumber + 1;
         request.number = number_;
-        const auto until = Clock::now() + timeout;
+        asked_ = Clock::now();
+        const auto until = asked_ + timeout;
         if (auto sent = connection_->send(bytes_of(abb::message_bytes(request)), timeout); !sent)
             return lost(sent.error());
         for (;;) {
@@ -388,6 +420,7 @@ class AbbRapidLink final : public RobotLink {
     std::optional<std::uint32_t> start_count_;
     SameRobot robot_;
     std::int64_t quiet_ns_ = 0;  // when nothing more was waiting to be heard; 0 = never
+    Clock::time_point asked_{};
     Milliseconds wait_{0};
     Clock::time_point not_before_{};
 };

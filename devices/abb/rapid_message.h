@@ -11,13 +11,14 @@
 // number. Events of the controller bear number 0.
 //
 //   request                           answer
-//   n HELLO 1 (protocol version)      n HELLO 1 / serial / model RobotWare
+//   n HELLO 2 (protocol version)      n HELLO 2 / serial / model      (1: a module that does not know PERMIT)
 //   n MODE                            n MODE AUTO|MANR|MANF|UNDEF ON|OFF|STOP|ESTOP RUN|HALT
 //   n POSE                            n POSE             + pose base_from_flange
 //   n READ frame                      n READ frame       + pose base_from_frame
 //   n WRITE frame                     n WRITE frame      + pose as staged (the request has one too)
 //   n MEASURE count signature         n MEASURE count    compares with its program (program_signature())
 //   n VERDICT CORRECTED|REFUSED|FAILED + text     n VERDICT word
+//   n PERMIT                          n PERMIT NONE|GIVEN|TAKEN       what became of VERDICT CORRECTED
 //   n MOVE                            n MOVE                 (with a pose; answered when standing there)
 //   n PING                            n PING
 //   any of them                       n NO word + text of the reason

@@ -41,7 +41,7 @@ class SimulatedController {
     // Where it listens; of a robot that is the client, where it connects to.
     virtual std::uint16_t port() const = 0;
     // Somebody calls for the next part, as the line's PLC does.
-    void press_start(const std::string& part_id);
+    virtual void press_start(const std::string& part_id);
     void set_fault(ControllerFault fault) { fault_ = fault; }
     ControllerFault fault() const { return fault_; }
     // May the application run with the frames as they are? See RobotLink. False from the making, from a start

@@ -1,19 +1,30 @@
 MODULE Seamwright
     ! What measuring and application programs of T_ROB1 call; SeamwrightServer.mod shares this data. For each part:
     !   swPart:="CAR-0815";       where the line's controller knows the part
-    !   SW_Measure;               calls for the measurement and runs through the spots
-    !   SW_Activate;              before the first path: waits for the verdict, or stops
+    !   SW_Measure;               calls for the measurement, waits for it and runs through the spots
+    !   SW_Activate;              before the first path: waits for the permission and takes it, or stops
     !   MoveL p1,v100,z1,gun\WObj:=BASE_left;      the path in its work object, which was shifted
+    ! SW_Activate stops the robot where a part is not released. A program that lets such a part pass asks instead:
+    !   IF SW_Take() THEN         TRUE: the permission is taken and holds for this part, whatever becomes of the computer
+    ! A program that waits for its parts lets somebody at the computer measure meanwhile:
+    !   IF SW_Asked() THEN        to be called at least ten times a second while it waits
+    !       SW_Measure\Asked;     measures without calling
     ! While spots are taught SW_Teach runs in manual mode.
     ! sw_doTrigger is the digital output that is wired to the sensors.
-    PERS bool swCall:=FALSE;
+    PERS num swPartNo:=0;
+    PERS bool swWaiting:=FALSE;
+    PERS num swTick:=0;
+    PERS num swCalls:=0;
     PERS string swPart:="";
+    PERS bool swAsk:=FALSE;
     PERS bool swGo:=FALSE;
-    PERS bool swBusy:=FALSE;
     PERS bool swEnded:=FALSE;
-    PERS bool swReleased:=FALSE;
     PERS num swFired:=0;
     PERS pose swAt{64};
+    ! The permission: for which part it is given, and whether it is gone (taken here, or taken back by the server).
+    PERS num swGivenFor:=0;
+    PERS bool swGone:=TRUE;
+    PERS num swVerdict:=0;
     PERS bool swTeaching:=FALSE;
     PERS bool swMove:=FALSE;
     PERS pose swMoveTo:=[[0,0,0],[1,0,0,0]];
@@ -22,43 +33,77 @@ MODULE Seamwright
     LOCAL VAR triggdata pulse;
     LOCAL VAR triggdata latch;
     LOCAL VAR intnum on_spot;
-    LOCAL VAR num next:=0;
+    LOCAL VAR num coming:=0;
+    LOCAL VAR num taken_for:=0;
 
-    PROC SW_Measure()
-        swReleased:=FALSE;
+    PROC SW_Measure(\switch Asked)
+        IF NOT swWaiting Begin_part;
+        IF NOT Present(Asked) swCalls:=(swCalls MOD 8000000)+1;
+        WHILE NOT swGo DO
+            Tick;
+            WaitTime 0.004;
+        ENDWHILE
+        swWaiting:=FALSE;
         swGo:=FALSE;
-        swBusy:=FALSE;
-        swCall:=TRUE;
-        WaitUntil swGo;
-        swGo:=FALSE;
-        swBusy:=TRUE;
         IDelete on_spot;
         CONNECT on_spot WITH SpotPassed;
         TriggIO pulse,0\DOp:=sw_doTrigger,1;
         TriggInt latch,0,on_spot;
         ConfL\Off;
+        SW_Load;
         SW_Spots;
         ConfL\On;
         IDelete on_spot;
-        swBusy:=FALSE;
         swEnded:=TRUE;
     ENDPROC
 
-    ! One spot: straight from entry over the spot to exit, poses of the flange in the robot's base.
+    ! Does somebody at the computer want to measure? A part begins with the first question.
+    FUNC bool SW_Asked()
+        IF NOT swWaiting Begin_part;
+        Tick;
+        RETURN swGo;
+    ENDFUNC
+
+    LOCAL PROC Begin_part()
+        swGo:=FALSE;
+        swVerdict:=0;
+        swPartNo:=(swPartNo MOD 8000000)+1;
+        swWaiting:=TRUE;
+    ENDPROC
+
+    ! Tells the server that the program really waits.
+    LOCAL PROC Tick()
+        swTick:=(swTick MOD 1000000)+1;
+    ENDPROC
+
+    ! On the way to a spot.
+    PROC SW_Via(robtarget point)
+        MoveL point,travel,z5,swTool\WObj:=wobj0;
+    ENDPROC
+
+    ! One spot: straight from entry over the spot to exit, poses of the flange in the robot's base. What is told of
+    ! the spot is the programmed point, over which the trigger is set off, not where the robot is when a trap runs.
     PROC SW_Pass(num number,robtarget entry,robtarget spot,robtarget leave,speeddata speed,bool standing)
-        next:=number;
-        MoveL entry,travel,z5,tool0\WObj:=wobj0;
+        VAR num waited:=0;
+        MoveL entry,travel,z5,swTool\WObj:=wobj0;
+        coming:=number;
+        swAt{number}.trans:=spot.trans;
+        swAt{number}.rot:=spot.rot;
         IF standing THEN
-            MoveL spot,speed,fine,tool0\WObj:=wobj0;
+            MoveL spot,speed,fine,swTool\WObj:=wobj0;
             WaitTime 0.3;
             SetDO sw_doTrigger,1;
-            Latch_here;
+            swFired:=number;
             WaitTime 0.1;
         ELSE
-            TriggL spot,speed,pulse\T2:=latch,z1,tool0\WObj:=wobj0;
+            TriggL spot,speed,pulse\T2:=latch,z1,swTool\WObj:=wobj0;
         ENDIF
-        MoveL leave,speed,fine,tool0\WObj:=wobj0;
+        MoveL leave,speed,fine,swTool\WObj:=wobj0;
         SetDO sw_doTrigger,0;
+        WHILE swFired<>number AND waited<0.5 DO
+            WaitTime 0.01;
+            waited:=waited+0.01;
+        ENDWHILE
         IF swFired<>number THEN
             TPWrite "Seamwright: a spot was not passed";
             Stop;
@@ -66,43 +111,66 @@ MODULE Seamwright
     ENDPROC
 
     LOCAL TRAP SpotPassed
-        Latch_here;
+        swFired:=coming;
     ENDTRAP
 
-    LOCAL PROC Latch_here()
-        VAR robtarget at;
-        at:=CRobT(\Tool:=tool0\WObj:=wobj0);
-        swAt{next}.trans:=at.trans;
-        swAt{next}.rot:=at.rot;
-        swFired:=next;
-    ENDPROC
+    ! TRUE: this part is released and the permission taken, which nobody takes back any more. FALSE: it was refused, the
+    ! computer begins anew, or no verdict came in time (20 s unless told otherwise).
+    FUNC bool SW_Take(\num MaxTime)
+        VAR num most:=20;
+        VAR num waited:=0;
+        IF Present(MaxTime) most:=MaxTime;
+        WHILE waited<=most DO
+            IF taken_for=swPartNo RETURN TRUE;
+            IF swGivenFor=swPartNo THEN
+                ! One instruction decides between this and the server, who takes back what is not taken.
+                IF TestAndSet(swGone) THEN
+                    taken_for:=swPartNo;
+                    RETURN TRUE;
+                ENDIF
+            ENDIF
+            IF SW_Over() RETURN FALSE;
+            WaitTime 0.01;
+            waited:=waited+0.01;
+        ENDWHILE
+        RETURN FALSE;
+    ENDFUNC
+
+    ! The part was refused, or the computer wants to begin anew.
+    FUNC bool SW_Over()
+        RETURN swVerdict>1 OR swAsk;
+    ENDFUNC
 
     ! Without permission the robot stands and says so.
     PROC SW_Activate()
-        VAR bool late;
-        WaitUntil swReleased\MaxTime:=20\TimeFlag:=late;
-        IF NOT swReleased THEN
+        IF NOT SW_Take() THEN
             TPWrite "Seamwright has not released this part";
             Stop;
             EXIT;
         ENDIF
     ENDPROC
 
-    ! Serves moves by command while spots are taught.
+    ! Serves moves by command while spots are taught, until the robot is switched to automatic or somebody at the
+    ! computer measures.
     PROC SW_Teach()
-        VAR robtarget to;
+        VAR robtarget goal;
         swMove:=FALSE;
         swTeaching:=TRUE;
+        SW_Load;
         ConfL\Off;
-        WHILE TRUE DO
-            WaitUntil swMove;
-            to:=CRobT(\Tool:=tool0\WObj:=wobj0);
-            to.trans:=swMoveTo.trans;
-            to.rot:=swMoveTo.rot;
-            to.extax:=no_axes;
-            MoveL to,v100,fine,tool0\WObj:=wobj0;
-            WaitTime 0.3;
-            swMove:=FALSE;
+        WHILE OpMode()<>OP_AUTO AND (NOT swAsk) AND (NOT swGo) DO
+            IF swMove THEN
+                goal:=CRobT(\Tool:=swTool\WObj:=wobj0);
+                goal.trans:=swMoveTo.trans;
+                goal.rot:=swMoveTo.rot;
+                goal.extax:=no_axes;
+                MoveL goal,v100,fine,swTool\WObj:=wobj0;
+                WaitTime 0.3;
+                swMove:=FALSE;
+            ENDIF
+            WaitTime 0.01;
         ENDWHILE
+        ConfL\On;
+        swTeaching:=FALSE;
     ENDPROC
 ENDMODULE

@@ -4,35 +4,65 @@ MODULE SeamwrightServer
     ! Seamwright.mod in T_ROB1. System outputs to configure: sw_doMotorsOn (Motors On State), sw_doEStop
     ! (Emergency Stop), sw_doCycleOn (Cycle On).
     ! Options: 616-1 PC Interface, 623-1 Multitasking.
-    PERS bool swCall;
+    PERS num swPartNo;
+    PERS bool swWaiting;
+    PERS num swTick;
+    PERS num swCalls;
     PERS string swPart;
+    PERS bool swAsk;
     PERS bool swGo;
-    PERS bool swBusy;
     PERS bool swEnded;
-    PERS bool swReleased;
     PERS num swFired;
     PERS string swSpotName{64};
     PERS pose swAt{64};
+    PERS num swGivenFor;
+    PERS bool swGone;
+    PERS num swVerdict;
     PERS bool swTeaching;
     PERS bool swMove;
     PERS pose swMoveTo;
     PERS string swSignature;
     PERS num swCount;
 
+    LOCAL CONST string blanks:="                                                                               ";
     LOCAL VAR socketdev server;
     LOCAL VAR socketdev client;
+    LOCAL VAR rawbytes message;
+    LOCAL VAR clock unheard;
+    LOCAL VAR clock unchecked;
+    LOCAL VAR num patience:=0.5;
     LOCAL VAR string line1;
     LOCAL VAR string line2;
     LOCAL VAR string line3;
     LOCAL VAR string staged_name{32};
     LOCAL VAR pose staged{32};
+    LOCAL VAR wobjdata before{32};
     LOCAL VAR num staged_count:=0;
+    LOCAL VAR num applied:=0;
     LOCAL VAR num told:=0;
     LOCAL VAR num starts:=0;
+    LOCAL VAR num calls_told:=0;
+    LOCAL VAR num calls_measured:=0;
+    LOCAL VAR num measured_part:=0;
     LOCAL VAR bool measuring:=FALSE;
 
     PROC SW_Server()
-        swReleased:=FALSE;
+        swGone:=TRUE;
+        swGivenFor:=0;
+        swAsk:=FALSE;
+        calls_told:=swCalls;
+        calls_measured:=swCalls;
+        WHILE TRUE DO
+            Listen;
+            SocketClose client;
+            SocketClose server;
+            WaitTime 1;
+        ENDWHILE
+    ENDPROC
+
+    LOCAL PROC Listen()
+        SocketClose client;
+        SocketClose server;
         SocketCreate server;
         SocketBind server,"@ADDRESS@",@PORT@;
         SocketListen server;
@@ -41,30 +71,51 @@ MODULE SeamwrightServer
             staged_count:=0;
             starts:=0;
             measuring:=FALSE;
+            ! A call that nobody has answered by measuring is told again.
+            IF swWaiting AND swCalls<>calls_measured THEN
+                calls_told:=-1;
+            ELSE
+                calls_told:=swCalls;
+            ENDIF
             Serve;
-            ! The connection is lost: nothing that it wrote may be used.
-            swReleased:=FALSE;
+            ! The connection is lost: nothing that it wrote may be used, unless the application has taken it.
+            Take_back;
             staged_count:=0;
+            swAsk:=FALSE;
             SocketClose client;
         ENDWHILE
     ERROR
-        IF ERRNO=ERR_SOCK_TIMEOUT RETRY;
-        swReleased:=FALSE;
-        SocketClose client;
-        SocketClose server;
-        WaitTime 1;
-        ExitCycle;
+        ! The sockets are made anew.
+        Take_back;
+        RETURN;
     ENDPROC
 
+    ! Until the connection is lost.
     LOCAL PROC Serve()
+        VAR bool came;
+        Heard;
         WHILE TRUE DO
+            came:=FALSE;
             IF SocketPeek(client)>=240 THEN
-                SocketReceive client\Str:=line1\ReadNoOfBytes:=80\Time:=1;
-                SocketReceive client\Str:=line2\ReadNoOfBytes:=80\Time:=1;
-                SocketReceive client\Str:=line3\ReadNoOfBytes:=80\Time:=1;
-                Answer;
+                came:=Line_came(1);
             ELSE
                 TellEvents;
+                ! That the other side is gone is told by reading only.
+                IF ClkRead(unchecked)>patience THEN
+                    came:=Line_came(0.02);
+                    Checked 0.5;
+                ENDIF
+                ! Who is given the permission must be heard until it is taken.
+                IF ClkRead(unheard)>5 THEN
+                    IF swGivenFor<>0 AND swGone=FALSE RETURN;
+                ENDIF
+            ENDIF
+            IF came THEN
+                SocketReceive client\Str:=line2\ReadNoOfBytes:=80\Time:=1;
+                SocketReceive client\Str:=line3\ReadNoOfBytes:=80\Time:=1;
+                Heard;
+                Answer;
+            ELSE
                 WaitTime 0.002;
             ENDIF
         ENDWHILE
@@ -73,22 +124,58 @@ MODULE SeamwrightServer
         RETURN;
     ENDPROC
 
+    LOCAL FUNC bool Line_came(num seconds)
+        SocketReceive client\Str:=line1\ReadNoOfBytes:=80\Time:=seconds;
+        RETURN TRUE;
+    ERROR
+        IF ERRNO=ERR_SOCK_TIMEOUT RETURN FALSE;
+        RAISE;
+    ENDFUNC
+
+    LOCAL PROC Heard()
+        ClkStop unheard;
+        ClkReset unheard;
+        ClkStart unheard;
+        Checked 0.15;
+    ENDPROC
+
+    LOCAL PROC Checked(num next)
+        patience:=next;
+        ClkStop unchecked;
+        ClkReset unchecked;
+        ClkStart unchecked;
+    ENDPROC
+
+    ! The permission goes, unless the application has it already.
+    LOCAL PROC Take_back()
+        IF TestAndSet(swGone) swGivenFor:=0;
+    ENDPROC
+
+    ! In the order in which it happened: triggers, the end, and only then the call for the next part.
     LOCAL PROC TellEvents()
-        IF swCall THEN
-            swCall:=FALSE;
-            swReleased:=FALSE;
-            staged_count:=0;
+        VAR bool ended;
+        VAR num calls;
+        IF swGivenFor<>0 AND swGivenFor<>swPartNo Take_back;
+        IF measuring THEN
+            ended:=swEnded;
+            IF swPartNo<>measured_part ended:=TRUE;
+            WHILE told<swFired DO
+                told:=told+1;
+                SayPose "0 TRIGGER "+NumToStr(told,0)+" "+NumToStr(told,0)+" "+swSpotName{told},swAt{told};
+            ENDWHILE
+            IF ended THEN
+                measuring:=FALSE;
+                Say "0 END "+NumToStr(told,0),"","";
+            ENDIF
+        ENDIF
+        calls:=swCalls;
+        IF calls<>calls_told THEN
             starts:=starts+1;
             Say "0 START "+NumToStr(starts,0),swPart,"";
+            calls_told:=calls;
         ENDIF
-        IF NOT measuring RETURN;
-        IF told<swFired THEN
-            told:=told+1;
-            SayPose "0 TRIGGER "+NumToStr(told,0)+" "+NumToStr(told,0)+" "+swSpotName{told},swAt{told};
-        ELSEIF swEnded THEN
-            measuring:=FALSE;
-            Say "0 END "+NumToStr(told,0),"","";
-        ENDIF
+    ERROR
+        RAISE;
     ENDPROC
 
     LOCAL PROC Answer()
@@ -102,10 +189,13 @@ MODULE SeamwrightServer
         number:=Field(line1,1);
         word:=Field(line1,2);
         name:=Field(line1,3);
+        IF StrLen(number)>8 number:="0";
+        IF StrLen(word)>16 word:="?";
+        IF StrLen(name)>32 name:="?";
         head:=number+" "+word;
         TEST word
         CASE "HELLO":
-            Say head+" 1",GetSysInfo(\SerialNo),GetSysInfo(\RobotType);
+            Say head+" 2",GetSysInfo(\SerialNo),GetSysInfo(\RobotType);
         CASE "MODE":
             Say head+" "+ModeWords(),"","";
         CASE "PING":
@@ -124,7 +214,7 @@ MODULE SeamwrightServer
                 Say number+" NO READ","there is no work object "+name,"";
             ENDIF
         CASE "WRITE":
-            swReleased:=FALSE;
+            Take_back;
             IF NOT Known(name,object) THEN
                 Say number+" NO WRITE","there is no work object "+name,"";
             ELSEIF NOT ReadPose(frame) THEN
@@ -140,55 +230,168 @@ MODULE SeamwrightServer
                 SayPose head+" "+name,frame;
             ENDIF
         CASE "MEASURE":
-            swReleased:=FALSE;
-            IF name<>NumToStr(swCount,0) OR Field(line1,4)<>swSignature THEN
-                Say number+" NO MEASURE","another measuring program is loaded than the project's","";
-            ELSEIF swBusy THEN
-                Say number+" NO MEASURE","the measuring program runs already","";
-            ELSEIF ModeWords()<>"AUTO ON RUN" AND ModeWords()<>"MANR ON RUN" AND ModeWords()<>"MANF ON RUN" THEN
-                Say number+" NO MEASURE","the robot is stopped","";
-            ELSE
-                staged_count:=0;
-                told:=0;
-                swFired:=0;
-                swEnded:=FALSE;
-                measuring:=TRUE;
-                swGo:=TRUE;
-                Say head+" "+name,"","";
-            ENDIF
+            Measure number,name,Field(line1,4);
         CASE "VERDICT":
-            swReleased:=FALSE;
-            IF name="CORRECTED" THEN
-                FOR i FROM 1 TO staged_count DO
-                    IF Known(staged_name{i},object) THEN
-                        object.uframe:=[[0,0,0],[1,0,0,0]];
-                        object.oframe:=staged{i};
-                        SetDataVal staged_name{i}\TaskName:="T_ROB1",object;
-                    ENDIF
-                ENDFOR
-                swReleased:=TRUE;
-            ENDIF
-            staged_count:=0;
-            Say head+" "+name,"","";
-        CASE "MOVE":
-            IF OpMode()=OP_AUTO OR NOT swTeaching OR NOT ReadPose(frame) THEN
-                Say number+" NO MOVE","moving by command wants manual mode and SW_Teach running","";
+            Verdict number,name;
+        CASE "PERMIT":
+            IF swGivenFor=0 THEN
+                Say head+" NONE","","";
+            ELSEIF swGone THEN
+                Say head+" TAKEN","","";
             ELSE
-                swMoveTo:=frame;
-                swMove:=TRUE;
-                WHILE swMove AND DOutput(sw_doMotorsOn)=1 DO
-                    WaitTime 0.01;
-                ENDWHILE
-                IF swMove THEN
-                    swMove:=FALSE;
-                    Say number+" NO MOVE","the motors went off","";
-                ELSE
-                    Say head,"","";
-                ENDIF
+                Say head+" GIVEN","","";
             ENDIF
+        CASE "MOVE":
+            Move number;
         DEFAULT:
             Say number+" NO "+word,"unknown request","";
         ENDTEST
+    ERROR
+        RAISE;
+    ENDPROC
+
+    LOCAL PROC Measure(string number,string count,string signature)
+        Take_back;
+        IF count<>NumToStr(swCount,0) OR signature<>swSignature THEN
+            Say number+" NO MEASURE","another measuring program is loaded than the project's","";
+            RETURN;
+        ENDIF
+        IF ModeWords()<>"AUTO ON RUN" AND ModeWords()<>"MANR ON RUN" AND ModeWords()<>"MANF ON RUN" THEN
+            Say number+" NO MEASURE","the robot is stopped","";
+            RETURN;
+        ENDIF
+        IF measuring AND swEnded=FALSE THEN
+            Say number+" NO MEASURE","the measuring program runs already","";
+            RETURN;
+        ENDIF
+        swAsk:=TRUE;
+        IF Program_waits() THEN
+            ! What the permission was given for is over.
+            swGone:=TRUE;
+            swGivenFor:=0;
+            staged_count:=0;
+            told:=0;
+            swFired:=0;
+            swEnded:=FALSE;
+            swVerdict:=0;
+            measured_part:=swPartNo;
+            calls_measured:=swCalls;
+            measuring:=TRUE;
+            swAsk:=FALSE;
+            swGo:=TRUE;
+            Say number+" MEASURE "+count,"","";
+        ELSE
+            swAsk:=FALSE;
+            Say number+" NO MEASURE","no program of the robot waits in SW_Measure","";
+        ENDIF
+    ERROR
+        RAISE;
+    ENDPROC
+
+    ! Within 0.2 s: it counts while it waits.
+    LOCAL FUNC bool Program_waits()
+        VAR num tick;
+        VAR num waited:=0;
+        VAR bool watched:=FALSE;
+        WHILE waited<0.2 DO
+            IF NOT swWaiting THEN
+                watched:=FALSE;
+            ELSEIF NOT watched THEN
+                watched:=TRUE;
+                tick:=swTick;
+            ELSEIF swTick<>tick THEN
+                RETURN TRUE;
+            ENDIF
+            WaitTime 0.004;
+            waited:=waited+0.004;
+        ENDWHILE
+        RETURN FALSE;
+    ENDFUNC
+
+    LOCAL PROC Verdict(string number,string word)
+        Take_back;
+        IF swGivenFor<>0 AND swGivenFor=swPartNo THEN
+            Say number+" NO VERDICT","the application has taken the permission already","";
+            RETURN;
+        ENDIF
+        TEST word
+        CASE "CORRECTED":
+            IF measured_part<>0 AND measured_part<>swPartNo THEN
+                Say number+" NO VERDICT","the robot has begun another part","";
+            ELSEIF NOT Applied_all() THEN
+                Undo_applied;
+                Say number+" NO VERDICT","a work object cannot be set: "+staged_name{applied+1},"";
+            ELSE
+                staged_count:=0;
+                swVerdict:=1;
+                swGivenFor:=swPartNo;
+                swGone:=FALSE;
+                Say number+" VERDICT "+word,"","";
+            ENDIF
+        CASE "REFUSED","FAILED":
+            staged_count:=0;
+            IF word="REFUSED" THEN
+                swVerdict:=2;
+            ELSE
+                swVerdict:=3;
+            ENDIF
+            Say number+" VERDICT "+word,"","";
+        DEFAULT:
+            Say number+" NO VERDICT","unknown verdict","";
+        ENDTEST
+    ERROR
+        RAISE;
+    ENDPROC
+
+    ! Puts the staged frames into their work objects.
+    LOCAL FUNC bool Applied_all()
+        VAR wobjdata object;
+        applied:=0;
+        WHILE applied<staged_count DO
+            GetDataVal staged_name{applied+1}\TaskName:="T_ROB1",object;
+            before{applied+1}:=object;
+            object.uframe:=[[0,0,0],[1,0,0,0]];
+            object.oframe:=staged{applied+1};
+            SetDataVal staged_name{applied+1}\TaskName:="T_ROB1",object;
+            applied:=applied+1;
+        ENDWHILE
+        RETURN TRUE;
+    ERROR
+        RETURN FALSE;
+    ENDFUNC
+
+    LOCAL PROC Undo_applied()
+        VAR num i;
+        i:=applied;
+        WHILE i>0 DO
+            SetDataVal staged_name{i}\TaskName:="T_ROB1",before{i};
+            i:=i-1;
+        ENDWHILE
+    ERROR
+        TRYNEXT;
+    ENDPROC
+
+    LOCAL PROC Move(string number)
+        VAR pose goal;
+        IF OpMode()=OP_AUTO OR swTeaching=FALSE THEN
+            Say number+" NO MOVE","moving by command wants manual mode and SW_Teach running","";
+        ELSEIF NOT ReadPose(goal) THEN
+            Say number+" NO MOVE","the pose cannot be read","";
+        ELSE
+            swMoveTo:=goal;
+            swMove:=TRUE;
+            WHILE swMove AND DOutput(sw_doMotorsOn)=1 AND DOutput(sw_doCycleOn)=1 DO
+                WaitTime 0.01;
+            ENDWHILE
+            IF swMove THEN
+                swMove:=FALSE;
+                Say number+" NO MOVE","the robot was stopped","";
+            ELSE
+                Say number+" MOVE","","";
+            ENDIF
+        ENDIF
+    ERROR
+        RAISE;
     ENDPROC
 
     LOCAL FUNC string ModeWords()
@@ -214,40 +417,58 @@ MODULE SeamwrightServer
         RETURN words+" HALT";
     ENDFUNC
 
-    ! The n-th word of a line, counted from 1.
+    ! The n-th word of a line, counted from 1; "" where there is none.
     LOCAL FUNC string Field(string line,num n)
         VAR num at:=1;
         VAR num blank;
-        FOR i FROM 1 TO n DO
-            IF at>StrLen(line) RETURN "";
+        VAR num i:=1;
+        WHILE at<=StrLen(line) DO
             blank:=StrFind(line,at," \0A");
+            IF blank=at RETURN "";
             IF i=n RETURN StrPart(line,at,blank-at);
             at:=blank+1;
-        ENDFOR
+            i:=i+1;
+        ENDWHILE
         RETURN "";
     ENDFUNC
 
     LOCAL FUNC bool ReadPose(INOUT pose frame)
         VAR bool ok;
+        VAR bool part;
+        VAR num size;
         ok:=StrToVal(Field(line2,1),frame.trans.x);
-        ok:=StrToVal(Field(line2,2),frame.trans.y) AND ok;
-        ok:=StrToVal(Field(line2,3),frame.trans.z) AND ok;
-        ok:=StrToVal(Field(line3,1),frame.rot.q1) AND ok;
-        ok:=StrToVal(Field(line3,2),frame.rot.q2) AND ok;
-        ok:=StrToVal(Field(line3,3),frame.rot.q3) AND ok;
-        ok:=StrToVal(Field(line3,4),frame.rot.q4) AND ok;
-        IF ok frame.rot:=NOrient(frame.rot);
-        RETURN ok;
+        part:=StrToVal(Field(line2,2),frame.trans.y);
+        ok:=ok AND part;
+        part:=StrToVal(Field(line2,3),frame.trans.z);
+        ok:=ok AND part;
+        part:=StrToVal(Field(line3,1),frame.rot.q1);
+        ok:=ok AND part;
+        part:=StrToVal(Field(line3,2),frame.rot.q2);
+        ok:=ok AND part;
+        part:=StrToVal(Field(line3,3),frame.rot.q3);
+        ok:=ok AND part;
+        part:=StrToVal(Field(line3,4),frame.rot.q4);
+        ok:=ok AND part;
+        IF NOT ok RETURN FALSE;
+        IF Abs(frame.trans.x)>100000 OR Abs(frame.trans.y)>100000 OR Abs(frame.trans.z)>100000 RETURN FALSE;
+        size:=frame.rot.q1*frame.rot.q1+frame.rot.q2*frame.rot.q2;
+        size:=size+frame.rot.q3*frame.rot.q3+frame.rot.q4*frame.rot.q4;
+        IF Abs(size-1)>0.002 RETURN FALSE;
+        frame.rot:=NOrient(frame.rot);
+        RETURN TRUE;
     ENDFUNC
 
     LOCAL FUNC num Staged_index(string name)
-        FOR i FROM 1 TO staged_count DO
+        VAR num i:=1;
+        WHILE i<=staged_count DO
             IF staged_name{i}=name RETURN i;
-        ENDFOR
+            i:=i+1;
+        ENDWHILE
         RETURN 0;
     ENDFUNC
 
     LOCAL FUNC bool Known(string name,INOUT wobjdata object)
+        IF name="" RETURN FALSE;
         GetDataVal name\TaskName:="T_ROB1",object;
         RETURN TRUE;
     ERROR
@@ -255,20 +476,22 @@ MODULE SeamwrightServer
     ENDFUNC
 
     ! A line is 79 characters and a line feed.
-    LOCAL FUNC string Padded(string text)
+    LOCAL PROC Add_line(string text)
         VAR string line;
         line:=text;
         IF StrLen(line)>79 line:=StrPart(line,1,79);
-        WHILE StrLen(line)<79 DO
-            line:=line+" ";
-        ENDWHILE
-        RETURN line+"\0A";
-    ENDFUNC
+        IF StrLen(line)<79 line:=line+StrPart(blanks,1,79-StrLen(line));
+        line:=line+"\0A";
+        PackRawBytes line,message,(RawBytesLen(message)+1)\ASCII;
+    ENDPROC
 
+    ! A message goes out whole, by one instruction.
     LOCAL PROC Say(string first,string second,string third)
-        SocketSend client\Str:=Padded(first);
-        SocketSend client\Str:=Padded(second);
-        SocketSend client\Str:=Padded(third);
+        ClearRawBytes message;
+        Add_line first;
+        Add_line second;
+        Add_line third;
+        SocketSend client\RawData:=message;
     ERROR
         RAISE;
     ENDPROC
@@ -276,11 +499,16 @@ MODULE SeamwrightServer
     LOCAL PROC SayPose(string first,pose frame)
         VAR string place;
         VAR string turn;
-        place:=NumToStr(frame.trans.x,4)+" "+NumToStr(frame.trans.y,4)+" "+NumToStr(frame.trans.z,4);
-        turn:=NumToStr(frame.rot.q1,8)+" "+NumToStr(frame.rot.q2,8);
-        turn:=turn+" "+NumToStr(frame.rot.q3,8)+" "+NumToStr(frame.rot.q4,8);
+        place:=Decimals(frame.trans.x,4)+" "+Decimals(frame.trans.y,4)+" "+Decimals(frame.trans.z,4);
+        turn:=Decimals(frame.rot.q1,8)+" "+Decimals(frame.rot.q2,8);
+        turn:=turn+" "+Decimals(frame.rot.q3,8)+" "+Decimals(frame.rot.q4,8);
         Say first,place,turn;
     ERROR
         RAISE;
     ENDPROC
+
+    ! More than the six decimals of NumToStr.
+    LOCAL FUNC string Decimals(num number,num count)
+        RETURN DnumToStr(NumToDnum(number),count);
+    ENDFUNC
 ENDMODULE

@@ -81,11 +81,23 @@ TEST(AbbProgram, EverySpotAndFrameIsWhereTheProjectHasIt) {
     EXPECT_THAT(text, HasSubstr("SW_Pass 3,s03_entry,s03_spot,s03_exit,s03_speed,FALSE;"));
 }
 
+TEST(AbbProgram, ViaPointsAreDrivenBeforeTheEntry) {
+    ProgramRequest r = request();
+    r.moves[1].via = {make_pose(rotation_exp({0.1, 0, 0}), {900, 1, 2}),
+                      make_pose(rotation_exp({0.2, 0, 0}), {910, 1, 2})};
+    const std::string text = files_of(r)["SeamwrightSpots.mod"];
+    EXPECT_LT(distance_mm(pose_of(text, "s02_via2"), r.moves[1].via[1]), 2e-4);
+    EXPECT_THAT(text, HasSubstr("        SW_Via s02_via1;\n        SW_Via s02_via2;\n        SW_Pass 2,"));
+    r.moves[1].via[0].translation().x() = 1e9;
+    EXPECT_FALSE(write_abb_program(r));
+}
+
 TEST(AbbProgram, TheServerListensWhereTheLinkConnects) {
     auto files = files_of(request());
     EXPECT_THAT(files["SeamwrightServer.mod"], HasSubstr("SocketBind server,\"192.168.1.33\",1026;"));
     for (const auto& [name, text] : files) EXPECT_EQ(text.find('@'), std::string::npos) << name;
-    for (const char* word : {"HELLO", "MODE", "PING", "POSE", "READ", "WRITE", "MEASURE", "VERDICT", "MOVE"})
+    for (const char* word :
+         {"HELLO", "MODE", "PING", "POSE", "READ", "WRITE", "MEASURE", "VERDICT", "PERMIT", "MOVE"})
         EXPECT_THAT(files["SeamwrightServer.mod"], HasSubstr("CASE \"" + std::string(word) + "\":"));
 }
 
@@ -105,7 +117,7 @@ TEST(AbbProgram, SharedDataHasOneType) {
         EXPECT_EQ((*i)[3], ";");
         EXPECT_EQ(motion[(*i)[2]], (*i)[1]) << (*i)[2];
     }
-    EXPECT_EQ(shared, 14);
+    EXPECT_EQ(shared, 19);
 }
 
 TEST(AbbProgram, BlocksAreClosedAndNamesFit) {

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "devices/abb/rapid.h"
+#include "devices/controllers/abb/controller.h"
 #include "devices/silence.h"
 #include "devices/simulated/cell.h"
 
@@ -41,7 +42,8 @@ class AbbRapid : public testing::Test {
         cell()->set_mode(RobotMode::automatic);
         cell()->store_program(moves());
         cell()->move_to(moves()[0].trigger);
-        auto started = start_abb_rapid(cell(), {{"slow_ms", 300}, {"trigger_interval_ms", 5}});
+        // The application stands before the permission: what is given can be seen.
+        auto started = start_abb_rapid(cell(), {{"slow_ms", 300}, {"application_wait_ms", 600000}});
         ASSERT_TRUE(started) << started.error().sentence();
         controller = std::move(*started);
         link = open(300);
@@ -52,6 +54,15 @@ class AbbRapid : public testing::Test {
             {{"port", controller->port()}, {"timeout_ms", timeout_ms}, {"backoff_ms", 10}}, session);
         EXPECT_TRUE(opened) << opened.error().sentence();
         return opened ? std::move(*opened) : nullptr;
+    }
+    // As soon as the robot's program waits for it.
+    Expected<void> start_measuring() {
+        Expected<void> started = device_error("not tried");
+        for (int i = 0; i < 100 && !started; ++i) {
+            started = link->start_measuring(moves());
+            if (!started) std::this_thread::sleep_for(Milliseconds(50));
+        }
+        return started;
     }
     std::unique_ptr<SimulatedController> controller;
     std::unique_ptr<RobotLink> link;
@@ -96,7 +107,7 @@ TEST_F(AbbRapid, AFrameFiveMetresAwaySurvivesSinglePrecision) {
 
 TEST_F(AbbRapid, AFrameCountsOnlyAfterTheVerdict) {
     const Pose before = *cell()->read_frame("wobjDoor");
-    ASSERT_TRUE(link->start_measuring(moves()));
+    ASSERT_TRUE(start_measuring());
     ASSERT_TRUE(link->write_frame("wobjDoor", far_pose()));
     EXPECT_LT(distance_mm(*cell()->read_frame("wobjDoor"), before), 1e-9);
     EXPECT_FALSE(controller->released());
@@ -123,7 +134,7 @@ TEST_F(AbbRapid, StartAndTriggersComeInOrder) {
     const auto start = link->wait_start(Milliseconds(2000));
     ASSERT_TRUE(start) << start.error().sentence();
     EXPECT_EQ(start->part_id, "car-7");
-    ASSERT_TRUE(link->start_measuring(moves()));
+    ASSERT_TRUE(start_measuring());
     for (const MeasuringMove& move : moves()) {
         const auto trigger = link->wait_trigger(Milliseconds(2000));
         ASSERT_TRUE(trigger) << trigger.error().sentence();
@@ -139,7 +150,8 @@ TEST_F(AbbRapid, StartAndTriggersComeInOrder) {
 TEST_F(AbbRapid, AnotherProgramIsRefused) {
     const auto refused = link->start_measuring(moves(2));
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().what, "the controller refuses MEASURE: the program here has 3 spots");
+    EXPECT_EQ(refused.error().what,
+              "the controller refuses MEASURE: another measuring program is loaded than the project's");
     auto other = moves();
     other[1].spot_id = "X";
     EXPECT_FALSE(link->start_measuring(other));
@@ -149,8 +161,12 @@ TEST_F(AbbRapid, AnotherProgramIsRefused) {
 }
 
 TEST_F(AbbRapid, MovesForTeaching) {
-    ASSERT_TRUE(link->move_to(far_pose()));
-    EXPECT_LT(distance_mm(*cell()->reported_flange(), far_pose()), 1e-3);
+    cell()->set_mode(RobotMode::manual_reduced);
+    Pose goal = moves()[0].trigger * make_pose(rotation_exp({0.1, 0.2, 0.3}), {30, 40, 50});
+    Expected<void> moved = device_error("not tried");
+    for (int i = 0; i < 100 && !moved; ++i) moved = link->move_to(goal);  // SW_Teach begins
+    ASSERT_TRUE(moved) << moved.error().sentence();
+    EXPECT_LT(distance_mm(*cell()->reported_flange(), goal), 1e-3);
 }
 
 struct FaultCase {
@@ -161,13 +177,13 @@ class AbbFault : public AbbRapid, public testing::WithParamInterface<FaultCase> 
 
 TEST_P(AbbFault, IsAlarmedNothingStaysReleasedAndItRecovers) {
     link = open(150);
-    ASSERT_TRUE(link->start_measuring(moves()));
+    ASSERT_TRUE(start_measuring());
     while (link->wait_trigger(Milliseconds(1000))) {
     }
     ASSERT_TRUE(link->write_frame("wobjDoor", far_pose()));
     ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
     ASSERT_TRUE(controller->released());
-    ASSERT_TRUE(link->start_measuring(moves()));
+    ASSERT_TRUE(start_measuring());
     controller->set_fault(GetParam().fault);
     Error error;
     if (GetParam().fault == ControllerFault::out_of_range) {
@@ -177,6 +193,11 @@ TEST_P(AbbFault, IsAlarmedNothingStaysReleasedAndItRecovers) {
         const auto mode = link->mode();
         ASSERT_FALSE(mode);
         EXPECT_NE(mode.error().what.find("a mode that does not exist: \"DREAM ON RUN\""), std::string::npos);
+    } else if (GetParam().fault == ControllerFault::reject_write) {
+        ASSERT_TRUE(link->write_frame("wobjDoor", far_pose())) << "staged";
+        const auto confirmed = link->confirm(PartVerdict::corrected, "");
+        ASSERT_FALSE(confirmed);
+        error = confirmed.error();
     } else {
         const auto written = link->write_frame("wobjDoor", far_pose());
         ASSERT_FALSE(written);
@@ -196,17 +217,18 @@ TEST_P(AbbFault, IsAlarmedNothingStaysReleasedAndItRecovers) {
     EXPECT_TRUE(controller->released());
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, AbbFault,
-                         testing::Values(FaultCase{ControllerFault::silent, "no answer in time"},
-                                         FaultCase{ControllerFault::slow, "no answer in time"},
-                                         FaultCase{ControllerFault::wrong_answer, "came to request"},
-                                         FaultCase{ControllerFault::half_message, "no answer in time"},
-                                         FaultCase{ControllerFault::disconnect,
-                                                   "the connection was closed by the other side"},
-                                         FaultCase{ControllerFault::reject_write,
-                                                   "the controller refuses WRITE: writing is locked"},
-                                         FaultCase{ControllerFault::out_of_range, "no position of a robot"}),
-                         [](const auto& tested) { return std::string(to_string(tested.param.fault)); });
+INSTANTIATE_TEST_SUITE_P(
+    Every, AbbFault,
+    testing::Values(FaultCase{ControllerFault::silent, "no answer in time"},
+                    FaultCase{ControllerFault::slow, "no answer in time"},
+                    FaultCase{ControllerFault::wrong_answer, "came to request"},
+                    FaultCase{ControllerFault::half_message, "no answer in time"},
+                    FaultCase{ControllerFault::disconnect, "the connection was closed by the other side"},
+                    FaultCase{ControllerFault::reject_write,
+                              "the controller refuses VERDICT: a work object cannot be set: "
+                              "wobjDoor"},
+                    FaultCase{ControllerFault::out_of_range, "no position of a robot"}),
+    [](const auto& tested) { return std::string(to_string(tested.param.fault)); });
 
 TEST(AbbRapidSettings, AreChecked) {
     DeviceSession session;

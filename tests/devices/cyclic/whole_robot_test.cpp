@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "devices/abb/egm.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/kuka/rsi.h"
@@ -84,8 +86,13 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
                                       : static_cast<SimulatedEgm&>(*controller).measuring();
     ASSERT_NE(beside, nullptr);
     EXPECT_EQ(beside->verdict(), PartVerdict::corrected);
-    // The next part starts without a correction.
-    ASSERT_TRUE(link->start_measuring({move}));
+    // The next part starts without a correction, as soon as the robot's program waits for it.
+    auto again = link->start_measuring({move});
+    for (int i = 0; i < 100 && !again; ++i) {
+        std::this_thread::sleep_for(milliseconds(50));
+        again = link->start_measuring({move});
+    }
+    ASSERT_TRUE(again) << again.error().sentence();
     EXPECT_FALSE(beside->released());
     EXPECT_TRUE(static_cast<CyclicLink&>(*link).server().state().zero);
 }

@@ -85,6 +85,9 @@ class RobotLink {
     virtual ~RobotLink() = default;
     virtual Expected<RobotIdentity> identity() = 0;
     virtual Expected<RobotMode> mode() = 0;
+    // False where the protocol has no word for it: mode() is unknown then, for ever. An `unknown` of a robot
+    // that can tell is one that nobody may rely on.
+    virtual bool tells_mode() const { return true; }
     // The newest pose that the controller told; fresh within the driver's time-out.
     virtual Expected<Pose> base_from_flange() = 0;
     // The controller's call for the next part. Silence after `timeout`: it has not come; a controller that is

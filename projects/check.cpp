@@ -6,23 +6,36 @@
 #include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/project.h"
+#include "projects/safety_gate.h"
 
 namespace seamwright {
 namespace {
 
+// What a finding makes unsafe.
+enum class Concern {
+    setup,      // nothing by itself: the run says what it cannot do
+    measuring,  // how the robot moves while it measures
+    push        // what it does afterwards in the frames
+};
+
 class Findings {
   public:
+    // What the findings from here on concern.
+    void concern(Concern c) { concern_ = c; }
     void add(std::string where, std::string what, std::string mend = {}) {
-        list.push_back(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
+        add(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
     }
+    void add(Error error) { list.emplace_back(concern_, std::move(error)); }
     void unless(bool ok, const std::string& where, std::string what, std::string mend = {}) {
         if (!ok) add(where, std::move(what), std::move(mend));
     }
     void rigid(const Pose& pose, const std::string& where) {
-        if (auto checked = pose_from_matrix(pose.matrix(), where, 1e-6); !checked)
-            list.push_back(checked.error());
+        if (auto checked = pose_from_matrix(pose.matrix(), where, 1e-6); !checked) add(checked.error());
     }
-    std::vector<Error> list;
+    std::vector<std::pair<Concern, Error>> list;
+
+  private:
+    Concern concern_ = Concern::setup;
 };
 
 template <class T>
@@ -102,9 +115,16 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
                     fmt::format("its sensor \"{}\" is not in the project", spot.sensor_id));
     findings.unless(known(project.robots, spot.robot_id), where,
                     fmt::format("its robot \"{}\" is not in the project", spot.robot_id));
+    if (spot.enabled) findings.concern(Concern::measuring);
     findings.rigid(spot.base_from_flange, where + ".base_from_flange");
     for (std::size_t i = 0; i < spot.via.size(); ++i)
         findings.rigid(spot.via[i], fmt::format("{}.via[{}]", where, i));
+    findings.unless(positive(spot.speed_mm_s) && spot.speed_mm_s <= 5000, where,
+                    fmt::format("the speed of {} mm/s is not plausible (0..5000)", spot.speed_mm_s));
+    findings.unless(std::isfinite(spot.entry_mm) && spot.entry_mm >= 0 && std::isfinite(spot.exit_mm) &&
+                        spot.exit_mm >= 0 && spot.entry_mm <= 1000 && spot.exit_mm <= 1000,
+                    where, "entry and exit must be between 0 and 1000 mm");
+    findings.concern(Concern::setup);
     if (auto finder = make_feature_finder(spot.feature); !finder)
         findings.add(where + ".feature", finder.error().what, finder.error().mend);
     findings.unless(spot.reference_mm.allFinite(), where, "the reference is not a finite point",
@@ -117,11 +137,6 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
                     fmt::format("sigma of {} mm is not plausible (0..10)", spot.sigma_mm));
     findings.unless(std::isfinite(spot.jitter_mm) && spot.jitter_mm >= 0 && spot.jitter_mm <= 100, where,
                     fmt::format("the jitter window of {} mm is not plausible (0..100)", spot.jitter_mm));
-    findings.unless(positive(spot.speed_mm_s) && spot.speed_mm_s <= 5000, where,
-                    fmt::format("the speed of {} mm/s is not plausible (0..5000)", spot.speed_mm_s));
-    findings.unless(std::isfinite(spot.entry_mm) && spot.entry_mm >= 0 && std::isfinite(spot.exit_mm) &&
-                        spot.exit_mm >= 0 && spot.entry_mm <= 1000 && spot.exit_mm <= 1000,
-                    where, "entry and exit must be between 0 and 1000 mm");
     check_profile(spot.reference_profile, where + ".reference_profile", findings);
     check_profile(spot.feature.template_profile, where + ".template_profile", findings);
     if (spot.curve)
@@ -162,27 +177,21 @@ void check_region(const Project& project, const Region& region, Findings& findin
             observed >= static_cast<double>(free), where,
             fmt::format("{} observed coordinates cannot determine {} degrees of freedom", observed, free),
             "add spots in other orientations");
+    findings.concern(Concern::push);
     findings.unless(robots.size() <= 1, where,
                     "its spots belong to several robots, one frame cannot serve them",
                     "make one region per robot");
-    findings.unless(
-        positive(region.limits.translation_mm) && region.limits.translation_mm <= 1000, where,
-        fmt::format("the limit of {} mm is not plausible (0..1000)", region.limits.translation_mm));
-    findings.unless(
-        positive(region.limits.rotation_deg) && region.limits.rotation_deg <= 45, where,
-        fmt::format("the limit of {} degrees is not plausible (0..45)", region.limits.rotation_deg));
-    findings.unless(positive(region.sigma_limit_mm), where, "the limit of sigma in mm must be positive");
-    findings.unless(positive(region.sigma_limit_deg), where,
-                    "the limit of sigma in degrees must be positive");
+    for (const std::string& none : limits_that_are_none(region)) findings.add(where, none);
     findings.unless(!region.frame_name.empty(), where,
                     "it names no frame on the controller, nothing can be pushed");
     findings.rigid(region.base_from_frame, where + ".base_from_frame");
     for (const Region& other : project.regions) {
         if (&other == &region) break;
-        findings.unless(other.frame_name.empty() || other.frame_name != region.frame_name, where,
+        findings.unless(!same_frame(other.frame_name, region.frame_name), where,
                         fmt::format("region {} writes the same frame {}", other.id, other.frame_name),
                         "give each region its own frame");
     }
+    findings.concern(Concern::setup);
 }
 
 void check_place(const Project& project, const PanelJob& job, const PanelPlace& place, Findings& findings) {
@@ -195,6 +204,7 @@ void check_place(const Project& project, const PanelJob& job, const PanelPlace& 
                     "a double head has two sensors");
     if (auto good = check(place.gauge); !good)
         findings.add(where + ".gauge", good.error().what, good.error().mend);
+    findings.concern(Concern::push);
     findings.unless(place.panel_reference_mm.allFinite() && place.body_reference_mm.allFinite() &&
                         std::isfinite(place.gap_mm) && std::isfinite(place.flush_mm) &&
                         std::isfinite(place.surface_deg),
@@ -204,6 +214,7 @@ void check_place(const Project& project, const PanelJob& job, const PanelPlace& 
         "the weights must be finite, not negative, and one of them positive");
     findings.unless(positive(place.sigma_mm) && place.sigma_mm <= 10, where,
                     fmt::format("sigma of {} mm is not plausible (0..10)", place.sigma_mm));
+    findings.concern(Concern::setup);
     check_profile(place.reference_profile, where + ".reference_profile", findings);
 }
 
@@ -226,27 +237,63 @@ void check_panel_job(const Project& project, const PanelJob& job, Findings& find
     }
     findings.unless(enabled >= 3, where, fmt::format("{} enabled places do not determine a motion", enabled),
                     "measure at three or more places in different orientations");
+    findings.concern(Concern::push);
     for (const Field<PanelJob>& f : panel_fields())
         if (auto valid = validate({{f.info.name, f.get(job)}}, {f.info}, where); !valid)
-            findings.list.push_back(valid.error());
+            findings.add(valid.error());
     findings.unless(!job.frame_name.empty(), where,
                     "it names no frame on the controller, nothing can be moved");
-    findings.rigid(job.base_from_gripper, where + ".base_from_gripper");
     findings.rigid(job.base_from_frame, where + ".base_from_frame");
-    const auto same_frame = [&](const std::string& other) {
-        return !job.frame_name.empty() && other == job.frame_name;
-    };
     for (const Region& region : project.regions)
-        findings.unless(!same_frame(region.frame_name), where,
+        findings.unless(!same_frame(region.frame_name, job.frame_name), where,
                         fmt::format("region {} writes the same frame {}", region.id, job.frame_name));
     for (const PanelJob& other : project.panel_jobs) {
         if (&other == &job) break;
-        findings.unless(!same_frame(other.frame_name), where,
+        findings.unless(!same_frame(other.frame_name, job.frame_name), where,
                         fmt::format("panel job {} writes the same frame {}", other.id, job.frame_name));
     }
+    findings.concern(Concern::measuring);
+    findings.rigid(job.base_from_gripper, where + ".base_from_gripper");
+    findings.concern(Concern::setup);
+}
+
+// Those that a run must not begin with.
+std::vector<Error> of_motion(Findings findings, bool push) {
+    std::vector<Error> list;
+    for (auto& [concern, error] : findings.list)
+        if (concern == Concern::measuring || (push && concern == Concern::push))
+            list.push_back(std::move(error));
+    return list;
 }
 
 }  // namespace
+
+std::vector<Error> motion_findings(const Project& project, bool push) {
+    Findings findings;
+    findings.concern(Concern::push);
+    findings.unless(!project.regions.empty(), "regions", "the project has no region, nothing can be pushed",
+                    "make a region of the spots");
+    findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
+    if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());
+    findings.concern(Concern::setup);
+    for (const Spot& spot : project.spots) check_spot(project, spot, findings);
+    for (const Region& region : project.regions) check_region(project, region, findings);
+    return of_motion(std::move(findings), push);
+}
+
+std::vector<Error> motion_findings(const Project& project, const PanelJob& job, bool push) {
+    Findings findings;
+    check_panel_job(project, job, findings);
+    return of_motion(std::move(findings), push);
+}
+
+Expected<void> none_of_motion(const std::vector<Error>& findings) {
+    if (findings.empty()) return {};
+    Error error = findings.front();
+    if (findings.size() > 1)
+        error.what += fmt::format(" (and {} more findings, see check)", findings.size() - 1);
+    return tl::unexpected(std::move(error));
+}
 
 std::vector<Error> check(const Project& project) {
     Findings findings;
@@ -256,7 +303,7 @@ std::vector<Error> check(const Project& project) {
     check_ids(project.spots, "spot", findings);
     check_ids(project.regions, "region", findings);
     findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
-    if (auto valid = validate_fields(project.requirements); !valid) findings.list.push_back(valid.error());
+    if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());
     for (const SensorSetup& sensor : project.sensors) check_sensor(project, sensor, findings);
     for (const RobotSetup& robot : project.robots)
         findings.unless(!robot.driver.empty(), "robot " + robot.id, "it has no driver",
@@ -266,7 +313,9 @@ std::vector<Error> check(const Project& project) {
     for (const Region& region : project.regions) check_region(project, region, findings);
     check_ids(project.panel_jobs, "panel job", findings);
     for (const PanelJob& job : project.panel_jobs) check_panel_job(project, job, findings);
-    return findings.list;
+    std::vector<Error> list;
+    for (auto& [concern, error] : findings.list) list.push_back(std::move(error));
+    return list;
 }
 
 }  // namespace seamwright

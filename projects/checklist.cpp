@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/number_text.h"
+#include "devices/capture/capture.h"
 #include "projects/forecast.h"
 #include "projects/known_shift.h"
 #include "projects/measure.h"
@@ -409,20 +409,12 @@ Phrase name_of(CheckStatus status) {
 }
 
 std::optional<double> days_between(const std::string& from_utc, const std::string& to_utc) {
-    const auto read = [](const std::string& utc) -> std::optional<std::chrono::sys_days> {
-        if (utc.size() < 10 || utc[4] != '-' || utc[7] != '-') return std::nullopt;
-        const std::string_view text(utc);
-        const auto y = number_from<int>(text.substr(0, 4));
-        const auto m = number_from<unsigned>(text.substr(5, 2)), d = number_from<unsigned>(text.substr(8, 2));
-        if (!y || !m || !d) return std::nullopt;
-        const std::chrono::year_month_day day{std::chrono::year(*y), std::chrono::month(*m),
-                                              std::chrono::day(*d)};
-        if (!day.ok()) return std::nullopt;
-        return std::chrono::sys_days(day);
-    };
-    const auto from = read(from_utc), to = read(to_utc);
+    const auto from = utc_seconds(from_utc), to = utc_seconds(to_utc);
     if (!from || !to) return std::nullopt;
-    return static_cast<double>((*to - *from).count());
+    const auto day = [](std::int64_t seconds) {
+        return std::chrono::floor<std::chrono::days>(std::chrono::seconds(seconds)).count();
+    };
+    return static_cast<double>(day(*to) - day(*from));
 }
 
 Phrase changed_since(const Project& then, const Project& now) {

@@ -68,7 +68,7 @@ const std::vector<Field<Region>>& region_fields() {
         {{"limit_translation_mm", "mm", 0.01, 1000, 25, 2, "Larger displacements are refused."},
          [](const Region& r) { return r.limits.translation_mm; },
          [](Region& r, double v) { r.limits.translation_mm = v; }},
-        {{"limit_rotation_deg", "deg", 0.001, 90, 3, 3, "Larger turns are refused."},
+        {{"limit_rotation_deg", "deg", 0.001, 45, 3, 3, "Larger turns are refused."},
          [](const Region& r) { return r.limits.rotation_deg; },
          [](Region& r, double v) { r.limits.rotation_deg = v; }},
         {{"sigma_limit_mm", "mm", 0.001, 10, 0.1, 3, "A correction less sure than this is not pushed."},

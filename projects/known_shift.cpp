@@ -26,6 +26,7 @@ class ShiftedRobot final : public RobotLink {
         : robot_(std::move(robot)), shift_(std::move(base_from_shiftedbase)) {}
     Expected<RobotIdentity> identity() override { return robot_->identity(); }
     Expected<RobotMode> mode() override { return robot_->mode(); }
+    bool tells_mode() const override { return robot_->tells_mode(); }
     Expected<Pose> base_from_flange() override { return back(robot_->base_from_flange()); }
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         return robot_->wait_start(timeout);
@@ -51,6 +52,7 @@ class ShiftedRobot final : public RobotLink {
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override {
         return robot_->confirm(verdict, text);
     }
+    Expected<Permission> permission() override { return robot_->permission(); }
     Expected<void> move_to(const Pose& pose) override { return robot_->move_to(*shift_ * pose); }
     std::vector<std::string> take_notices() override { return robot_->take_notices(); }
 

@@ -8,6 +8,7 @@
 
 #include "core/geometry/notation.h"
 #include "core/panel/double_head.h"
+#include "projects/fields.h"
 #include "projects/measure.h"
 #include "projects/safety_gate.h"
 
@@ -262,33 +263,60 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
 }
 
 namespace {
-// Written so that NaN, where a direction is not observed, passes: what is not seen cannot be judged.
-void judge_place(const PanelJob& job, const std::string& place, double gap_mm, double flush_mm,
-                 const char* what, std::vector<std::string>& reasons) {
-    if (std::abs(gap_mm) > job.gap_tolerance_mm)
-        reasons.push_back(fmt::format("place {}: {} a gap {:+.3f} mm off the taught one, tolerance {:.3f} mm",
-                                      place, what, gap_mm, job.gap_tolerance_mm));
-    if (std::abs(flush_mm) > job.flush_tolerance_mm)
-        reasons.push_back(
-            fmt::format("place {}: {} a flush {:+.3f} mm off the taught one, tolerance {:.3f} mm", place,
-                        what, flush_mm, job.flush_tolerance_mm));
+// What is not a number is as far off as anything.
+void judge_off(const std::string& place, const char* what, const char* of, double off_mm, double tolerance_mm,
+               std::vector<std::string>& reasons) {
+    if (std::abs(off_mm) <= tolerance_mm) return;
+    reasons.push_back(fmt::format("place {}: {} a {} {:+.3f} mm off the taught one, tolerance {:.3f} mm",
+                                  place, what, of, off_mm, tolerance_mm));
+}
+
+// A tolerance that tolerates everything is none.
+void judge_tolerances(const PanelJob& job, std::vector<std::string>& reasons) {
+    for (const Field<PanelJob>& f : panel_fields()) {
+        if (f.info.name != "gap_tolerance_mm" && f.info.name != "flush_tolerance_mm") continue;
+        const double value = f.get(job);
+        if (!(value > 0 && value <= f.info.maximum))
+            reasons.push_back(fmt::format("{} of {} mm is no tolerance (above 0, up to {})", f.info.name,
+                                          value, f.info.maximum));
+    }
 }
 }  // namespace
 
 std::vector<std::string> beyond_tolerance(const PanelJob& job, const PanelFit& fit) {
     std::vector<std::string> reasons;
-    for (const PanelSpotResult& s : fit.spots)
-        judge_place(job, s.id, s.remaining.gap_mm, s.remaining.flush_mm, "the best fit leaves", reasons);
+    judge_tolerances(job, reasons);
+    for (const PanelSpotResult& s : fit.spots) {
+        // What the weights do not see cannot be predicted; it is judged when it is measured again.
+        const PanelPlace* place = find_place(job, s.id);
+        const GapFlushObserved seen =
+            place ? observed_gap_flush(place->weights, rad_from_deg(place->surface_deg))
+                  : GapFlushObserved{true, true};
+        if (!s.residual_mm.allFinite())
+            reasons.push_back(fmt::format("place {}: what the best fit leaves is not a finite number", s.id));
+        if (seen.gap)
+            judge_off(s.id, "the best fit leaves", "gap", s.remaining.gap_mm, job.gap_tolerance_mm, reasons);
+        if (seen.flush)
+            judge_off(s.id, "the best fit leaves", "flush", s.remaining.flush_mm, job.flush_tolerance_mm,
+                      reasons);
+    }
     return reasons;
 }
 
 std::vector<std::string> beyond_tolerance(const PanelJob& job, std::span<const PanelMeasurement> measured) {
     std::vector<std::string> reasons;
+    judge_tolerances(job, reasons);
     for (const PanelMeasurement& m : measured) {
         const PanelPlace* place = find_place(job, m.place_id);
         if (!place || m.status != SpotStatus::measured) continue;
-        judge_place(job, m.place_id, m.gap_mm - place->gap_mm, m.flush_mm - place->flush_mm, "measured is",
-                    reasons);
+        if (!(m.panel_mm.allFinite() && m.body_mm.allFinite() && m.gap_flush_covariance.allFinite() &&
+              std::isfinite(m.sigma_mm) && std::isfinite(m.head_disagreement_mm) &&
+              std::isfinite(m.head_offset_mm) && std::isfinite(m.head_overlap_mm)))
+            reasons.push_back(fmt::format(
+                "place {}: the measurement holds a value that is not a finite number", m.place_id));
+        judge_off(m.place_id, "measured is", "gap", m.gap_mm - place->gap_mm, job.gap_tolerance_mm, reasons);
+        judge_off(m.place_id, "measured is", "flush", m.flush_mm - place->flush_mm, job.flush_tolerance_mm,
+                  reasons);
     }
     return reasons;
 }

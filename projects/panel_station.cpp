@@ -8,6 +8,7 @@
 #include "projects/acquire.h"
 #include "projects/measure.h"
 #include "projects/panel_measure.h"
+#include "projects/run_release.h"
 #include "projects/safety_gate.h"
 
 namespace seamwright {
@@ -103,7 +104,8 @@ class Run {
             tell(run_.status == RunStatus::device || run_.status == RunStatus::cancelled
                      ? PartVerdict::failed
                      : PartVerdict::refused);
-        if (auto stored = store_outcome(); !stored) return tl::unexpected(stored.error());
+        if (auto stored = record_outcome(run_, [&] { return store_outcome(); }); !stored)
+            return tl::unexpected(stored.error());
         station_.file().checkpoint();
         return std::move(run_);
     }
@@ -144,7 +146,7 @@ class Run {
             frames.try_emplace(id, *sensor, *find_sensor(station_.project(), id));
         }
         if (auto on = places_.robot->start_measuring({move_of(job_, base_from_gripper)}); !on) return on;
-        started_ = true;
+        ++starts_;
         auto trigger = next_trigger(*places_.robot, options_.limits.trigger_timeout, cancel_);
         if (!trigger) return tl::unexpected(trigger.error());
         if (trigger->spot_id != job_.id)
@@ -223,6 +225,7 @@ class Run {
                         g.point_workobject_mm = *stands * place.body_reference_mm;
                     g.calibration_id = c->id;
                     g.calibration_verdict = c->verdict;
+                    g.calibrated_utc = c->created_utc;
                     g.calibrated_sensor = c->sensor_identity;
                     g.calibrated_robot = c->robot_identity;
                 }
@@ -234,6 +237,18 @@ class Run {
         }
         const auto mode = places_.robot->mode();
         request.mode = mode ? *mode : RobotMode::fault;
+        request.tells_mode = places_.robot->tells_mode();
+        if (run_.push) {
+            if (auto now = places_.robot->read_frame(job_.frame_name))
+                request.base_from_frame_now = *now;
+            else
+                request.frame_trouble = now.error().sentence();
+        }
+        for (const Region& other : project.regions) request.other_frames.push_back(other.frame_name);
+        for (const PanelJob& other : project.panel_jobs)
+            if (other.id != job_.id) request.other_frames.push_back(other.frame_name);
+        request.calibration_age_days = project.requirements.calibration_age_days;
+        request.now_utc = utc_now();
         if (const RobotSetup* setup = find_robot(project, job_.robot_id))
             request.required_mode = setup->required_mode;
         request.now_ns = steady_now_ns();
@@ -298,6 +313,12 @@ class Run {
             if (auto stored = station_.file().append_measured(run_, stored_); !stored) return stored;
         return station_.file().update_run(run_);
     }
+    std::map<std::string, RobotLink*> link() const { return {{job_.robot_id, places_.robot}}; }
+    EventSink sink() {
+        return [this](EventKind kind, const std::string& subject, const std::string& text) {
+            return event(kind, subject, text);
+        };
+    }
 
     // A person's word, then the gate again: meanwhile the robot's mode may have changed.
     bool confirmed(std::optional<GatePass>& pass) {
@@ -318,9 +339,10 @@ class Run {
         return false;
     }
 
-    bool tell(PartVerdict verdict) {
-        if (!started_) return true;
-        auto told = places_.robot->confirm(verdict, run_.message);
+    bool tell(PartVerdict verdict) { return tell(verdict, run_.message); }
+    bool tell(PartVerdict verdict, const std::string& text) {
+        if (starts_ == 0) return true;
+        auto told = places_.robot->confirm(verdict, text);
         if (!told)
             (void)event(
                 EventKind::alarm, job_.robot_id,
@@ -328,14 +350,46 @@ class Run {
         return told.has_value();
     }
 
+    // What was written goes back, the robot is told first: nothing runs in a frame that changes.
+    void take_back_motion(RunStatus status, std::string message) {
+        run_.status = status;
+        run_.message = std::move(message);
+        const PartVerdict verdict = status == RunStatus::refused ? PartVerdict::refused : PartVerdict::failed;
+        panel().push.release = Release::withdrawn;
+        if (starts_ > 1) {  // the second start of measuring took the permission back already
+            tell(verdict);
+        } else {
+            const RobotRelease back = take_back(*places_.robot, verdict, run_.message, true);
+            panel().push.release = back.release;
+            if (back.release != Release::withdrawn) {
+                run_.status = RunStatus::alarm;
+                run_.message += "; " + back.text;
+                (void)event(EventKind::alarm, job_.robot_id, back.text);
+            }
+        }
+        restore_frames(run_, link(), sink(), EventKind::alarm);
+        if (panel().push.status == PushStatus::not_restored) run_.status = RunStatus::alarm;
+    }
+
+    // Durable before the robot may move in the frame.
+    bool record_pushed(const char* message) {
+        run_.status = RunStatus::pushed;
+        run_.message = message;
+        panel().push.release = Release::given;
+        auto stored = store_outcome();
+        if (stored) return true;
+        panel().push.release = Release::none;
+        run_.status = RunStatus::alarm;
+        run_.message = "alarm: the push cannot be recorded: " + stored.error().sentence();
+        return false;
+    }
+
     // From the first write to the end nothing is cancelled: the panel is in place as a whole or its frame is
     // taken back.
     void move_and_verify(GatePass pass) {
-        const EventSink record = [&](EventKind kind, const std::string& subject, const std::string& text) {
-            return event(kind, subject, text);
-        };
         cancel_ = {};
-        panel().push = push_region(std::move(pass), *places_.robot, record);
+        panel().push = push_region(std::move(pass), *places_.robot, sink());
+        panel().push.robot_id = job_.robot_id;
         progress(0, fmt::format("{}: {}", job_.frame_name, to_string(panel().push.status)));
         if (panel().push.status != PushStatus::written) {
             run_.status = RunStatus::alarm;
@@ -343,16 +397,14 @@ class Run {
             tell(PartVerdict::failed);
             return;
         }
-        const auto take_back = [&](RunStatus status, std::string message) {
-            run_.status = status;
-            run_.message = std::move(message);
-            withdraw_push(panel().push, *places_.robot, record);
-            if (panel().push.status == PushStatus::not_restored) run_.status = RunStatus::alarm;
-            tell(status == RunStatus::refused ? PartVerdict::refused : PartVerdict::failed);
-        };
-        run_.message = "moved, to be measured again";
-        if (!tell(PartVerdict::corrected))
-            return take_back(RunStatus::alarm, "alarm: the robot did not acknowledge the corrected frame");
+        if (!record_pushed("the frame is pushed; whether the panel was moved by it is not recorded yet")) {
+            restore_frames(run_, link(), sink(), EventKind::alarm);
+            tell(PartVerdict::failed);
+            return;
+        }
+        if (!tell(PartVerdict::corrected, "moved, to be measured again"))
+            return take_back_motion(RunStatus::alarm,
+                                    "alarm: the robot did not acknowledge the corrected frame");
         const Pose target = panel().base_from_moved_gripper;
         Pose stands_at = target;
         auto measured = measure(target, panel().after, stands_at);
@@ -364,18 +416,21 @@ class Run {
                 "robot " + job_.robot_id, "let its program run in frame " + job_.frame_name);
         panel().verdict = judge_panel(job_, panel().after);
         if (!measured)
-            return take_back(RunStatus::device,
-                             "not verified after the motion: " + measured.error().sentence());
+            return take_back_motion(RunStatus::device,
+                                    "not verified after the motion: " + measured.error().sentence());
         if (panel().verdict == PanelVerdict::not_verified)
-            return take_back(RunStatus::refused,
-                             "not verified: a required place was not measured after the motion");
+            return take_back_motion(RunStatus::refused,
+                                    "not verified: a required place was not measured after the motion");
         if (panel().verdict == PanelVerdict::out_of_tolerance)
-            return take_back(RunStatus::refused, "out of tolerance after the motion: " +
-                                                     beyond_tolerance(job_, panel().after).front());
-        run_.status = RunStatus::ok;
-        run_.message = "the panel was moved and lies in tolerance";
-        if (!tell(PartVerdict::corrected))
-            take_back(RunStatus::alarm, "alarm: the robot did not acknowledge the panel in place");
+            return take_back_motion(RunStatus::refused, "out of tolerance after the motion: " +
+                                                            beyond_tolerance(job_, panel().after).front());
+        if (!record_pushed("the panel was moved and lies in tolerance; whether the application began is not "
+                           "recorded yet"))
+            return take_back_motion(RunStatus::alarm, run_.message);
+        const HoldOptions hold{
+            options_.hold, options_.cancel, options_.part_over,
+            [&](const std::string& text) { progress(static_cast<int>(places_.measurers.size()), text); }};
+        release_run(run_, link(), "the panel was moved and lies in tolerance", hold, sink());
     }
 
     Station& station_;
@@ -385,7 +440,8 @@ class Run {
     std::stop_token cancel_ = options_.cancel;
     RunRecord run_;
     std::int64_t since_ns_ = 0;
-    bool judged_ = false, started_ = false;
+    bool judged_ = false;
+    int starts_ = 0;  // of the robot's program
     StoredMeasurements stored_;
 };
 
@@ -474,6 +530,8 @@ Expected<RunRecord> run_panel(Station& station, const std::string& job_id, const
     const PanelJob* found = find_panel_job(station.project(), job_id);
     if (!found) return input_error(fmt::format("there is no panel job \"{}\"", job_id), path);
     const PanelJob job = *found;
+    if (auto safe = none_of_motion(motion_findings(station.project(), job, options.push)); !safe)
+        return tl::unexpected(safe.error());
     auto places = prepare(station, job);
     if (!places) return tl::unexpected(places.error());
     return Run(station, job, *places, options).run();

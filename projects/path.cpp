@@ -7,6 +7,7 @@
 #include <map>
 
 #include "projects/measure.h"
+#include "projects/safety_gate.h"
 
 namespace seamwright {
 namespace {
@@ -99,11 +100,7 @@ void judge(const std::vector<const Region*>& regions, PathAnswer& answer) {
         const PathCorrection& p = answer.corrected.points[i];
         const Region &a = *regions[static_cast<std::size_t>(p.region)],
                      &b = *regions[static_cast<std::size_t>(p.next)];
-        // Infinite limits stay infinite where their share is not zero.
-        const auto limit = [&](double of_a, double of_b) {
-            if (p.share <= 0) return of_a;
-            return p.share >= 1 ? of_b : (1 - p.share) * of_a + p.share * of_b;
-        };
+        const auto limit = [&](double of_a, double of_b) { return (1 - p.share) * of_a + p.share * of_b; };
         const Pose& d = p.displacement.workobject_from_movedworkobject;
         const double length = d.translation().norm(), turn = deg_from_rad(angle_rad(d, Pose::Identity()));
         const double most_mm = limit(a.limits.translation_mm, b.limits.translation_mm);
@@ -119,7 +116,7 @@ void judge(const std::vector<const Region*>& regions, PathAnswer& answer) {
             turn <= most_deg + kRounding, id, i, "deg",
             fmt::format("the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn,
                         most_deg));
-        refusals.refuse_unless(p.sigma_mm <= most_sigma + kRounding, id, i, "sigma",
+        refusals.refuse_unless(p.sigma_mm >= 0 && p.sigma_mm <= most_sigma + kRounding, id, i, "sigma",
                                fmt::format("sigma of {:.4f} mm at the path is over the limit of {:.4f} mm",
                                            p.sigma_mm, most_sigma));
     }
@@ -159,6 +156,8 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
                                                          : found->refusals.front();
             answer.refusals.push_back({region.id, 0, 0, "the safety gate refused it: " + why});
         }
+        for (const std::string& none : limits_that_are_none(region))
+            answer.refusals.push_back({region.id, 0, 0, none});
         PathRegion correction;
         if (solved) {
             correction.displacement = found->correction->displacement;

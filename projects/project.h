@@ -75,9 +75,10 @@ struct Spot {
     bool enabled = true;
     bool required = true;                      // a region with a required spot missing is not pushed
     Pose base_from_flange = Pose::Identity();  // taught trigger pose
-    // base_from_flange too: passed in this order on the way from the spot before to the entry. None: straight.
+    // base_from_flange too: passed in this order on the way from the spot before to the entry. None:
+    // straight.
     std::vector<Pose> via;
-    double entry_mm = 20, exit_mm = 20;        // travel before and after the trigger, along the sensor's Y
+    double entry_mm = 20, exit_mm = 20;  // travel before and after the trigger, along the sensor's Y
     double speed_mm_s = 100;
     bool stop_at_trigger = false;
     FeatureRecipe feature;
@@ -125,5 +126,11 @@ struct Project {
 
 // Empty when plausible; else one Error per finding (unknown ids, duplicates, spots without region, ...).
 std::vector<Error> check(const Project& project);
+// Those of them that concern how the robot moves: while it measures the enabled spots, and with `push` in the
+// frames of the regions. No run begins while there is one. The second: of a panel job.
+std::vector<Error> motion_findings(const Project& project, bool push);
+std::vector<Error> motion_findings(const Project& project, const PanelJob& job, bool push);
+// The first of them, which says how many more there are.
+Expected<void> none_of_motion(const std::vector<Error>& findings);
 
 }  // namespace seamwright

@@ -20,6 +20,7 @@ SEAMWRIGHT_WORDS(CorrectionStatus, "ok", "under_determined", "over_limit", "not_
 SEAMWRIGHT_WORDS(SpotStatus, "measured", "not_measured", "damaged_frame", "no_stripe", "no_calibration",
                  "no_feature");
 SEAMWRIGHT_WORDS(PushStatus, "not_pushed", "written", "failed", "restored", "not_restored");
+SEAMWRIGHT_WORDS(Release, "none", "given", "taken", "not_taken", "withdrawn");
 SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_enough_profiles");
 SEAMWRIGHT_WORDS(ShiftBy, "simulated_part", "robot_moves", "by_hand");
 SEAMWRIGHT_WORDS(GapFlushSettings::Reference, "left", "right");
@@ -379,6 +380,8 @@ template <class A>
 void describe(A& a, PushRecord& v) {
     a("status", v.status);
     a("frame_name", v.frame_name);
+    a("robot_id", v.robot_id);
+    a("release", v.release);
     a("before", v.before);
     a("read_back", v.read_back);
     a("message", v.message);

@@ -11,8 +11,10 @@ constexpr auto kPushStatus =
     std::to_array<std::string_view>({"not_pushed", "written", "failed", "restored", "not_restored"});
 constexpr auto kEventKind =
     std::to_array<std::string_view>({"note", "refusal", "push_attempt", "push", "alarm", "device"});
-constexpr auto kRunStatus =
-    std::to_array<std::string_view>({"interrupted", "ok", "refused", "alarm", "device", "cancelled"});
+constexpr auto kRunStatus = std::to_array<std::string_view>(
+    {"interrupted", "pushed", "ok", "refused", "not_taken", "alarm", "device", "cancelled"});
+constexpr auto kRelease =
+    std::to_array<std::string_view>({"none", "given", "taken", "not_taken", "withdrawn"});
 
 constexpr auto kPanelVerdict =
     std::to_array<std::string_view>({"not_verified", "in_tolerance", "out_of_tolerance"});
@@ -31,6 +33,12 @@ std::string_view to_string(SpotStatus status) {
 }
 std::string_view to_string(PushStatus status) {
     return kPushStatus.at(static_cast<std::size_t>(status));
+}
+std::string_view to_string(Release release) {
+    return kRelease.at(static_cast<std::size_t>(release));
+}
+std::optional<Release> release_from(std::string_view name) {
+    return find_word<Release>(kRelease, name);
 }
 std::string_view to_string(EventKind kind) {
     return kEventKind.at(static_cast<std::size_t>(kind));

@@ -52,9 +52,22 @@ enum class PushStatus {
 std::string_view to_string(PushStatus status);
 std::optional<PushStatus> push_status_from(std::string_view name);
 
+// What became of a robot's permission to run its application in the frames of a run.
+enum class Release {
+    none,       // never given
+    given,      // the frames stand and are recorded; that the robot was told, and what became of it, is not
+    taken,      // the application runs, or ran, in the frames
+    not_taken,  // the application did not begin in time: the robot was told so, the old frames stand again
+    withdrawn   // the same after a failure, by the user, or by the robot itself
+};
+std::string_view to_string(Release release);
+std::optional<Release> release_from(std::string_view name);
+
 struct PushRecord {
     PushStatus status = PushStatus::not_pushed;
     std::string frame_name;
+    std::string robot_id;  // that holds the frame
+    Release release = Release::none;
     std::optional<Pose> before, read_back;
     std::string message;
 };
@@ -121,8 +134,12 @@ struct EventRecord {
 enum class RunStatus {
     interrupted,  // the program ended while measuring (no spots and regions; the captures until then), or
                   // between judging and the last push; the events tell how far it came
-    ok,           // every region solved and passed the gate (and, in a push run, written and read back)
+    pushed,       // every region written, read back and recorded, the robots were allowed to run or about to
+                  // be; what became of that is not recorded: the program ended, or still waits for it
+    ok,           // every region solved and passed the gate (and, in a push run, written and read back, and
+                  // the application runs in the frames)
     refused,      // at least one region refused by the gate or not solvable
+    not_taken,    // pushed, but the application did not begin in the frames: they were taken back
     alarm,        // a push went wrong
     device,       // a sensor or robot failed; nothing was pushed
     cancelled     // by the user; nothing was pushed

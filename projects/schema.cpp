@@ -157,7 +157,8 @@ CREATE TABLE run_panels (
 )sql";
 
 constexpr std::int32_t kChecksums = 5;  // the first version with them
-// Every row says what it should be (row_checksum.h).
+// Every row says what it should be (row_checksum.h). A run's status knows "pushed" and "not_taken" from here
+// on, its pushes the robot and what became of its permission to run.
 constexpr const char* kVersion5 = R"sql(
 ALTER TABLE project ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE requirements ADD COLUMN checksum INTEGER NOT NULL DEFAULT 0;

@@ -9,6 +9,7 @@
 #include "projects/acquire.h"
 #include "projects/file_use.h"
 #include "projects/measure.h"
+#include "projects/run_release.h"
 #include "projects/safety_gate.h"
 
 namespace seamwright {
@@ -41,6 +42,8 @@ struct Station::Impl {
         if (source) recorded[name] = *source;
         return source;
     }
+
+    bool writable = true;
 
     Impl(ProjectFile f, Project p) : file(std::move(f)), project(std::move(p)) {}
 
@@ -196,6 +199,7 @@ struct Station::Impl {
                                         calibration->flange_from_sensor * spot->reference_mm;
                 g.calibration_id = calibration->id;
                 g.calibration_verdict = calibration->verdict;
+                g.calibrated_utc = calibration->created_utc;
                 g.calibrated_sensor = calibration->sensor_identity;
                 g.calibrated_robot = calibration->robot_identity;
             }
@@ -212,10 +216,23 @@ struct Station::Impl {
             request.spots.push_back(std::move(g));
         }
         request.mode = RobotMode::fault;  // a robot that does not answer is not ready
-        if (const auto it = robots.find(robot_id); it != robots.end())
+        if (const auto it = robots.find(robot_id); it != robots.end()) {
             if (auto mode = it->second->mode()) request.mode = *mode;
+            request.tells_mode = it->second->tells_mode();
+            if (job.run.push) {
+                if (auto now = it->second->read_frame(region.frame_name))
+                    request.base_from_frame_now = *now;
+                else
+                    request.frame_trouble = now.error().sentence();
+            }
+        }
         if (const RobotSetup* robot = find_robot(project, robot_id))
             request.required_mode = robot->required_mode;
+        for (const Region& other : project.regions)
+            if (&other != &region) request.other_frames.push_back(other.frame_name);
+        for (const PanelJob& other : project.panel_jobs) request.other_frames.push_back(other.frame_name);
+        request.calibration_age_days = project.requirements.calibration_age_days;
+        request.now_utc = utc_now();
         request.now_ns = steady_now_ns();
         return request;
     }
@@ -309,10 +326,21 @@ struct Station::Impl {
         return false;
     }
 
-    void push_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
-        const EventSink record = [&](EventKind kind, const std::string& subject, const std::string& text) {
+    EventSink sink(Job& job) {
+        return [this, &job](EventKind kind, const std::string& subject, const std::string& text) {
             return record_event(job, kind, subject, text);
         };
+    }
+
+    // The outcome of the run so far, durable.
+    Expected<void> store_outcome(Job& job) {
+        job.run.finished_utc = utc_now();
+        if (auto judged = store_judged(job); !judged) return judged;
+        return file.update_run(job.run);
+    }
+
+    // Writes all frames, or none. False: taken back, the robots are told, the run is an alarm.
+    bool write_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
         // From the first write to the last nothing is cancelled: a part is corrected as a whole or not at
         // all.
         bool alarm = false;
@@ -322,26 +350,51 @@ struct Station::Impl {
                 region.push.message = "not pushed: the push of another region went wrong";
                 continue;
             }
-            region.push = push_region(std::move(*passes[i]), robot_of(project.regions[i]), record);
+            region.push = push_region(std::move(*passes[i]), robot_of(project.regions[i]), sink(job));
+            region.push.robot_id = find_spot(project, project.regions[i].spot_ids.front())->robot_id;
             alarm = region.push.status != PushStatus::written;
             job.progress(fmt::format("region {}: {}", region.region_id, to_string(region.push.status)));
         }
-        // Written and read back everywhere: the application may run. A robot that does not take that is an
-        // alarm too.
-        if (!alarm) {
-            job.run.status = RunStatus::ok;
+        if (alarm) {
+            job.run.status = RunStatus::alarm;
             job.run.message = verdict(job.run);
-            alarm = !confirm_all(job, PartVerdict::corrected);
-            if (alarm) job.run.message = "alarm: a robot did not acknowledge the corrected frames";
         }
-        if (!alarm) return;
-        job.run.status = RunStatus::alarm;
-        for (std::size_t i = passes.size(); i-- > 0;) {
-            RegionRecord& region = job.run.regions[i];
-            if (region.push.status == PushStatus::written)
-                withdraw_push(region.push, robot_of(project.regions[i]), record);
-        }
+        return !alarm;
+    }
+
+    // Nobody was allowed to run yet.
+    void take_frames_back(Job& job) {
+        for (RegionRecord& region : job.run.regions) region.push.release = Release::none;
+        restore_frames(job.run, links(), sink(job), EventKind::alarm);
         confirm_all(job, PartVerdict::failed);
+    }
+
+    // By id: all of the project, or those that measured and wait for the verdict.
+    std::map<std::string, RobotLink*> links() const {
+        std::map<std::string, RobotLink*> all;
+        for (const auto& [id, robot] : robots) all[id] = robot.get();
+        return all;
+    }
+    std::map<std::string, RobotLink*> links(const std::vector<std::string>& ids) const {
+        std::map<std::string, RobotLink*> some;
+        for (const std::string& id : ids) some[id] = robots.at(id).get();
+        return some;
+    }
+
+    void push_all(Job& job, std::vector<std::optional<GatePass>>& passes) {
+        if (!write_all(job, passes)) return take_frames_back(job);
+        job.run.status = RunStatus::pushed;
+        job.run.message = verdict(job.run);
+        for (RegionRecord& region : job.run.regions) region.push.release = Release::given;
+        if (auto stored = store_outcome(job); !stored) {
+            job.run.status = RunStatus::alarm;
+            job.run.message = "alarm: the push cannot be recorded: " + stored.error().sentence();
+            return take_frames_back(job);
+        }
+        const HoldOptions hold{job.options.hold, job.options.cancel, job.options.part_over,
+                               [&](const std::string& text) { job.progress(text); }};
+        release_run(job.run, links(job.started_robots),
+                    fmt::format("regions corrected and pushed: {}", job.run.regions.size()), hold, sink(job));
     }
 
     static std::string verdict(const RunRecord& run) {
@@ -350,6 +403,11 @@ struct Station::Impl {
             case RunStatus::ok:
                 return run.push ? fmt::format("regions corrected and pushed: {}", regions)
                                 : fmt::format("regions corrected, nothing pushed (dry run): {}", regions);
+            case RunStatus::pushed:
+                return fmt::format(
+                    "regions corrected and pushed: {}; whether the application began is not "
+                    "recorded yet",
+                    regions);
             case RunStatus::refused: {
                 std::string text;
                 for (const RegionRecord& region : run.regions)
@@ -369,6 +427,7 @@ struct Station::Impl {
                 return "cancelled";
             case RunStatus::interrupted:
                 return "the program ended before the pushes were done";
+            case RunStatus::not_taken:
             case RunStatus::device:
                 return run.message;
         }
@@ -389,7 +448,9 @@ Expected<Station> Station::open(const std::filesystem::path& path, FileAccess ac
     if (!file) return tl::unexpected(file.error());
     auto project = file->load();
     if (!project) return tl::unexpected(project.error());
-    return Station(std::move(*file), std::move(*project));
+    Station station(std::move(*file), std::move(*project));
+    station.impl_->writable = access == FileAccess::read_write;
+    return station;
 }
 
 const Project& Station::project() const {
@@ -476,6 +537,7 @@ Expected<void> Station::connect(const Patience& patience) {
     i.connected = true;
     i.file.keep_write_ahead(true);
     i.take_identities();
+    if (i.writable) resolve_release(i.file, i.links());
     return {};
 }
 
@@ -487,6 +549,7 @@ void Station::connect(std::map<std::string, std::unique_ptr<ProfileSource>> sens
     impl_->connected = true;
     impl_->file.keep_write_ahead(true);
     impl_->take_identities();
+    if (impl_->writable) resolve_release(impl_->file, impl_->links());
 }
 
 Expected<RunRecord> Station::run(const RunOptions& options) {
@@ -494,6 +557,8 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (!i.connected)
         return usage_error("the station is not connected to its devices", i.file.path().string(),
                            "connect first");
+    if (auto safe = none_of_motion(motion_findings(i.project, options.push)); !safe)
+        return tl::unexpected(safe.error());
     Impl::Job job{.options = options};
     RunRecord& run = job.run;
     for (const Spot& spot : i.project.spots) {
@@ -579,10 +644,8 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     }
     if (pushing) {
         i.push_all(job, passes);
-        run.message = Impl::verdict(run);
-        run.finished_utc = utc_now();
-        if (auto judged = i.store_judged(job); !judged) return tl::unexpected(judged.error());
-        if (auto updated = i.file.update_run(run); !updated) return tl::unexpected(updated.error());
+        if (auto stored = record_outcome(run, [&] { return i.store_outcome(job); }); !stored)
+            return tl::unexpected(stored.error());
     } else {
         i.confirm_all(job, run.status == RunStatus::device || run.status == RunStatus::cancelled
                                ? PartVerdict::failed

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "devices/silence.h"
 
@@ -117,7 +118,9 @@ class Watch {
         for (const RobotSetup& setup : robots) {
             RobotLink* robot = station_.robot(setup.id);
             if (!robot) return usage_error("it is not connected", "robot " + setup.id, "connect it");
-            auto start = robot->wait_start(slice);
+            auto start = called_ && called_->first == setup.id
+                             ? Expected<StartSignal>(std::exchange(called_, std::nullopt)->second)
+                             : robot->wait_start(slice);
             for (const std::string& notice : robot->take_notices())
                 tell("warning", "robot", "robot " + setup.id + ": " + notice);
             if (start) {
@@ -179,6 +182,9 @@ class Watch {
         run.keep_images = options_.keep_images;
         run.limits = options_.limits;
         run.cancel = options_.cancel;
+        // The link is here to stay: held until the application has begun, or will not any more.
+        run.hold = kHoldForEver;
+        run.part_over = [&] { return part_called(); };
         run.progress = [&](const RunProgress& p) {
             tell("info", "spot", p.text, {{"done", p.done}, {"total", p.total}});
         };
@@ -202,12 +208,25 @@ class Watch {
             data["regions"].push_back({{"id", region.region_id},
                                        {"passed", region.gate_passed},
                                        {"push", to_string(region.push.status)},
+                                       {"release", to_string(region.push.release)},
                                        {"refusals", region.refusals}});
         tell(alarm || record->status == RunStatus::device ? "alarm"
              : record->status == RunStatus::ok            ? "info"
                                                           : "warning",
              "run", fmt::format("part {}: {}", record->part_id, record->message), std::move(data));
         return forget_old_runs();
+    }
+
+    // Whether the line calls for the next part while the last one is still to be taken; kept for the next
+    // round.
+    bool part_called() {
+        for (const RobotSetup& setup : station_.project().robots) {
+            if (called_) return true;
+            if (RobotLink* robot = station_.robot(setup.id))
+                if (auto start = robot->wait_start(std::chrono::milliseconds(1)))
+                    called_.emplace(setup.id, *start);
+        }
+        return called_.has_value();
     }
 
     Expected<void> forget_old_runs() {
@@ -224,6 +243,7 @@ class Watch {
     const WatchOptions& options_;
     WatchState state_ = WatchState::connecting;
     WatchCounts counts_;
+    std::optional<std::pair<std::string, StartSignal>> called_;  // by which robot, while a part was released
     std::chrono::milliseconds retry_;
 };
 

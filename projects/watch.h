@@ -16,8 +16,8 @@ namespace seamwright {
 
 struct WatchCounts {
     std::int64_t parts = 0;  // started
-    std::int64_t corrected = 0,
-                 refused = 0;  // pushed and acknowledged (or, in a dry run, judged ok); refused
+    // Pushed and taken by the application (or, in a dry run, judged ok); refused, or not taken.
+    std::int64_t corrected = 0, refused = 0;
     std::int64_t failed = 0, alarms = 0, lost = 0;  // runs with a device failure; pushes gone wrong; outages
     std::int64_t missed = 0;  // calls that were not measured: too old, or overtaken by a newer one
 };

@@ -12,7 +12,11 @@ using nlohmann::json;
 namespace {
 
 json push_json(const PushRecord& p) {
-    json push = {{"status", to_string(p.status)}, {"frame", p.frame_name}, {"message", p.message}};
+    json push = {{"status", to_string(p.status)},
+                 {"frame", p.frame_name},
+                 {"robot", p.robot_id},
+                 {"release", to_string(p.release)},
+                 {"message", p.message}};
     if (p.before) push["before"] = pose_json(*p.before);
     if (p.read_back) push["read_back"] = pose_json(*p.read_back);
     return push;
@@ -69,6 +73,53 @@ std::string panel_text(const RunRecord& run) {
 
 }  // namespace
 
+namespace {
+// By robot, in the order of its first frame.
+std::vector<std::pair<std::string, Release>> releases_of(const RunRecord& run) {
+    std::vector<std::pair<std::string, Release>> list;
+    const auto add = [&](const PushRecord& push) {
+        if (push.robot_id.empty()) return;
+        for (const auto& [id, release] : list)
+            if (id == push.robot_id) return;
+        list.emplace_back(push.robot_id, push.release);
+    };
+    for (const RegionRecord& region : run.regions) add(region.push);
+    if (run.panel) add(run.panel->push);
+    return list;
+}
+}  // namespace
+
+int run_exit_code(const RunRecord& run) {
+    switch (run.status) {
+        case RunStatus::ok:
+            return kExitOk;
+        case RunStatus::device:
+        case RunStatus::alarm:
+            return kExitDevice;
+        default:
+            return kExitVerdict;
+    }
+}
+
+std::optional<Answer> refuse_unsafe(Station& station, const std::vector<Error>& findings) {
+    if (findings.empty()) return std::nullopt;
+    Answer answer;
+    answer.exit_code = kExitVerdict;
+    json sentences = json::array();
+    std::string all;
+    for (const Error& finding : findings) {
+        sentences.push_back(finding.sentence());
+        all += (all.empty() ? "" : "; ") + finding.sentence();
+        answer.text += "refused: " + finding.sentence() + "\n";
+    }
+    answer.json = {{"status", to_string(RunStatus::refused)},
+                   {"message", "refused before anything moved: " + all},
+                   {"findings", sentences}};
+    // The answer stands without the log.
+    (void)station.file().append_event({0, utc_now(), 0, EventKind::refusal, "run", all});
+    return answer;
+}
+
 json run_json(const RunRecord& run) {
     json spots = json::array(), regions = json::array(), events = json::array();
     for (const SpotMeasurement& s : run.spots)
@@ -100,6 +151,10 @@ json run_json(const RunRecord& run) {
                 {"regions", regions},
                 {"events", events}};
     if (run.panel) out["panel"] = panel_json(*run.panel);
+    if (run.push) {
+        out["release"] = json::object();
+        for (const auto& [robot, release] : releases_of(run)) out["release"][robot] = to_string(release);
+    }
     return out;
 }
 
@@ -124,6 +179,15 @@ std::string run_text(const RunRecord& run) {
                                 r.push.message.empty() ? "" : ": ", r.push.message);
     }
     if (run.panel) text += panel_text(run);
+    for (const auto& [robot, release] : releases_of(run))
+        if (release != Release::none)
+            text += fmt::format("robot {}: {}\n", robot,
+                                release == Release::taken ? "the application runs in the frames"
+                                : release == Release::given
+                                    ? "ALARM: it is not known whether the application may run"
+                                    : "nothing is released, the permission is taken back");
+    for (const EventRecord& event : run.events)
+        if (event.kind == EventKind::alarm) text += fmt::format("ALARM {}: {}\n", event.subject, event.text);
     return text;
 }
 

@@ -323,7 +323,7 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     merge(cells, shared, first_pieces + second_pieces, !first.intensity.empty() && !second.intensity.empty(),
           out);
     out.status = DoubleHeadStatus::ok;
-    if (out.disagreement_mm > options.disagreement_limit_mm) {
+    if (!(out.disagreement_mm <= options.disagreement_limit_mm)) {
         out.status = DoubleHeadStatus::disagree;
         out.message = fmt::format(
             "the heads disagree by {:.3f} mm in the overlap, allowed are {:.3f} mm: calibrate their relation",

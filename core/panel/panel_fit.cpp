@@ -149,17 +149,23 @@ void fill_spots(std::span<const PanelSpot> spots, std::span<const SpotObservatio
 
 }  // namespace
 
+GapFlushObserved observed_gap_flush(const Eigen::Vector3d& weights, double surface_rad) {
+    const double c = std::cos(surface_rad), s = std::sin(surface_rad);
+    const bool x = weights.x() > 0, z = weights.z() > 0;
+    return {(x || c == 0) && (z || s == 0), (z || c == 0) && (x || s == 0)};
+}
+
 GapFlushValue gap_and_flush(const PanelSpot& spot, const Eigen::Vector3d& panel_mm,
                             const Eigen::Vector3d& body_mm) {
     const double c = std::cos(spot.surface_rad), s = std::sin(spot.surface_rad);
     const auto along = [&](const Eigen::Vector3d& v) { return c * v.x() + s * v.z(); };
     const auto across = [&](const Eigen::Vector3d& v) { return -s * v.x() + c * v.z(); };
-    const bool x = spot.weights.x() > 0, z = spot.weights.z() > 0;
+    const GapFlushObserved observed = observed_gap_flush(spot.weights, spot.surface_rad);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double side = along(spot.body.reference_mm - spot.panel.reference_mm) < 0 ? -1 : 1;
     GapFlushValue v;
-    v.gap_mm = (x || c == 0) && (z || s == 0) ? side * along(body_mm - panel_mm) : nan;
-    v.flush_mm = (z || c == 0) && (x || s == 0) ? across(panel_mm - body_mm) : nan;
+    v.gap_mm = observed.gap ? side * along(body_mm - panel_mm) : nan;
+    v.flush_mm = observed.flush ? across(panel_mm - body_mm) : nan;
     return v;
 }
 

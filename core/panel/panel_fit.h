@@ -89,6 +89,12 @@ struct PanelFit {
     std::string message;
 };
 
+// Which of the two the weights observe, with the surface turned by that.
+struct GapFlushObserved {
+    bool gap = false, flush = false;
+};
+GapFlushObserved observed_gap_flush(const Eigen::Vector3d& weights, double surface_rad);
+
 // Refuses (Error) what solve_region refuses, naming panel or body.
 Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOptions& options);
 

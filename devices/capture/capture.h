@@ -35,5 +35,8 @@ struct Capture {
 
 // The wall clock for records: ISO 8601 with milliseconds.
 std::string utc_now();
+// Seconds since 1970 of such a text, its fraction dropped; nothing where it is none: another form, a date
+// that does not exist. A date without a time is its midnight.
+std::optional<std::int64_t> utc_seconds(const std::string& utc);
 
 }  // namespace seamwright

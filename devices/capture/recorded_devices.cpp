@@ -85,6 +85,7 @@ class RecordedRobot final : public RobotLink {
         }
         return mode;
     }
+    bool tells_mode() const override { return robot_->tells_mode(); }
     Expected<Pose> base_from_flange() override {
         auto pose = robot_->base_from_flange();
         if (pose) note_pose(*recorder_, source_, *pose);
@@ -116,7 +117,16 @@ class RecordedRobot final : public RobotLink {
         auto confirmed = robot_->confirm(verdict, text);
         note(fmt::format("confirmed as {}{}", to_string(verdict),
                          confirmed ? "" : ": " + confirmed.error().sentence()));
+        permission_.reset();
         return confirmed;
+    }
+    Expected<Permission> permission() override {
+        auto permission = robot_->permission();
+        if (permission && permission_ != *permission) {
+            permission_ = *permission;
+            note(fmt::format("permission to run: {}", to_string(*permission)));
+        }
+        return permission;
     }
     Expected<void> move_to(const Pose& base_from_flange) override {
         return robot_->move_to(base_from_flange);
@@ -133,6 +143,7 @@ class RecordedRobot final : public RobotLink {
     std::shared_ptr<Recorder> recorder_;
     std::int64_t source_;
     std::optional<RobotMode> mode_;
+    std::optional<Permission> permission_;
 };
 
 }  // namespace

@@ -110,6 +110,7 @@ class CaptureRobot final : public RobotLink {
         return RobotIdentity{"replay", source_.vendor, source_.model, source_.serial};
     }
     Expected<RobotMode> mode() override { return replay_->mode(); }
+    bool tells_mode() const override { return false; }  // recordings need not hold it
     Expected<Pose> base_from_flange() override {
         if (const auto pose = replay_->pose()) return *pose;
         return device_error("the recording has not reached a pose", replay_->where());

@@ -228,6 +228,7 @@ class ReplayRobot final : public RobotLink {
 
     Expected<RobotIdentity> identity() override { return identity_; }
     Expected<RobotMode> mode() override { return mode_; }
+    bool tells_mode() const override { return false; }  // recordings need not hold it
     Expected<Pose> base_from_flange() override {
         if (!pose_) return device_error("the recording has not reached a pose", where());
         return *pose_;

@@ -154,6 +154,74 @@
 <context>
     <name>Errors</name>
     <message>
+        <source>regions corrected and pushed: %1; whether the application began is not recorded yet</source>
+        <translation>Regionen korrigiert und übertragen: %1; ob die Anwendung begann, ist noch nicht festgehalten</translation>
+    </message>
+    <message>
+        <source>nothing is released: robot %1: %2</source>
+        <translation>nichts ist freigegeben: Roboter %1: %2</translation>
+    </message>
+    <message>
+        <source>nothing is released: robot %1: the application did not begin within %2 s</source>
+        <translation>nichts ist freigegeben: Roboter %1: die Anwendung begann nicht innerhalb von %2 s</translation>
+    </message>
+    <message>
+        <source>nothing is released: robot %1: cancelled before the application had taken the permission</source>
+        <translation>nichts ist freigegeben: Roboter %1: abgebrochen, bevor die Anwendung die Freigabe übernommen hatte</translation>
+    </message>
+    <message>
+        <source>nothing is released: the program ended before the application had begun; the corrected frames still stand on the controller</source>
+        <translation>nichts ist freigegeben: das Programm endete, bevor die Anwendung begann; die korrigierten Frames stehen noch auf der Steuerung</translation>
+    </message>
+    <message>
+        <source>corrected and pushed; the application began after the program had ended</source>
+        <translation>korrigiert und übertragen; die Anwendung begann, nachdem das Programm geendet hatte</translation>
+    </message>
+    <message>
+        <source>alarm: a robot did not acknowledge the corrected frames</source>
+        <translation>Alarm: ein Roboter hat die korrigierten Frames nicht quittiert</translation>
+    </message>
+    <message>
+        <source>alarm: the push cannot be recorded: %1</source>
+        <translation>Alarm: die Übertragung kann nicht festgehalten werden: %1</translation>
+    </message>
+    <message>
+        <source>the project has no region, nothing can be pushed</source>
+        <translation>das Projekt hat keine Region, nichts kann übertragen werden</translation>
+    </message>
+    <message>
+        <source>make a region of the spots</source>
+        <translation>fassen Sie die Messstellen zu einer Region zusammen</translation>
+    </message>
+    <message>
+        <source>the limit of %1, %2 %3, is none (above 0, up to %4)</source>
+        <translation>die Grenze %1, %2 %3, ist keine (über 0, bis %4)</translation>
+    </message>
+    <message>
+        <source>the speed of %1 mm/s is not plausible (0..5000)</source>
+        <translation>die Geschwindigkeit von %1 mm/s ist nicht plausibel (0..5000)</translation>
+    </message>
+    <message>
+        <source>entry and exit must be between 0 and 1000 mm</source>
+        <translation>Ein- und Auslauf müssen zwischen 0 und 1000 mm liegen</translation>
+    </message>
+    <message>
+        <source>region %1 writes the same frame %2</source>
+        <translation>Region %1 schreibt denselben Frame %2</translation>
+    </message>
+    <message>
+        <source>give each region its own frame</source>
+        <translation>geben Sie jeder Region ihren eigenen Frame</translation>
+    </message>
+    <message>
+        <source>it names no frame on the controller, nothing can be pushed</source>
+        <translation>sie nennt keinen Frame auf der Steuerung, nichts kann übertragen werden</translation>
+    </message>
+    <message>
+        <source>%1 (and %2 more findings, see check)</source>
+        <translation>%1 (und %2 weitere Befunde, siehe Prüfung)</translation>
+    </message>
+    <message>
         <source>the file does not exist</source>
         <translation>die Datei gibt es nicht</translation>
     </message>
@@ -8407,6 +8475,26 @@ ausgelassen</translation>
 </context>
 <context>
     <name>seamwright::RunPage</name>
+    <message>
+        <source>pushed, outcome not recorded</source>
+        <translation>übertragen, Ausgang nicht festgehalten</translation>
+    </message>
+    <message>
+        <source>not taken, nothing is released</source>
+        <translation>nicht übernommen, nichts ist freigegeben</translation>
+    </message>
+    <message>
+        <source>the application runs in the frame</source>
+        <translation>die Anwendung läuft im Frame</translation>
+    </message>
+    <message>
+        <source>released, whether the application began is not known</source>
+        <translation>freigegeben, ob die Anwendung begann, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>not released</source>
+        <translation>nicht freigegeben</translation>
+    </message>
     <message>
         <source>ok</source>
         <translation>ok</translation>

@@ -57,6 +57,7 @@ class TimedLink : public RobotLink {
     Expected<RobotMode> mode() override {
         return timed(Ask::gate, [&] { return link_->mode(); });
     }
+    bool tells_mode() const override { return link_->tells_mode(); }
     Expected<Pose> base_from_flange() override { return link_->base_from_flange(); }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         return link_->start_measuring(moves);
@@ -73,6 +74,7 @@ class TimedLink : public RobotLink {
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override {
         return timed(Ask::confirm, [&] { return link_->confirm(verdict, text); });
     }
+    Expected<Permission> permission() override { return link_->permission(); }
 
   private:
     template <class F>
@@ -92,10 +94,14 @@ using Stages = std::map<std::string, std::vector<double>>;  // ms
 bool add_stages(Stages& stages, std::int64_t last_frame, std::int64_t measured,
                 const std::vector<Call>& calls, std::int64_t released) {
     std::int64_t asking = 0, gate_end = measured;
+    bool frame_judged = false;
     std::vector<Call> push;
     for (const Call& call : calls) {
         if (call.begin_ns < measured) continue;
-        if (call.ask != Ask::gate) {
+        // The first frame that is read is the gate's question too.
+        const bool of_gate = call.ask == Ask::gate || (call.ask == Ask::read && !frame_judged);
+        frame_judged = frame_judged || call.ask == Ask::read;
+        if (!of_gate) {
             push.push_back(call);
         } else {
             asking += call.end_ns - call.begin_ns;

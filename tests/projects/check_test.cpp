@@ -15,6 +15,7 @@ struct Fault {
 };
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
+const double kInf = std::numeric_limits<double>::infinity();
 
 TEST(Check, NamesEveryImplausibility) {
     using P = Project&;
@@ -54,11 +55,13 @@ TEST(Check, NamesEveryImplausibility) {
         {"empty region", [](P p) { p.regions[0].spot_ids.clear(); }, "no enabled spot"},
         {"nothing free", [](P p) { p.regions[0].free.fill(false); }, "no degree of freedom is free"},
         {"required spot off", [](P p) { p.spots[0].enabled = false; }, "required spot S1 is switched off"},
-        {"absurd limit", [](P p) { p.regions[0].limits.translation_mm = 5000; }, "5000 mm is not plausible"},
+        {"absurd limit", [](P p) { p.regions[0].limits.translation_mm = 5000; },
+         "the limit of translation, 5000 mm, is none"},
         {"infinite limit",
          [](P p) { p.regions[0].limits.rotation_deg = std::numeric_limits<double>::infinity(); },
-         "not plausible"},
-        {"nan sigma limit", [](P p) { p.regions[0].sigma_limit_mm = kNan; }, "sigma in mm must be positive"},
+         "the limit of rotation, inf degrees, is none"},
+        {"nan sigma limit", [](P p) { p.regions[0].sigma_limit_mm = kNan; },
+         "the limit of sigma, nan mm, is none"},
         {"same frame", [](P p) { p.regions[1].frame_name = p.regions[0].frame_name; },
          "writes the same frame"},
         {"no frame", [](P p) { p.regions[1].frame_name.clear(); }, "names no frame"},
@@ -85,6 +88,36 @@ TEST(Check, NamesEveryImplausibility) {
         for (const Error& finding : check(project)) all += finding.sentence() + "\n";
         EXPECT_THAT(all, testing::HasSubstr(fault.words)) << fault.name;
     }
+}
+
+// A run does not begin with what makes a robot move wrongly; what it can tell by itself does not keep it.
+TEST(Check, GradesWhatConcernsMotion) {
+    const Project good = make_fake_cell()->project;
+    EXPECT_TRUE(motion_findings(good, true).empty());
+    const auto with = [&](const std::function<void(Project&)>& change, bool push) {
+        Project project = good;
+        change(project);
+        return motion_findings(project, push).size();
+    };
+    const auto limit = [](Project& p) { p.regions[0].limits.translation_mm = kInf; };
+    EXPECT_EQ(with(limit, true), 1u);
+    EXPECT_EQ(with(limit, false), 0u) << "a dry run writes nothing";
+    const auto frame = [](Project& p) { p.regions[1].frame_name = "base_INNER"; };
+    EXPECT_EQ(with(frame, true), 1u) << "controllers do not tell upper from lower case";
+    EXPECT_EQ(with([](Project& p) { p.regions.clear(); }, true), 1u);
+    EXPECT_EQ(with([](Project& p) { p.spots[0].speed_mm_s = kNan; }, false), 1u);
+    EXPECT_EQ(with([](Project& p) { p.spots[0].entry_mm = 5000; }, false), 1u);
+    EXPECT_EQ(with([](Project& p) { p.spots[0].base_from_flange(1, 3) = kNan; }, false), 1u);
+    EXPECT_EQ(with(
+                  [](Project& p) {
+                      p.spots[0].speed_mm_s = -1;
+                      p.spots[0].enabled = false;
+                      for (Region& r : p.regions) r.spot_ids.erase(r.spot_ids.begin());
+                  },
+                  true),
+              0u)
+        << "nobody goes there";
+    EXPECT_EQ(with([](Project& p) { p.calibrations[0].verdict = "poor"; }, true), 0u) << "the gate says it";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // The simulated door as a project: contour ends at the default spots, one region of all of them, calibrated
 // by construction. References are still to be taught.
 
+#include "devices/capture/capture.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
@@ -50,6 +51,7 @@ inline Project door_project(const SimulatedCell& cell, const nlohmann::json& set
     c.model = cell.sensor_model();
     c.flange_from_sensor = cell.flange_from_sensor();
     c.verdict = "good";
+    c.created_utc = utc_now();
     p.sensors = {sensor};
     p.robots = {robot};
     p.calibrations = {c};

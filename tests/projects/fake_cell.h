@@ -15,6 +15,7 @@
 #include <set>
 #include <thread>
 
+#include "devices/capture/capture.h"
 #include "devices/registry.h"
 #include "devices/silence.h"
 #include "projects/project.h"
@@ -41,6 +42,10 @@ struct FakeCell {
     int writes = 0;
     std::vector<PartVerdict> verdicts;         // as confirmed
     std::optional<PartVerdict> deaf_to;        // does not acknowledge this one
+    Permission permission = Permission::none;  // as the controller would tell it
+    bool application = true;                   // begins as soon as it may
+    bool deaf_but_obeys = false;               // the verdict arrives, its acknowledgement does not
+    std::function<void()> on_permission;       // before each look
     std::deque<Expected<StartSignal>> starts;  // what wait_start() answers in turn; then silence
     std::function<void(const std::string& spot)> on_trigger;
 
@@ -125,6 +130,7 @@ class FakeRobot : public RobotLink {
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         moves_ = moves;
         next_ = 0;
+        cell_.permission = Permission::none;
         return {};
     }
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds) override {
@@ -161,8 +167,17 @@ class FakeRobot : public RobotLink {
     }
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
         cell_.verdicts.push_back(verdict);
-        if (cell_.deaf_to == verdict) return device_error(kNoAnswer, "robot R1");
+        const bool deaf = cell_.deaf_to == verdict;
+        if ((!deaf || cell_.deaf_but_obeys) && cell_.permission != Permission::taken) {
+            cell_.permission = verdict == PartVerdict::corrected ? Permission::given : Permission::none;
+            if (verdict == PartVerdict::corrected && cell_.application) cell_.permission = Permission::taken;
+        }
+        if (deaf) return device_error(kNoAnswer, "robot R1");
         return {};
+    }
+    Expected<Permission> permission() override {
+        if (cell_.on_permission) cell_.on_permission();
+        return cell_.permission;
     }
 
   private:
@@ -198,6 +213,7 @@ inline std::unique_ptr<FakeCell> make_fake_cell(int spots = 6) {
     c.robot_identity = cell->robot_identity;
     c.flange_from_sensor = make_pose(rotation_exp({0.1, 0.7, -0.3}), {30, -20, 250});
     c.verdict = "good";
+    c.created_utc = utc_now();
     p.calibrations.push_back(c);
     for (int i = 0; i < spots; ++i) {
         const double turn = 2 * kPi * i / spots;

@@ -14,6 +14,7 @@
 #include "projects/panel_measure.h"
 #include "projects/replay.h"
 #include "projects/simulated_truth.h"
+#include "tests/projects/numeric_members.h"
 #include "tests/projects/sample_project.h"
 
 namespace seamwright {
@@ -79,6 +80,68 @@ struct Bench {
         return worst;
     }
 };
+
+// All that stands between a panel's numbers and the robot, in the order in which run_panel() asks.
+struct PanelRequest {
+    PanelJob job;
+    PanelFit fit;
+    std::vector<PanelMeasurement> after;
+};
+void numbers(const NumberVisitor& visit, const std::string& path, PanelRequest& v) {
+    auto& [job, fit, after] = v;
+    numbers(visit, path + "job", job);
+    numbers(visit, path + "fit", fit);
+    numbers(visit, path + "after", after);
+}
+
+bool refuses_panel(const Project& project, const GateRequest& gate, const PanelRequest& r) {
+    if (!motion_findings(project, r.job, true).empty()) return true;
+    GateRequest request = gate;
+    request.region.limits = r.job.limits;
+    request.region.sigma_limit_mm = r.job.sigma_limit_mm;
+    request.region.sigma_limit_deg = r.job.sigma_limit_deg;
+    request.region.base_from_frame = r.job.base_from_frame;
+    request.base_from_workobject = r.job.base_from_gripper;
+    request.base_from_frame_now = r.job.base_from_frame;
+    request.correction = motion_as_correction(r.job, gate.base_from_workobject, r.fit);
+    return !pass_gate(request).pass || !beyond_tolerance(r.job, r.fit).empty() ||
+           judge_panel(r.job, r.after) != PanelVerdict::in_tolerance ||
+           !beyond_tolerance(r.job, r.after).empty();
+}
+
+TEST(PanelStation, EveryNumberThatIsNotFiniteIsRefused) {
+    Bench bench;
+    bench.displace();
+    const RunRecord run = bench.run();
+    ASSERT_EQ(run.status, RunStatus::ok) << run.message;
+    PanelRequest good{bench.project.panel_jobs[0], *run.panel->fit, run.panel->after};
+    for (PanelPlace& place : good.job.places) place.reference_profile.clear();
+    GateRequest gate;
+    gate.region.id = good.job.id;
+    gate.region.frame_name = good.job.frame_name;
+    gate.base_from_workobject = run.panel->base_from_gripper;
+    gate.part_id = "car";
+    gate.mode = RobotMode::automatic;
+    gate.now_utc = utc_now();
+    for (const PanelPlace& place : good.job.places) {
+        GateSpot spot;
+        spot.id = place.id;
+        spot.measured = true;
+        spot.part_id = gate.part_id;
+        spot.calibration_id = "C";
+        spot.calibration_verdict = "good";
+        spot.calibrated_utc = gate.now_utc;
+        spot.sensor = spot.calibrated_sensor = {"simulated", "V", "M", "1"};
+        spot.robot = spot.calibrated_robot = {"simulated", "B", "M", "2"};
+        gate.region.spot_ids.push_back(spot.id);
+        gate.spots.push_back(spot);
+    }
+    const auto refuses = [&](const PanelRequest& r) { return refuses_panel(bench.project, gate, r); };
+    ASSERT_FALSE(refuses(good));
+    int tried = 0;
+    EXPECT_THAT(passes_with_one_not_finite(good, refuses, tried), testing::ElementsAre());
+    EXPECT_GT(tried, 3 * 200);
+}
 
 TEST(PanelStation, TeachesGapAndFlushAsTheyAre) {
     Bench bench;

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/projects/numeric_members.h"
+
 namespace seamwright {
 namespace {
 
@@ -58,6 +60,48 @@ struct Setting {
         return correct_application_path(project, run, path, frame, {100, false});
     }
 };
+
+struct PathRequest {
+    std::vector<Region> regions;
+    std::vector<RegionCorrection> corrections;
+    std::vector<Pose> points;
+    double blend_mm = 100;
+};
+void numbers(const NumberVisitor& visit, const std::string& path, PathRequest& v) {
+    using seamwright::numbers;
+    auto& [regions, corrections, points, blend] = v;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        numbers(visit, path + "limits", regions[i].limits);
+        numbers(visit, path + "sigma_limit_mm", regions[i].sigma_limit_mm);
+        numbers(visit, path + "sigma_limit_deg", regions[i].sigma_limit_deg);
+        numbers(visit, path + "displacement", corrections[i].displacement);
+        numbers(visit, path + "covariance", corrections[i].covariance);
+    }
+    numbers(visit, path + "points", points);
+    numbers(visit, path + "blend_mm", blend);
+}
+
+TEST(Path, EveryNumberThatIsNotFiniteIsRefused) {
+    const Setting good;
+    PathRequest request{good.project.regions, {}, {}};
+    for (const RegionRecord& r : good.run.regions) request.corrections.push_back(*r.correction);
+    for (const std::size_t i : {0, 40, 50, 60, 100})
+        request.points.push_back(good.path.points[i].frame_from_tool);
+    const auto refuses = [&](const PathRequest& r) {
+        Setting s = good;
+        s.project.regions = r.regions;
+        for (std::size_t i = 0; i < 2; ++i) s.run.regions[i].correction = r.corrections[i];
+        s.path.points.clear();
+        for (const Pose& p : r.points) s.path.points.push_back({p, ""});
+        const auto answer =
+            correct_application_path(s.project, s.run, s.path, PathFrame::base, {r.blend_mm, false});
+        return !answer || !answer->ok();
+    };
+    ASSERT_FALSE(refuses(request));
+    int tried = 0;
+    EXPECT_THAT(passes_with_one_not_finite(request, refuses, tried), testing::ElementsAre());
+    EXPECT_EQ(tried, 3 * (2 * (4 + 12 + 36) + 5 * 12 + 1));
+}
 
 TEST(Path, PointsOfARegionMoveAsItsPushedFrameWould) {
     const Setting s;

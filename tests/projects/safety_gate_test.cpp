@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "tests/projects/mock_devices.h"
+#include "tests/projects/numeric_members.h"
 
 namespace seamwright {
 namespace {
@@ -43,6 +44,7 @@ GateRequest good_request() {
         s.measured_at_ns = 150;
         s.calibration_id = "C1";
         s.calibration_verdict = "good";
+        s.calibrated_utc = "2026-01-31T12:00:00.000Z";
         s.sensor = s.calibrated_sensor = {"simulated", "V", "M", "001"};
         s.robot = s.calibrated_robot = {"simulated", "KUKA", "KR", "002"};
         r.spots.push_back(s);
@@ -52,6 +54,8 @@ GateRequest good_request() {
     r.now_ns = 200;
     r.mode = RobotMode::external;
     r.required_mode = RobotMode::external;
+    r.now_utc = "2026-11-22T12:00:00.000Z";
+    r.base_from_frame_now = r.region.base_from_frame;
     return r;
 }
 
@@ -162,11 +166,68 @@ std::vector<Refusal> refusals() {
          "beyond the limit of 0.600 degrees"},
         {"NanLimit", [](R r) { r.region.limits.translation_mm = kNan; }, "beyond the limit"},
         {"NanTurnLimit", [](R r) { r.region.limits.rotation_deg = kNan; }, "beyond the limit"},
+        {"NoLimit", [](R r) { r.region.limits.translation_mm = kInf; }, "is none"},
+        {"NoTurnLimit", [](R r) { r.region.limits.rotation_deg = kInf; }, "is none"},
+        {"AbsurdLimit", [](R r) { r.region.limits.translation_mm = 1001; }, "is none"},
+        {"AbsurdTurnLimit", [](R r) { r.region.limits.rotation_deg = 46; }, "is none"},
+        {"ZeroLimit",
+         [](R r) {
+             r.region.limits.translation_mm = 0;
+             r.correction.displacement.workobject_from_movedworkobject = Pose::Identity();
+         },
+         "is none"},
+        {"NegativeLimit", [](R r) { r.region.limits.rotation_deg = -3; }, "is none"},
+        {"NoSigmaLimit", [](R r) { r.region.sigma_limit_mm = kInf; }, "is none"},
+        {"AbsurdSigmaLimit", [](R r) { r.region.sigma_limit_mm = 11; }, "is none"},
+        {"NoTurnSigmaLimit", [](R r) { r.region.sigma_limit_deg = kInf; }, "is none"},
+        {"AbsurdTurnSigmaLimit", [](R r) { r.region.sigma_limit_deg = 11; }, "is none"},
+        {"FrameOfTwoRegions",
+         [](R r) {
+             r.other_frames = {"BASE[2]", "Base[3]"};
+         },
+         "written by another region"},
+        {"TaughtInMetres", [](R r) { r.region.base_from_frame.translation() *= 1e-3; }, "would jump"},
+        {"AnotherFrameOnTheController", [](R r) { r.base_from_frame_now->translation().y() += 25.1; },
+         "would jump"},
+        {"AnotherTurnOnTheController",
+         [](R r) {
+             r.base_from_frame_now->linear() *= rotation_exp({0, 0, rad_from_deg(3.1)});
+         },
+         "would jump"},
+        {"NoFrameOnTheController", [](R r) { (*r.base_from_frame_now)(0, 0) = kNan; }, "no rigid pose"},
+        {"FrameNotRead",
+         [](R r) {
+             r.base_from_frame_now.reset();
+             r.frame_trouble = "no answer in time";
+         },
+         "cannot be read: no answer in time"},
+        {"OldCalibration", [](R r) { r.spots[1].calibrated_utc = "2025-11-21T12:00:00.000Z"; },
+         "366 days old, 365 are allowed"},
+        {"CalibrationOf1970", [](R r) { r.spots[1].calibrated_utc = "1970-01-01T00:00:00.000Z"; },
+         "days old"},
+        {"CalibrationOfTomorrow", [](R r) { r.spots[1].calibrated_utc = "2026-11-23T12:00:00.000Z"; },
+         "in the future"},
+        {"CalibrationWithoutDate", [](R r) { r.spots[1].calibrated_utc.clear(); }, "has no date"},
+        {"CalibrationOfYesterday", [](R r) { r.spots[1].calibrated_utc = "yesterday"; }, "has no date"},
+        {"CalibrationOfNoDay", [](R r) { r.spots[1].calibrated_utc = "2026-02-30T00:00:00Z"; },
+         "has no date"},
+        {"NoClock", [](R r) { r.now_utc.clear(); }, "what time it is"},
+        {"AnyAge", [](R r) { r.calibration_age_days = kInf; }, "is no limit"},
+        {"CovarianceNotSymmetric", [](R r) { r.correction.covariance(0, 1) = 5e-5; }, "covariance is none"},
+        {"CovarianceIndefinite",
+         [](R r) { r.correction.covariance(0, 1) = r.correction.covariance(1, 0) = 1.5e-4; },
+         "covariance is none"},
+        {"CovarianceOfAFixedAxis",
+         [](R r) {
+             r.correction.covariance(3, 3) = 0;
+             r.correction.covariance(0, 3) = r.correction.covariance(3, 0) = 1e-9;
+         },
+         "covariance is none"},
         {"SigmaMm", [](R r) { r.region.sigma_limit_mm = 0.019; }, "over the region's limit of 0.0190 mm"},
         {"SigmaDeg", [](R r) { r.region.sigma_limit_deg = 0.0015; }, "degrees is over the region's limit"},
         {"SigmaHiddenInCovariance", [](R r) { r.correction.covariance(0, 0) = 100; },
          "over the region's limit"},
-        {"CovarianceNotPositive", [](R r) { r.correction.covariance(0, 0) = -1; }, "over the region's limit"},
+        {"CovarianceNotPositive", [](R r) { r.correction.covariance(0, 0) = -1; }, "covariance is none"},
         {"NanSigmaLimit", [](R r) { r.region.sigma_limit_mm = kNan; }, "over the region's limit"},
         {"NoUncertainty",
          [](R r) {
@@ -188,6 +249,8 @@ std::vector<Refusal> refusals() {
         {"UnjudgedCalibration", [](R r) { r.spots[1].calibration_verdict.clear(); }, "without verdict"},
         {"WrongMode", [](R r) { r.mode = RobotMode::manual_reduced; }, "required is"},
         {"UnknownMode", [](R r) { r.mode = RobotMode::unknown; }, "required is"},
+        {"UnknownModeWhereNoneIsRequired", [](R r) { r.mode = r.required_mode = RobotMode::unknown; },
+         "any but stopped, fault and unknown"},
         {"Fault",
          [](R r) {
              r.mode = RobotMode::fault;
@@ -221,6 +284,18 @@ TEST_P(EveryRefusal, IsNamedAndMakesNoPass) {
 INSTANTIATE_TEST_SUITE_P(SafetyGate, EveryRefusal, testing::ValuesIn(refusals()),
                          [](const auto& test) { return std::string(test.param.name); });
 
+TEST(SafetyGate, EveryNumberThatIsNotFiniteIsRefused) {
+    GateRequest request = good_request();
+    request.correction.spots = {{"S1", {0.01, 0, 0.02}, true}, {"S2", {0, 0, -0.01}, true}};
+    request.spots[2].point_workobject_mm = {100, -50, 20};
+    ASSERT_THAT(pass_gate(request).reasons, ElementsAre());
+    int tried = 0;
+    EXPECT_THAT(passes_with_one_not_finite(
+                    request, [](const GateRequest& r) { return !pass_gate(r).pass.has_value(); }, tried),
+                ElementsAre());
+    EXPECT_EQ(tried, 3 * (2 + 2 + 12 + 12 + 36 + 6 + 3 + 2 * 3 + 3 * 3 + 12 + 1 + 12));
+}
+
 TEST(SafetyGate, NamesEveryReasonAtOnce) {
     GateRequest request = good_request();
     request.mode = RobotMode::fault;
@@ -236,9 +311,20 @@ TEST(SafetyGate, WhatMayDifferPasses) {
     request.spots[0].calibration_verdict = "usable";
     request.required_mode = RobotMode::unknown;
     request.mode = RobotMode::unknown;
+    request.tells_mode = false;  // a driver whose protocol has no word for it
     request.spots[2].measured_at_ns = 100;
+    // A controller that still holds the frame of the last part, on the other side of the taught one; the age
+    // that is allowed.
+    Displacement last;
+    last.workobject_from_movedworkobject = make_pose(rotation_exp({-0.02, 0.01, 0.03}), {-20, 10, -5});
+    request.base_from_frame_now =
+        corrected_frame(request.base_from_workobject, last, request.region.base_from_frame);
+    request.spots[1].calibrated_utc = "2025-11-22T12:00:00.000Z";
+    request.spots[0].calibrated_utc = "2026-11-22";  // a date alone
+    request.other_frames = {"BASE[2]", ""};
     EXPECT_THAT(pass_gate(request).reasons, ElementsAre());
     // On the limit is not beyond it.
+    request.base_from_frame_now = request.region.base_from_frame;
     request.region.limits.translation_mm =
         request.correction.displacement.workobject_from_movedworkobject.translation().norm();
     EXPECT_TRUE(pass_gate(request).pass);
@@ -283,8 +369,15 @@ class Push : public testing::Test {
                 return on_write(writes, pose);
             });
     }
-    GateRequest request = good_request();
-    Pose old_frame = some_pose(1.5), frame = old_frame;
+    // The controller holds the last part's frame.
+    static GateRequest request_with(const Pose& now) {
+        GateRequest request = good_request();
+        request.base_from_frame_now = now;
+        return request;
+    }
+    Pose old_frame = some_pose(1) * make_pose(rotation_exp({0.001, 0, 0.002}), {1, -2, 0.5}),
+         frame = old_frame;
+    GateRequest request = request_with(old_frame);
     Pose target = corrected_frame(request.base_from_workobject, request.correction.displacement,
                                   request.region.base_from_frame);
     testing::NiceMock<MockRobot> robot;
@@ -415,6 +508,33 @@ TEST_F(Push, NothingIsSentUnrecorded) {
     const PushRecord record = push();
     EXPECT_EQ(record.status, PushStatus::failed);
     EXPECT_THAT(record.message, HasSubstr("disk is full"));
+}
+
+// What is not in the log did not happen: the frame goes back, nobody may run in it.
+TEST_F(Push, APushThatCannotBeRecordedIsTakenBack) {
+    store_frames([this](int, const Pose& pose) -> Expected<void> {
+        frame = pose;
+        log_broken = true;
+        return {};
+    });
+    const PushRecord record = push();
+    EXPECT_EQ(record.status, PushStatus::restored);
+    EXPECT_TRUE(frame.isApprox(old_frame));
+    EXPECT_THAT(record.message, HasSubstr("the push cannot be recorded"));
+}
+
+TEST_F(Push, AFrameThatWasChangedSinceItWasJudgedIsLeft) {
+    store_frames([](int, const Pose&) -> Expected<void> { return {}; });
+    frame = shifted(old_frame, 0.1);
+    EXPECT_THAT(push().message, HasSubstr("somebody changed the frame"));
+    EXPECT_EQ(writes, 0);
+}
+
+TEST_F(Push, APassOfADryRunWritesNothing) {
+    store_frames([](int, const Pose&) -> Expected<void> { return {}; });
+    request.base_from_frame_now.reset();
+    EXPECT_EQ(push().status, PushStatus::failed);
+    EXPECT_EQ(writes, 0);
 }
 
 TEST_F(Push, WithdrawPutsTheOldFrameBack) {

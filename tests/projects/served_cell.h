@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "devices/capture/capture.h"
 #include "devices/cell_server.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/genicam/wire_camera.h"
@@ -92,6 +93,7 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     c.model = served.cell->sensor_model();
     c.flange_from_sensor = served.cell->flange_from_sensor();
     c.verdict = "good";
+    c.created_utc = utc_now();
     Region region;
     region.id = "all";
     region.frame_name = "path";

@@ -274,7 +274,8 @@ TEST_F(StationRun, SecondPushGoingWrongTakesTheFirstBack) {
 TEST_F(StationRun, CapturesAreInTheFileWhileTheRobotTravels) {
     int seen = 0;
     options.progress = [&](const RunProgress& progress) {
-        if (progress.done == 0 || progress.text.starts_with("region")) return;
+        if (progress.done == 0 || progress.text.starts_with("region") || progress.text.starts_with("robot"))
+            return;
         ++seen;
         auto reader = ProjectFile::open(folder / "cell.seam", FileAccess::read_only);
         ASSERT_TRUE(reader) << reader.error().sentence();

@@ -54,6 +54,25 @@ QString status_text(RunStatus status) {
             return RunPage::tr("cancelled");
         case RunStatus::interrupted:
             return RunPage::tr("interrupted");
+        case RunStatus::pushed:
+            return RunPage::tr("pushed, outcome not recorded");
+        case RunStatus::not_taken:
+            return RunPage::tr("not taken, nothing is released");
+    }
+    return {};
+}
+
+QString release_text(Release release) {
+    switch (release) {
+        case Release::taken:
+            return RunPage::tr("the application runs in the frame");
+        case Release::given:
+            return RunPage::tr("released, whether the application began is not known");
+        case Release::not_taken:
+        case Release::withdrawn:
+            return RunPage::tr("not released");
+        case Release::none:
+            break;
     }
     return {};
 }
@@ -61,8 +80,9 @@ QString status_text(RunStatus status) {
 Tone tone_of(RunStatus status) {
     return status == RunStatus::ok          ? Tone::good
            : status == RunStatus::cancelled ? Tone::plain
-           : status == RunStatus::refused   ? Tone::attention
-                                            : Tone::alarm;
+           : status == RunStatus::refused || status == RunStatus::not_taken || status == RunStatus::pushed
+               ? Tone::attention
+               : Tone::alarm;
 }
 
 }  // namespace
@@ -249,7 +269,8 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
     QVector<QStringList> rows;
     QStringList refusals;
     for (const RegionRecord& region : r.regions) {
-        const QString push = shown_word(to_string(region.push.status));
+        QString push = shown_word(to_string(region.push.status));
+        if (region.push.release != Release::none) push += "\n" + release_text(region.push.release);
         const auto head = [&](const QString& verdict) {
             return QString::fromStdString(region.region_id) + "\n" + verdict + "\n" + push;
         };

@@ -18,6 +18,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/random.h"
 #include "projects/fields.h"
+#include "projects/measure.h"
 #include "projects/panel_station.h"
 #include "projects/simulated_truth.h"
 
@@ -124,6 +125,7 @@ Expected<Answer> panel(const std::string& file) {
 struct PanelArguments {
     std::string file, job, part;
     bool push = false, dry_run = false, keep_images = false, simulated = false;
+    int hold_s = static_cast<int>(kHold.count() / 1000);
     int teach = 0;
     std::uint64_t seed = 1;
     std::vector<std::pair<std::string, double>> settings;
@@ -142,6 +144,7 @@ RunOptions run_options(const PanelArguments& a) {
     options.part_id = a.part;
     options.push = a.push;
     options.keep_images = a.keep_images;
+    options.hold = std::chrono::seconds(a.hold_s);
     options.cancel = stop_on_signal();
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
@@ -244,6 +247,9 @@ Expected<Answer> panel_on_devices(const PanelArguments& a) {
     auto id = job_of(station->project(), a);
     if (!id) return tl::unexpected(id.error());
     if (!a.settings.empty()) return set(*station, *id, a);
+    if (const PanelJob* job = find_panel_job(station->project(), *id); job && a.teach == 0)
+        if (auto refused = refuse_unsafe(*station, motion_findings(station->project(), *job, a.push)))
+            return *refused;
     if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
     Answer answer;
     if (a.teach > 0 && !a.simulated) {
@@ -264,10 +270,7 @@ Expected<Answer> panel_on_devices(const PanelArguments& a) {
     if (!record) return tl::unexpected(record.error());
     answer.json = run_json(*record);
     answer.text = run_text(*record);
-    answer.exit_code = record->status == RunStatus::ok ? kExitOk
-                       : record->status == RunStatus::device || record->status == RunStatus::alarm
-                           ? kExitDevice
-                           : kExitVerdict;
+    answer.exit_code = run_exit_code(*record);
     return answer;
 }
 
@@ -314,6 +317,14 @@ void add_panel(CommandLine& line) {
         "--push", a->push,
         "Write the frame that moves the panel, if the safety gate passes it, and measure again");
     command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);
+    command
+        ->add_option(
+            "--hold", a->hold_s,
+            "With --push: seconds for the application to begin with the panel in place; 0: not waited "
+            "for")
+        ->needs(push)
+        ->check(CLI::Range(0, 86400))
+        ->capture_default_str();
     command->add_flag("--keep-images", a->keep_images, "Keep the raw images with the run");
     command
         ->add_option("--teach", a->teach,

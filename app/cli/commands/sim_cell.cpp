@@ -104,6 +104,7 @@ json state_json(CellServer& server) {
                   {"port", controller->port()},
                   {"fault", to_string(controller->fault())},
                   {"released", controller->released()},
+                  {"taken", controller->taken()},
                   {"verdict", nullptr}};
         if (const auto verdict = controller->verdict()) c["verdict"] = to_string(*verdict);
         state["controllers"].push_back(std::move(c));

@@ -16,10 +16,10 @@ Pose target_from_sensor(const TargetPlace& view);
 
 // Plate: tilts to both sides about both axes at different heights and places, turned about the sight line.
 const std::vector<TargetPlace>& plate_views();
-// Sphere (target frame at its centre): the cut off the middle to both sides, the sensor turned about all
+// Sphere (target frame at its centre): the cut well off the middle to both sides, the sensor turned about all
 // three axes, and the sphere all over the field of view. The sensor's directions are known by how far apart
-// the centres lie in its plane: a robot that arrives within 0.034 mm leaves them at 0.08 degree, at 0.4
-// degree where the sphere stays within 8 mm of the middle.
+// the centres lie in its frame: with a robot that arrives within 0.034 mm the worst is stated to 0.1 degree,
+// to 0.2 degree where the sphere stays within 8 mm of the middle.
 const std::vector<TargetPlace>& sphere_views();
 // Plate: heights over the whole field, a little tilted to both sides, so that the lines cross the image
 // everywhere.

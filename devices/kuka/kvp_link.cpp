@@ -94,6 +94,10 @@ class KvpLink final : public RobotLink {
         if (!part) return tl::unexpected(part.error());
         if (auto withdrawn = begin_part(); !withdrawn) return tl::unexpected(withdrawn.error());
         if (auto taken = write({{"SW_CALL", "FALSE"}}); !taken) return tl::unexpected(taken.error());
+        // A module of before SW_CALLED refuses that, and a call that is lost with its connection stays lost.
+        if (auto noted = try_write({{"SW_CALLED", "TRUE"}}); !noted && !connection_)
+            return tl::unexpected(noted.error());
+        call_taken_here_ = true;
         const std::string id = string_from_krl((*part)[0]);
         const std::int64_t now = now_ns();
         return StartSignal{id == "-" ? "" : id, now, std::exchange(quiet_ns_, now)};
@@ -250,9 +254,14 @@ class KvpLink final : public RobotLink {
         return robot_.check([this] { return ask_identity(); }, where_);
     }
     Expected<bool> called_now() {
-        auto answers = try_read({"SW_CALL", "SW_WAITS"});
+        auto answers = try_read({"SW_CALL", "SW_WAITS", "SW_CALLED"});
         if (!answers) return tl::unexpected(answers.error());
         auto called = truth("SW_CALL", (*answers)[0]);
+        // Taken over a connection that is lost, and not measured: the robot waits for it still.
+        if (called && !*called && (*answers)[2].done && !call_taken_here_) {
+            auto before = truth("SW_CALLED", (*answers)[2]);
+            if (before && *before) called = true;
+        }
         if (called && !*called) quiet_ns_ = now_ns();
         if (!called || !*called || !(*answers)[1].done) return called;
         return truth("SW_WAITS", (*answers)[1]);  // the program is there to measure it
@@ -268,6 +277,7 @@ class KvpLink final : public RobotLink {
     // Back to no connection; answers that are still under way are not taken for later ones.
     tl::unexpected<Error> fail(Error error) {
         connection_.reset();
+        call_taken_here_ = false;
         stream_.clear();
         names_.reset();
         main_run_.reset();
@@ -484,7 +494,8 @@ class KvpLink final : public RobotLink {
     std::int64_t told_ = 0;
     std::optional<std::map<std::string, std::string>> names_;
     SameRobot robot_;
-    std::int64_t quiet_ns_ = 0;  // when nobody called; 0 = not known
+    std::int64_t quiet_ns_ = 0;     // when nobody called; 0 = not known
+    bool call_taken_here_ = false;  // over this connection: it is measured, or lost with it
     std::optional<bool> main_run_;
 };
 

@@ -16,7 +16,8 @@ const SensorModel kSensor{test::camera_640(), make_pose(rotation_exp({1.0, 0.2, 
 
 json grid(int side, double noise_px) {
     std::mt19937 random(1);
-    std::normal_distribution<double> n(0, noise_px);
+    std::normal_distribution<double> normal;
+    const auto n = [&](std::mt19937& engine) { return noise_px * normal(engine); };
     json data{{"size", {640, 480}}, {"pairs", json::array()}};
     for (int j = 0; j < side; ++j)
         for (int i = 0; i < side; ++i) {

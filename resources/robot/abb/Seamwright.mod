@@ -42,6 +42,11 @@ MODULE Seamwright
         WHILE NOT swGo DO
             Tick;
             WaitTime 0.004;
+            ! The call was refused as too old; the part stands here still.
+            IF swVerdict=2 THEN
+                swVerdict:=0;
+                IF NOT Present(Asked) swCalls:=(swCalls MOD 8000000)+1;
+            ENDIF
         ENDWHILE
         swWaiting:=FALSE;
         swGo:=FALSE;

@@ -84,8 +84,8 @@ inline Profile sample(const Shape& s, double pitch, double phase = 0.5) {
 }
 
 inline void add_noise(Profile& p, double sigma, Random& random) {
-    std::normal_distribution<double> noise(0, sigma);
-    for (double& z : p.z_mm) z += noise(random);
+    std::normal_distribution<double> noise;
+    for (double& z : p.z_mm) z += sigma * noise(random);
 }
 
 // A random `share` of points replaced by clutter somewhere in the picture.

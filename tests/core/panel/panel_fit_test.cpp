@@ -15,7 +15,7 @@ struct Dice {
     std::mt19937_64 engine;
     explicit Dice(std::uint64_t seed) : engine(seed) {}
     double uniform(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine); }
-    double normal(double sigma) { return std::normal_distribution<double>(0, sigma)(engine); }
+    double normal(double sigma) { return sigma * std::normal_distribution<double>()(engine); }
     Eigen::Vector3d box(double h) { return {uniform(-h, h), uniform(-h, h), uniform(-h, h)}; }
     Pose displacement() { return make_pose(rotation_exp(box(0.02)), box(10)); }
 };

@@ -248,7 +248,7 @@ void check_panel_job(const Project& project, const PanelJob& job, Findings& find
         findings.unless(!same_frame(region.frame_name, job.frame_name), where,
                         fmt::format("region {} writes the same frame {}", region.id, job.frame_name));
     for (const PanelJob& other : project.panel_jobs) {
-        if (&other == &job) break;
+        if (other.id == job.id) break;
         findings.unless(!same_frame(other.frame_name, job.frame_name), where,
                         fmt::format("panel job {} writes the same frame {}", other.id, job.frame_name));
     }

@@ -106,12 +106,9 @@ class KvpLink final : public RobotLink {
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         told_ = 0;
         if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return taken;
-        auto state = read({"SW_SIGNATURE[]", "$STOPMESS"});
+        auto state = read({"$STOPMESS"});
         if (!state) return tl::unexpected(state.error());
-        if (string_from_krl((*state)[0]) != program_signature(moves))
-            return device_error("another measuring program is loaded than the project's", where_,
-                                "load the one that `seamwright robot-program` writes");
-        auto stopped = bool_from_krl((*state)[1]);
+        auto stopped = bool_from_krl((*state)[0]);
         if (!stopped) return fail(stopped.error());
         if (*stopped) return device_error("the robot is stopped", where_, "start it on its controller");
         // The application may be on its way out of the last part: a part without a verdict is given up.
@@ -136,6 +133,11 @@ class KvpLink final : public RobotLink {
             return device_error("no program waits in SEAMWRIGHT_SPOTS", where_,
                                 "start the application on the controller");
         if (!idle) return idle;
+        auto signature = read({"SW_SIGNATURE[]"});  // set by the application before it waits
+        if (!signature) return tl::unexpected(signature.error());
+        if (string_from_krl((*signature)[0]) != program_signature(moves))
+            return device_error("another measuring program is loaded than the project's", where_,
+                                "load the one that `seamwright robot-program` writes");
         if (auto begun = begin_part(); !begun) return begun;
         if (auto go = write({{"SW_FIRED", "0"}, {"SW_GO", "TRUE"}}); !go) return go;
         auto gone = poll_until(timeout_, [&]() -> Expected<bool> {
@@ -196,6 +198,8 @@ class KvpLink final : public RobotLink {
         }
         const char* number = released ? "1" : verdict == PartVerdict::refused ? "2" : "3";
         if (auto told = try_write({{"SW_VERDICT", number}}); !told) return told;
+        if (verdict == PartVerdict::refused)
+            if (auto again = call_again(); !again) return again;
         if (!released) {
             (void)called_now();  // from here on the next call is as old as it is heard
             return {};
@@ -252,6 +256,18 @@ class KvpLink final : public RobotLink {
     Expected<void> same_robot() {
         if (auto ready = connected(); !ready) return ready;
         return robot_.check([this] { return ask_identity(); }, where_);
+    }
+    // A refused call of a robot that waits for it still is as good as a new one.
+    Expected<void> call_again() {
+        auto answers = try_read({"SW_WAITS", "SW_CALLED", "SW_CALLS"});
+        if (!answers) return tl::unexpected(answers.error());
+        for (const KvpAnswer& answer : *answers) {
+            if (!answer.done) return {};  // a module of before SW_CALLED
+            auto yes = truth("SW_CALLED", answer);
+            if (!yes) return tl::unexpected(yes.error());
+            if (!*yes) return {};
+        }
+        return try_write({{"SW_CALL", "TRUE"}});
     }
     Expected<bool> called_now() {
         auto answers = try_read({"SW_CALL", "SW_WAITS", "SW_CALLED"});
@@ -447,6 +463,8 @@ class KvpLink final : public RobotLink {
     Expected<std::string> frame_variable(const std::string& name) {
         if (name.empty() || name.size() > 79)
             return input_error("\"" + name + "\" is no name of a frame", where_);
+        // None yet: the application writes them when it begins.
+        if (names_ && names_->empty()) names_.reset();
         if (!names_) {
             auto count = ask({{0, false, "SW_FRAMES", {}}});
             if (!count) return tl::unexpected(count.error());

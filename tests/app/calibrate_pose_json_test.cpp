@@ -165,8 +165,8 @@ TEST(CalibrateJson, PlateStaticAndDrift) {
     for (int k = 0; k < 3; ++k) {
         SphereCell now = cell;
         now.centre_base += Eigen::Vector3d(70 * (k == 1), 60 * (k == 2), 0);
-        const json two = sphere_json(now, sphere_observations(now, 2, random));
-        for (json o : two["observations"]) {
+        const json views = sphere_json(now, sphere_observations(now, 5, random));
+        for (json o : views["observations"]) {
             o["id"] = std::to_string(k) + o["id"].get<std::string>();
             o["centre_base_mm"] = vector_json(now.centre_base);
             drift["observations"].push_back(o);

@@ -36,7 +36,7 @@ class Reconnected : public testing::TestWithParam<std::string> {
         }
         return false;
     }
-    std::shared_ptr<SimulatedCell> first = cell("KRC-1"), second = cell("KRC-2");
+    std::shared_ptr<SimulatedCell> first = cell("4711"), second = cell("4712");
     nlohmann::json controller_settings, link_settings;
     DeviceSession session;
     std::unique_ptr<RobotLink> link;
@@ -55,7 +55,7 @@ TEST_P(Reconnected, AnotherRobotIsNotWrittenToBeforeItIsAskedWhoItIs) {
     ASSERT_TRUE(opened) << opened.error().sentence();
     link = std::move(*opened);
     ASSERT_TRUE(answers());
-    ASSERT_EQ(link->identity()->serial, "KRC-1");
+    ASSERT_EQ(link->identity()->serial, "4711");
 
     const Pose corrected = make_pose(rotation_exp({0.31, -0.19, 0.91}), {904, -447, 502});
     const Pose taught = *second->read_frame("BASE_left");
@@ -74,13 +74,13 @@ TEST_P(Reconnected, AnotherRobotIsNotWrittenToBeforeItIsAskedWhoItIs) {
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().kind, ErrorKind::device);
         EXPECT_THAT(refused.error().sentence(),
-                    HasSubstr("another robot answers than before: \"KRC-2\", not \"KRC-1\""));
+                    HasSubstr("another robot answers than before: \"4712\", not \"4711\""));
     }
     EXPECT_LT(distance_mm(*second->read_frame("BASE_left"), taught), 1e-9);
     EXPECT_FALSE(controller->released());
     EXPECT_TRUE(link->confirm(PartVerdict::failed, "")) << "that takes nothing but a permission back";
 
-    ASSERT_EQ(link->identity()->serial, "KRC-2") << "who asks now is told, and compares";
+    ASSERT_EQ(link->identity()->serial, "4712") << "who asks now is told, and compares";
     EXPECT_TRUE(link->write_frame("BASE_left", corrected));
 }
 

@@ -43,9 +43,11 @@ MODULE Seamwright
             Tick;
             WaitTime 0.004;
             ! The call was refused as too old; the part stands here still.
-            IF swVerdict=2 THEN
-                swVerdict:=0;
-                IF NOT Present(Asked) swCalls:=(swCalls MOD 8000000)+1;
+            IF NOT Present(Asked) THEN
+                IF swVerdict=2 THEN
+                    swVerdict:=0;
+                    swCalls:=(swCalls MOD 8000000)+1;
+                ENDIF
             ENDIF
         ENDWHILE
         swWaiting:=FALSE;

@@ -70,7 +70,16 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
     ASSERT_TRUE(identity) << identity.error().sentence();
     EXPECT_EQ(identity->driver, GetParam().measuring);
     ASSERT_TRUE(link->mode());
-    auto started = link->start_measuring({move});
+    // As soon as the robot's program waits for it.
+    const auto start_measuring = [&] {
+        auto begun = link->start_measuring({move});
+        for (int i = 0; i < 100 && !begun; ++i) {
+            std::this_thread::sleep_for(milliseconds(50));
+            begun = link->start_measuring({move});
+        }
+        return begun;
+    };
+    auto started = start_measuring();
     ASSERT_TRUE(started) << started.error().sentence();
     auto trigger = link->wait_trigger(milliseconds(2000));
     ASSERT_TRUE(trigger) << trigger.error().sentence();
@@ -86,12 +95,8 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
                                       : static_cast<SimulatedEgm&>(*controller).measuring();
     ASSERT_NE(beside, nullptr);
     EXPECT_EQ(beside->verdict(), PartVerdict::corrected);
-    // The next part starts without a correction, as soon as the robot's program waits for it.
-    auto again = link->start_measuring({move});
-    for (int i = 0; i < 100 && !again; ++i) {
-        std::this_thread::sleep_for(milliseconds(50));
-        again = link->start_measuring({move});
-    }
+    // The next part starts without a correction.
+    auto again = start_measuring();
     ASSERT_TRUE(again) << again.error().sentence();
     EXPECT_FALSE(beside->released());
     EXPECT_TRUE(static_cast<CyclicLink&>(*link).server().state().zero);

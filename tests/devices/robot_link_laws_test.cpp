@@ -214,8 +214,8 @@ TEST_P(RobotLaws, AFrameIsReadBackAsWrittenAndReleasedByTheVerdictAlone) {
     ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
     EXPECT_TRUE(controller->released());
     // A new part begins, or is asked for while the program is elsewhere and is refused.
-    (void)link->start_measuring(program());
-    EXPECT_FALSE(controller->released());
+    const auto begun = link->start_measuring(program());
+    EXPECT_FALSE(controller->released()) << (begun ? "begun" : begun.error().sentence());
 }
 
 // However the network cuts the stream, it is the same stream.

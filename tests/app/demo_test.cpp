@@ -62,8 +62,8 @@ TEST_F(Demo, TakesADisplacedDoorWithinATenthAndCanBeComputedAgain) {
     EXPECT_NEAR(direct["before_max_mm"], all["before_max_mm"], 0.01) << "the same parts";
 }
 
-// Reflections lie on the lens lines of these three.
-TEST_F(Demo, CalibratesWhereReflectionsLieOnTheLensLines) {
+// A weak distortion, where a cost that is not the image's leads into the fold of the lens.
+TEST_F(Demo, CalibratesWhereTheDistortionIsWeak) {
     for (const char* seeds : {"11", "22", "28"}) {
         const ProgramResult r = run_program(
             {"demo", "--dir", (folder / "out").string(), "--seeds", seeds, "--parts", "0", "--json", "-"},

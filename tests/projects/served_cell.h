@@ -1,6 +1,7 @@
 #pragma once
 // A taught door project whose sensor and robot stand behind real protocols on the loopback address.
 
+#include <algorithm>
 #include <optional>
 
 #include "devices/capture/capture.h"
@@ -77,11 +78,10 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     robot.id = "R1";
     robot.driver = options.driver;
     robot.settings = {{"port", port}};
-    nlohmann::json controller = {{"port", port}};
-    if (options.driver.starts_with("kuka-"))
-        controller["time_scale"] = options.time_scale;
-    else
-        controller["trigger_interval_ms"] = 1600 / options.time_scale;
+    // A UR's arm is commanded once in its cycle, which bounds how much faster than real it can be.
+    const double time_scale =
+        options.driver == "ur-rtde" ? std::min(options.time_scale, 20.0) : options.time_scale;
+    nlohmann::json controller = {{"port", port}, {"time_scale", time_scale}};
     if (options.driver == "ur-rtde")
         robot.settings["dashboard_port"] = controller["dashboard_port"] =
             TcpListener::listen("127.0.0.1", 0)->port();

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/calibration/drift_check.h"
+
 namespace seamwright {
 namespace {
 
@@ -95,7 +97,7 @@ const std::vector<CalibrationMethod>& calibration_methods() {
              {number("radius", "/radius_mm", "mm", 1, 500, 25, 4, "Radius of the sphere."),
               number("limit_mm", "/limits/translation_mm", "mm", 0.001, 10, 0.1, 3,
                      "A shift beyond this counts as drifted."),
-              number("limit_deg", "/limits/rotation_deg", "deg", 0.001, 10, 0.05, 3,
+              number("limit_deg", "/limits/rotation_deg", "deg", 0.001, 10, DriftLimits{}.rotation_deg, 3,
                      "A turn beyond this counts as drifted.")}});
         return list;
     }();

@@ -44,7 +44,8 @@ TEST_F(Record, ASensorThatRefusesItsTriggersIsToldAndEndsIt) {
         {"record", project, "--out", capture, "--no-robots", "--trigger-hz", "20", "--profiles", "5"},
         folder);
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
-    EXPECT_NE(r.exit_code, 0) << r.out;
+    EXPECT_EQ(r.exit_code, 3) << r.out;
+    EXPECT_THAT(r.err, HasSubstr("the robot has not moved anywhere yet"));
     EXPECT_EQ(answer_of({"check", capture})["status"], "ok") << "what there is of it is whole";
 }
 

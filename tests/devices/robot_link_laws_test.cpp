@@ -274,6 +274,24 @@ TEST_P(RobotLaws, TheLinesCallIsHeardOnce) {
     measure_all();
 }
 
+// The robot waits at the part; whoever heard the call and died has not measured it.
+TEST_P(RobotLaws, ACallThatWasNotServedIsMadeAgainToTheNextRunner) {
+    ASSERT_TRUE(recovers());
+    controller->press_start("CAR-0816");
+    auto heard = link->wait_start(std::chrono::seconds(5));
+    ASSERT_TRUE(heard) << heard.error().sentence();
+    link.reset();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    link = std::move(open_robot(GetParam().name, link_settings, session).value());
+    ASSERT_TRUE(recovers());
+    auto again = link->wait_start(std::chrono::seconds(5));
+    ASSERT_TRUE(again) << again.error().sentence();
+    EXPECT_EQ(again->part_id, "CAR-0816");
+    measure_all();
+    const auto none = link->wait_start(std::chrono::milliseconds(300));
+    EXPECT_FALSE(none) << "a part that was begun is not called for again";
+}
+
 TEST_P(RobotLaws, AnotherProgramThanTheProjectsIsRefused) {
     auto other = program();
     other[1].spot_id = "S9";

@@ -58,6 +58,7 @@ class Saboteur final : public RobotLink {
     Fault fault = Fault::none;
     Instant at;
     std::vector<Instant> seen;
+    bool begun = false;  // the part was: before, what the controller shows is the part's before
 
     Expected<RobotIdentity> identity() override {
         return call("identity", [&] { return real_.identity(); });
@@ -68,7 +69,10 @@ class Saboteur final : public RobotLink {
     bool tells_mode() const override { return real_.tells_mode(); }
     Expected<Pose> base_from_flange() override { return real_.base_from_flange(); }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
-        return call("start_measuring", [&] { return real_.start_measuring(moves); });
+        return call("start_measuring", [&] {
+            begun = true;
+            return real_.start_measuring(moves);
+        });
     }
     Expected<TriggerEvent> wait_trigger(milliseconds timeout) override {
         // Counted by the triggers that came, not by the looks.
@@ -149,6 +153,7 @@ struct Outcome {
     RunStatus file = RunStatus::interrupted, resolved = RunStatus::interrupted;
     bool at_target = false, at_old = false;  // all frames on the controller, with the link closed
     bool released = false;                   // with the link closed
+    bool begun = false;                      // the controller has heard of this part
     bool not_restored = false;               // the record says so
 };
 
@@ -173,11 +178,13 @@ class FaultMatrix : public testing::TestWithParam<Brand> {
         const int port = brand.cyclic() ? UdpSocket::bind("127.0.0.1", 0)->port() : free_tcp();
         link_settings = {{"port", port}, {"timeout_ms", 400}};
         controller_settings = {{"port", port}};
+        if (!brand.cyclic()) controller_settings["time_scale"] = 4;
         if (brand.name == "ur-rtde")
             link_settings["dashboard_port"] = controller_settings["dashboard_port"] = free_tcp();
         if (brand.cyclic()) {
             const nlohmann::json beside = {{"driver", brand.measuring}, {"settings", {{"port", free_tcp()}}}};
             link_settings["measuring"] = controller_settings["measuring"] = beside;
+            controller_settings["measuring"]["settings"]["time_scale"] = 4;
             link_settings["max_late"] = 100;
             for (const Region& r : fake->project.regions)
                 link_settings["frames"][r.frame_name] = {{"base_from_frame", pose_json(r.base_from_frame)}};
@@ -326,11 +333,12 @@ class FaultMatrix : public testing::TestWithParam<Brand> {
         if (syncs) *syncs = disk.counted();
         disk.heal();
         if (instants) *instants = saboteur->seen;
+        out.begun = saboteur->begun;
         station.reset();
         link.reset();  // the program ends
         std::this_thread::sleep_for(milliseconds(100));
         out.file = out.resolved = status_in_file();
-        out.released = controller->released();
+        out.released = out.begun && controller->released();
         out.at_target = frames_are(true);
         out.at_old = frames_are(false);
         if (killed || out.file == RunStatus::pushed) {
@@ -342,7 +350,7 @@ class FaultMatrix : public testing::TestWithParam<Brand> {
             out.resolved = status_in_file();
             link.reset();
             std::this_thread::sleep_for(milliseconds(100));
-            out.released = controller->released();
+            out.released = out.begun && controller->released();
         }
         return out;
     }

@@ -117,16 +117,16 @@ Expected<Answer> record(const RecordArguments& a) {
     auto running = RecordingSession::start(*recorder, std::move(from), beside);
     if (!running) return tl::unexpected(running.error());
     const auto begun = Clock::now();
-    std::optional<Error> failure, refused;
+    std::optional<Error> failure;
     while (!stop.stop_requested() && !failure) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         if (a.seconds > 0 && Clock::now() - begun >= std::chrono::duration<double>(a.seconds)) break;
         if (a.profiles > 0 && (*running)->frames() >= a.profiles) break;
-        if (!sensors->empty() && !(*running)->running()) break;
+        if (!sensors->empty() && (!(*running)->running() || (*running)->refusal())) break;
         failure = (*recorder)->status().failure;
-        if (!failure) failure = refused = (*running)->refusal();
     }
     (*running)->stop();
+    const std::optional<Error> refused = (*running)->refusal();  // of a sensor that is given up
     Answer answer;
     answer.json = {{"status", "ok"},
                    {"seconds", std::chrono::duration<double>(Clock::now() - begun).count()}};

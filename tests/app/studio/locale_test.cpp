@@ -55,7 +55,6 @@ class GermanStudio : public testing::TestWithParam<std::string> {
         o.theme = "light";
         o.settings = QString::fromStdString((folder / "settings.ini").string());
         o.data = QString::fromStdString((folder / "").string());
-        o.connect = true;
         studio = std::make_unique<Studio>(*qApp, o);
     }
     TemporaryFolder folder;
@@ -67,6 +66,10 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     Person me(studio->window());
     Desk& desk = studio->desk();
     ASSERT_TRUE(desk.is_open());
+    studio->window().resize(1280, 800);
+    studio->window().show();
+    studio->window().show_step(Step::cell);
+    me.click("connect");  // real devices are connected by a person
     ASSERT_TRUE(me.wait([&] { return desk.station().connected || !desk.station().trouble.empty(); }));
     ASSERT_TRUE(desk.station().connected) << desk.station().trouble;
     ASSERT_TRUE(me.wait([&] {

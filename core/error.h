@@ -12,12 +12,25 @@ namespace seamwright {
 // Decides the exit code of the command line: usage and input end with 2, device and file with 3.
 enum class ErrorKind { usage, input, device, file };
 
+// What a caller may act upon; the sentence is for people alone.
+enum class ErrorCode {
+    none,              // only to be told
+    silence,           // nothing came in time
+    disconnected,      // the other side went away
+    in_use,            // another program holds the device
+    end_of_recording,  // of a replayed device
+    no_such_frame,     // the controller has no frame of that name
+    not_ready,         // the robot's program is elsewhere just now; it may be asked again
+    cancelled
+};
+
 // One clear sentence: what is wrong, where, and how to mend it. `where` and `mend` may be empty.
 struct Error {
     ErrorKind kind = ErrorKind::input;
     std::string what;   // "the rotation is not orthonormal (off by 0.02)"
     std::string where;  // "spots[3].workobject_from_sensor"
     std::string mend;   // "give a rotation matrix whose rows have length 1"
+    ErrorCode code = ErrorCode::none;
     std::string sentence() const;
 };
 
@@ -32,6 +45,10 @@ inline tl::unexpected<Error> usage_error(std::string what, std::string where = {
 }
 inline tl::unexpected<Error> device_error(std::string what, std::string where = {}, std::string mend = {}) {
     return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend)});
+}
+inline tl::unexpected<Error> device_error(ErrorCode code, std::string what, std::string where = {},
+                                          std::string mend = {}) {
+    return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend), code});
 }
 inline tl::unexpected<Error> file_error(std::string what, std::string where = {}, std::string mend = {}) {
     return tl::unexpected(Error{ErrorKind::file, std::move(what), std::move(where), std::move(mend)});

@@ -39,7 +39,7 @@ class ProfileSource {
     // Software trigger: one frame follows. `spot_id` is carried through to Frame::spot_id.
     virtual Expected<void> trigger(const std::string& spot_id) = 0;
     // "All": the next frame in order, for runs and recorders. Silence is an Error (kind device) after
-    // `timeout`; the end of a recording is an Error whose `what` is kEndOfRecording.
+    // `timeout`; the end of a recording is an Error with ErrorCode::end_of_recording.
     virtual Expected<FramePtr> wait_next(std::chrono::milliseconds timeout) = 0;
     // "Newest": for screens; nullptr before the first frame. Never blocks.
     virtual FramePtr latest() const = 0;

@@ -88,6 +88,9 @@ class RobotLink {
     // False where the protocol has no word for it: mode() is unknown then, for ever. An `unknown` of a robot
     // that can tell is one that nobody may rely on.
     virtual bool tells_mode() const { return true; }
+    // False where the permission lives in the link alone (a correction in every cycle): a link that was
+    // opened later cannot tell what the application has taken before.
+    virtual bool permission_outlives_link() const { return true; }
     // The newest pose that the controller told; fresh within the driver's time-out.
     virtual Expected<Pose> base_from_flange() = 0;
     // The controller's call for the next part. Silence after `timeout`: it has not come; a controller that is

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/cli/command.h"
-#include "projects/run.h"
-#include "projects/station.h"
+#include "projects/model/run.h"
+#include "projects/station/station.h"
 
 namespace seamwright::cli {
 

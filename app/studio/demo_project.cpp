@@ -4,8 +4,8 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/door.h"
 #include "devices/simulated/mesh_file.h"
-#include "projects/measure.h"
-#include "projects/simulated_truth.h"
+#include "projects/reuse/simulated_truth.h"
+#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -2,7 +2,7 @@
 // The project that the first start opens: a car door in the simulated cell, twelve spots taught, four
 // regions.
 
-#include "projects/project.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 

@@ -3,7 +3,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/errors.h"
 #include "widgets/pages/form.h"

@@ -8,8 +8,8 @@
 #include <QLabel>
 #include <QPushButton>
 
-#include "projects/mirror.h"
-#include "projects/reteach.h"
+#include "projects/reuse/mirror.h"
+#include "projects/reuse/reteach.h"
 #include "widgets/editors/pose_editor.h"
 
 namespace seamwright {

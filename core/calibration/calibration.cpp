@@ -6,20 +6,6 @@
 
 namespace seamwright {
 
-std::string_view name_of(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::good:
-            return "good";
-        case Verdict::usable:
-            return "usable";
-        case Verdict::poor:
-            return "poor";
-        case Verdict::undetermined:
-            return "undetermined";
-    }
-    return "undetermined";
-}
-
 std::vector<CorrelatedPair> strong_correlations(const std::vector<CalibratedParameter>& parameters,
                                                 const Eigen::MatrixXd& covariance, double limit) {
     std::vector<CorrelatedPair> pairs;

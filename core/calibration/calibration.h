@@ -9,14 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/calibration/verdict.h"
+
 namespace seamwright {
-
-// good: may be used as it is. usable: may be used, the reason says what is weaker than it should be.
-// poor: a solution that must not be used (data contradict the model, or sigma beyond what the method
-// promises). undetermined: the data cannot determine the answer; no parameter may be presented as found.
-enum class Verdict { good, usable, poor, undetermined };
-
-std::string_view name_of(Verdict verdict);
 
 // `reason` and `cure` are one sentence each, in the words of the person at the robot. `cure` is empty when
 // good.
@@ -49,6 +44,7 @@ struct PoseResidual {
     double deg = std::numeric_limits<double>::quiet_NaN();
     double rms_px = std::numeric_limits<double>::quiet_NaN();
     bool used = true;
+    bool excluded = false;     // by the user; then not used
     bool contradicts = false;  // used, but for a part that was found wrong (the note says which)
     std::string note;          // why it is not used, or what is odd about it; empty when nothing is
 };

@@ -460,9 +460,10 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
         auto& pose = report.poses[i];
         pose.id = pairs[i].id;
         pose.used = chain.used[i];
-        if (!wanted[i])
+        pose.excluded = !wanted[i];
+        if (pose.excluded) {
             pose.note = "excluded by the user";
-        else if (!chain.used[i]) {
+        } else if (!chain.used[i]) {
             pose.note = "contradicts what the other pairs agree on: wrong robot pose or wrong target pose";
             wrong += (wrong.empty() ? "" : ", ") + pose.id;
         }

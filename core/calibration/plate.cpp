@@ -164,6 +164,7 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     for (size_t i = 0; i < points.size(); ++i) {
         report.poses[i].id = points[i].id;
         report.poses[i].used = use[i];
+        report.poses[i].excluded = !use[i];
         if (!use[i]) report.poses[i].note = "excluded by the user";
     }
     const double size = extent(plate);

@@ -323,6 +323,7 @@ void write_poses(const std::vector<SphereObservation>& observations, const std::
     for (size_t i = 0; i < observations.size(); ++i) {
         report.poses[i].id = observations[i].id;
         report.poses[i].used = false;
+        report.poses[i].excluded = excluded[i];
         report.poses[i].note =
             excluded[i] ? "excluded by the user" : "no circle of the sphere found in this profile";
     }
@@ -540,8 +541,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     const double hold_out = result.report.hold_out.rms_mm;
     std::string rejected;
     for (const auto& pose : result.report.poses)
-        if (!pose.used && pose.note != "excluded by the user")
-            rejected += (rejected.empty() ? "" : ", ") + pose.id;
+        if (!pose.used && !pose.excluded) rejected += (rejected.empty() ? "" : ", ") + pose.id;
     if (!rejected.empty()) result.notices.push_back("not used: " + rejected);
     if (noise.poses_disagree)
         result.notices.push_back(

@@ -111,6 +111,7 @@ class Egm final : public SimulatedEgm {
             } else {
                 in_force_ = told_;
             }
+            if (measured_.begins(measuring_.get())) part_begins();
             const bool correcting = !told_.isZero(0);
             if (correcting && left_ms < 0) left_ms = options_.path_s * 1000;
             if (left_ms > 0) left_ms = std::max(0.0, left_ms - options_.cycle_ms);
@@ -196,6 +197,7 @@ class Egm final : public SimulatedEgm {
     const Options options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
+    NextPart measured_;
     Eigen::Vector3d told_ = Eigen::Vector3d::Zero(), in_force_ = told_, out_ = told_;
     std::uint64_t clock_ = 0;  // cycles
     int without_answer_ = 0;

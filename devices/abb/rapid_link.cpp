@@ -264,7 +264,8 @@ class AbbRapidLink final : public RobotLink {
         if (connection_) return {};
         const auto turn = not_before_ - Clock::now();
         if (turn > settings_.timeout)
-            return device_error(fmt::format("{}: the next attempt to connect is in {} ms", kNoAnswer,
+            return device_error(ErrorCode::silence,
+                                fmt::format("{}: the next attempt to connect is in {} ms", kNoAnswer,
                                             std::chrono::duration_cast<Milliseconds>(turn).count()),
                                 where_);
         if (turn.count() > 0) std::this_thread::sleep_for(turn);
@@ -304,7 +305,8 @@ class AbbRapidLink final : public RobotLink {
             received_.append(buffer, *got);
             if (received_.size() >= abb::kMessageBytes) continue;
             if (Clock::now() >= until)
-                return device_error(fmt::format("{}: half a message came", kNoAnswer), where_);
+                return device_error(ErrorCode::silence, fmt::format("{}: half a message came", kNoAnswer),
+                                    where_);
         }
     }
 

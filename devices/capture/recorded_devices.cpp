@@ -86,6 +86,7 @@ class RecordedRobot final : public RobotLink {
         return mode;
     }
     bool tells_mode() const override { return robot_->tells_mode(); }
+    bool permission_outlives_link() const override { return robot_->permission_outlives_link(); }
     Expected<Pose> base_from_flange() override {
         auto pose = robot_->base_from_flange();
         if (pose) note_pose(*recorder_, source_, *pose);
@@ -218,7 +219,7 @@ void RecordingSession::pump(Sensor s) {
             told.clear();
             continue;
         }
-        if (!frame && frame.error().what == kEndOfRecording) break;
+        if (!frame && frame.error().code == ErrorCode::end_of_recording) break;
         if (!frame && !is_silence(frame.error())) failure = frame.error();
         // A failure is told once, not as often as it is met.
         if (failure && failure->what != told) {

@@ -200,6 +200,7 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
         }
         if (Clock::now() >= deadline)
             return device_error(
+                ErrorCode::silence,
                 fmt::format("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
                 settings_.driver, "check that the robot's program has switched the correction on");
         std::this_thread::sleep_for(milliseconds(2));
@@ -364,7 +365,8 @@ Expected<void> CyclicLink::apply() {
         if (Clock::now() >= deadline) {
             if (const char* why = server_->why_not_told())
                 return device_error(fmt::format("the correction is not in force: {}", why), settings_.driver);
-            return device_error(std::string(kNoAnswer) + ": the correction is not in force",
+            return device_error(ErrorCode::silence,
+                                std::string(kNoAnswer) + ": the correction is not in force",
                                 settings_.driver);
         }
         std::this_thread::sleep_for(milliseconds(2));
@@ -380,7 +382,8 @@ Expected<void> CyclicLink::back_to_zero() {
         if (state.zero || state.silent) return {};
         if (auto ok = no_alarm(); !ok) return ok;
         if (Clock::now() >= deadline)
-            return device_error(std::string(kNoAnswer) + ": the correction could not be led back to zero",
+            return device_error(ErrorCode::silence,
+                                std::string(kNoAnswer) + ": the correction could not be led back to zero",
                                 settings_.driver, "stop the robot's program");
         std::this_thread::sleep_for(milliseconds(2));
     }

@@ -73,6 +73,7 @@ class CyclicLink : public RobotLink {
     Expected<RobotMode> mode() override;
     // The cyclic packets of some robots do not tell it.
     bool tells_mode() const override { return measuring_ && measuring_->tells_mode(); }
+    bool permission_outlives_link() const override { return false; }
     Expected<Pose> base_from_flange() override;
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override;
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override;

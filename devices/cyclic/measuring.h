@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "devices/simulated/cell.h"
 #include "devices/simulated/controller.h"
@@ -18,5 +19,17 @@ using StartController = Expected<std::unique_ptr<SimulatedController>> (*)(
 Expected<std::unique_ptr<SimulatedController>> start_measuring_controller(const nlohmann::json& settings,
                                                                           std::shared_ptr<SimulatedCell> cell,
                                                                           StartController start_controller);
+
+// Tells when the next part begins: at the measuring controller, whose verdict on the last one is gone then.
+class NextPart {
+  public:
+    bool begins(const SimulatedController* measuring) {
+        const bool judged = measuring && measuring->verdict().has_value();
+        return std::exchange(judged_, judged) && !judged;
+    }
+
+  private:
+    bool judged_ = false;
+};
 
 }  // namespace seamwright

@@ -219,7 +219,7 @@ Expected<GPtr<ArvCamera>> open_camera(const GenicamSettings& settings) {
     GPtr<ArvCamera> camera(arv_camera_new_with_device(device->get(), g.out()));
     if (!camera) return device_error("it cannot be opened (" + g.text() + ")", settings.camera_name());
     if (ARV_IS_GV_DEVICE(device->get()) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device->get()))) {
-        return device_error(kInUse, settings.camera_name(),
+        return device_error(ErrorCode::in_use, kInUse, settings.camera_name(),
                             "close the other program, or wait until its heartbeat has run out");
     }
     arv_camera_set_range_check_policy(camera.get(), ARV_RANGE_CHECK_POLICY_ENABLE);

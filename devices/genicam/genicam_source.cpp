@@ -126,7 +126,8 @@ class GenicamSource final : public ProfileSource {
     void fill_payload(ArvBuffer* buffer, Frame& frame);
     Error gone() const {
         return {ErrorKind::device, std::string(kDisconnected) + ": the camera is gone",
-                settings_.camera_name(), "check its power and cable; it is connected again by itself"};
+                settings_.camera_name(), "check its power and cable; it is connected again by itself",
+                ErrorCode::disconnected};
     }
     Error not_started() const {
         return {ErrorKind::device, "the sensor is not started", settings_.camera_name(), ""};
@@ -318,7 +319,8 @@ void GenicamSource::bury() {
 
 Expected<void> GenicamSource::reconnect(milliseconds most) {
     if (Clock::now() < next_attempt_)
-        return device_error(std::string(kNoAnswer) + ": the camera is gone", settings_.camera_name(),
+        return device_error(ErrorCode::silence, std::string(kNoAnswer) + ": the camera is gone",
+                            settings_.camera_name(),
                             "check its power and cable; it is connected again by itself");
     ++attempts_;
     backoff_ = backoff_.count() == 0 ? settings_.reconnect : std::min(2 * backoff_, settings_.reconnect_most);
@@ -526,7 +528,8 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
         }
         if (pairing_.ready()) break;
         if (Clock::now() >= until)
-            return device_error(std::string(kNoAnswer) + ": the trigger before this one has no frame yet",
+            return device_error(ErrorCode::silence,
+                                std::string(kNoAnswer) + ": the trigger before this one has no frame yet",
                                 settings_.camera_name());
         control.unlock();  // frames are delivered meanwhile
         something_.wait_for(arrivals, milliseconds(20));
@@ -590,7 +593,8 @@ Expected<FramePtr> GenicamSource::wait_next(milliseconds timeout) {
         std::unique_lock arrivals(arrivals_);
         if (Clock::now() >= until) {
             pairing_.expire(now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
-            return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+            return device_error(ErrorCode::silence,
+                                fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                 settings_.camera_name(), "let the robot measure or trigger the sensor");
         }
         // Without a camera nothing arrives: look again when the next attempt is due.

@@ -190,7 +190,7 @@ class GocatorSource final : public ProfileSource {
             if (!got && is_silence(got.error())) break;
             if (!got) {
                 lost();
-                return device_error(kDisconnected, where(), kLookAtSensor);
+                return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
             }
             stream_.append(reinterpret_cast<const char*>(buffer.data()), *got);
         }
@@ -198,14 +198,15 @@ class GocatorSource final : public ProfileSource {
             next_ping_ = Clock::now() + kPingPeriod;
             if (!ask(gdp::Command::ping, std::string(8, '\0'))) {
                 lost();
-                return device_error(fmt::format("{}: it does not answer", kDisconnected), where(),
+                return device_error(ErrorCode::disconnected,
+                                    fmt::format("{}: it does not answer", kDisconnected), where(),
                                     kLookAtSensor);
             }
         }
-        return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()), where(),
-                            passed_over_
-                                ? "its job sends no profile of this source: tick it on its Output page"
-                                : "let the robot measure or trigger the sensor");
+        return device_error(
+            ErrorCode::silence, fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()), where(),
+            passed_over_ ? "its job sends no profile of this source: tick it on its Output page"
+                         : "let the robot measure or trigger the sensor");
     }
 
     FramePtr latest() const override {
@@ -260,7 +261,7 @@ class GocatorSource final : public ProfileSource {
                              bool until_given_up) {
         constexpr Timeout kSlice{50};
         const std::lock_guard control(control_mutex_);
-        if (!control_) return device_error(kDisconnected, where(), kLookAtSensor);
+        if (!control_) return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
         if (auto sent = control_->send(bytes_of(gdp::command_bytes(command, arguments)), s_.timeout); !sent)
             return of_sensor(sent.error(), s_.control_port);
         const auto until = Clock::now() + timeout;
@@ -279,7 +280,7 @@ class GocatorSource final : public ProfileSource {
             if (left.count() <= 0 || (until_given_up && given_up_)) {
                 ++late_answers_[static_cast<std::uint16_t>(command)];
                 if (left.count() > 0) return device_error("given up before the sensor answered", where());
-                return device_error(kNoAnswer, where(), kLookAtSensor);
+                return device_error(ErrorCode::silence, kNoAnswer, where(), kLookAtSensor);
             }
             std::array<std::byte, 4096> buffer;
             const auto got = control_->receive_some(buffer, std::min(left, kSlice));
@@ -293,7 +294,8 @@ class GocatorSource final : public ProfileSource {
     Expected<gdp::Reply> ask_job(gdp::Command command) {
         auto answer = ask(command, {}, s_.start_timeout, true);
         if (!answer && is_silence(answer.error()))
-            return device_error(fmt::format("{}: the sensor did not {} its job within {:g} s", kNoAnswer,
+            return device_error(ErrorCode::silence,
+                                fmt::format("{}: the sensor did not {} its job within {:g} s", kNoAnswer,
                                             command == gdp::Command::start ? "start" : "stop",
                                             static_cast<double>(s_.start_timeout.count()) / 1000),
                                 where(),
@@ -330,15 +332,16 @@ class GocatorSource final : public ProfileSource {
     }
 
     Expected<void> reconnect() {
-        if (Clock::now() < retry_at_) return device_error(kDisconnected, where(), kLookAtSensor);
+        if (Clock::now() < retry_at_)
+            return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
         auto made = connect();
         if (made) made = begin();
         if (!made) {
             lost();
             backoff_ = std::min(std::max(2 * backoff_, s_.reconnect), s_.reconnect_most);
             retry_at_ = Clock::now() + backoff_;
-            if (made.error().what.starts_with(kDisconnected) || is_silence(made.error()))
-                return device_error(kDisconnected, where(), kLookAtSensor);
+            if (is_disconnect(made.error()) || is_silence(made.error()))
+                return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
             return made;
         }
         backoff_ = Timeout(0);

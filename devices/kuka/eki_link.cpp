@@ -260,8 +260,8 @@ class EkiLink final : public RobotLink {
             meet();
             if (connection_ && connection_->is_open()) return {};
             if (Clock::now() >= until)
-                return device_error(std::string(kNoAnswer) + ": no robot has connected", where_,
-                                    "start SEAMWRIGHT_SUB in the controller's submit interpreter");
+                return device_error(ErrorCode::silence, std::string(kNoAnswer) + ": no robot has connected",
+                                    where_, "start SEAMWRIGHT_SUB in the controller's submit interpreter");
         }
     }
 
@@ -277,7 +277,7 @@ class EkiLink final : public RobotLink {
                 if (splitter_.in_the_middle())
                     return fail({ErrorKind::device,
                                  std::string(kNoAnswer) + ": a telegram broke off in the middle", where_,
-                                 "check the connection to the controller"});
+                                 "check the connection to the controller", ErrorCode::silence});
                 quiet_ns_ = now_ns();
                 return tl::unexpected(got.error());
             }
@@ -320,7 +320,7 @@ class EkiLink final : public RobotLink {
     Expected<EkiTelegram> ask_until_ready(const EkiTelegram& command) {
         for (const auto until = Clock::now() + timeout_;;) {
             auto answer = ask(command);
-            if (answer || answer.error().what.find(": " + std::string(kEkiNotReady)) == std::string::npos ||
+            if (answer || answer.error().code != ErrorCode::not_ready ||
                 Clock::now() + kEkiReadyPoll >= until)
                 return answer;
             std::this_thread::sleep_for(kEkiReadyPoll);
@@ -355,12 +355,14 @@ class EkiLink final : public RobotLink {
             if (!kept) return tl::unexpected(kept.error());
             if (*kept || telegram->id < command.id) continue;  // an answer given too late
             if (telegram->kind == "error" && telegram->id == command.id)
-                return device_error(fmt::format("the controller refuses \"{}\": {}",
-                                                command.kind == "read" || command.kind == "write"
-                                                    ? command.kind + " " + command.name
-                                                    : command.kind,
-                                                telegram->text),
-                                    where_);
+                return device_error(
+                    telegram->text.starts_with(kEkiNotReady) ? ErrorCode::not_ready : ErrorCode::none,
+                    fmt::format("the controller refuses \"{}\": {}",
+                                command.kind == "read" || command.kind == "write"
+                                    ? command.kind + " " + command.name
+                                    : command.kind,
+                                telegram->text),
+                    where_);
             if (telegram->kind != "answer" || telegram->id != command.id || telegram->name != command.name)
                 return fail(
                     {ErrorKind::device,

@@ -304,7 +304,8 @@ class KvpLink final : public RobotLink {
     Expected<void> connected() {
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
-            return device_error(std::string(kDisconnected) + ", the next attempt is due soon", where_,
+            return device_error(ErrorCode::disconnected,
+                                std::string(kDisconnected) + ", the next attempt is due soon", where_,
                                 "check that KUKAVARPROXY runs on the controller");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
@@ -496,7 +497,7 @@ class KvpLink final : public RobotLink {
             auto now = ready();
             if (!now) return tl::unexpected(fell_silent(now.error()));
             if (*now) return {};
-            if (Clock::now() >= until) return device_error(kNoAnswer, where_);
+            if (Clock::now() >= until) return device_error(ErrorCode::silence, kNoAnswer, where_);
             std::this_thread::sleep_for(std::min(Timeout(settings_.poll_ms), left(until)));
         }
     }

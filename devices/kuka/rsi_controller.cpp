@@ -145,6 +145,7 @@ class Rsi final : public SimulatedRsi {
             } else {
                 missed();
             }
+            if (measured_.begins(measuring_.get())) part_begins();
             const bool correcting = std::any_of(sum_.begin(), sum_.end(), [](double x) { return x != 0; });
             const double size = Eigen::Vector3d(sum_[0], sum_[1], sum_[2]).norm();
             const bool over = ended() && (stands_ms_ += options_.cycle_ms) > kStandsAtEnd_ms;
@@ -225,6 +226,7 @@ class Rsi final : public SimulatedRsi {
     const Options options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
+    NextPart measured_;
     std::array<double, 6> sum_{}, last_{};
     std::uint64_t late_ = 0;  // as Delay D tells
     int late_in_row_ = 0, stands_ms_ = 0;

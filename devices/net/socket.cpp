@@ -47,7 +47,9 @@ bool run_until_done(asio::io_context& io, const bool& done, Timeout timeout, con
 }
 
 tl::unexpected<Error> failure(const error_code& e, const std::string& where) {
-    if (ended_by_peer(e)) return device_error(kDisconnected, where, "check the cable and the controller");
+    if (ended_by_peer(e))
+        return device_error(ErrorCode::disconnected, kDisconnected, where,
+                            "check the cable and the controller");
     return device_error(e.message(), where);
 }
 
@@ -67,7 +69,8 @@ struct TcpConnection::Impl {
     Expected<std::size_t> finish(bool in_time, const error_code& e, std::size_t moved) const {
         if (closed) return closed_here(peer);
         if (!in_time)
-            return device_error(kNoAnswer, peer, "check that the controller runs and its program is started");
+            return device_error(ErrorCode::silence, kNoAnswer, peer,
+                                "check that the controller runs and its program is started");
         if (e) return failure(e, peer);
         return moved;
     }
@@ -205,7 +208,8 @@ Expected<TcpConnection> TcpListener::accept(Timeout timeout) {
         impl_->acceptor.cancel(ignored);
     });
     if (impl_->closed) return closed_here(impl_->where);
-    if (!in_time && (!done || result)) return device_error(kNoAnswer, impl_->where, "nobody connected");
+    if (!in_time && (!done || result))
+        return device_error(ErrorCode::silence, kNoAnswer, impl_->where, "nobody connected");
     if (result) return failure(result, impl_->where);
     // The connection gets an io_context of its own, so that it may live in another thread than the listener.
     error_code e;
@@ -280,7 +284,7 @@ Expected<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Endpoint& 
         impl_->socket.cancel(ignored);
     });
     if (impl_->closed) return closed_here(impl_->where);
-    if (!in_time && (!done || result)) return device_error(kNoAnswer, impl_->where);
+    if (!in_time && (!done || result)) return device_error(ErrorCode::silence, kNoAnswer, impl_->where);
     if (result) return failure(result, impl_->where);
     if (size > buffer.size())
         return device_error(fmt::format("a datagram of {} bytes is longer than {}", size, buffer.size()),

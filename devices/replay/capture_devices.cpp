@@ -56,7 +56,8 @@ class CaptureSensor final : public ProfileSource {
             if (!*later) break;
             const auto now = Clock::now();
             if (now >= until)
-                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                return device_error(ErrorCode::silence,
+                                    fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     replay_->where());
             std::this_thread::sleep_until(std::min({**later, until, now + Clock::duration(kSlice)}));
         }
@@ -128,7 +129,8 @@ class CaptureRobot final : public RobotLink {
             if (!later) return tl::unexpected(later.error());
             if (!*later) return trigger;
             if (Clock::now() >= until)
-                return device_error(fmt::format("{}: no trigger within {} ms", kNoAnswer, timeout.count()),
+                return device_error(ErrorCode::silence,
+                                    fmt::format("{}: no trigger within {} ms", kNoAnswer, timeout.count()),
                                     replay_->where());
             std::this_thread::sleep_until(std::min(**later, until));
         }

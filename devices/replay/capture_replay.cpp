@@ -140,7 +140,8 @@ std::int64_t CaptureReplay::position_ns() const {
 Expected<std::uint64_t> CaptureReplay::take(Player& player, const std::string& spot_id) {
     if (spot_id.empty()) {
         if (player.cursor >= player.count) {
-            if (!loop_ || player.count == 0) return device_error(kEndOfRecording, where_);
+            if (!loop_ || player.count == 0)
+                return device_error(ErrorCode::end_of_recording, kEndOfRecording, where_);
             player.cursor = 0;
             ++player.loops;
         }
@@ -151,7 +152,7 @@ Expected<std::uint64_t> CaptureReplay::take(Player& player, const std::string& s
         return device_error("the recording has no spot \"" + spot_id + "\"", where_);
     std::size_t& played = player.played[spot_id];
     if (played == it->second.size()) {
-        if (!loop_) return device_error(kEndOfRecording, where_);
+        if (!loop_) return device_error(ErrorCode::end_of_recording, kEndOfRecording, where_);
         played = 0;
     }
     return it->second[played++];
@@ -242,7 +243,7 @@ Expected<void> CaptureReplay::start_moves(const std::vector<std::string>& spot_i
             enough = enough || loop_ || player.played[id] + times <= it->second.size();
         }
         if (!known) return device_error("the recording has no spot \"" + id + "\"", where_);
-        if (!enough) return device_error(kEndOfRecording, where_);
+        if (!enough) return device_error(ErrorCode::end_of_recording, kEndOfRecording, where_);
     }
     for (auto& [source, player] : players_) {
         player.driven = true;
@@ -261,7 +262,8 @@ Expected<std::optional<CaptureReplay::Clock::time_point>> CaptureReplay::next_tr
         newest_ns_ = std::max(newest_ns_, e.host_time_ns);
     };
     if (!measuring_) {
-        if (next_trigger_ == triggers_.size()) return device_error(kEndOfRecording, where_);
+        if (next_trigger_ == triggers_.size())
+            return device_error(ErrorCode::end_of_recording, kEndOfRecording, where_);
         const CaptureEvent& e = triggers_[next_trigger_];
         if (const auto due = when(e.host_time_ns, 0); due > Clock::now()) return due;
         ++next_trigger_;

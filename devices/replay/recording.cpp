@@ -265,7 +265,7 @@ Recording::Recording(fs::path folder, std::vector<RecordedFrame> frames, bool lo
 Expected<std::size_t> Recording::take(const std::string& spot_id) {
     if (spot_id.empty()) {
         if (cursor_ == frames_.size()) {
-            if (!loop_) return device_error(kEndOfRecording, folder_.string());
+            if (!loop_) return device_error(ErrorCode::end_of_recording, kEndOfRecording, folder_.string());
             cursor_ = 0;
         }
         return cursor_++;
@@ -276,7 +276,7 @@ Expected<std::size_t> Recording::take(const std::string& spot_id) {
     }
     std::size_t& played = played_[spot_id];
     if (played == it->second.size()) {
-        if (!loop_) return device_error(kEndOfRecording, folder_.string());
+        if (!loop_) return device_error(ErrorCode::end_of_recording, kEndOfRecording, folder_.string());
         played = 0;
     }
     return it->second[played++];

@@ -103,19 +103,21 @@ class ReplaySensor final : public ProfileSource {
             if (!running_) return device_error("the sensor is not started", "replay");
             const auto next = recording_->next(recorded);
             if (next == Recording::Next::ended)
-                return device_error(kEndOfRecording, recording_->folder().string());
+                return device_error(ErrorCode::end_of_recording, kEndOfRecording,
+                                    recording_->folder().string());
             if (next == Recording::Next::frame) break;
             if (Clock::now() >= until) {
-                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
-                                    recording_->folder().string(),
-                                    "let the robot measure or trigger the sensor");
+                return device_error(
+                    ErrorCode::silence, fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                    recording_->folder().string(), "let the robot measure or trigger the sensor");
             }
             std::this_thread::sleep_for(
                 std::min<Clock::duration>(std::chrono::milliseconds(2), until - Clock::now()));
         }
         if (!pace(until)) {
             recording_->put_back(recorded);
-            return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+            return device_error(ErrorCode::silence,
+                                fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                 recording_->folder().string());
         }
         FramePtr frame = pool_.acquire();

@@ -51,7 +51,8 @@ class GripperSensor final : public ProfileSource {
             std::unique_lock lock(mutex_);
             if (!running_) return device_error("the sensor is not started", "simulated gripper");
             if (!arrived_.wait_for(lock, timeout, [&] { return !waiting_.empty(); }))
-                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                return device_error(ErrorCode::silence,
+                                    fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     "simulated gripper", "trigger the sensor");
             exposed = std::move(waiting_.front());
             waiting_.pop_front();

@@ -51,7 +51,8 @@ class SimulatedSensor final : public ProfileSource {
                 }
             }
             if (Clock::now() >= until) {
-                return device_error(fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                return device_error(ErrorCode::silence,
+                                    fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     "simulated sensor", "let the robot measure or trigger the sensor");
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -308,7 +308,7 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<Pose> named(const std::string& name, Expected<Pose> answer) const {
-        if (!answer && answer.error().what.find("no such frame") != std::string::npos) {
+        if (!answer && answer.error().code == ErrorCode::no_such_frame) {
             Error error = answer.error();
             error.what += ": " + name;
             return tl::unexpected(error);
@@ -433,7 +433,8 @@ class RtdeLink final : public RobotLink {
         if (lost_) return tl::unexpected(*std::exchange(lost_, std::nullopt));
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
-            return device_error(std::string(kDisconnected) + ", the next attempt is due soon", where_,
+            return device_error(ErrorCode::disconnected,
+                                std::string(kDisconnected) + ", the next attempt is due soon", where_,
                                 "check that the controller is on");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
@@ -544,7 +545,7 @@ class RtdeLink final : public RobotLink {
         auto state = newest();
         if (!state) return tl::unexpected(fell_silent(state.error()));
         while (!ready(*state_)) {
-            if (Clock::now() >= until) return device_error(kNoAnswer, where_);
+            if (Clock::now() >= until) return device_error(ErrorCode::silence, kNoAnswer, where_);
             if (auto next = next_state(Clock::now() + timeout_); !next)
                 return tl::unexpected(fell_silent(next.error()));
         }
@@ -581,10 +582,18 @@ class RtdeLink final : public RobotLink {
                 return fail(
                     {ErrorKind::device, "the controller's program was stopped before it answered", {}, {}});
             if (Clock::now() >= until)
-                return fail({ErrorKind::device, std::string(kNoAnswer) + " of the module", {}, {}});
+                return fail({ErrorKind::device,
+                             std::string(kNoAnswer) + " of the module",
+                             {},
+                             {},
+                             ErrorCode::silence});
         }
         if (const auto why = ur::refusal(state_->numbers[ur::kStatus]); !why.empty())
-            return device_error(fmt::format("the controller refuses: {}", why), where_);
+            return device_error(
+                state_->numbers[ur::kStatus] == static_cast<std::int32_t>(ur::Status::no_frame)
+                    ? ErrorCode::no_such_frame
+                    : ErrorCode::none,
+                fmt::format("the controller refuses: {}", why), where_);
         if (command != Command::read && command != Command::write && command != Command::trigger)
             return Pose::Identity();
         auto answer = ur::pose_from_ur(state_->pose, where_);

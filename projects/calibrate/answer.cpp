@@ -10,7 +10,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/camera_json.h"
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {
@@ -65,8 +65,8 @@ Expected<LookupTable> table_of(const json& data, const std::vector<std::string>&
 Expected<Calibration> calibration_of_result(const CalibrationMethod& method, const json& data,
                                             const std::vector<std::string>& exclude, const json& result,
                                             const Calibration* base) {
-    const std::string verdict = result.value("verdict", "undetermined");
-    if (verdict == "undetermined" && method.use == AnswerUse::sensor)
+    const Verdict verdict = verdict_of(result);
+    if (verdict == Verdict::undetermined && method.use == AnswerUse::sensor)
         return input_error("the solution is undetermined: " + result.value("reason", ""), method.id,
                            result.value("cure", ""));
     Calibration c;

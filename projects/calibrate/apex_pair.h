@@ -2,7 +2,7 @@
 // A capture of laser-plane and lut: the apex of a triangular body in the image and in the sensor's plane.
 
 #include "devices/frame.h"
-#include "projects/project.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 

@@ -11,14 +11,14 @@
 #include "core/calibration/circle_section.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/acquire.h"
 #include "projects/calibrate/apex_pair.h"
 #include "projects/calibrate/camera_json.h"
 #include "projects/calibrate/plate_images.h"
 #include "projects/calibrate/sphere_profile_json.h"
 #include "projects/calibrate/stripe_frames.h"
 #include "projects/calibrate/stripe_line_points.h"
-#include "projects/measure.h"
+#include "projects/station/acquire.h"
+#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -34,7 +34,7 @@ struct ReadCaptures {
 };
 using ReadProgress = std::function<void(int done, int total)>;
 // A JSON file as the command line takes it, or, for stripe-camera and hand-eye, a folder of images with their
-// pose files. Cancelled = Error whose `what` is kCancelled (projects/acquire.h).
+// pose files. Cancelled = Error whose `what` is kCancelled (projects/station/acquire.h).
 Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const nlohmann::json& settings,
                                      const Calibration* base, const std::filesystem::path& path,
                                      const ReadProgress& progress, const std::stop_token& cancel);

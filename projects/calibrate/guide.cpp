@@ -40,8 +40,7 @@ std::optional<Pose> mounting(const CalibrationSession& session, const std::optio
         return pose ? std::optional<Pose>(*pose) : std::nullopt;
     };
     // A solution that is not sound would lead away from the target.
-    if (!result || (result->value("verdict", "") != "good" && result->value("verdict", "") != "usable"))
-        return known;
+    if (!result || !serves(verdict_of(*result))) return known;
     if (auto pose = solved(*result, "flange_from_sensor")) return pose;
     if (session.method().id == "stripe-camera" && result->contains("hand_eye")) {
         const auto camera = solved((*result)["hand_eye"], "flange_from_camera");

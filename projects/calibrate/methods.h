@@ -24,7 +24,8 @@ struct CalibrateOutcome {
 };
 
 int exit_code_for(Verdict verdict);
-nlohmann::json number_json(double value);  // null when not finite
+Verdict verdict_of(const nlohmann::json& result);  // undetermined where it holds none
+nlohmann::json number_json(double value);          // null when not finite
 nlohmann::json vector_json(const Eigen::VectorXd& values);
 nlohmann::json matrix_json(const Eigen::MatrixXd& matrix);  // rows
 // Adds the report's fields and the verdict to `result`.

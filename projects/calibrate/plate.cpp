@@ -79,6 +79,7 @@ Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vec
             }
         }
     }
+    const std::size_t single = points.size();
     for (auto& m : means) points.push_back(std::move(m.first));
     auto solved = calibrate_plate(points, options);
     if (!solved) return tl::unexpected(solved.error());
@@ -100,7 +101,7 @@ Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vec
     result["notices"] = solved->notices;
     CalibrationReport report = solved->report;
     if (!stands.empty()) {  // people left stands out, not means
-        std::erase_if(report.poses, [](const PoseResidual& p) { return p.id.starts_with("corner "); });
+        report.poses.resize(single);
         for (const Stand& stand : stands) {
             PoseResidual row;
             row.id = stand.id;

@@ -9,7 +9,13 @@ namespace seamwright {
 using nlohmann::json;
 
 int exit_code_for(Verdict verdict) {
-    return verdict == Verdict::good || verdict == Verdict::usable ? 0 : 1;
+    return serves(verdict) ? 0 : 1;
+}
+
+Verdict verdict_of(const json& result) {
+    const auto word = result.find("verdict");
+    if (word == result.end() || !word->is_string()) return Verdict::undetermined;
+    return verdict_from(word->get<std::string>()).value_or(Verdict::undetermined);
 }
 
 json number_json(double value) {

@@ -133,12 +133,8 @@ void pose_plots(Page& page, const json& data, const json& result) {
 
 std::string calibration_report(const std::string& method, const json& data, const json& result) {
     Page page("Calibration: " + method);
-    const std::string verdict = result.value("verdict", "");
-    page.verdict(verdict,
-                 verdict == "good"     ? Tone::good
-                 : verdict == "usable" ? Tone::attention
-                                       : Tone::alarm,
-                 result.value("reason", ""));
+    const Verdict verdict = verdict_of(result);
+    page.verdict(std::string(name_of(verdict)), tone_of(verdict), result.value("reason", ""));
     if (!result.value("cure", "").empty()) page.paragraph(result.value("cure", ""));
     for (const json& notice : result.value("notices", json::array())) page.paragraph(cell(notice));
     page.heading("Parameters");

@@ -440,8 +440,7 @@ SessionStage CalibrationSession::stage() const {
     if (solving_captures() < method_->fewest) return SessionStage::capture;
     const json* solved = result();
     if (!solved) return SessionStage::solve;
-    const std::string verdict = solved->value("verdict", "");
-    if (verdict != "good" && verdict != "usable") return SessionStage::capture;
+    if (!serves(verdict_of(*solved))) return SessionStage::capture;
     // A check and a chain of poses measured elsewhere have no pose that could be kept back.
     if (method_->use == AnswerUse::check || !solved->contains("per_pose")) return SessionStage::use;
     return verification().confirmed ? SessionStage::use : SessionStage::verify;

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "projects/calibrate/method.h"
-#include "projects/project.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 

@@ -46,6 +46,19 @@ bool is_number(std::string_view cell) {
 
 }  // namespace
 
+Tone tone_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::good:
+            return Tone::good;
+        case Verdict::usable:
+            return Tone::attention;
+        case Verdict::poor:
+        case Verdict::undetermined:
+            return Tone::alarm;
+    }
+    return Tone::alarm;
+}
+
 std::string escape(std::string_view text) {
     std::string out;
     out.reserve(text.size());

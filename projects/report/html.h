@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/calibration/verdict.h"
+
 namespace seamwright::report {
 
 // Text made safe for element content and quoted attributes.
@@ -14,6 +16,7 @@ std::string escape(std::string_view text);
 
 // A verdict word with its colour; the word carries the meaning.
 enum class Tone { neutral, good, attention, alarm };
+Tone tone_of(Verdict verdict);
 
 using Rows = std::vector<std::vector<std::string>>;  // the first is the head
 

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <thread>
 
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 #include "tests/app/run_program.h"
 
 namespace seamwright {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 #include "tests/app/run_program.h"
 #include "tests/projects/door_project.h"
 

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 #include "tests/projects/sample_project.h"
 
 namespace {

@@ -58,6 +58,7 @@ class TimedLink : public RobotLink {
         return timed(Ask::gate, [&] { return link_->mode(); });
     }
     bool tells_mode() const override { return link_->tells_mode(); }
+    bool permission_outlives_link() const override { return link_->permission_outlives_link(); }
     Expected<Pose> base_from_flange() override { return link_->base_from_flange(); }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         return link_->start_measuring(moves);

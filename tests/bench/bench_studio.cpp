@@ -20,7 +20,7 @@
 
 #include "app/studio/main_window.h"
 #include "app/studio/studio.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 #include "tests/projects/sample_project.h"
 
 namespace {

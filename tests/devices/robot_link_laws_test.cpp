@@ -210,6 +210,14 @@ TEST_P(RobotLaws, AFrameIsReadBackAsWrittenAndReleasedByTheVerdictAlone) {
     EXPECT_EQ(controller->verdict(), PartVerdict::corrected);
     ASSERT_TRUE(link->confirm(PartVerdict::failed, "taken back"));
     EXPECT_FALSE(controller->released());
+    ASSERT_TRUE(link->write_frame(GetParam().frame, taught));
+    auto stands = cell->read_frame(GetParam().frame);
+    for (const auto until = Clock::now() + std::chrono::seconds(2);
+         stands && distance_mm(*stands, taught) > 1e-3 && Clock::now() < until;
+         stands = cell->read_frame(GetParam().frame))
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(stands) << stands.error().sentence();
+    EXPECT_LT(distance_mm(*stands, taught), 1e-3) << "the old frame is back on the controller itself";
     measure_all();
     ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
     EXPECT_TRUE(controller->released());

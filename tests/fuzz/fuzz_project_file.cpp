@@ -1,8 +1,8 @@
 // A project file from outside: refused or read, whatever its bytes; what loads is a project that can be
 // written again.
 
-#include "projects/project_file.h"
-#include "projects/project_json.h"
+#include "projects/file/project_file.h"
+#include "projects/file/project_json.h"
 #include "tests/fuzz/patched_file.h"
 #include "tests/projects/sample_project.h"
 

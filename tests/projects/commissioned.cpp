@@ -5,9 +5,9 @@
 
 #include "core/alignment/alignment.h"
 #include "devices/simulated/door.h"
-#include "projects/measure.h"
-#include "projects/simulated_truth.h"
-#include "projects/teach.h"
+#include "projects/reuse/simulated_truth.h"
+#include "projects/station/measure.h"
+#include "projects/station/teach.h"
 
 namespace seamwright {
 namespace {

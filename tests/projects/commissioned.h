@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "devices/simulated/cell.h"
-#include "projects/station.h"
+#include "projects/station/station.h"
 
 namespace seamwright {
 

@@ -7,7 +7,7 @@
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/door.h"
-#include "projects/project.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 
@@ -50,7 +50,7 @@ inline Project door_project(const SimulatedCell& cell, const nlohmann::json& set
     c.robot_identity = robot.identity;
     c.model = cell.sensor_model();
     c.flange_from_sensor = cell.flange_from_sensor();
-    c.verdict = "good";
+    c.verdict = Verdict::good;
     c.created_utc = utc_now();
     p.sensors = {sensor};
     p.robots = {robot};

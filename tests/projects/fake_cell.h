@@ -18,7 +18,7 @@
 #include "devices/capture/capture.h"
 #include "devices/registry.h"
 #include "devices/silence.h"
-#include "projects/project.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 
@@ -159,7 +159,7 @@ class FakeRobot : public RobotLink {
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         if (cell_.starts.empty()) {
             std::this_thread::sleep_for(std::min(timeout, std::chrono::milliseconds(2)));
-            return device_error(kNoAnswer, "robot R1");
+            return device_error(ErrorCode::silence, kNoAnswer, "robot R1");
         }
         Expected<StartSignal> start = std::move(cell_.starts.front());
         cell_.starts.pop_front();
@@ -172,7 +172,7 @@ class FakeRobot : public RobotLink {
             cell_.permission = verdict == PartVerdict::corrected ? Permission::given : Permission::none;
             if (verdict == PartVerdict::corrected && cell_.application) cell_.permission = Permission::taken;
         }
-        if (deaf) return device_error(kNoAnswer, "robot R1");
+        if (deaf) return device_error(ErrorCode::silence, kNoAnswer, "robot R1");
         return {};
     }
     Expected<Permission> permission() override {
@@ -212,7 +212,7 @@ inline std::unique_ptr<FakeCell> make_fake_cell(int spots = 6) {
     c.sensor_identity = cell->sensor_identity;
     c.robot_identity = cell->robot_identity;
     c.flange_from_sensor = make_pose(rotation_exp({0.1, 0.7, -0.3}), {30, -20, 250});
-    c.verdict = "good";
+    c.verdict = Verdict::good;
     c.created_utc = utc_now();
     p.calibrations.push_back(c);
     for (int i = 0; i < spots; ++i) {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "projects/project_json.h"
+#include "projects/file/project_json.h"
 
 namespace seamwright {
 
@@ -135,7 +135,7 @@ inline Project sample_project(unsigned seed = 1) {
     c.model->table = LookupTable{0.5, 0.25, 8, 4, 2, 2, {1, 2, 3, std::nan("")}, {4, 5, 6, std::nan("")}};
     c.flange_from_sensor = make.pose();
     for (int i = 0; i < 36; ++i) c.covariance(i / 6, i % 6) = make.number(1e-3);
-    c.verdict = "good";
+    c.verdict = Verdict::good;
     c.raw = {{"radius_mm", 12.7}, {"observations", nlohmann::json::array({1.5, 2.5})}};
     c.result = {{"rms_mm", 0.02}};
     p.calibrations.push_back(c);

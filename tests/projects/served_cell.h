@@ -10,9 +10,9 @@
 #include "devices/genicam/wire_camera.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/door.h"
-#include "projects/acquire.h"
-#include "projects/station.h"
-#include "projects/teach.h"
+#include "projects/station/acquire.h"
+#include "projects/station/station.h"
+#include "projects/station/teach.h"
 
 namespace seamwright {
 
@@ -92,7 +92,7 @@ inline Expected<ServedCell> serve_cell(const ServedCellOptions& options, const s
     c.robot_id = "R1";
     c.model = served.cell->sensor_model();
     c.flange_from_sensor = served.cell->flange_from_sensor();
-    c.verdict = "good";
+    c.verdict = Verdict::good;
     c.created_utc = utc_now();
     Region region;
     region.id = "all";

@@ -91,12 +91,18 @@ struct Texts {
         if (name == "limit_deg") return tr("Allowed turn");
         return name;
     }
-    static QString verdict(const QString& word) {
-        if (word == "good") return tr("good");
-        if (word == "usable") return tr("usable");
-        if (word == "poor") return tr("poor");
-        if (word == "undetermined") return tr("undetermined");
-        return word;
+    static QString verdict(Verdict verdict) {
+        switch (verdict) {
+            case Verdict::good:
+                return tr("good");
+            case Verdict::usable:
+                return tr("usable");
+            case Verdict::poor:
+                return tr("poor");
+            case Verdict::undetermined:
+                break;
+        }
+        return tr("undetermined");
     }
 };
 
@@ -110,7 +116,7 @@ QString setting_name(const QString& name) {
     return Texts::setting(name);
 }
 
-QString verdict_word(const QString& verdict) {
+QString verdict_word(Verdict verdict) {
     return Texts::verdict(verdict);
 }
 

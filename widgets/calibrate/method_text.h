@@ -4,6 +4,8 @@
 #include <QString>
 #include <QStringList>
 
+#include "core/calibration/verdict.h"
+
 namespace seamwright {
 
 struct MethodText {
@@ -16,6 +18,6 @@ MethodText method_text(const QString& id);
 
 QString setting_name(const QString& name);  // of MethodSetting::info, "Radius of the sphere"
 
-QString verdict_word(const QString& verdict);  // "good" -> "gut"
+QString verdict_word(Verdict verdict);  // Verdict::good -> "gut"
 
 }  // namespace seamwright

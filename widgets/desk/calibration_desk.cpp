@@ -10,7 +10,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/answer.h"
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/errors.h"
 
 namespace seamwright {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <memory>
 
-#include "projects/project.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 

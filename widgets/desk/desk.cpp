@@ -7,9 +7,9 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/calibrate/session.h"
-#include "projects/fields.h"
-#include "projects/measure.h"
-#include "projects/project_json.h"
+#include "projects/file/project_json.h"
+#include "projects/station/fields.h"
+#include "projects/station/measure.h"
 #include "widgets/errors.h"
 
 namespace seamwright {

@@ -4,7 +4,7 @@
 //
 // Files. Save writes the project file. Until then every edit goes to FILE.seam.recovery at once (recovery.h).
 // Runs and events are in the project file as soon as they are finished, with the setup they were made with.
-// A file that another desk has open is refused (projects/file_use.h).
+// A file that another desk has open is refused (projects/file/file_use.h).
 
 #include <QObject>
 #include <QUndoStack>
@@ -12,8 +12,8 @@
 #include <memory>
 #include <optional>
 
-#include "projects/file_use.h"
-#include "projects/reteach.h"
+#include "projects/file/file_use.h"
+#include "projects/reuse/reteach.h"
 #include "widgets/desk/commands.h"
 #include "widgets/desk/recovery.h"
 #include "widgets/desk/selection.h"
@@ -75,8 +75,8 @@ class Desk : public QObject {
     Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);
     Expected<void> rename_project(const std::string& name);
     Expected<void> set_requirement(const std::string& field, double value);
-    // After an exchange of sensor or robot, see projects/reteach.h; one step of undo. Returns how far spots
-    // moved.
+    // After an exchange of sensor or robot, see projects/reuse/reteach.h; one step of undo. Returns how far
+    // spots moved.
     Expected<std::vector<MovedSpot>> reteach(const Exchange& exchange);
     // Where the simulated part truly stands, in the settings of all simulated devices; connect again.
     Expected<void> place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm);

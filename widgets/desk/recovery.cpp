@@ -4,7 +4,7 @@
 
 #include <QCoreApplication>
 
-#include "projects/project_json.h"
+#include "projects/file/project_json.h"
 #include "widgets/desk/commands.h"
 #include "widgets/errors.h"
 

@@ -12,7 +12,7 @@
 #include <optional>
 #include <thread>
 
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 
 namespace seamwright {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "projects/acquire.h"
-#include "projects/measure.h"
+#include "projects/station/acquire.h"
+#include "projects/station/measure.h"
 #include "widgets/errors.h"
 
 namespace seamwright {
@@ -463,7 +463,7 @@ void StationWorker::idle(Station& station) {
             sensor.trouble.clear();
         } else {
             sensor.trouble = shown_error(frame.error()).toStdString();
-            sensor.ended = frame.error().what == kEndOfRecording;
+            sensor.ended = frame.error().code == ErrorCode::end_of_recording;
         }
     }
 }

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
-#include "projects/known_shift.h"
-#include "projects/station.h"
-#include "projects/teach.h"
-#include "projects/zero_shift.h"
+#include "projects/proof/known_shift.h"
+#include "projects/proof/zero_shift.h"
+#include "projects/station/station.h"
+#include "projects/station/teach.h"
 #include "widgets/desk/live_feed.h"
 
 namespace seamwright {

@@ -1,13 +1,13 @@
 #pragma once
 // The seven pages of the window as steps of the way: each gathers the items of the commissioning checklist
-// (projects/checklist.h) that are worked on there. Exactly one step is next: the first with an open item, and
-// measuring when there is none.
+// (projects/proof/checklist.h) that are worked on there. Exactly one step is next: the first with an open
+// item, and measuring when there is none.
 
 #include <QString>
 #include <array>
 #include <vector>
 
-#include "projects/checklist.h"
+#include "projects/proof/checklist.h"
 
 namespace seamwright {
 

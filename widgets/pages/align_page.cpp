@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "projects/measure.h"
-#include "projects/teach.h"
+#include "projects/station/measure.h"
+#include "projects/station/teach.h"
 #include "widgets/editors/number_box.h"
 
 namespace seamwright {

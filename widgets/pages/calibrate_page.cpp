@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "projects/measure.h"
-#include "projects/simulated_truth.h"
+#include "projects/reuse/simulated_truth.h"
+#include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/errors.h"
 
@@ -138,7 +138,8 @@ void CalibratePage::refresh() {
                             : tr("Begin"));
     }
     std::string key;
-    for (const Calibration& c : p.calibrations) key += c.id + c.verdict + c.created_utc + "\n";
+    for (const Calibration& c : p.calibrations)
+        key += c.id + std::string(name_of(c.verdict)) + c.created_utc + "\n";
     for (const SensorSetup& s : p.sensors) key += s.id + s.calibration_id + s.identity.serial + "\n";
     if (key == shown_ && cards_->count() > 0) return;
     shown_ = key;
@@ -158,11 +159,8 @@ void CalibratePage::refresh() {
                                   QString::fromStdString(c.robot_id))));
         auto* verdict = make_text({});
         box->addWidget(verdict);
-        set_verdict(*verdict,
-                    tr("%1, %2").arg(verdict_word(QString::fromStdString(c.verdict)), age_of(c.created_utc)),
-                    c.verdict == "good"     ? Tone::good
-                    : c.verdict == "usable" ? Tone::attention
-                                            : Tone::alarm);
+        set_verdict(*verdict, tr("%1, %2").arg(verdict_word(c.verdict), age_of(c.created_utc)),
+                    tone_of(c.verdict));
         box->addWidget(
             make_text(tr("Method %1. From: %2").arg(shown_cause(c.method), shown_cause(c.source))));
         const Eigen::Vector3d t = c.flange_from_sensor.translation();

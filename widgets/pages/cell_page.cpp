@@ -7,8 +7,8 @@
 
 #include "devices/exchange/json_fields.h"
 #include "devices/simulated/random.h"
-#include "projects/fields.h"
-#include "projects/measure.h"
+#include "projects/station/fields.h"
+#include "projects/station/measure.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/style.h"
 #include "widgets/words.h"

@@ -68,6 +68,10 @@ QLabel* make_text(const QString& text) {
     return label;
 }
 
+Tone tone_of(Verdict verdict) {
+    return verdict == Verdict::good ? Tone::good : verdict == Verdict::usable ? Tone::attention : Tone::alarm;
+}
+
 void set_verdict(QLabel& label, const QString& text, Tone tone) {
     label.setText(text);
     QFont font = label.font();

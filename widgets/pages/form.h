@@ -9,6 +9,8 @@
 #include <QVBoxLayout>
 #include <functional>
 
+#include "core/calibration/verdict.h"
+
 namespace seamwright {
 
 // resources/icons/<name>.svg in the colour of the palette's text.
@@ -21,6 +23,7 @@ QLabel* make_heading(const QString& text);
 QLabel* make_text(const QString& text);  // wraps
 // A verdict: the word is bold, its colour one of style.h's.
 enum class Tone { plain, good, attention, alarm };
+Tone tone_of(Verdict verdict);
 void set_verdict(QLabel& label, const QString& text, Tone tone);
 // Beside each other; what does not fit goes to the next line.
 QLayout* make_row(std::initializer_list<QWidget*> widgets);

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/errors.h"

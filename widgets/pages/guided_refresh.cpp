@@ -6,7 +6,7 @@
 
 #include "core/geometry/notation.h"
 #include "projects/calibrate/answer.h"
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
@@ -312,11 +312,8 @@ void GuidedPage::refresh_verdict() {
         reason_->setText({});
         return;
     }
-    const std::string word = r->value("verdict", "");
-    set_verdict(*verdict_, verdict_word(text(word)),
-                word == "good"     ? Tone::good
-                : word == "usable" ? Tone::attention
-                                   : Tone::alarm);
+    const Verdict verdict = verdict_of(*r);
+    set_verdict(*verdict_, verdict_word(verdict), tone_of(verdict));
     QStringList lines;
     if (s.method().capture == CaptureKind::board_chain)
         for (const json& sensor : r->value("sensors", json::array()))

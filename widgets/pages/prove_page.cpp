@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/geometry/notation.h"
-#include "projects/known_shift.h"
-#include "projects/zero_shift.h"
+#include "projects/proof/known_shift.h"
+#include "projects/proof/zero_shift.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/errors.h"
 #include "widgets/style.h"

@@ -3,10 +3,10 @@
 #include <QInputDialog>
 #include <cmath>
 
-#include "projects/fields.h"
-#include "projects/forecast.h"
-#include "projects/known_shift.h"
-#include "projects/measure.h"
+#include "projects/proof/forecast.h"
+#include "projects/proof/known_shift.h"
+#include "projects/station/fields.h"
+#include "projects/station/measure.h"
 #include "widgets/errors.h"
 #include "widgets/style.h"
 #include "widgets/words.h"

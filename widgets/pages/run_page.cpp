@@ -12,7 +12,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/errors.h"
 #include "widgets/style.h"
 #include "widgets/words.h"

@@ -2,7 +2,7 @@
 
 #include <QHeaderView>
 
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/style.h"
 
 namespace seamwright {

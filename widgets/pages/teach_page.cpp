@@ -3,8 +3,8 @@
 #include <QInputDialog>
 #include <cmath>
 
-#include "projects/fields.h"
-#include "projects/measure.h"
+#include "projects/station/fields.h"
+#include "projects/station/measure.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "projects/measure.h"
+#include "projects/station/measure.h"
 #include "widgets/errors.h"
 
 namespace seamwright {

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "projects/run.h"
+#include "projects/model/run.h"
 #include "widgets/align/align_view.h"
 #include "widgets/charts/histogram.h"
 #include "widgets/charts/residual_bars.h"

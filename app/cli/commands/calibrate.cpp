@@ -11,8 +11,8 @@
 #include "projects/calibrate/answer.h"
 #include "projects/calibrate/methods.h"
 #include "projects/calibrate/report_page.h"
-#include "projects/project_file.h"
-#include "projects/run.h"
+#include "projects/file/project_file.h"
+#include "projects/model/run.h"
 
 namespace seamwright::cli {
 namespace {
@@ -105,7 +105,7 @@ Expected<std::string> store(const CalibrateArguments& a, const Method& method, c
     }
     c.created_utc = utc_now();
     c.source = std::filesystem::absolute(a.data).string();
-    c.verdict = result.value("verdict", "undetermined");
+    c.verdict = verdict_of(result);
     c.raw = {{"data", data}, {"exclude", a.exclude}};
     c.result = result;
     project->calibrations.push_back(c);

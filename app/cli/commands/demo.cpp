@@ -54,7 +54,7 @@ Expected<Answer> demo(const DemoOptions& options) {
                    {"seed", options.seed},
                    {"parts", outcome->parts.size()},
                    {"pushed", pushed},
-                   {"calibration_verdict", outcome->calibration.calibration.verdict},
+                   {"calibration_verdict", name_of(outcome->calibration.calibration.verdict)},
                    {"calibration_error_mm", outcome->calibration.truth_mm},
                    {"spots", statistic_json(spots)},
                    {"path", statistic_json(path)},
@@ -82,7 +82,8 @@ Expected<Answer> demo(const DemoOptions& options) {
 std::string sweep_text(const SweepRow& row) {
     std::string text = fmt::format("seed {:>4}: {:<8}", row.seed, row.outcome);
     if (row.outcome != "failed")
-        text += fmt::format("calibration {} {:.3f} mm, looked again {}", row.calibration_verdict,
+        text += fmt::format("calibration {} {:.3f} mm, looked again {}",
+                            name_of(row.calibration_verdict.value_or(Verdict::undetermined)),
                             row.calibration_error_mm, row.looks_again);
     if (!row.path.empty()) {
         text += fmt::format("; {} pushed, 3 sigma", row.pushed);
@@ -112,15 +113,16 @@ Expected<Answer> sweep(const DemoOptions& options, std::uint64_t first, std::uin
         ++outcomes[row.outcome];
         measured += !row.path.empty();
         if (row.outcome == "failed") answer.exit_code = kExitVerdict;
-        rows.push_back({{"seed", row.seed},
-                        {"outcome", row.outcome},
-                        {"reason", row.reason},
-                        {"pushed", row.pushed},
-                        {"calibration_verdict", row.calibration_verdict},
-                        {"calibration_error_mm", row.calibration_error_mm},
-                        {"looks_again", row.looks_again},
-                        {"path", statistic_json(row.path)},
-                        {"seconds", row.seconds}});
+        rows.push_back(
+            {{"seed", row.seed},
+             {"outcome", row.outcome},
+             {"reason", row.reason},
+             {"pushed", row.pushed},
+             {"calibration_verdict", row.calibration_verdict ? name_of(*row.calibration_verdict) : ""},
+             {"calibration_error_mm", row.calibration_error_mm},
+             {"looks_again", row.looks_again},
+             {"path", statistic_json(row.path)},
+             {"seconds", row.seconds}});
     }
     for (const auto& [outcome, count] : outcomes)
         answer.text += fmt::format("{} of {} seeds: {}\n", count, result.rows.size(), outcome);

@@ -9,10 +9,10 @@
 #include "app/cli/recording.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/files.h"
-#include "projects/gap_check.h"
+#include "projects/panel/gap_check.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
-#include "projects/simulated_truth.h"
+#include "projects/reuse/simulated_truth.h"
 
 namespace seamwright::cli {
 namespace {

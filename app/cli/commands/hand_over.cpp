@@ -6,8 +6,8 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/hand_over.h"
-#include "projects/reteach.h"
+#include "projects/hand_over/hand_over.h"
+#include "projects/reuse/reteach.h"
 #include "widgets/print/pdf.h"
 
 namespace seamwright::cli {

@@ -17,10 +17,11 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/random.h"
-#include "projects/fields.h"
-#include "projects/measure.h"
-#include "projects/panel_station.h"
-#include "projects/simulated_truth.h"
+#include "projects/panel/panel_station.h"
+#include "projects/reuse/simulated_truth.h"
+#include "projects/station/check.h"
+#include "projects/station/fields.h"
+#include "projects/station/measure.h"
 
 namespace seamwright::cli {
 namespace {

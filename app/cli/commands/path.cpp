@@ -8,10 +8,10 @@
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
 #include "devices/registry.h"
-#include "projects/path.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
+#include "projects/station/path.h"
 
 namespace seamwright::cli {
 namespace {

@@ -13,11 +13,12 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/checklist.h"
-#include "projects/exchange.h"
-#include "projects/mirror.h"
-#include "projects/project_file.h"
-#include "projects/station.h"
+#include "projects/file/project_file.h"
+#include "projects/proof/checklist.h"
+#include "projects/reuse/exchange.h"
+#include "projects/reuse/mirror.h"
+#include "projects/station/check.h"
+#include "projects/station/station.h"
 
 namespace seamwright::cli {
 namespace {
@@ -58,7 +59,7 @@ Expected<Answer> info(const std::string& path) {
     });
     lines("calibrations", project->calibrations, [](const Calibration& c) {
         return fmt::format("{}  {} of sensor {}, {}, {}", c.id, c.method, c.sensor_id, c.created_utc,
-                           c.verdict);
+                           name_of(c.verdict));
     });
     lines("spots", project->spots, [](const Spot& s) {
         return fmt::format("{}  {} with sensor {}{}", s.id, s.feature.kind, s.sensor_id,
@@ -262,7 +263,7 @@ Expected<Answer> import_command(const ImportArguments& a) {
         options.sigma_mm = a.sigma_mm;
         if (a.rows) options.peaks.scan = ScanLines::rows;
         if (a.columns) options.peaks.scan = ScanLines::columns;
-        if (!a.flange_from_sensor.empty()) options.calibration_verdict = "usable";
+        if (!a.flange_from_sensor.empty()) options.calibration_verdict = Verdict::usable;
         auto imported = import_folder(options);
         if (!imported) return tl::unexpected(imported.error());
         project = std::move(imported->project);

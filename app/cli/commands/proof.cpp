@@ -12,8 +12,8 @@
 #include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/known_shift.h"
-#include "projects/zero_shift.h"
+#include "projects/proof/known_shift.h"
+#include "projects/proof/zero_shift.h"
 
 namespace seamwright::cli {
 namespace {

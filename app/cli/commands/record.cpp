@@ -10,8 +10,8 @@
 #include "app/cli/recording.h"
 #include "app/cli/signal_watch.h"
 #include "devices/registry.h"
-#include "projects/measure.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
+#include "projects/station/measure.h"
 
 namespace seamwright::cli {
 namespace {

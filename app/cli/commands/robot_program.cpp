@@ -8,9 +8,9 @@
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
 #include "devices/registry.h"
-#include "projects/measure.h"
-#include "projects/program.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
+#include "projects/station/measure.h"
+#include "projects/station/program.h"
 
 namespace seamwright::cli {
 namespace {

@@ -18,9 +18,10 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/genicam/genicam.h"
 #include "devices/registry.h"
-#include "projects/replay.h"
-#include "projects/station.h"
-#include "projects/watch.h"
+#include "projects/proof/replay.h"
+#include "projects/station/check.h"
+#include "projects/station/station.h"
+#include "projects/station/watch.h"
 
 namespace seamwright::cli {
 namespace {

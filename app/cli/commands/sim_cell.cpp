@@ -16,8 +16,8 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/settings.h"
 #include "devices/gocator/served_gocator.h"
-#include "projects/acquire.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
+#include "projects/station/acquire.h"
 
 namespace seamwright::cli {
 namespace {

@@ -12,11 +12,11 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/door.h"
-#include "projects/acquire.h"
-#include "projects/measure.h"
-#include "projects/project_file.h"
-#include "projects/station.h"
-#include "projects/teach.h"
+#include "projects/file/project_file.h"
+#include "projects/station/acquire.h"
+#include "projects/station/measure.h"
+#include "projects/station/station.h"
+#include "projects/station/teach.h"
 
 namespace seamwright::cli {
 namespace {
@@ -240,7 +240,7 @@ DemoCalibration true_calibration(const SimulatedCell& cell) {
     demo.calibration.model = cell.sensor_model();
     demo.calibration.flange_from_sensor = cell.flange_from_sensor();
     demo.calibration.method = "simulated truth";
-    demo.calibration.verdict = "good";
+    demo.calibration.verdict = Verdict::good;
     return demo;
 }
 

@@ -16,8 +16,8 @@
 #include "core/alignment/alignment.h"
 #include "core/calibration/calibration.h"
 #include "devices/simulated/cell.h"
-#include "projects/project.h"
-#include "projects/run.h"
+#include "projects/model/project.h"
+#include "projects/model/run.h"
 
 namespace seamwright::cli {
 
@@ -123,7 +123,7 @@ struct SweepRow {
     std::string outcome;  // "ok", "refused" (a part was not pushed), "failed" (no further than the reason)
     std::string reason;   // of the first refusal, or the error
     int pushed = 0;
-    std::string calibration_verdict;
+    std::optional<Verdict> calibration_verdict;  // none where it failed
     double calibration_error_mm = 0;
     int looks_again = 0;              // frames that the calibrations took once more
     std::vector<DemoStatistic> path;  // one row a region, then "all"; empty when nothing was pushed

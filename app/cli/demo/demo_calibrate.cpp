@@ -10,9 +10,9 @@
 #include "core/profile/filter.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/acquire.h"
 #include "projects/calibrate/stripe_line_points.h"
 #include "projects/calibrate/target_views.h"
+#include "projects/station/acquire.h"
 
 namespace seamwright::cli {
 namespace {
@@ -221,8 +221,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     c.source = fmt::format("{} frames of a plate, {} of a sphere of {} mm, rendered", observations.size(),
                            sphere.size(), *options.radius_mm);
     c.raw = sphere_json(sphere, *options.radius_mm);
-    c.verdict =
-        std::string(name_of(std::max(camera->report.judgement.verdict, tcp->report.judgement.verdict)));
+    c.verdict = std::max(camera->report.judgement.verdict, tcp->report.judgement.verdict);
     demo.steps.push_back({"tcp-sphere", tcp->report,
                           fmt::format("rms {:.4f} mm, sigma at the working distance {:.4f} mm", tcp->rms_mm,
                                       tcp->working_sigma_mm)});

@@ -20,17 +20,6 @@ std::string mm(double value, int decimals = 3) {
     return fmt::format("{:.{}f}", value, decimals);
 }
 
-Tone tone_of(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::good:
-            return Tone::good;
-        case Verdict::usable:
-            return Tone::attention;
-        default:
-            return Tone::alarm;
-    }
-}
-
 void calibration_chapter(Page& page, const DemoOutcome& o) {
     page.heading("Calibration of the sensor");
     page.paragraph("Solved from rendered frames, starting from nothing but the sizes of plate and sphere.");

@@ -36,6 +36,7 @@ MODULE SeamwrightServer
     LOCAL VAR string line3;
     LOCAL VAR string staged_name{32};
     LOCAL VAR pose staged{32};
+    LOCAL VAR string applied_name{32};
     LOCAL VAR wobjdata before{32};
     LOCAL VAR num staged_count:=0;
     LOCAL VAR num applied:=0;
@@ -270,6 +271,7 @@ MODULE SeamwrightServer
             swGone:=TRUE;
             swGivenFor:=0;
             staged_count:=0;
+            applied:=0;
             told:=0;
             swFired:=0;
             swEnded:=FALSE;
@@ -319,8 +321,8 @@ MODULE SeamwrightServer
             IF measured_part<>0 AND measured_part<>swPartNo THEN
                 Say number+" NO VERDICT","the robot has begun another part","";
             ELSEIF NOT Applied_all() THEN
-                Undo_applied;
                 Say number+" NO VERDICT","a work object cannot be set: "+staged_name{applied+1},"";
+                Undo_applied;
             ELSE
                 staged_count:=0;
                 swVerdict:=1;
@@ -329,6 +331,8 @@ MODULE SeamwrightServer
                 Say number+" VERDICT "+word,"","";
             ENDIF
         CASE "REFUSED","FAILED":
+            ! What was set for a permission that nobody has taken is not left standing.
+            IF swGivenFor=0 Undo_applied;
             staged_count:=0;
             IF word="REFUSED" THEN
                 swVerdict:=2;
@@ -354,6 +358,7 @@ MODULE SeamwrightServer
             object.oframe:=staged{applied+1};
             SetDataVal staged_name{applied+1}\TaskName:="T_ROB1",object;
             applied:=applied+1;
+            applied_name{applied}:=staged_name{applied};
         ENDWHILE
         RETURN TRUE;
     ERROR
@@ -363,8 +368,9 @@ MODULE SeamwrightServer
     LOCAL PROC Undo_applied()
         VAR num i;
         i:=applied;
+        applied:=0;
         WHILE i>0 DO
-            SetDataVal staged_name{i}\TaskName:="T_ROB1",before{i};
+            SetDataVal applied_name{i}\TaskName:="T_ROB1",before{i};
             i:=i-1;
         ENDWHILE
     ERROR

@@ -21,8 +21,8 @@
 #include "app/studio/studio.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/mesh_file.h"
-#include "projects/acquire.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
+#include "projects/station/acquire.h"
 #include "tests/app/studio/person.h"
 
 namespace seamwright {

@@ -369,7 +369,7 @@ class NumberedSensor final : public ProfileSource {
         if (fails) return device_error("the cable is out", "sensor");
         if (next_ == frames_) {
             std::this_thread::sleep_for(timeout);
-            return device_error(std::string(kNoAnswer) + ": no frame", "sensor");
+            return device_error(ErrorCode::silence, std::string(kNoAnswer) + ": no frame", "sensor");
         }
         FramePtr frame = pool_.acquire();
         fill(*frame, next_++);

@@ -12,7 +12,7 @@
 #include "projects/calibrate/answer.h"
 #include "projects/calibrate/capture.h"
 #include "projects/calibrate/guide.h"
-#include "projects/simulated_truth.h"
+#include "projects/reuse/simulated_truth.h"
 
 namespace seamwright {
 namespace {

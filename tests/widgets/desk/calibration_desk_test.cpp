@@ -7,8 +7,8 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "projects/measure.h"
-#include "projects/simulated_truth.h"
+#include "projects/reuse/simulated_truth.h"
+#include "projects/station/measure.h"
 #include "tests/widgets/desk/desk_fixture.h"
 
 namespace seamwright {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
-#include "projects/row_checksum.h"
+#include "projects/file/row_checksum.h"
 #include "tests/widgets/desk/desk_fixture.h"
 
 namespace seamwright {

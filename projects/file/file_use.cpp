@@ -1,0 +1,116 @@
+#include "projects/file/file_use.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <ctime>
+#include <optional>
+#include <regex>
+#include <string>
+#include <utility>
+
+namespace seamwright {
+namespace {
+
+std::string holder_line() {
+    char host[256] = {}, since[64] = {};
+    ::gethostname(host, sizeof host - 1);
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    ::localtime_r(&now, &local);
+    std::strftime(since, sizeof since, "%Y-%m-%d %H:%M", &local);
+    return fmt::format("{}, process {} on {}, since {}", program_invocation_short_name, ::getpid(), host,
+                       since);
+}
+
+// What stands in a lock file of ours; nullopt: the file is somebody's who keeps something else in it.
+std::optional<std::string> read_holder(int fd) {
+    char text[512];
+    const auto length = ::pread(fd, text, sizeof text, 0);
+    if (length == 0) return "another program";  // which has just made it, or had no room on the disk
+    if (length < 0) return std::nullopt;
+    std::string line(text, static_cast<std::size_t>(length));
+    static const std::regex ours("[^,\n]+, process [0-9]+ on [^,\n]*, since [-0-9: ]+");
+    if (!std::regex_match(line, ours)) return std::nullopt;
+    return line;
+}
+
+// A regular file with one name: whoever plants a link where the lock comes to stand has us write to what it
+// leads to.
+bool is_plain(int fd) {
+    struct stat info {};
+    return ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_nlink <= 1;
+}
+
+// Whether the name still leads to the file that is locked: its last holder may have taken it away meanwhile.
+bool is_named(int fd, const std::filesystem::path& path) {
+    struct stat by_fd {
+    }, by_name{};
+    return ::fstat(fd, &by_fd) == 0 && ::lstat(path.c_str(), &by_name) == 0 &&
+           by_fd.st_ino == by_name.st_ino && by_fd.st_dev == by_name.st_dev;
+}
+
+}  // namespace
+
+Expected<FileUse> FileUse::take(const std::filesystem::path& file, For what) {
+    std::error_code unknown;
+    std::filesystem::path real = std::filesystem::weakly_canonical(file, unknown);
+    if (unknown) real = file;
+    const std::filesystem::path lock = real.string() + (what == For::desk ? ".lock" : ".devices.lock");
+    const auto not_ours = [&] {
+        return file_error("where the lock of the project belongs stands something else", lock.string(),
+                          "move it away");
+    };
+    constexpr int kTries = 100;  // each lost to a holder that went in that instant
+    for (int i = 0; i < kTries; ++i) {
+        // Without waiting for whoever reads a FIFO.
+        const int fd = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+        if (fd < 0 && (errno == ELOOP || errno == EISDIR || errno == ENXIO)) return not_ours();
+        if (fd < 0) break;
+        const bool held = ::flock(fd, LOCK_EX | LOCK_NB) != 0;
+        const int code = errno;
+        if (!held && !is_named(fd, lock)) {
+            ::close(fd);
+            continue;
+        }
+        const auto holder = is_plain(fd) ? read_holder(fd) : std::nullopt;
+        if (held || !holder) ::close(fd);
+        if (held && code != EWOULDBLOCK) break;
+        if (!held && !holder) return not_ours();
+        if (held) {
+            const std::string who = holder.value_or("another program");
+            if (what == For::desk)
+                return usage_error(fmt::format("the project is open already ({})", who), file.string(),
+                                   "go on there, or close it there first");
+            return usage_error(fmt::format("the devices of the project are in use already ({})", who),
+                               file.string(), "disconnect them there, or end it, first");
+        }
+        const std::string line = holder_line();
+        if (::ftruncate(fd, 0) != 0 || ::pwrite(fd, line.data(), line.size(), 0) < 0) {
+            // A full disk: locked all the same, without a name.
+        }
+        return FileUse(lock, fd);
+    }
+    return FileUse({}, -1);
+}
+
+FileUse::FileUse(FileUse&& other) noexcept
+    : lock_(std::move(other.lock_)), fd_(std::exchange(other.fd_, -1)) {}
+
+FileUse& FileUse::operator=(FileUse&& other) noexcept {
+    std::swap(lock_, other.lock_);
+    std::swap(fd_, other.fd_);
+    return *this;
+}
+
+FileUse::~FileUse() {
+    if (fd_ < 0) return;
+    ::unlink(lock_.c_str());  // while it is held: nobody else's
+    ::close(fd_);
+}
+
+}  // namespace seamwright

@@ -1,0 +1,146 @@
+#pragma once
+// *.seam: one project in one SQLite file.
+//
+// Identity: application_id "Seam" (0x5365616D), user_version = number of the last migration (schema.h).
+// Opening refuses, with one sentence (ErrorKind::file): what is no SQLite database, another program's, a
+// newer version's, truncated or damaged (SQLite's own check, foreign keys, a row that contradicts its
+// checksum (row_checksum.h), tables that differ from what the migrations make, so that triggers or views
+// somebody planted never run). What a link leads to is the project; the link stays.
+//
+// Place: a file whose name leads to another file by now, or to none, is not written to any more: every save_*
+// and append_* is an Error (file) then. So a push, whose attempt is recorded first, sends nothing.
+//
+// Crash safety: rollback journal, synchronous = FULL. Every save_*/append_* is one transaction; a process
+// killed at any instant leaves the last committed state, which the next open restores from the journal beside
+// the file (FILE.seam-journal; move both together). Only while devices are connected (keep_write_ahead) is
+// the journal a write-ahead log, FILE.seam-wal: a commit then costs one sync instead of four, which is what a
+// robot waits for. All that was committed is moved from the log into the file after every run and every save.
+// A new file is made under another name in the same folder and renamed when complete. Migrations run on a
+// copy that replaces the file when it has passed the checks.
+//
+// Contents: one row per sensor, robot, calibration, spot, region, panel job (key columns + JSON in
+// project_json.h's form, doubles exact, profiles as blobs of profile_blob.h); a run is one row with its
+// spots, regions, and captures packed into blobs of about 1 MiB, and refers to the setup it was made with
+// (the project as JSON, stored once per content), so that it can be computed again after the project was
+// edited. Evidence (evidence.h) refers to its setup in the same way.
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "projects/model/evidence.h"
+#include "projects/model/project.h"
+#include "projects/model/run.h"
+
+namespace seamwright {
+
+// Of a sensor, robot, calibration, spot, region or panel job, in bytes of UTF-8: a robot's text (RAPID: 80)
+// and the name of a file that is made of it hold so much and some words more.
+inline constexpr std::size_t kLongestId = 64;
+
+enum class FileAccess { read_write, read_only };
+
+// What a list of runs shows; cheap.
+struct RunSummary {
+    std::int64_t number = 0;
+    std::string part_id, started_utc, finished_utc;
+    bool push = false;
+    RunStatus status = RunStatus::ok;
+    std::string message;
+    int spots = 0, captures = 0;
+    std::int64_t setup = 0;  // runs with equal numbers were made with the same setup
+};
+
+// The project a run is made with, as its record refers to it: made before the robot waits for it.
+class RunSetup {
+  public:
+    // Refuses what a project file cannot hold, as save() does.
+    static Expected<RunSetup> of(const Project& project);
+
+  private:
+    friend class ProjectFile;
+    std::string text_;
+    std::int64_t crc_ = 0;
+};
+
+// One thread at a time. Several processes may have a file open; a writer waits up to 5 s for another's lock.
+// What of a run under way is in the file.
+struct StoredMeasurements {
+    std::size_t captures = 0;
+    std::set<std::size_t> spots;  // positions in RunRecord::spots
+};
+
+class ProjectFile {
+  public:
+    // Makes a file holding `project`. An existing file is refused unless `replace`, and then only if it is
+    // empty or a Seamwright file.
+    static Expected<ProjectFile> create(const std::filesystem::path& path, const Project& project,
+                                        bool replace = false);
+    // An older file is brought up to date: in place for read_write, in memory for read_only.
+    static Expected<ProjectFile> open(const std::filesystem::path& path,
+                                      FileAccess access = FileAccess::read_write);
+    ProjectFile(ProjectFile&&) noexcept;
+    ProjectFile& operator=(ProjectFile&&) noexcept;
+    ~ProjectFile();
+
+    const std::filesystem::path& path() const;
+
+    // From rollback journal to write-ahead log and back, see above. Without effect on a file that is open for
+    // reading, and when another process keeps it as it is: nothing depends on it but the time a commit takes.
+    void keep_write_ahead(bool on);
+    // Moves what was committed from the log into the file.
+    void checkpoint();
+    // The whole file, runs and all, as last committed, to another path; an existing file there is replaced if
+    // create() would replace it.
+    Expected<void> copy_to(const std::filesystem::path& path) const;
+
+    Expected<Project> load() const;
+    // Only rows that changed are written. Refuses (input) two entities of one id, empty ids and new ones of
+    // more than kLongestId bytes.
+    Expected<void> save(const Project& project);
+
+    // A whole run. Returns its number; events of the record get it too.
+    Expected<std::int64_t> append_run(const RunRecord& run, const Project& setup);
+    // A run as it comes, so that little is left to store when the robot waits for the verdict: its row first
+    // (number, part, times, status, message), then again and again the captures and the spots that have one
+    // since `stored`, at last all the rest.
+    Expected<std::int64_t> begin_run(const RunRecord& run, const RunSetup& setup);
+    Expected<void> append_measured(const RunRecord& run, StoredMeasurements& stored);
+    Expected<void> finish_run(const RunRecord& run, const StoredMeasurements& stored);
+    // Replaces the outcome of a run (times, status, message, regions, panel); spots, captures and events
+    // stay.
+    Expected<void> update_run(const RunRecord& run);
+    // Returns the event's id.
+    Expected<std::int64_t> append_event(const EventRecord& event);
+
+    Expected<std::vector<RunSummary>> runs() const;
+    // `with_captures` false leaves out the raw data.
+    Expected<RunRecord> load_run(std::int64_t number, bool with_captures = true) const;
+    // The project as it was when the run was made, without mesh and calibration raw data.
+    Expected<Project> load_run_setup(std::int64_t number) const;
+    Expected<Project> load_setup(std::int64_t setup) const;
+    // Newest last; run 0 = all.
+    Expected<std::vector<EventRecord>> events(std::int64_t run = 0) const;
+    Expected<void> delete_run(std::int64_t number);
+
+    // What was proven, with the project it was proven with; kept when its runs are deleted. Returns its id.
+    Expected<std::int64_t> append_evidence(const Evidence& evidence, const Project& setup);
+    // Those with an id above `after`, oldest first.
+    Expected<std::vector<Evidence>> evidence(std::int64_t after = 0) const;
+
+    // The long check: SQLite's integrity_check, foreign keys, every row decoded, every blob's checksum. Empty
+    // = sound.
+    std::vector<Error> check() const;
+
+  private:
+    Expected<std::int64_t> setup_id(const RunSetup& setup);
+    Expected<std::int64_t> insert_run(const RunRecord& run, const RunSetup& setup);
+    struct Impl;
+    explicit ProjectFile(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seamwright

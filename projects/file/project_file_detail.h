@@ -1,0 +1,100 @@
+#pragma once
+// Shared by the parts of the project file: project_file.cpp (making, opening, migrating), project_rows.cpp
+// (the project's entities), project_runs.cpp (runs, setups, events).
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "devices/capture/sqlite.h"
+#include "devices/exchange/json_fields.h"
+#include "projects/file/project_file.h"
+#include "projects/file/project_json.h"
+
+namespace seamwright {
+
+// What belongs to a run holds names and messages that devices chose.
+struct RowForm {
+    ArchiveOptions archive;
+    bool of_a_run;
+};
+inline constexpr RowForm kRow{{.profiles = false, .rigid_poses = true},  // profiles have columns of their own
+                              false};
+inline constexpr RowForm kPanelRow{{.profiles = true, .rigid_poses = true}, false};
+inline constexpr RowForm kSetup{{.profiles = true, .rigid_poses = true}, true};
+inline constexpr RowForm kResult{{.profiles = true, .rigid_poses = false}, true};
+
+inline std::uint32_t crc_of(std::span<const std::byte> bytes) {
+    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+inline std::uint32_t crc_of(std::string_view text) {
+    return crc_of(std::as_bytes(std::span(text)));
+}
+
+// Text of a value that must be readable again; the Error is the caller's input. Devices may name themselves
+// and write messages in any bytes, so what belongs to a run is made UTF-8 instead of refused.
+template <class T>
+Expected<std::string> row_text(const T& value, const std::string& where, const RowForm& form) {
+    const nlohmann::json document = to_json_document(value, form.archive);
+    if (auto again = from_json_document<T>(document, where, form.archive); !again)
+        return tl::unexpected(again.error());
+    // A row also stands a few steps down in the setup of a run and in an export, which are read with the same
+    // limit.
+    constexpr std::size_t kAroundRow = 4;
+    if (json_depth(document) > kDeepestJson - (form.of_a_run ? 0 : kAroundRow))
+        return input_error(fmt::format("the JSON is nested deeper than {}", kDeepestJson - kAroundRow),
+                           where);
+    auto text =
+        form.of_a_run ? Expected<std::string>(dump_messages(document)) : dump_document(document, where);
+    if (text && text->size() > kTextFileLimit)
+        return input_error(fmt::format("the entry is longer than {} MiB", kTextFileLimit >> 20), where);
+    return text;
+}
+
+template <class T>
+Expected<T> row_value(const std::string& text, const std::string& where, const std::string& path,
+                      const RowForm& form) {
+    const auto document = parse_json(text, where);
+    if (!document) return file_error("an entry of the project file cannot be read", path + ": " + where);
+    auto value = from_json_document<T>(*document, where, form.archive);
+    if (!value) {
+        Error error = value.error();
+        error.kind = ErrorKind::file;
+        error.where = error.where.empty() ? path : path + ": " + error.where;
+        return tl::unexpected(std::move(error));
+    }
+    return value;
+}
+
+// Calls `read` for each row; stops at its first Error.
+template <class Read>
+Expected<void> for_each_row(Statement& s, Read read) {
+    for (;;) {
+        auto row = s.step();
+        if (!row) return tl::unexpected(row.error());
+        if (!*row) return {};
+        Expected<void> done = read(s);
+        if (done) done = s.row_ok();
+        if (!done) {
+            s.reset();
+            return done;
+        }
+    }
+}
+
+// project_rows.cpp; within the caller's transaction.
+Expected<void> save_rows_of(Database& db, const Project& project);
+Expected<Project> load_rows_of(Database& db);
+
+struct ProjectFile::Impl {
+    std::filesystem::path path;
+    mutable Database db;
+    Impl(std::filesystem::path p, Database d) : path(std::move(p)), db(std::move(d)) {}
+};
+
+}  // namespace seamwright

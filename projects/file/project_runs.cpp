@@ -1,0 +1,585 @@
+#include <fmt/format.h>
+
+#include <set>
+
+#include "devices/capture/profile_blob.h"
+#include "projects/file/project_file_detail.h"
+#include "projects/file/row_checksum.h"
+#include "projects/file/schema.h"
+
+namespace seamwright {
+namespace {
+
+Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t run) {
+    auto s = db.prepare("INSERT INTO events (utc, run, kind, subject, text) VALUES (?, ?, ?, ?, ?)");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, event.utc.empty() ? utc_now() : utf8_text(event.utc));
+    s->bind(2, run);
+    s->bind(3, to_string(event.kind));
+    s->bind(4, utf8_text(event.subject));
+    s->bind(5, utf8_text(event.text));
+    if (auto done = s->run(); !done) return done;
+    return seal_row(db, "events", "id", db.last_rowid());
+}
+
+Expected<void> insert_regions(Database& db, const RunRecord& run, std::int64_t number) {
+    auto s = db.prepare(
+        "INSERT INTO run_regions (run, position, region_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, "
+        "?4, ?5, row_checksum(?1, ?2, ?3, ?4, ?5))");
+    if (!s) return tl::unexpected(s.error());
+    for (std::size_t i = 0; i < run.regions.size(); ++i) {
+        const RegionRecord& region = run.regions[i];
+        auto text = row_text(region, "region " + region.region_id, kResult);
+        if (!text) return tl::unexpected(text.error());
+        s->bind(1, number);
+        s->bind(2, static_cast<std::int64_t>(i));
+        s->bind(3, region.region_id);
+        s->bind(4, std::int64_t{region.gate_passed});
+        s->bind(5, *text);
+        if (auto done = s->run(); !done) return done;
+    }
+    return {};
+}
+
+Expected<void> insert_panel(Database& db, const RunRecord& run, std::int64_t number) {
+    if (!run.panel) return {};
+    auto text = row_text(*run.panel, "panel job " + run.panel->job_id, kResult);
+    if (!text) return tl::unexpected(text.error());
+    auto s = db.prepare(
+        "INSERT INTO run_panels (run, job_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, ?4, "
+        "row_checksum(?1, ?2, ?3, ?4))");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, number);
+    s->bind(2, run.panel->job_id);
+    s->bind(3, std::int64_t{run.panel->gate_passed});
+    s->bind(4, *text);
+    return s->run();
+}
+
+// Behind the `stored` captures that the run has already.
+Expected<void> insert_captures(Database& db, std::span<const Capture> captures, std::size_t stored,
+                               std::int64_t number) {
+    auto blobs = pack_captures(captures);
+    if (!blobs) return tl::unexpected(blobs.error());
+    auto chunks = db.prepare("SELECT ifnull(max(chunk) + 1, 0) FROM captures WHERE run = ?");
+    if (!chunks) return tl::unexpected(chunks.error());
+    chunks->bind(1, number);
+    if (auto row = chunks->step(); !row) return tl::unexpected(row.error());
+    const std::int64_t first_chunk = chunks->integer(0);
+    chunks->reset();
+    auto s = db.prepare("INSERT INTO captures (run, chunk, captures, data) VALUES (?, ?, ?, ?)");
+    if (!s) return tl::unexpected(s.error());
+    for (std::size_t i = 0; i < blobs->size(); ++i) {
+        s->bind(1, number);
+        s->bind(2, first_chunk + static_cast<std::int64_t>(i));
+        s->bind(3, std::int64_t{(*blobs)[i].captures});
+        s->bind(4, std::span<const std::byte>((*blobs)[i].bytes));
+        if (auto done = s->run(); !done) return done;
+    }
+    auto image = db.prepare(
+        "INSERT INTO images (run, capture, width, height, bit_depth, crc, data) VALUES (?, ?, ?, ?, ?, ?, "
+        "?)");
+    if (!image) return tl::unexpected(image.error());
+    for (std::size_t i = 0; i < captures.size(); ++i) {
+        if (!captures[i].image) continue;
+        const StoredImage& raw = *captures[i].image;
+        const StripeImage view = raw.view();
+        if (view.empty() || raw.pixels.size() != view.row_bytes * static_cast<std::size_t>(view.height))
+            return input_error("the image's pixels do not fill its size",
+                               "capture of spot " + captures[i].spot_id);
+        image->bind(1, number);
+        image->bind(2, static_cast<std::int64_t>(stored + i));
+        image->bind(3, std::int64_t{raw.width});
+        image->bind(4, std::int64_t{raw.height});
+        image->bind(5, std::int64_t{raw.bit_depth});
+        image->bind(6, std::int64_t{crc_of(std::span<const std::byte>(raw.pixels))});
+        image->bind(7, std::span<const std::byte>(raw.pixels));
+        if (auto done = image->run(); !done) return done;
+    }
+    return {};
+}
+
+// Those spots that `wanted` says by their position.
+template <class Wanted>
+Expected<void> insert_spots(Database& db, const RunRecord& run, std::int64_t number, const Wanted& wanted) {
+    auto spot = db.prepare(
+        "INSERT INTO run_spots (run, position, spot_id, status, body, checksum) VALUES (?1, ?2, ?3, ?4, ?5, "
+        "row_checksum(?1, ?2, ?3, ?4, ?5))");
+    if (!spot) return tl::unexpected(spot.error());
+    for (std::size_t i = 0; i < run.spots.size(); ++i) {
+        if (!wanted(i)) continue;
+        auto text = row_text(run.spots[i], "spot " + run.spots[i].spot_id, kResult);
+        if (!text) return tl::unexpected(text.error());
+        spot->bind(1, number);
+        spot->bind(2, static_cast<std::int64_t>(i));
+        spot->bind(3, run.spots[i].spot_id);
+        spot->bind(4, to_string(run.spots[i].status));
+        spot->bind(5, *text);
+        if (auto done = spot->run(); !done) return done;
+    }
+    return {};
+}
+
+// What a run's row refers to, but for what is stored.
+Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t number,
+                           const StoredMeasurements& stored) {
+    const auto open = [&](std::size_t i) { return stored.spots.count(i) == 0; };
+    if (auto done = insert_spots(db, run, number, open); !done) return done;
+    if (auto done = insert_regions(db, run, number); !done) return done;
+    if (auto done = insert_panel(db, run, number); !done) return done;
+    if (auto done =
+            insert_captures(db, std::span(run.captures).subspan(stored.captures), stored.captures, number);
+        !done)
+        return done;
+    for (const EventRecord& event : run.events)
+        if (auto done = insert_event(db, event, number); !done) return done;
+    return {};
+}
+
+Expected<void> load_captures(Database& db, RunRecord& run) {
+    const std::string where = fmt::format("{}: run {}", db.path(), run.number);
+    auto s = db.prepare("SELECT captures, data FROM captures WHERE run = ? ORDER BY chunk");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, run.number);
+    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        const std::size_t before = run.captures.size();
+        if (auto done = unpack_captures(row.blob(1), where, run.captures); !done) return done;
+        if (static_cast<std::int64_t>(run.captures.size() - before) != row.integer(0))
+            return file_error("a block holds another number of profiles than it says", where);
+        return {};
+    });
+    if (!read) return read;
+    auto image = db.prepare("SELECT capture, width, height, bit_depth, crc, data FROM images WHERE run = ?");
+    if (!image) return tl::unexpected(image.error());
+    image->bind(1, run.number);
+    return for_each_row(*image, [&](Statement& row) -> Expected<void> {
+        const std::int64_t capture = row.integer(0), width = row.integer(1), height = row.integer(2),
+                           depth = row.integer(3);
+        const auto data = row.blob(5);
+        if (capture < 0 || capture >= static_cast<std::int64_t>(run.captures.size()) || width < 1 ||
+            height < 1 || width > 65536 || height > 65536 ||
+            (depth != 8 && depth != 10 && depth != 12 && depth != 16) ||
+            data.size() != static_cast<std::size_t>(width * height * (depth > 8 ? 2 : 1)))
+            return file_error("an image does not fit its description", where);
+        if (crc_of(data) != row.integer(4))
+            return file_error("the checksum of an image is wrong: the file is damaged", where);
+        run.captures[static_cast<std::size_t>(capture)].image =
+            StoredImage{static_cast<int>(width), static_cast<int>(height), static_cast<int>(depth),
+                        std::vector<std::byte>(data.begin(), data.end())};
+        return {};
+    });
+}
+
+template <class T>
+Expected<void> load_results(Database& db, const char* sql, std::int64_t number, std::vector<T>& items) {
+    auto s = db.prepare(sql);
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, number);
+    return for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        auto value =
+            row_value<T>(row.text(1), fmt::format("run {}: {}", number, row.text(0)), db.path(), kResult);
+        if (!value) return tl::unexpected(value.error());
+        items.push_back(std::move(*value));
+        return {};
+    });
+}
+
+}  // namespace
+
+Expected<RunSetup> RunSetup::of(const Project& project) {
+    Project slim = project;
+    slim.part.mesh_ply.clear();
+    for (Calibration& c : slim.calibrations) {
+        c.raw = nlohmann::json::object();
+        c.result = nlohmann::json::object();
+    }
+    auto text = row_text(slim, "setup of the run", kSetup);
+    if (!text) return tl::unexpected(text.error());
+    RunSetup setup;
+    setup.crc_ = crc_of(*text);
+    setup.text_ = std::move(*text);
+    return setup;
+}
+
+// The row of this setup, made when there is none yet.
+Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
+    Database& db = impl_->db;
+    auto find = db.prepare("SELECT id FROM setups WHERE crc = ? AND body = ?");
+    if (!find) return tl::unexpected(find.error());
+    find->bind(1, setup.crc_);
+    find->bind(2, setup.text_);
+    auto row = find->step();
+    if (!row) return tl::unexpected(row.error());
+    if (*row) {
+        const std::int64_t id = find->integer(0);
+        find->reset();
+        return id;
+    }
+    auto insert = db.prepare("INSERT INTO setups (crc, body) VALUES (?, ?)");
+    if (!insert) return tl::unexpected(insert.error());
+    insert->bind(1, setup.crc_);
+    insert->bind(2, setup.text_);
+    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    const std::int64_t id = db.last_rowid();
+    if (auto done = seal_row(db, "setups", "id", id); !done) return tl::unexpected(done.error());
+    return id;
+}
+
+// Within the caller's transaction.
+Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSetup& setup) {
+    auto setup_number = setup_id(setup);
+    if (!setup_number) return setup_number;
+    auto s = impl_->db.prepare(
+        "INSERT INTO runs (part_id, started_utc, finished_utc, push, status, message, setup) VALUES (?, ?, "
+        "?, ?, ?, ?, ?)");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, utf8_text(run.part_id));
+    s->bind(2, utf8_text(run.started_utc));
+    s->bind(3, utf8_text(run.finished_utc));
+    s->bind(4, std::int64_t{run.push});
+    s->bind(5, to_string(run.status));
+    s->bind(6, utf8_text(run.message));
+    s->bind(7, *setup_number);
+    if (auto done = s->run(); !done) return tl::unexpected(done.error());
+    const std::int64_t number = impl_->db.last_rowid();
+    if (auto done = seal_row(impl_->db, "runs", "number", number); !done) return tl::unexpected(done.error());
+    return number;
+}
+
+Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Project& setup) {
+    const auto text = RunSetup::of(setup);
+    if (!text) return tl::unexpected(text.error());
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto number = insert_run(run, *text);
+    if (!number) return number;
+    if (auto done = insert_rest(impl_->db, run, *number, {}); !done) return tl::unexpected(done.error());
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return number;
+}
+
+Expected<std::int64_t> ProjectFile::begin_run(const RunRecord& run, const RunSetup& setup) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto number = insert_run(run, setup);
+    if (!number) return number;
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return number;
+}
+
+Expected<void> ProjectFile::append_measured(const RunRecord& run, StoredMeasurements& stored) {
+    StoredMeasurements then = stored;
+    const auto measured = [&](std::size_t i) {
+        return run.spots[i].capture >= 0 && then.spots.insert(i).second;
+    };
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    if (auto done = insert_captures(impl_->db, std::span(run.captures).subspan(stored.captures),
+                                    stored.captures, run.number);
+        !done)
+        return done;
+    if (auto done = insert_spots(impl_->db, run, run.number, measured); !done) return done;
+    if (auto done = transaction->commit(); !done) return done;
+    then.captures = run.captures.size();
+    stored = std::move(then);
+    return {};
+}
+
+Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasurements& stored) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto s = impl_->db.prepare(
+        "UPDATE runs SET part_id = ?, finished_utc = ?, status = ?, message = ? WHERE number = ? RETURNING "
+        "number");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, utf8_text(run.part_id));
+    s->bind(2, utf8_text(run.finished_utc));
+    s->bind(3, to_string(run.status));
+    s->bind(4, utf8_text(run.message));
+    s->bind(5, run.number);
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
+    if (auto done = s->run(); !done) return done;
+    if (auto done = seal_row(impl_->db, "runs", "number", run.number); !done) return done;
+    if (auto done = insert_rest(impl_->db, run, run.number, stored); !done) return done;
+    return transaction->commit();
+}
+
+Expected<void> ProjectFile::update_run(const RunRecord& run) {
+    Database& db = impl_->db;
+    auto transaction = Transaction::begin(db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto s = db.prepare(
+        "UPDATE runs SET finished_utc = ?, status = ?, message = ? WHERE number = ? RETURNING number");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, utf8_text(run.finished_utc));
+    s->bind(2, to_string(run.status));
+    s->bind(3, utf8_text(run.message));
+    s->bind(4, run.number);
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
+    if (auto done = s->run(); !done) return done;
+    if (auto done = seal_row(db, "runs", "number", run.number); !done) return done;
+    for (const char* outcome :
+         {"DELETE FROM run_regions WHERE run = ?", "DELETE FROM run_panels WHERE run = ?"}) {
+        auto remove = db.prepare(outcome);
+        if (!remove) return tl::unexpected(remove.error());
+        remove->bind(1, run.number);
+        if (auto done = remove->run(); !done) return done;
+    }
+    if (auto done = insert_regions(db, run, run.number); !done) return done;
+    if (auto done = insert_panel(db, run, run.number); !done) return done;
+    return transaction->commit();
+}
+
+Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    if (auto done = insert_event(impl_->db, event, event.run); !done) return tl::unexpected(done.error());
+    const std::int64_t id = impl_->db.last_rowid();
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return id;
+}
+
+Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
+    auto with = RunSetup::of(setup);
+    if (!with) return tl::unexpected(with.error());
+    Database& db = impl_->db;
+    auto transaction = Transaction::begin(db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto setup_number = setup_id(*with);
+    if (!setup_number) return setup_number;
+    const std::string kind(kind_of(evidence));
+    auto text = std::visit([&](const auto& what) { return row_text(what, "evidence: " + kind, kResult); },
+                           evidence.what);
+    if (!text) return tl::unexpected(text.error());
+    auto s = db.prepare("INSERT INTO evidence (utc, kind, subject, setup, body) VALUES (?, ?, ?, ?, ?)");
+    if (!s) return tl::unexpected(s.error());
+    const auto* frozen = std::get_if<FrozenContour>(&evidence.what);
+    s->bind(1, evidence.utc.empty() ? utc_now() : utf8_text(evidence.utc));
+    s->bind(2, kind);
+    s->bind(3, frozen ? utf8_text(frozen->spot_id) : std::string());
+    s->bind(4, *setup_number);
+    s->bind(5, *text);
+    if (auto done = s->run(); !done) return tl::unexpected(done.error());
+    const std::int64_t id = db.last_rowid();
+    if (auto done = seal_row(db, "evidence", "id", id); !done) return tl::unexpected(done.error());
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return id;
+}
+
+Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const {
+    if (auto sound = check_rows(impl_->db, "evidence"); !sound) return tl::unexpected(sound.error());
+    auto s = impl_->db.prepare("SELECT id, utc, kind, setup, body FROM evidence WHERE id > ? ORDER BY id");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, after);
+    std::vector<Evidence> list;
+    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        Evidence e;
+        e.id = row.integer(0);
+        e.utc = row.text(1);
+        e.setup = row.integer(3);
+        const std::string kind = row.text(2), body = row.text(4), where = fmt::format("evidence {}", e.id);
+        const auto read_as = [&]<class T>(T*) -> Expected<void> {
+            auto value = row_value<T>(body, where, impl_->path.string(), kResult);
+            if (!value) return tl::unexpected(value.error());
+            e.what = std::move(*value);
+            return {};
+        };
+        Expected<void> done = kind == kFrozenContour ? read_as(static_cast<FrozenContour*>(nullptr))
+                              : kind == kZeroShift   ? read_as(static_cast<ZeroShift*>(nullptr))
+                              : kind == kKnownShift  ? read_as(static_cast<KnownShift*>(nullptr))
+                              : kind == kHeadlessRun ? read_as(static_cast<HeadlessRun*>(nullptr))
+                                                     : file_error("an evidence is of unknown kind",
+                                                                  impl_->path.string() + ": " + where);
+        if (done) list.push_back(std::move(e));
+        return done;
+    });
+    if (!read) return tl::unexpected(read.error());
+    return list;
+}
+
+Expected<std::vector<RunSummary>> ProjectFile::runs() const {
+    if (auto sound = check_rows(impl_->db, "runs"); !sound) return tl::unexpected(sound.error());
+    auto s = impl_->db.prepare(
+        "SELECT number, part_id, started_utc, finished_utc, push, status, message, setup, "
+        "(SELECT count(*) FROM run_spots WHERE run = number), "
+        "(SELECT ifnull(sum(captures), 0) FROM captures WHERE run = number) FROM runs ORDER BY number");
+    if (!s) return tl::unexpected(s.error());
+    std::vector<RunSummary> runs;
+    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        RunSummary run;
+        run.number = row.integer(0);
+        run.part_id = row.text(1);
+        run.started_utc = row.text(2);
+        run.finished_utc = row.text(3);
+        run.push = row.integer(4) != 0;
+        const auto status = run_status_from(row.text(5));
+        if (!status)
+            return file_error("a run has an unknown status",
+                              fmt::format("{}: run {}", impl_->path.string(), run.number));
+        run.status = *status;
+        run.message = row.text(6);
+        run.setup = row.integer(7);
+        run.spots = static_cast<int>(row.integer(8));
+        run.captures = static_cast<int>(row.integer(9));
+        runs.push_back(std::move(run));
+        return {};
+    });
+    if (!read) return tl::unexpected(read.error());
+    return runs;
+}
+
+Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_captures) const {
+    Database& db = impl_->db;
+    if (auto sound = check_rows(db, "runs", "number", number); !sound) return tl::unexpected(sound.error());
+    for (const char* table : {"run_spots", "run_regions", "run_panels"})
+        if (auto sound = check_rows(db, table, "run", number); !sound) return tl::unexpected(sound.error());
+    auto s = db.prepare(
+        "SELECT part_id, started_utc, finished_utc, push, status, message FROM runs WHERE number = ?");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, number);
+    RunRecord run;
+    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        run.number = number;
+        run.part_id = row.text(0);
+        run.started_utc = row.text(1);
+        run.finished_utc = row.text(2);
+        run.push = row.integer(3) != 0;
+        const auto status = run_status_from(row.text(4));
+        if (!status)
+            return file_error("the run has an unknown status",
+                              fmt::format("{}: run {}", impl_->path.string(), number));
+        run.status = *status;
+        run.message = row.text(5);
+        return {};
+    });
+    if (!read) return tl::unexpected(read.error());
+    if (run.number != number || number < 1)
+        return input_error(fmt::format("there is no run {}", number), impl_->path.string());
+    if (auto done = load_results(db, "SELECT spot_id, body FROM run_spots WHERE run = ? ORDER BY position",
+                                 number, run.spots);
+        !done)
+        return tl::unexpected(done.error());
+    if (auto done =
+            load_results(db, "SELECT region_id, body FROM run_regions WHERE run = ? ORDER BY position",
+                         number, run.regions);
+        !done)
+        return tl::unexpected(done.error());
+    std::vector<PanelRecord> panels;
+    if (auto done = load_results(db, "SELECT job_id, body FROM run_panels WHERE run = ?", number, panels);
+        !done)
+        return tl::unexpected(done.error());
+    if (!panels.empty()) run.panel = std::move(panels.front());
+    if (with_captures)
+        if (auto done = load_captures(db, run); !done) return tl::unexpected(done.error());
+    auto events_of_run = events(number);
+    if (!events_of_run) return tl::unexpected(events_of_run.error());
+    run.events = std::move(*events_of_run);
+    return run;
+}
+
+Expected<Project> ProjectFile::load_setup(std::int64_t setup) const {
+    if (auto sound = check_rows(impl_->db, "setups", "id", setup); !sound)
+        return tl::unexpected(sound.error());
+    auto s = impl_->db.prepare("SELECT body FROM setups WHERE id = ?");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, setup);
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return file_error(fmt::format("setup {} is missing", setup), impl_->path.string());
+    const std::string text = s->text(0);
+    s->reset();
+    return row_value<Project>(text, fmt::format("setup {}", setup), impl_->path.string(), kSetup);
+}
+
+Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
+    if (auto sound = check_rows(impl_->db, "runs", "number", number); !sound)
+        return tl::unexpected(sound.error());
+    auto s = impl_->db.prepare("SELECT setup FROM runs WHERE number = ?");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, number);
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return input_error(fmt::format("there is no run {}", number), impl_->path.string());
+    const std::int64_t setup = s->integer(0);
+    s->reset();
+    return load_setup(setup);
+}
+
+Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
+    if (auto sound = check_rows(impl_->db, "events", run ? "run" : nullptr, run); !sound)
+        return tl::unexpected(sound.error());
+    auto s = impl_->db.prepare(
+        run ? "SELECT id, utc, run, kind, subject, text FROM events WHERE run = ? ORDER BY id"
+            : "SELECT id, utc, run, kind, subject, text FROM events ORDER BY id");
+    if (!s) return tl::unexpected(s.error());
+    if (run) s->bind(1, run);
+    std::vector<EventRecord> list;
+    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+        EventRecord event;
+        event.id = row.integer(0);
+        event.utc = row.text(1);
+        event.run = row.integer(2);
+        const auto kind = event_kind_from(row.text(3));
+        if (!kind) return file_error("an event has an unknown kind", impl_->path.string());
+        event.kind = *kind;
+        event.subject = row.text(4);
+        event.text = row.text(5);
+        list.push_back(std::move(event));
+        return {};
+    });
+    if (!read) return tl::unexpected(read.error());
+    return list;
+}
+
+Expected<void> ProjectFile::delete_run(std::int64_t number) {
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto s = impl_->db.prepare("DELETE FROM runs WHERE number = ?");
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, number);
+    if (auto done = s->run(); !done) return done;
+    return transaction->commit();
+}
+
+std::vector<Error> ProjectFile::check() const {
+    std::vector<Error> findings;
+    Database& db = impl_->db;
+    auto integrity = db.prepare("PRAGMA integrity_check(20)");
+    if (!integrity) return {integrity.error()};
+    auto read = for_each_row(*integrity, [&](Statement& row) -> Expected<void> {
+        if (const std::string line = row.text(0); line != "ok")
+            findings.push_back(Error{ErrorKind::file, line, impl_->path.string(),
+                                     "take the last good copy from the backup"});
+        return {};
+    });
+    if (!read) findings.push_back(read.error());
+    if (auto structure = check_structure(db, current_version()); !structure)
+        findings.push_back(structure.error());
+    if (auto project = load(); !project) findings.push_back(project.error());
+    if (auto all = events(); !all) findings.push_back(all.error());
+    std::set<std::int64_t> setups;
+    const auto check_setup = [&](std::int64_t number) {
+        if (!setups.insert(number).second) return;
+        if (auto setup = load_setup(number); !setup) findings.push_back(setup.error());
+    };
+    if (auto proven = evidence(); !proven)
+        findings.push_back(proven.error());
+    else
+        for (const Evidence& e : *proven) check_setup(e.setup);
+    auto list = runs();
+    if (!list) {
+        findings.push_back(list.error());
+        return findings;
+    }
+    for (const RunSummary& run : *list) {
+        if (auto record = load_run(run.number); !record) findings.push_back(record.error());
+        check_setup(run.setup);
+    }
+    return findings;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,68 @@
+#include "projects/file/row_checksum.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace seamwright {
+namespace {
+
+constexpr std::array<ChecksummedTable, 16> kTables{{
+    {"project", "name", "id, name, created_utc"},
+    {"requirements", "id", "id, body"},
+    {"part", "id", "id, body, mesh"},
+    {"sensors", "id", "id, position, driver, body"},
+    {"robots", "id", "id, position, driver, body"},
+    {"calibrations", "id", "id, position, sensor_id, robot_id, created_utc, verdict, body"},
+    {"spots", "id", "id, position, sensor_id, robot_id, body, reference_profile, template_profile"},
+    {"regions", "id", "id, position, frame_name, body"},
+    {"panel_jobs", "id", "id, position, frame_name, body"},
+    {"setups", "id", "id, crc, body"},
+    {"runs", "number", "number, part_id, started_utc, finished_utc, push, status, message, setup"},
+    {"run_spots", "run", "run, position, spot_id, status, body"},
+    {"run_regions", "run", "run, position, region_id, gate_passed, body"},
+    {"run_panels", "run", "run, job_id, gate_passed, body"},
+    {"events", "id", "id, utc, run, kind, subject, text"},
+    {"evidence", "id", "id, utc, kind, subject, setup, body"},
+}};
+
+const ChecksummedTable& table_of(std::string_view name) {
+    const auto it = std::ranges::find(kTables, name, &ChecksummedTable::name);
+    assert(it != kTables.end());
+    return *it;
+}
+
+}  // namespace
+
+std::span<const ChecksummedTable> checksummed_tables() {
+    return kTables;
+}
+
+Expected<void> check_rows(Database& db, std::string_view table, const char* column, std::int64_t value) {
+    const ChecksummedTable& t = table_of(table);
+    auto s = db.prepare(
+        fmt::format("SELECT CAST({} AS TEXT) FROM {} WHERE {}checksum IS NOT row_checksum({}) LIMIT 1", t.key,
+                    t.name, column ? fmt::format("{} = ? AND ", column) : "", t.columns));
+    if (!s) return tl::unexpected(s.error());
+    if (column) s->bind(1, value);
+    auto row = s->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) return {};
+    const std::string where = fmt::format("{}: {} {}", db.path(), t.name, s->text(0));
+    s->reset();
+    return file_error("the checksum of an entry is wrong: the file is damaged", where,
+                      "take the last good copy from the backup");
+}
+
+Expected<void> seal_row(Database& db, std::string_view table, const char* column, std::int64_t value) {
+    const ChecksummedTable& t = table_of(table);
+    auto s = db.prepare(
+        fmt::format("UPDATE {} SET checksum = row_checksum({}) WHERE {} = ?", t.name, t.columns, column));
+    if (!s) return tl::unexpected(s.error());
+    s->bind(1, value);
+    return s->run();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,124 @@
+#include "projects/gate/release.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace seamwright {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kLook{25};
+constexpr std::chrono::seconds kTell{5};  // how often the wait is told
+
+// The wait for one robot.
+class Waiting {
+  public:
+    Waiting(RobotLink& robot, const HoldOptions& options) : robot_(robot), options_(options) {}
+
+    // Nothing = it still waits.
+    std::optional<RobotRelease> look(bool time_over, bool next_part) {
+        const Expected<Permission> now = robot_.permission();
+        trouble_ = now ? std::string() : now.error().sentence();
+        if (now && *now == Permission::taken) return taken();
+        if (now && *now == Permission::none)
+            return RobotRelease{Release::withdrawn, ran_ ? "the application was stopped before its end"
+                                                         : "the robot took the permission back by itself"};
+        if (now) ran_ = ran_ || *now == Permission::running;
+        const bool running = now && *now == Permission::running;
+        if (options_.cancel.stop_requested())
+            return give_up(Release::withdrawn, "cancelled before the application had taken the permission");
+        if (running) return std::nullopt;
+        if (next_part)
+            return give_up(Release::not_taken,
+                           "the line called for the next part before the application began");
+        if (time_over)
+            return give_up(
+                Release::not_taken,
+                fmt::format("the application did not begin within {} s",
+                            std::chrono::duration_cast<std::chrono::seconds>(options_.hold).count()));
+        return std::nullopt;
+    }
+    std::string state(std::optional<Clock::duration> left) const {
+        if (!trouble_.empty()) return "does not say whether the application began: " + trouble_;
+        if (ran_) return "the application runs in the frames";
+        if (!left) return "released, waiting for the application";
+        return fmt::format("released, waiting for the application, {} s left",
+                           std::chrono::ceil<std::chrono::seconds>(*left).count());
+    }
+
+  private:
+    static RobotRelease taken() { return {Release::taken, "the application runs in the frames"}; }
+    RobotRelease give_up(Release as, const std::string& why) {
+        RobotRelease back = take_back(robot_, PartVerdict::failed, "not released: " + why, true);
+        if (back.release == Release::withdrawn) return {as, why};
+        if (back.release == Release::given) back.text = why + "; " + back.text;
+        return back;
+    }
+    RobotLink& robot_;
+    const HoldOptions& options_;
+    bool ran_ = false;
+    std::string trouble_;
+};
+
+}  // namespace
+
+RobotRelease take_back(RobotLink& robot, PartVerdict verdict, const std::string& text, bool running) {
+    const auto has_it = [&](const Expected<Permission>& now) {
+        return now && (*now == Permission::taken || (*now == Permission::running && !running));
+    };
+    const RobotRelease taken{Release::taken, "the application runs in the frames"};
+    if (has_it(robot.permission())) return taken;
+    const Expected<void> told = robot.confirm(verdict, text);
+    const Expected<Permission> now = robot.permission();
+    if (now && *now == Permission::taken) return taken;
+    if (now && *now == Permission::none) return {Release::withdrawn, "the permission is taken back"};
+    const std::string why = !told ? told.error().sentence()
+                            : now ? fmt::format("it says \"{}\" all the same", to_string(*now))
+                                  : now.error().sentence();
+    return {Release::given, fmt::format("it is not sure that the permission was taken back: {}", why)};
+}
+
+std::map<std::string, RobotRelease> await_release(const std::map<std::string, RobotLink*>& robots,
+                                                  const HoldOptions& options, const EventSink& record) {
+    std::map<std::string, RobotRelease> ended;
+    std::map<std::string, Waiting> open;
+    for (const auto& [id, robot] : robots) open.try_emplace(id, *robot, options);
+    std::optional<Clock::time_point> until;
+    if (options.hold != kHoldForEver) until = Clock::now() + options.hold;
+    auto tell_again = Clock::now();
+    bool next_part = false;
+    while (!open.empty()) {
+        for (auto it = open.begin(); it != open.end();) {
+            auto outcome = it->second.look(until && Clock::now() >= *until, next_part);
+            if (!outcome) {
+                ++it;
+                continue;
+            }
+            const EventKind kind = outcome->release == Release::taken   ? EventKind::push
+                                   : outcome->release == Release::given ? EventKind::alarm
+                                                                        : EventKind::refusal;
+            const bool released = outcome->release == Release::taken;
+            // The outcome is in the run's record in any case; the log is the second place.
+            (void)record(kind, it->first, (released ? "" : "not released: ") + outcome->text);
+            if (options.progress) options.progress("robot " + it->first + ": " + outcome->text);
+            ended[it->first] = std::move(*outcome);
+            it = open.erase(it);
+        }
+        if (open.empty()) break;
+        if (options.progress && Clock::now() >= tell_again) {
+            tell_again = Clock::now() + kTell;
+            std::optional<Clock::duration> left;
+            if (until) left = std::max(*until - Clock::now(), Clock::duration::zero());
+            for (const auto& [id, waiting] : open)
+                options.progress("robot " + id + ": " + waiting.state(left));
+        }
+        // Asked last: who has begun needs no more than that.
+        next_part = options.part_over && options.part_over();
+        if (!next_part) std::this_thread::sleep_for(kLook);
+    }
+    return ended;
+}
+
+}  // namespace seamwright

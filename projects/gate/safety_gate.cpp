@@ -1,0 +1,435 @@
+#include "projects/gate/safety_gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cmath>
+
+#include "core/correction/sigma.h"
+#include "devices/capture/capture.h"
+
+namespace seamwright {
+
+// The only maker of passes.
+struct GateKeeper {
+    static GatePass pass(const GateRequest& request) {
+        GatePass pass;
+        pass.region_id_ = request.region.id;
+        pass.frame_name_ = request.region.frame_name;
+        pass.base_from_frame_ = corrected_frame(request.base_from_workobject, request.correction.displacement,
+                                                request.region.base_from_frame);
+        pass.base_from_frame_now_ = request.base_from_frame_now;
+        return pass;
+    }
+};
+
+namespace {
+
+class Reasons {
+  public:
+    explicit Reasons(std::vector<std::string>& list) : list_(list) {}
+    template <class... Args>
+    void refuse_unless(bool ok, fmt::format_string<Args...> text, Args&&... args) {
+        if (!ok) list_.push_back(fmt::format(text, std::forward<Args>(args)...));
+    }
+
+  private:
+    std::vector<std::string>& list_;
+};
+
+bool rigid(const Pose& pose) {
+    // A frame that is 100 m away is as wrong as one that is sheared; both end here.
+    return pose_from_matrix(pose.matrix(), "", 1e-6).has_value();
+}
+
+std::string name_of(const SensorIdentity& id) {
+    return fmt::format("{} {} {} {}", id.driver, id.vendor, id.model, id.serial);
+}
+std::string name_of(const RobotIdentity& id) {
+    return fmt::format("{} {} {} {}", id.driver, id.brand, id.model, id.serial);
+}
+
+// The displacement that leads from the taught frame to this one, in the work object: corrected_frame() turned
+// round.
+Pose displacement_to(const GateRequest& request, const Pose& base_from_frame) {
+    return request.base_from_workobject.inverse() * base_from_frame *
+           request.region.base_from_frame.inverse() * request.base_from_workobject;
+}
+
+void judge_age(const GateRequest& request, const GateSpot& spot, Reasons& reasons) {
+    constexpr double kClocksDifferDays = 1.0 / 24;  // of two computers
+    const auto made = utc_seconds(spot.calibrated_utc), now = utc_seconds(request.now_utc);
+    if (!made || !now) {
+        reasons.refuse_unless(now.has_value(), "what time it is now is not known");
+        reasons.refuse_unless(made.has_value(), "calibration {} at spot {} has no date ({})",
+                              spot.calibration_id, spot.id,
+                              spot.calibrated_utc.empty() ? "none" : spot.calibrated_utc);
+        return;
+    }
+    const double age_days = static_cast<double>(*now - *made) / 86400;
+    reasons.refuse_unless(age_days >= -kClocksDifferDays,
+                          "calibration {} at spot {} carries a date in the future ({})", spot.calibration_id,
+                          spot.id, spot.calibrated_utc);
+    reasons.refuse_unless(age_days <= request.calibration_age_days,
+                          "calibration {} at spot {} is {:.0f} days old, {:.0f} are allowed",
+                          spot.calibration_id, spot.id, age_days, request.calibration_age_days);
+}
+
+void judge_spots(const GateRequest& request, Reasons& reasons) {
+    for (const std::string& id : request.region.spot_ids) {
+        const auto count = std::count_if(request.spots.begin(), request.spots.end(),
+                                         [&](const GateSpot& spot) { return spot.id == id; });
+        reasons.refuse_unless(count == 1, "spot {} of the region is {}", id,
+                              count ? "given twice" : "not known");
+    }
+    bool any = false;
+    for (const GateSpot& spot : request.spots) {
+        const auto& ids = request.region.spot_ids;
+        reasons.refuse_unless(std::find(ids.begin(), ids.end(), spot.id) != ids.end(),
+                              "spot {} is not of this region", spot.id);
+        if (!spot.measured) {
+            reasons.refuse_unless(!spot.required, "required spot {} was not measured", spot.id);
+            continue;
+        }
+        any = true;
+        reasons.refuse_unless(spot.part_id == request.part_id,
+                              "spot {} was measured on part \"{}\", not on \"{}\"", spot.id, spot.part_id,
+                              request.part_id);
+        reasons.refuse_unless(spot.measured_at_ns >= request.part_since_ns,
+                              "spot {} is stale: measured {:.1f} s before the part came", spot.id,
+                              1e-9 * static_cast<double>(request.part_since_ns - spot.measured_at_ns));
+        reasons.refuse_unless(spot.measured_at_ns <= request.now_ns, "spot {} carries a time in the future",
+                              spot.id);
+        if (spot.calibration_id.empty()) {
+            reasons.refuse_unless(false, "the sensor of spot {} is not calibrated", spot.id);
+            continue;
+        }
+        reasons.refuse_unless(serves(spot.calibration_verdict),
+                              "calibration {} at spot {} is {}, not good or usable", spot.calibration_id,
+                              spot.id, name_of(spot.calibration_verdict));
+        judge_age(request, spot, reasons);
+        reasons.refuse_unless(!spot.calibrated_sensor.driver.empty() && spot.sensor == spot.calibrated_sensor,
+                              "the sensor at spot {} is [{}], calibrated was [{}]", spot.id,
+                              name_of(spot.sensor), name_of(spot.calibrated_sensor));
+        reasons.refuse_unless(!spot.calibrated_robot.driver.empty() && spot.robot == spot.calibrated_robot,
+                              "the robot at spot {} is [{}], calibrated was [{}]", spot.id,
+                              name_of(spot.robot), name_of(spot.calibrated_robot));
+    }
+    reasons.refuse_unless(any, "no spot of the region was measured");
+    for (const GateSpot& spot : request.spots)
+        reasons.refuse_unless(spot.robot == request.spots.front().robot,
+                              "spots {} and {} belong to different robots, one frame cannot serve both",
+                              request.spots.front().id, spot.id);
+}
+
+// Every number of the request; what enters no comparison of its own would still come from a computation that
+// went wrong.
+bool all_finite(const GateRequest& request) {
+    const RegionCorrection& c = request.correction;
+    bool finite = c.displacement.workobject_from_movedworkobject.matrix().allFinite() &&
+                  c.covariance.allFinite() && c.sigma_xyz_mm.allFinite() && c.sigma_abc_deg.allFinite() &&
+                  std::isfinite(c.sigma_at_spots_mm) && std::isfinite(c.rms_mm) &&
+                  std::isfinite(c.variance_factor);
+    for (const SpotResidual& spot : c.spots) finite = finite && spot.residual_mm.allFinite();
+    for (const GateSpot& spot : request.spots) finite = finite && spot.point_workobject_mm.allFinite();
+    return finite;
+}
+
+// Symmetric and without a negative variance in any direction, to rounding. Judged by correlations:
+// millimetres and radians do not compare.
+bool is_covariance(const Matrix6& c) {
+    constexpr double kRounding = 1e-6;
+    if (!c.allFinite() || c.diagonal().minCoeff() < 0) return false;
+    Matrix6 correlation = Matrix6::Identity();
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 6; ++k) {
+            if (i == k) continue;
+            const double scale = std::sqrt(c(i, i)) * std::sqrt(c(k, k));
+            if (scale > 0)
+                correlation(i, k) = c(i, k) / scale;
+            else if (c(i, k) != 0)
+                return false;
+        }
+    if (!((correlation - correlation.transpose()).cwiseAbs().maxCoeff() <= kRounding)) return false;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(correlation, Eigen::EigenvaluesOnly);
+    return solver.info() == Eigen::Success && solver.eigenvalues().minCoeff() >= -kRounding;
+}
+
+void judge_limits(const GateRequest& request, Reasons& reasons) {
+    const Region& region = request.region;
+    for (const std::string& finding : limits_that_are_none(region))
+        reasons.refuse_unless(false, "{}", finding);
+    reasons.refuse_unless(request.calibration_age_days > 0 && std::isfinite(request.calibration_age_days),
+                          "the age that a calibration may have, {} days, is no limit",
+                          request.calibration_age_days);
+    for (const std::string& other : request.other_frames)
+        reasons.refuse_unless(!same_frame(other, region.frame_name),
+                              "frame {} is written by another region or panel job too", region.frame_name);
+}
+
+// Expects finite poses.
+void judge_jump(const GateRequest& request, Reasons& reasons) {
+    if (!request.frame_trouble.empty()) {
+        reasons.refuse_unless(false, "the frame that the controller holds cannot be read: {}",
+                              request.frame_trouble);
+        return;
+    }
+    if (!request.base_from_frame_now) return;
+    const Pose& now = *request.base_from_frame_now;
+    if (!rigid(now)) {
+        reasons.refuse_unless(false, "the frame that the controller holds is no rigid pose");
+        return;
+    }
+    const Region& region = request.region;
+    const Pose d = displacement_to(request, now);
+    const double length = d.translation().norm(), turn = deg_from_rad(angle_rad(d, Pose::Identity()));
+    const Pose target = corrected_frame(request.base_from_workobject, request.correction.displacement,
+                                        region.base_from_frame);
+    double jump = distance_mm(target, now);
+    for (const GateSpot& spot : request.spots) {
+        const Eigen::Vector3d in_frame =
+            region.base_from_frame.inverse() * (request.base_from_workobject * spot.point_workobject_mm);
+        jump = std::max(jump, (target * in_frame - now * in_frame).norm());
+    }
+    reasons.refuse_unless(
+        length <= region.limits.translation_mm && turn <= region.limits.rotation_deg && std::isfinite(jump),
+        "frame {} on the controller is {:.3f} mm and {:.3f} degrees off the taught one, beyond the region's "
+        "limits of {:.3f} mm and {:.3f} degrees: the path would jump by {:.1f} mm (compare units, robot and "
+        "the taught frame)",
+        region.frame_name, length, turn, region.limits.translation_mm, region.limits.rotation_deg, jump);
+}
+
+void judge_correction(const GateRequest& request, Reasons& reasons) {
+    const RegionCorrection& correction = request.correction;
+    const Region& region = request.region;
+    reasons.refuse_unless(correction.status == CorrectionStatus::ok, "the correction is not ok ({})",
+                          correction.message.empty() ? "no message" : correction.message);
+    const Pose& d = correction.displacement.workobject_from_movedworkobject;
+    const bool finite = all_finite(request);
+    reasons.refuse_unless(finite, "the correction holds a value that is not a finite number");
+    if (!finite) return;
+    if (!rigid(d)) {
+        reasons.refuse_unless(false, "the correction is no rigid displacement");
+        return;
+    }
+    reasons.refuse_unless(is_covariance(correction.covariance),
+                          "the correction's covariance is none (not symmetric, or a negative variance)");
+
+    // Every comparison is written so that NaN refuses.
+    const double length = d.translation().norm();
+    const double turn = deg_from_rad(angle_rad(d, Pose::Identity()));
+    reasons.refuse_unless(length <= region.limits.translation_mm,
+                          "the displacement of {:.3f} mm is beyond the limit of {:.3f} mm", length,
+                          region.limits.translation_mm);
+    reasons.refuse_unless(turn <= region.limits.rotation_deg,
+                          "the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn,
+                          region.limits.rotation_deg);
+
+    // Where the path runs, not at the work object's origin, which may lie metres away and says nothing about
+    // the bead.
+    double sigma_mm = request.spots.empty() ? worst_sigma(correction.covariance.topLeftCorner<3, 3>()) : 0.0;
+    bool sigma_known = true;
+    for (const GateSpot& spot : request.spots) {
+        const double at_spot = sigma_at_mm(correction.covariance, d, spot.point_workobject_mm);
+        sigma_known = sigma_known && std::isfinite(at_spot);
+        sigma_mm = std::max(sigma_mm, at_spot);
+    }
+    const double turn_sigma = deg_from_rad(worst_sigma(correction.covariance.bottomRightCorner<3, 3>()));
+    const double sigma_deg = std::max(turn_sigma, correction.sigma_abc_deg.cwiseAbs().maxCoeff());
+    reasons.refuse_unless(sigma_known && std::isfinite(sigma_mm) && std::isfinite(turn_sigma),
+                          "sigma at the spots is not known");
+    reasons.refuse_unless(sigma_mm <= region.sigma_limit_mm,
+                          "sigma of {:.4f} mm is over the region's limit of {:.4f} mm", sigma_mm,
+                          region.sigma_limit_mm);
+    reasons.refuse_unless(sigma_deg <= region.sigma_limit_deg,
+                          "sigma of {:.4f} degrees is over the region's limit of {:.4f} degrees", sigma_deg,
+                          region.sigma_limit_deg);
+    reasons.refuse_unless(
+        correction.consistent,
+        "the spots contradict each other beyond their stated sigma (variance factor {:.1f})",
+        correction.variance_factor);
+    // A free direction known without any error was never estimated.
+    reasons.refuse_unless(sigma_mm > 0 || sigma_deg > 0, "the correction states no uncertainty");
+    if (rigid(request.base_from_workobject) && rigid(region.base_from_frame)) judge_jump(request, reasons);
+}
+
+bool mode_allowed(const GateRequest& request) {
+    if (request.mode == RobotMode::stopped || request.mode == RobotMode::fault) return false;
+    if (request.required_mode != RobotMode::unknown) return request.mode == request.required_mode;
+    return request.mode != RobotMode::unknown || !request.tells_mode;
+}
+
+struct FrameDistance {
+    double mm, deg;
+    bool equal() const { return mm <= kReadBackToleranceMm && deg <= kReadBackToleranceDeg; }
+};
+FrameDistance distance(const Pose& a, const Pose& b) {
+    if (!a.matrix().allFinite() || !b.matrix().allFinite()) {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {nan, nan};
+    }
+    return {distance_mm(a, b), deg_from_rad(angle_rad(a, b))};
+}
+
+std::string text_of(const Pose& pose) {
+    const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear());
+    return fmt::format("({:.4f}, {:.4f}, {:.4f}) mm, turned {:.5f} degrees", t.x(), t.y(), t.z(),
+                       deg_from_rad(w.norm()));
+}
+
+// Writes the frame of before and makes sure that it stands there.
+std::pair<PushStatus, std::string> put_back(const Pose& before, const std::string& name, RobotLink& robot) {
+    if (auto written = robot.write_frame(name, before); !written)
+        return {PushStatus::not_restored,
+                "the old frame could not be restored: " + written.error().sentence()};
+    const Expected<Pose> back = robot.read_frame(name);
+    if (!back)
+        return {PushStatus::not_restored,
+                "the old frame was written but cannot be read back: " + back.error().sentence()};
+    if (!distance(*back, before).equal())
+        return {PushStatus::not_restored, "the old frame was written but does not read back"};
+    return {PushStatus::restored, "the old frame is restored"};
+}
+
+}  // namespace
+
+Pose corrected_frame(const Pose& base_from_workobject, const Displacement& displacement,
+                     const Pose& base_from_frame) {
+    const Pose workobject_from_frame = base_from_workobject.inverse() * base_from_frame;
+    return base_from_workobject * displacement.corrected(Pose::Identity()) * workobject_from_frame;
+}
+
+bool same_frame(const std::string& a, const std::string& b) {
+    return !a.empty() &&
+           std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+std::vector<std::string> limits_that_are_none(const Region& region) {
+    std::vector<std::string> findings;
+    const auto judge = [&](double value, double most, const char* what, const char* unit) {
+        if (!(value > 0 && value <= most))
+            findings.push_back(
+                fmt::format("the limit of {}, {} {}, is none (above 0, up to {})", what, value, unit, most));
+    };
+    judge(region.limits.translation_mm, kMostTranslationMm, "translation", "mm");
+    judge(region.limits.rotation_deg, kMostRotationDeg, "rotation", "degrees");
+    judge(region.sigma_limit_mm, kMostSigmaMm, "sigma", "mm");
+    judge(region.sigma_limit_deg, kMostSigmaDeg, "sigma", "degrees");
+    return findings;
+}
+
+GatePass::GatePass(GatePass&& other) noexcept
+    : region_id_(std::move(other.region_id_)),
+      frame_name_(std::move(other.frame_name_)),
+      base_from_frame_(other.base_from_frame_),
+      base_from_frame_now_(other.base_from_frame_now_),
+      spent_(std::exchange(other.spent_, true)) {}
+
+GateVerdict pass_gate(const GateRequest& request) {
+    GateVerdict verdict;
+    Reasons reasons(verdict.reasons);
+    reasons.refuse_unless(!request.region.id.empty(), "the region has no id");
+    reasons.refuse_unless(!request.region.frame_name.empty(), "the region names no frame on the controller");
+    reasons.refuse_unless(!request.region.spot_ids.empty(), "the region has no spots");
+    reasons.refuse_unless(!request.part_id.empty(), "it is not known which part stands there");
+    reasons.refuse_unless(rigid(request.base_from_workobject), "the work object's frame is no rigid pose");
+    reasons.refuse_unless(rigid(request.region.base_from_frame),
+                          "the taught frame of the region is no rigid pose");
+    reasons.refuse_unless(mode_allowed(request), "the robot is in mode {}, required is {}",
+                          to_string(request.mode),
+                          request.required_mode != RobotMode::unknown ? to_string(request.required_mode)
+                          : request.tells_mode                        ? "any but stopped, fault and unknown"
+                                                                      : "any but stopped and fault");
+    judge_limits(request, reasons);
+    judge_spots(request, reasons);
+    judge_correction(request, reasons);
+    if (!verdict.reasons.empty()) return verdict;
+    GatePass pass = GateKeeper::pass(request);
+    reasons.refuse_unless(rigid(pass.base_from_frame()), "the corrected frame is no rigid pose");
+    if (verdict.reasons.empty()) verdict.pass.emplace(std::move(pass));
+    return verdict;
+}
+
+PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& record) {
+    const GatePass pass(std::move(given));  // spends the caller's
+    PushRecord push;
+    push.frame_name = pass.frame_name();
+    const Pose& target = pass.base_from_frame();
+    const auto give_up = [&](PushStatus status, EventKind kind, std::string message) {
+        push.status = status;
+        push.message = std::move(message);
+        // The outcome is in the returned record in any case; the log is the second place.
+        if (auto logged = record(kind, pass.frame_name(), push.message); !logged)
+            push.message += "; the event could not be recorded: " + logged.error().sentence();
+        return push;
+    };
+    if (pass.spent())
+        return give_up(PushStatus::failed, EventKind::refusal, "this pass of the gate was used before");
+
+    const Expected<Pose> before = robot.read_frame(pass.frame_name());
+    if (!before)
+        return give_up(PushStatus::failed, EventKind::device,
+                       "the old frame cannot be read: " + before.error().sentence());
+    if (!rigid(*before))
+        return give_up(PushStatus::failed, EventKind::device,
+                       "the robot answered an old frame that is no rigid pose");
+    push.before = *before;
+    if (!pass.base_from_frame_now())
+        return give_up(PushStatus::failed, EventKind::refusal,
+                       "the pass was given without the frame that the controller holds");
+    if (const FrameDistance moved = distance(*before, *pass.base_from_frame_now()); !moved.equal())
+        return give_up(PushStatus::failed, EventKind::refusal,
+                       fmt::format("somebody changed the frame on the controller by {:.4f} mm and {:.5f} "
+                                   "degrees since it was judged",
+                                   moved.mm, moved.deg));
+    if (auto logged = record(
+            EventKind::push_attempt, pass.frame_name(),
+            fmt::format("region {}: from {} to {}", pass.region_id(), text_of(*before), text_of(target)));
+        !logged) {
+        push.status = PushStatus::failed;
+        push.message = "the attempt cannot be recorded, so nothing was sent: " + logged.error().sentence();
+        return push;
+    }
+
+    std::string trouble;
+    if (auto written = robot.write_frame(pass.frame_name(), target); !written) {
+        trouble = "writing failed: " + written.error().sentence();
+    } else if (const Expected<Pose> back = robot.read_frame(pass.frame_name()); !back) {
+        trouble = "reading back failed: " + back.error().sentence();
+    } else {
+        push.read_back = *back;
+        const FrameDistance off = distance(*back, target);
+        if (!off.equal()) {
+            trouble = fmt::format(
+                "the robot holds another frame than was written (off by {:.4f} mm, {:.5f} degrees)", off.mm,
+                off.deg);
+        } else {
+            push.message = fmt::format("region {}: frame written and read back", pass.region_id());
+            auto logged = record(EventKind::push, pass.frame_name(), push.message);
+            if (logged) {
+                push.status = PushStatus::written;
+                return push;
+            }
+            trouble = "the push cannot be recorded: " + logged.error().sentence();
+        }
+    }
+
+    // What the controller holds is not known any more: the old frame goes back.
+    const auto [status, outcome] = put_back(*before, pass.frame_name(), robot);
+    return give_up(status, EventKind::alarm, trouble + "; " + outcome);
+}
+
+void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record, EventKind kind) {
+    assert(push.status == PushStatus::written && push.before);
+    const auto [status, outcome] = put_back(*push.before, push.frame_name, robot);
+    push.status = status;
+    push.message = "withdrawn: " + outcome;
+    if (status == PushStatus::not_restored) kind = EventKind::alarm;
+    if (auto logged = record(kind, push.frame_name, push.message); !logged)
+        push.message += "; the event could not be recorded: " + logged.error().sentence();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,128 @@
+#pragma once
+// The project: plain value types, everything the engineer sets up. Stored by project_file.h, run by
+// station.h.
+//
+// Frames. base: the robot's; work object: the part as taught, base_from_workobject; flange; sensor. A spot's
+// pose in the work object is derived: workobject_from_sensor = base_from_workobject^-1 * base_from_flange *
+// flange_from_sensor.
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/calibration/verdict.h"
+#include "core/correction/correction.h"
+#include "core/features/feature.h"
+#include "core/geometry/pose.h"
+#include "core/profile/filter.h"
+#include "core/profile/peaks.h"
+#include "core/profile/sensor_model.h"
+#include "devices/profile_source.h"
+#include "devices/robot_link.h"
+#include "projects/model/panel_job.h"
+
+namespace seamwright {
+
+struct PartSetup {
+    std::string name;                 // "door left"
+    std::string mesh_source;          // where the mesh came from, for people
+    std::vector<std::byte> mesh_ply;  // binary PLY, millimetres, work object frame; empty when there is none
+    Pose base_from_workobject = Pose::Identity();
+};
+
+struct SensorSetup {
+    std::string id;      // "A"
+    std::string driver;  // registry name
+    nlohmann::json settings = nlohmann::json::object();
+    SensorIdentity identity;     // as last connected; empty serial = never
+    PeakOptions peaks;           // image -> peaks
+    FilterOptions filter;        // stripe model
+    std::string calibration_id;  // the one in use; empty = none (then only finished profiles can be measured)
+};
+
+struct RobotSetup {
+    std::string id;  // "R1"
+    std::string driver;
+    nlohmann::json settings = nlohmann::json::object();
+    RobotIdentity identity;
+    RobotMode required_mode =
+        RobotMode::unknown;  // pushes are refused in any other; unknown = any but stopped/fault
+};
+
+// A calibration that turns a sensor's frames into millimetres on the flange.
+struct Calibration {
+    std::string id;
+    std::string method;  // "simulated truth", "tcp-sphere", "stripe-camera", "factory", ...
+    std::string sensor_id, robot_id;
+    SensorIdentity sensor_identity;  // compared before every push
+    RobotIdentity robot_identity;
+    std::string created_utc;           // ISO 8601
+    std::string source;                // from which data
+    std::optional<SensorModel> model;  // absent for sensors that deliver millimetres themselves
+    Pose flange_from_sensor = Pose::Identity();
+    Matrix6 covariance = Matrix6::Zero();
+    Verdict verdict = Verdict::undetermined;
+    nlohmann::json raw =
+        nlohmann::json::object();  // the data it was solved from, complete enough to solve again
+    nlohmann::json result = nlohmann::json::object();
+};
+
+struct Spot {
+    std::string id;  // "S1"
+    std::string sensor_id, robot_id;
+    bool enabled = true;
+    bool required = true;                      // a region with a required spot missing is not pushed
+    Pose base_from_flange = Pose::Identity();  // taught trigger pose
+    // base_from_flange too: passed in this order on the way from the spot before to the entry. None:
+    // straight.
+    std::vector<Pose> via;
+    double entry_mm = 20, exit_mm = 20;  // travel before and after the trigger, along the sensor's Y
+    double speed_mm_s = 100;
+    bool stop_at_trigger = false;
+    FeatureRecipe feature;
+    Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // sensor frame
+    Profile reference_profile;
+    Eigen::Vector3d weights = {1, 0, 1};
+    double sigma_mm = 0.05;
+    double jitter_mm = 3;  // half width of the jitter window
+    std::optional<ContourCurve> curve;
+};
+
+struct Region {
+    std::string id;  // "R1"
+    std::vector<std::string> spot_ids;
+    FreeDof free = kAllFree;
+    CorrectionLimits limits{25.0, 3.0};
+    double sigma_limit_mm = 0.1;  // worst direction at any of its spots; over this the gate refuses
+    double sigma_limit_deg = 0.05;
+    std::string frame_name;                   // on the controller
+    Pose base_from_frame = Pose::Identity();  // taught, for the undisplaced part
+};
+
+// What the work has to reach before it is handed over; the checklist (checklist.h) judges by it.
+struct Requirements {
+    // 3 sigma of a point of the path after correction, predicted and proven. The default is what an ordinary
+    // robot repeats (thesis 5.1) and three times a region's sigma limit.
+    double sigma3_mm = 0.3;
+    double calibration_age_days = 365;  // an older calibration in use is stale
+    double zero_shift_runs = 3;         // measurements of the unmoved part
+    // The known shift must have been recovered up to here, at the middle of the spots.
+    double known_shift_mm = 10, known_shift_deg = 1;
+};
+
+struct Project {
+    std::string name;
+    Requirements requirements;
+    PartSetup part;
+    std::vector<SensorSetup> sensors;
+    std::vector<RobotSetup> robots;
+    std::vector<Calibration> calibrations;
+    std::vector<Spot> spots;
+    std::vector<Region> regions;
+    std::vector<PanelJob> panel_jobs;
+};
+
+}  // namespace seamwright

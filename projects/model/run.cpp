@@ -1,0 +1,67 @@
+#include "projects/model/run.h"
+
+#include <array>
+
+namespace seamwright {
+namespace {
+
+constexpr auto kSpotStatus = std::to_array<std::string_view>(
+    {"measured", "not_measured", "damaged_frame", "no_stripe", "no_calibration", "no_feature"});
+constexpr auto kPushStatus =
+    std::to_array<std::string_view>({"not_pushed", "written", "failed", "restored", "not_restored"});
+constexpr auto kEventKind =
+    std::to_array<std::string_view>({"note", "refusal", "push_attempt", "push", "alarm", "device"});
+constexpr auto kRunStatus = std::to_array<std::string_view>(
+    {"interrupted", "pushed", "ok", "refused", "not_taken", "alarm", "device", "cancelled"});
+constexpr auto kRelease =
+    std::to_array<std::string_view>({"none", "given", "taken", "not_taken", "withdrawn"});
+
+constexpr auto kPanelVerdict =
+    std::to_array<std::string_view>({"not_verified", "in_tolerance", "out_of_tolerance"});
+
+template <class E, std::size_t N>
+std::optional<E> find_word(const std::array<std::string_view, N>& words, std::string_view name) {
+    for (std::size_t i = 0; i < N; ++i)
+        if (words[i] == name) return static_cast<E>(i);
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view to_string(SpotStatus status) {
+    return kSpotStatus.at(static_cast<std::size_t>(status));
+}
+std::string_view to_string(PushStatus status) {
+    return kPushStatus.at(static_cast<std::size_t>(status));
+}
+std::string_view to_string(Release release) {
+    return kRelease.at(static_cast<std::size_t>(release));
+}
+std::optional<Release> release_from(std::string_view name) {
+    return find_word<Release>(kRelease, name);
+}
+std::string_view to_string(EventKind kind) {
+    return kEventKind.at(static_cast<std::size_t>(kind));
+}
+std::string_view to_string(RunStatus status) {
+    return kRunStatus.at(static_cast<std::size_t>(status));
+}
+
+std::string_view to_string(PanelVerdict verdict) {
+    return kPanelVerdict.at(static_cast<std::size_t>(verdict));
+}
+
+std::optional<SpotStatus> spot_status_from(std::string_view name) {
+    return find_word<SpotStatus>(kSpotStatus, name);
+}
+std::optional<PushStatus> push_status_from(std::string_view name) {
+    return find_word<PushStatus>(kPushStatus, name);
+}
+std::optional<EventKind> event_kind_from(std::string_view name) {
+    return find_word<EventKind>(kEventKind, name);
+}
+std::optional<RunStatus> run_status_from(std::string_view name) {
+    return find_word<RunStatus>(kRunStatus, name);
+}
+
+}  // namespace seamwright

@@ -1,0 +1,251 @@
+#include "projects/panel/gap_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "projects/station/acquire.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kMostSteps = 100000;
+constexpr double kStillMm = 0.2;
+
+struct TimedPose {
+    std::int64_t time_ns;
+    Pose base_from_flange;
+};
+
+std::optional<Pose> pose_at(const std::vector<TimedPose>& poses, std::int64_t time_ns, double most_s) {
+    const auto after = std::lower_bound(poses.begin(), poses.end(), time_ns,
+                                        [](const TimedPose& p, std::int64_t t) { return p.time_ns < t; });
+    if (after == poses.end()) return std::nullopt;
+    if (after->time_ns == time_ns) return after->base_from_flange;
+    if (after == poses.begin()) return std::nullopt;
+    const auto before = std::prev(after);
+    const double between = 1e-9 * static_cast<double>(after->time_ns - before->time_ns);
+    if (between > most_s) return std::nullopt;
+    return interpolate(before->base_from_flange, after->base_from_flange,
+                       1e-9 * static_cast<double>(time_ns - before->time_ns) / between);
+}
+
+// One sensor's frames become sections.
+class Sections {
+  public:
+    static Expected<Sections> make(const Project& project, const std::string& sensor_id) {
+        const SensorSetup* sensor = find_sensor(project, sensor_id);
+        if (!sensor) return input_error("the project has no sensor \"" + sensor_id + "\"", project.name);
+        const Calibration* calibration = calibration_of(project, sensor_id);
+        if (!calibration)
+            return input_error("sensor " + sensor_id + " has no calibration", project.name,
+                               "calibrate it first");
+        Sections s;
+        s.sensor_ = *sensor;
+        s.calibration_ = *calibration;
+        s.workobject_from_base_ = project.part.base_from_workobject.inverse();
+        s.pass.sensor_id = sensor_id;
+        return s;
+    }
+    const Calibration& calibration() const { return calibration_; }
+
+    void add(const Frame& frame, const Pose& base_from_flange) {
+        std::string message;
+        const auto status =
+            capture_frame(frame, sensor_.peaks, calibration_.model ? &*calibration_.model : nullptr, peaks_,
+                          capture_, message);
+        add(capture_, base_from_flange, status == SpotStatus::measured);
+    }
+    // An image that the capture kept is measured as on the day.
+    void add(const Capture& c, const Pose& base_from_flange) {
+        const auto& count = c.candidates.count;
+        const bool candidates = std::any_of(count.begin(), count.end(), [](auto n) { return n > 0; });
+        if (c.status == FrameStatus::ok && c.profile.size() == 0 && c.image) {
+            Frame frame;
+            frame.status = c.status;
+            frame.image = c.image->view();
+            return add(frame, base_from_flange);
+        }
+        add(c, base_from_flange, c.profile.size() > 0 || candidates);
+    }
+    GapPass pass;
+
+  private:
+    void add(const Capture& c, const Pose& base_from_flange, bool any) {
+        GapSection& s = pass.sections.emplace_back();
+        s.frame_from_sensor = workobject_from_base_ * base_from_flange * calibration_.flange_from_sensor;
+        if (c.status != FrameStatus::ok) {
+            ++pass.damaged;
+        } else if (!any || !track_capture(c, sensor_.filter, s.profile)) {
+            ++pass.without_profile;
+            s.profile.clear();
+        }
+    }
+    SensorSetup sensor_;
+    Calibration calibration_;
+    Pose workobject_from_base_;
+    StripePeaks peaks_;
+    Capture capture_;
+};
+
+// The poses of the flange along the spots, and the only sensor and robot that they have.
+struct Drive {
+    std::string sensor_id, robot_id;
+    std::vector<Pose> base_from_flange;
+};
+
+Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options) {
+    if (options.spot_ids.size() < 2)
+        return usage_error("a pass needs two spots or more to go along", "spots");
+    if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
+        return usage_error(fmt::format("a step of {} mm", options.step_mm), "step", "give 0.05 mm or more");
+    std::vector<const Spot*> spots;
+    for (const std::string& id : options.spot_ids) {
+        const Spot* spot = find_spot(project, id);
+        if (!spot) return input_error(fmt::format("there is no spot \"{}\"", id), project.name);
+        if (!spots.empty() &&
+            (spot->sensor_id != spots[0]->sensor_id || spot->robot_id != spots[0]->robot_id))
+            return input_error(
+                fmt::format("spots {} and {} have different sensors or robots", spots[0]->id, id),
+                project.name, "check one sensor's stretch at a time");
+        spots.push_back(spot);
+    }
+    const Calibration* calibration = calibration_of(project, spots[0]->sensor_id);
+    if (!calibration)
+        return input_error("sensor " + spots[0]->sensor_id + " has no calibration", project.name,
+                           "calibrate it first");
+    Drive drive{spots[0]->sensor_id, spots[0]->robot_id, {spots[0]->base_from_flange}};
+    const Pose& mounting = calibration->flange_from_sensor;
+    for (std::size_t k = 1; k < spots.size(); ++k) {
+        // As the sensor moves, not the flange: it turns about itself.
+        const Pose start = spots[k - 1]->base_from_flange * mounting,
+                   end = spots[k]->base_from_flange * mounting;
+        const double steps = std::ceil(distance_mm(start, end) / options.step_mm - 1e-9);
+        if (!(steps + static_cast<double>(drive.base_from_flange.size()) <= kMostSteps))
+            return usage_error(fmt::format("more than {} profiles", kMostSteps), "step",
+                               "give a longer step");
+        for (int i = 1; i <= static_cast<int>(steps); ++i)
+            drive.base_from_flange.push_back(interpolate(start, end, i / steps) * mounting.inverse());
+    }
+    return drive;
+}
+
+}  // namespace
+
+Expected<GapPass> gap_pass(const Project& project, CaptureReader& capture, const RecordedGapPass& options) {
+    const CaptureSource* source = capture.find(options.sensor_id, SourceKind::sensor);
+    if (!source)
+        return input_error(options.sensor_id.empty() ? "it does not hold exactly one sensor"
+                                                     : "it holds no sensor \"" + options.sensor_id + "\"",
+                           capture.path().string(), "name one that it holds");
+    auto sections = Sections::make(project, source->name);
+    if (!sections) return tl::unexpected(sections.error());
+
+    std::vector<TimedPose> poses;
+    const CaptureSource* robot = capture.find(options.robot_id, SourceKind::robot);
+    if (!robot && !options.robot_id.empty())
+        return input_error("it holds no robot \"" + options.robot_id + "\"", capture.path().string());
+    if (robot) {
+        auto events = capture.events(robot->id);
+        if (!events) return tl::unexpected(events.error());
+        for (const CaptureEvent& e : *events)
+            if (e.base_from_flange) poses.push_back({e.host_time_ns, *e.base_from_flange});
+        std::stable_sort(poses.begin(), poses.end(),
+                         [](const TimedPose& a, const TimedPose& b) { return a.time_ns < b.time_ns; });
+    }
+    GapPass& pass = sections->pass;
+    pass.frames = capture.frames(source->id);
+    for (std::uint64_t k = 0; k < pass.frames; ++k) {
+        auto frame = capture.frame(source->id, k);
+        if (!frame) return tl::unexpected(frame.error());
+        const Capture& c = **frame;
+        const auto flange =
+            c.base_from_flange ? c.base_from_flange : pose_at(poses, c.host_time_ns, options.most_between_s);
+        if (flange)
+            sections->add(c, *flange);
+        else
+            ++pass.without_pose;
+    }
+    if (pass.damaged + pass.without_profile == pass.sections.size())
+        return input_error(fmt::format("none of its {} frames has a pose and a profile", pass.frames),
+                           capture.path().string(), "record the robot's poses beside the sensor");
+    return std::move(sections->pass);
+}
+
+Expected<GapPass> gap_pass(Station& station, const DrivenGapPass& options) {
+    auto drive = drive_along(station.project(), options);
+    if (!drive) return tl::unexpected(drive.error());
+    auto sections = Sections::make(station.project(), drive->sensor_id);
+    if (!sections) return tl::unexpected(sections.error());
+    ProfileSource* sensor = station.sensor(drive->sensor_id);
+    RobotLink* robot = station.robot(drive->robot_id);
+    if (!sensor || !robot)
+        return usage_error("its sensor or robot is not connected", "spot " + options.spot_ids[0],
+                           "connect first");
+    auto by_software = SoftwareTriggered::begin(*sensor);
+    if (!by_software) return tl::unexpected(by_software.error());
+    StartedSensors started;
+    if (auto on = started.start(*sensor); !on) return tl::unexpected(on.error());
+    const AcquireLimits limits;
+    const int n = static_cast<int>(drive->base_from_flange.size());
+    for (int i = 0; i < n; ++i) {
+        const std::string name = fmt::format("gap {}", i + 1);
+        if (options.cancel.stop_requested()) return device_error(kCancelled, name);
+        auto at = stand_at(*robot, name, drive->base_from_flange[static_cast<std::size_t>(i)]);
+        if (!at) return tl::unexpected(at.error());
+        if (auto fired = sensor->trigger(name); !fired) return tl::unexpected(fired.error());
+        auto frame = next_frame(*sensor, limits.frame_timeout, options.cancel);
+        if (!frame) return tl::unexpected(frame.error());
+        // Asked again, so that a recording of the pass holds a pose on either side of the frame.
+        auto still = robot->base_from_flange();
+        if (!still) return tl::unexpected(still.error());
+        if (const double moved = distance_mm(*at, *still); moved > kStillMm)
+            return device_error(fmt::format("the robot moved {:.2f} mm while the sensor exposed", moved),
+                                name, "let it stand at every step");
+        ++sections->pass.frames;
+        sections->add(**frame, *at);
+        if (options.progress) options.progress({i + 1, n, fmt::format("profile {} of {}", i + 1, n)});
+    }
+    return std::move(sections->pass);
+}
+
+std::string GapCheck::where(double path_mm) const {
+    constexpr double kAtMm = 1;
+    const auto next =
+        std::find_if(spots.begin(), spots.end(), [&](const auto& s) { return s.second >= path_mm - kAtMm; });
+    if (spots.empty()) return {};
+    if (next == spots.end()) return "behind " + spots.back().first;
+    if (std::abs(next->second - path_mm) <= kAtMm) return "at " + next->first;
+    if (next == spots.begin()) return "before " + next->first;
+    return "between " + std::prev(next)->first + " and " + next->first;
+}
+
+Expected<GapCheck> check_gap(const Project& project, const GapPass& pass, const GapScanOptions& options) {
+    auto scan = scan_gap(pass.sections, options);
+    if (!scan) return tl::unexpected(scan.error());
+    GapCheck out;
+    out.scan = std::move(*scan);
+    for (const Spot& spot : project.spots) {
+        const Calibration* calibration = calibration_of(project, spot);
+        if (!calibration || spot.sensor_id != pass.sensor_id) continue;
+        const Pose taught = project.part.base_from_workobject.inverse() * spot.base_from_flange *
+                            calibration->flange_from_sensor;
+        double nearest = kBySpotMm, path = 0;
+        for (const GapPoint& p : out.scan.points) {
+            const double d = distance_mm(pass.sections[p.section].frame_from_sensor, taught);
+            if (d < nearest) {
+                nearest = d;
+                path = p.path_mm;
+            }
+        }
+        if (nearest < kBySpotMm) out.spots.emplace_back(spot.id, path);
+    }
+    std::stable_sort(out.spots.begin(), out.spots.end(),
+                     [](const auto& a, const auto& b) { return a.second < b.second; });
+    return out;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,541 @@
+#include "projects/panel/panel_station.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "projects/gate/safety_gate.h"
+#include "projects/panel/panel_measure.h"
+#include "projects/station/acquire.h"
+#include "projects/station/check.h"
+#include "projects/station/measure.h"
+#include "projects/station/run_release.h"
+
+namespace seamwright {
+namespace {
+
+std::int64_t steady_now_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+// How far a controller may report itself off the corrected position when it fires there.
+constexpr double kArrivedMm = 1, kArrivedDeg = 0.1;
+
+std::vector<std::string> sensors_of(const PanelPlace& place) {
+    std::vector<std::string> ids{place.sensor_id};
+    if (!place.second_sensor_id.empty()) ids.push_back(place.second_sensor_id);
+    return ids;
+}
+
+// The places of a job with their devices, all connected.
+struct Places {
+    std::vector<PanelMeasurer> measurers;  // enabled ones
+    std::map<std::string, ProfileSource*> sensors;
+    RobotLink* robot = nullptr;
+};
+
+Expected<Places> prepare(Station& station, const PanelJob& job) {
+    Places out;
+    const std::string where = "panel job " + job.id;
+    out.robot = station.robot(job.robot_id);
+    if (!out.robot)
+        return usage_error(fmt::format("its robot \"{}\" is not connected", job.robot_id), where,
+                           "connect first");
+    for (const PanelPlace& place : job.places) {
+        if (!place.enabled) continue;
+        auto measurer = PanelMeasurer::make(station.project(), job, place);
+        if (!measurer) return tl::unexpected(measurer.error());
+        for (const std::string& id : sensors_of(place)) {
+            ProfileSource* sensor = station.sensor(id);
+            if (!sensor)
+                return usage_error(fmt::format("sensor \"{}\" is not connected", id), where, "connect first");
+            if (!out.sensors.emplace(id, sensor).second)
+                return input_error(fmt::format("sensor \"{}\" is used at two places", id), where,
+                                   "a sensor sees one place");
+        }
+        out.measurers.push_back(std::move(*measurer));
+    }
+    if (out.measurers.empty()) return input_error("no place is enabled", where, "add places to the job");
+    return out;
+}
+
+MeasuringMove move_of(const PanelJob& job, const Pose& base_from_gripper) {
+    MeasuringMove move;
+    move.spot_id = job.id;
+    move.entry = move.trigger = move.exit = base_from_gripper;
+    move.stop_at_trigger = true;
+    return move;
+}
+
+class Run {
+  public:
+    Run(Station& station, const PanelJob& job, Places& places, const RunOptions& options)
+        : station_(station), job_(job), places_(places), options_(options) {}
+
+    Expected<RunRecord> run() {
+        const auto setup = RunSetup::of(station_.project());
+        if (!setup) return tl::unexpected(setup.error());
+        run_.part_id = options_.part_id;
+        run_.push = options_.push;
+        run_.started_utc = run_.finished_utc = utc_now();
+        run_.status = RunStatus::interrupted;
+        run_.message = "the program ended while the panel was measured";
+        run_.panel.emplace();
+        run_.panel->job_id = job_.id;
+        run_.panel->push.frame_name = job_.frame_name;
+        auto number = station_.file().begin_run(run_, *setup);
+        if (!number) return tl::unexpected(number.error());
+        run_.number = *number;
+        if (run_.part_id.empty()) run_.part_id = fmt::format("run {}", run_.number);
+        since_ns_ = steady_now_ns();
+
+        std::optional<GatePass> pass = measure_and_judge();
+        const bool pushing = options_.push && pass;
+        if (pushing) run_.status = RunStatus::interrupted;
+        if (auto stored = store_judged(); !stored) {
+            tell(PartVerdict::failed);
+            return tl::unexpected(stored.error());
+        }
+        if (pushing && confirmed(pass))
+            move_and_verify(std::move(*pass));
+        else
+            tell(run_.status == RunStatus::device || run_.status == RunStatus::cancelled
+                     ? PartVerdict::failed
+                     : PartVerdict::refused);
+        if (auto stored = record_outcome(run_, [&] { return store_outcome(); }); !stored)
+            return tl::unexpected(stored.error());
+        station_.file().checkpoint();
+        return std::move(run_);
+    }
+
+  private:
+    PanelRecord& panel() { return *run_.panel; }
+    bool cancelled() const { return cancel_.stop_requested(); }
+    void progress(int done, std::string text) const {
+        if (options_.progress)
+            options_.progress({done, static_cast<int>(places_.measurers.size()), std::move(text)});
+    }
+    // Before the judged run is stored events go with it, afterwards each by itself.
+    Expected<void> event(EventKind kind, const std::string& subject, const std::string& text) {
+        EventRecord e{0, utc_now(), 0, kind, subject, text};
+        if (judged_) {
+            e.run = run_.number;
+            auto id = station_.file().append_event(e);
+            if (!id) return tl::unexpected(id.error());
+            e.id = *id;
+        }
+        run_.events.push_back(std::move(e));
+        return {};
+    }
+
+    // One firing of the robot's program, all sensors there.
+    Expected<void> measure(const Pose& base_from_gripper, std::vector<PanelMeasurement>& into,
+                           Pose& stands_at) {
+        into.clear();
+        for (PanelMeasurer& m : places_.measurers) {
+            PanelMeasurement& none = into.emplace_back();
+            none.place_id = m.place().id;
+            none.message = "no frame came";
+        }
+        StartedSensors started;
+        std::map<std::string, TriggeredFrames> frames;
+        for (const auto& [id, sensor] : places_.sensors) {
+            if (auto on = started.start(*sensor); !on) return on;
+            frames.try_emplace(id, *sensor, *find_sensor(station_.project(), id));
+        }
+        if (auto on = places_.robot->start_measuring({move_of(job_, base_from_gripper)}); !on) return on;
+        ++starts_;
+        auto trigger = next_trigger(*places_.robot, options_.limits.trigger_timeout, cancel_);
+        if (!trigger) return tl::unexpected(trigger.error());
+        if (trigger->spot_id != job_.id)
+            return device_error(fmt::format("the robot fired for \"{}\"", trigger->spot_id),
+                                "panel job " + job_.id,
+                                "compare the program on the controller with the project");
+        stands_at = trigger->base_from_flange.value_or(base_from_gripper);
+        if (auto rigid = pose_from_matrix(stands_at.matrix(), "pose reported at the trigger"); !rigid)
+            return tl::unexpected(rigid.error());
+        for (std::size_t i = 0; i < places_.measurers.size(); ++i) {
+            if (cancelled()) return device_error(kCancelled, "panel job " + job_.id);
+            PanelMeasurer& measurer = places_.measurers[i];
+            std::vector<FramePtr> got;
+            for (const std::string& id : sensors_of(measurer.place())) {
+                auto frame = frames.at(id).at(
+                    *trigger, options_.limits.frame_timeout, cancel_, [&](const Frame& dropped) {
+                        (void)event(EventKind::device, id,
+                                    fmt::format("frame {} came too early and was dropped", dropped.sequence));
+                    });
+                if (!frame) return tl::unexpected(frame.error());
+                got.push_back(std::move(*frame));
+            }
+            keep(measurer, got, trigger->base_from_flange, into[i]);
+            progress(static_cast<int>(i) + 1,
+                     fmt::format("{} {}", into[i].place_id, to_string(into[i].status)));
+        }
+        for (auto& [id, f] : frames)
+            if (auto complete = f.finish(); !complete) return complete;
+        return {};
+    }
+
+    void keep(PanelMeasurer& measurer, const std::vector<FramePtr>& frames,
+              const std::optional<Pose>& reported, PanelMeasurement& into) {
+        into = measurer.measure(*frames[0], frames.size() > 1 ? frames[1].get() : nullptr, reported);
+        into.part_id = run_.part_id;
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+            (k ? into.second_capture : into.capture) = static_cast<int>(run_.captures.size());
+            run_.captures.push_back(measurer.capture(static_cast<int>(k)));
+            if (options_.keep_images && !frames[k]->image.empty() && frames[k]->status == FrameStatus::ok)
+                run_.captures.back().image = keep_image(frames[k]->image);
+        }
+        if (into.status != SpotStatus::measured)
+            (void)event(EventKind::note, into.place_id,
+                        fmt::format("not measured ({}): {}", to_string(into.status), into.message));
+    }
+
+    GateRequest gate_request() {
+        GateRequest request;
+        Region& region = request.region;
+        region.id = job_.id;
+        region.limits = job_.limits;
+        region.sigma_limit_mm = job_.sigma_limit_mm;
+        region.sigma_limit_deg = job_.sigma_limit_deg;
+        region.frame_name = job_.frame_name;
+        region.base_from_frame = job_.base_from_frame;
+        request.correction = motion_as_correction(job_, panel().base_from_gripper, *panel().fit);
+        request.base_from_workobject = job_.base_from_gripper;
+        request.part_id = run_.part_id;
+        request.part_since_ns = since_ns_;
+        const Project& project = station_.project();
+        const auto robot = places_.robot->identity();
+        for (const PanelMeasurement& m : panel().before) {
+            const auto measurer =
+                std::find_if(places_.measurers.begin(), places_.measurers.end(),
+                             [&](const PanelMeasurer& p) { return p.place().id == m.place_id; });
+            const PanelPlace& place = measurer->place();
+            for (const std::string& sensor_id : sensors_of(place)) {
+                GateSpot g;
+                g.id = sensor_id == place.sensor_id ? place.id : fmt::format("{} (second head)", place.id);
+                g.required = place.required;
+                g.measured = m.status == SpotStatus::measured;
+                g.part_id = m.part_id;
+                g.measured_at_ns = m.host_time_ns;
+                if (const Calibration* c = calibration_of(project, sensor_id)) {
+                    if (const auto stands = gripper_from_place(project, place))
+                        g.point_workobject_mm = *stands * place.body_reference_mm;
+                    g.calibration_id = c->id;
+                    g.calibration_verdict = c->verdict;
+                    g.calibrated_utc = c->created_utc;
+                    g.calibrated_sensor = c->sensor_identity;
+                    g.calibrated_robot = c->robot_identity;
+                }
+                g.sensor = places_.sensors.at(sensor_id)->identity();
+                if (robot) g.robot = *robot;
+                region.spot_ids.push_back(g.id);
+                request.spots.push_back(std::move(g));
+            }
+        }
+        const auto mode = places_.robot->mode();
+        request.mode = mode ? *mode : RobotMode::fault;
+        request.tells_mode = places_.robot->tells_mode();
+        if (run_.push) {
+            if (auto now = places_.robot->read_frame(job_.frame_name))
+                request.base_from_frame_now = *now;
+            else
+                request.frame_trouble = now.error().sentence();
+        }
+        for (const Region& other : project.regions) request.other_frames.push_back(other.frame_name);
+        for (const PanelJob& other : project.panel_jobs)
+            if (other.id != job_.id) request.other_frames.push_back(other.frame_name);
+        request.calibration_age_days = project.requirements.calibration_age_days;
+        request.now_utc = utc_now();
+        if (const RobotSetup* setup = find_robot(project, job_.robot_id))
+            request.required_mode = setup->required_mode;
+        request.now_ns = steady_now_ns();
+        return request;
+    }
+
+    std::optional<GatePass> judge() {
+        panel().refusals = panel().fit && panel().fit->status == CorrectionStatus::ok
+                               ? beyond_tolerance(job_, *panel().fit)
+                               : std::vector<std::string>{};
+        std::optional<GatePass> pass;
+        if (panel().fit) {
+            GateVerdict verdict = pass_gate(gate_request());
+            for (std::string& reason : verdict.reasons) panel().refusals.push_back(std::move(reason));
+            if (panel().refusals.empty() && verdict.pass) pass.emplace(std::move(*verdict.pass));
+        } else {
+            compute_panel(station_.project(), job_, panel());  // says why
+        }
+        panel().gate_passed = pass.has_value();
+        for (const std::string& reason : panel().refusals) (void)event(EventKind::refusal, job_.id, reason);
+        return pass;
+    }
+
+    std::optional<GatePass> measure_and_judge() {
+        panel().base_from_gripper = job_.base_from_gripper;
+        auto measured = measure(job_.base_from_gripper, panel().before, panel().base_from_gripper);
+        compute_panel(station_.project(), job_, panel());
+        std::optional<GatePass> pass;
+        if (cancelled()) {
+            run_.status = RunStatus::cancelled;
+            panel().refusals = {"the run was cancelled"};
+            run_.message = "cancelled";
+            (void)event(EventKind::note, "run", "cancelled");
+        } else if (!measured) {
+            run_.status = RunStatus::device;
+            run_.message = measured.error().sentence();
+            panel().refusals = {"the measuring was not finished: " + run_.message};
+            (void)event(EventKind::device, "run", run_.message);
+        } else {
+            if (auto judged = judge()) pass.emplace(std::move(*judged));
+            run_.status = pass ? RunStatus::ok : RunStatus::refused;
+            run_.message = pass ? std::string("the panel would be moved, nothing was pushed (dry run)")
+                                : "refused: " + panel().refusals.front();
+        }
+        return pass;
+    }
+
+    Expected<void> store_judged() {
+        run_.finished_utc = utc_now();
+        for (const std::string& notice : places_.robot->take_notices())
+            (void)event(EventKind::device, job_.robot_id, notice);
+        auto stored = station_.file().finish_run(run_, stored_);
+        judged_ = true;
+        stored_.captures = run_.captures.size();
+        for (EventRecord& e : run_.events) e.run = run_.number;
+        return stored;
+    }
+
+    Expected<void> store_outcome() {
+        run_.finished_utc = utc_now();
+        if (run_.captures.size() > stored_.captures)
+            if (auto stored = station_.file().append_measured(run_, stored_); !stored) return stored;
+        return station_.file().update_run(run_);
+    }
+    std::map<std::string, RobotLink*> link() const { return {{job_.robot_id, places_.robot}}; }
+    EventSink sink() {
+        return [this](EventKind kind, const std::string& subject, const std::string& text) {
+            return event(kind, subject, text);
+        };
+    }
+
+    // A person's word, then the gate again: meanwhile the robot's mode may have changed.
+    bool confirmed(std::optional<GatePass>& pass) {
+        if (!options_.confirm_push) return true;
+        if (auto before = places_.robot->read_frame(job_.frame_name)) panel().push.before = *before;
+        const bool yes = options_.confirm_push(run_) && !cancelled();
+        panel().push.before.reset();
+        if (yes) {
+            pass.reset();
+            if (auto again = judge()) {
+                pass.emplace(std::move(*again));
+                return true;
+            }
+        }
+        run_.status = yes ? RunStatus::refused : RunStatus::cancelled;
+        run_.message = yes ? "refused: " + panel().refusals.front() : "not pushed: not confirmed";
+        (void)event(yes ? EventKind::refusal : EventKind::note, "run", run_.message);
+        return false;
+    }
+
+    bool tell(PartVerdict verdict) { return tell(verdict, run_.message); }
+    bool tell(PartVerdict verdict, const std::string& text) {
+        if (starts_ == 0) return true;
+        auto told = places_.robot->confirm(verdict, text);
+        if (!told)
+            (void)event(
+                EventKind::alarm, job_.robot_id,
+                fmt::format("did not acknowledge \"{}\": {}", to_string(verdict), told.error().sentence()));
+        return told.has_value();
+    }
+
+    // What was written goes back, the robot is told first: nothing runs in a frame that changes.
+    void take_back_motion(RunStatus status, std::string message) {
+        run_.status = status;
+        run_.message = std::move(message);
+        const PartVerdict verdict = status == RunStatus::refused ? PartVerdict::refused : PartVerdict::failed;
+        panel().push.release = Release::withdrawn;
+        if (starts_ > 1) {  // the second start of measuring took the permission back already
+            tell(verdict);
+        } else {
+            const RobotRelease back = take_back(*places_.robot, verdict, run_.message, true);
+            panel().push.release = back.release;
+            if (back.release != Release::withdrawn) {
+                run_.status = RunStatus::alarm;
+                run_.message += "; " + back.text;
+                (void)event(EventKind::alarm, job_.robot_id, back.text);
+            }
+        }
+        restore_frames(run_, link(), sink(), EventKind::alarm);
+        if (panel().push.status == PushStatus::not_restored) run_.status = RunStatus::alarm;
+    }
+
+    // Durable before the robot may move in the frame.
+    bool record_pushed(const char* message) {
+        run_.status = RunStatus::pushed;
+        run_.message = message;
+        panel().push.release = Release::given;
+        auto stored = store_outcome();
+        if (stored) return true;
+        panel().push.release = Release::none;
+        run_.status = RunStatus::alarm;
+        run_.message = "alarm: the push cannot be recorded: " + stored.error().sentence();
+        return false;
+    }
+
+    // From the first write to the end nothing is cancelled: the panel is in place as a whole or its frame is
+    // taken back.
+    void move_and_verify(GatePass pass) {
+        cancel_ = {};
+        panel().push = push_region(std::move(pass), *places_.robot, sink());
+        panel().push.robot_id = job_.robot_id;
+        progress(0, fmt::format("{}: {}", job_.frame_name, to_string(panel().push.status)));
+        if (panel().push.status != PushStatus::written) {
+            run_.status = RunStatus::alarm;
+            run_.message = "alarm: " + panel().push.message;
+            tell(PartVerdict::failed);
+            return;
+        }
+        if (!record_pushed("the frame is pushed; whether the panel was moved by it is not recorded yet")) {
+            restore_frames(run_, link(), sink(), EventKind::alarm);
+            tell(PartVerdict::failed);
+            return;
+        }
+        if (!tell(PartVerdict::corrected, "moved, to be measured again"))
+            return take_back_motion(RunStatus::alarm,
+                                    "alarm: the robot did not acknowledge the corrected frame");
+        const Pose target = panel().base_from_moved_gripper;
+        Pose stands_at = target;
+        auto measured = measure(target, panel().after, stands_at);
+        if (measured && (distance_mm(stands_at, target) > kArrivedMm ||
+                         deg_from_rad(angle_rad(stands_at, target)) > kArrivedDeg))
+            measured = device_error(
+                fmt::format("the robot fired {:.2f} mm and {:.3f} degrees off the corrected position",
+                            distance_mm(stands_at, target), deg_from_rad(angle_rad(stands_at, target))),
+                "robot " + job_.robot_id, "let its program run in frame " + job_.frame_name);
+        panel().verdict = judge_panel(job_, panel().after);
+        if (!measured)
+            return take_back_motion(RunStatus::device,
+                                    "not verified after the motion: " + measured.error().sentence());
+        if (panel().verdict == PanelVerdict::not_verified)
+            return take_back_motion(RunStatus::refused,
+                                    "not verified: a required place was not measured after the motion");
+        if (panel().verdict == PanelVerdict::out_of_tolerance)
+            return take_back_motion(RunStatus::refused, "out of tolerance after the motion: " +
+                                                            beyond_tolerance(job_, panel().after).front());
+        if (!record_pushed("the panel was moved and lies in tolerance; whether the application began is not "
+                           "recorded yet"))
+            return take_back_motion(RunStatus::alarm, run_.message);
+        const HoldOptions hold{
+            options_.hold, options_.cancel, options_.part_over,
+            [&](const std::string& text) { progress(static_cast<int>(places_.measurers.size()), text); }};
+        release_run(run_, link(), "the panel was moved and lies in tolerance", hold, sink());
+    }
+
+    Station& station_;
+    const PanelJob& job_;
+    Places& places_;
+    const RunOptions& options_;
+    std::stop_token cancel_ = options_.cancel;
+    RunRecord run_;
+    std::int64_t since_ns_ = 0;
+    bool judged_ = false;
+    int starts_ = 0;  // of the robot's program
+    StoredMeasurements stored_;
+};
+
+}  // namespace
+
+Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const TeachOptions& options) {
+    const std::string where = "panel job " + draft.id;
+    if (options.repeats < 1 || options.repeats > 1000)
+        return usage_error(fmt::format("{} repeats", options.repeats), where, "give 1 to 1000");
+    auto places = prepare(station, draft);
+    if (!places) return tl::unexpected(places.error());
+    std::vector<SoftwareTriggered> by_software;
+    StartedSensors started;
+    for (const auto& [id, sensor] : places->sensors) {
+        auto software = SoftwareTriggered::begin(*sensor);
+        if (!software) return tl::unexpected(software.error());
+        by_software.push_back(std::move(*software));
+        if (auto on = started.start(*sensor); !on) return tl::unexpected(on.error());
+    }
+    struct Sum {
+        Eigen::Vector3d panel = Eigen::Vector3d::Zero(), body = Eigen::Vector3d::Zero();
+        double gap = 0, flush = 0, surface = 0;
+        int count = 0;
+        Profile profile;
+        std::string reason;
+    };
+    std::vector<Sum> sums(places->measurers.size());
+    PanelJob taught = draft;
+    const AcquireLimits limits;
+    for (int round = 0; round < options.repeats; ++round) {
+        auto at = stand_at(*places->robot, draft.id, draft.base_from_gripper);
+        if (!at) return tl::unexpected(at.error());
+        taught.base_from_gripper = *at;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            if (options.cancel.stop_requested()) return device_error(kCancelled, where);
+            PanelMeasurer& measurer = places->measurers[i];
+            std::vector<FramePtr> frames;
+            for (const std::string& id : sensors_of(measurer.place())) {
+                ProfileSource& sensor = *places->sensors.at(id);
+                if (auto fired = sensor.trigger(draft.id); !fired) return tl::unexpected(fired.error());
+                auto frame = next_frame(sensor, limits.frame_timeout, options.cancel);
+                if (!frame) return tl::unexpected(frame.error());
+                frames.push_back(std::move(*frame));
+            }
+            const PanelMeasurement m =
+                measurer.measure(*frames[0], frames.size() > 1 ? frames[1].get() : nullptr, *at);
+            Sum& sum = sums[i];
+            if (m.status != SpotStatus::measured) {
+                sum.reason = m.message;
+                continue;
+            }
+            sum.panel += m.panel_mm;
+            sum.body += m.body_mm;
+            sum.gap += m.gap_mm;
+            sum.flush += m.flush_mm;
+            sum.surface += measurer.surface_deg();
+            if (sum.count++ == 0) sum.profile = measurer.profile();
+        }
+        if (options.progress)
+            options.progress({round + 1, options.repeats,
+                              fmt::format("{}: {} of {}", draft.id, round + 1, options.repeats)});
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const Sum& sum = sums[i];
+        const std::string& id = places->measurers[i].place().id;
+        if (2 * sum.count < options.repeats || sum.count == 0)
+            return input_error(fmt::format("panel and body were measured in {} of {} repeats ({})", sum.count,
+                                           options.repeats, sum.reason),
+                               where + ", place " + id, "choose another window or move the sensor");
+        auto& place = *std::find_if(taught.places.begin(), taught.places.end(),
+                                    [&](const PanelPlace& p) { return p.id == id; });
+        place.panel_reference_mm = sum.panel / sum.count;
+        place.body_reference_mm = sum.body / sum.count;
+        place.gap_mm = sum.gap / sum.count;
+        place.flush_mm = sum.flush / sum.count;
+        place.surface_deg = sum.surface / sum.count;
+        place.reference_profile = sum.profile;
+    }
+    return taught;
+}
+
+Expected<RunRecord> run_panel(Station& station, const std::string& job_id, const RunOptions& options) {
+    const std::string path = station.file().path().string();
+    if (!station.connected())
+        return usage_error("the station is not connected to its devices", path, "connect first");
+    const PanelJob* found = find_panel_job(station.project(), job_id);
+    if (!found) return input_error(fmt::format("there is no panel job \"{}\"", job_id), path);
+    const PanelJob job = *found;
+    if (auto safe = none_of_motion(motion_findings(station.project(), job, options.push)); !safe)
+        return tl::unexpected(safe.error());
+    auto places = prepare(station, job);
+    if (!places) return tl::unexpected(places.error());
+    return Run(station, job, *places, options).run();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,93 @@
+#include "projects/proof/zero_shift.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/evaluation/statistics.h"
+#include "core/geometry/notation.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+
+std::vector<Eigen::Vector3d> reference_points(const Project& project, const Region& region) {
+    std::vector<Eigen::Vector3d> points;
+    for (const SpotObservation& spot : planned_observations(project, region))
+        points.push_back(spot.workobject_from_sensor * spot.reference_mm);
+    return points;
+}
+
+ZeroShift summarise_zero_shift(const Project& setup, const std::vector<RunRecord>& runs) {
+    ZeroShift zero;
+    for (const RunRecord& run : runs) {
+        zero.runs.push_back(run.number);
+        zero.refused += run.status != RunStatus::ok;
+    }
+    for (const Region& region : setup.regions) {
+        std::array<std::vector<double>, 6> values;
+        ZeroShiftRegion& result = zero.regions.emplace_back();
+        result.region_id = region.id;
+        std::vector<Eigen::Vector3d> points = reference_points(setup, region);
+        std::vector<Eigen::Vector3d> moved(points.size(), Eigen::Vector3d::Zero());
+        for (const RunRecord& run : runs)
+            for (const RegionRecord& r : run.regions) {
+                if (r.region_id != region.id || !r.correction) continue;
+                const Pose& d = r.correction->displacement.workobject_from_movedworkobject;
+                const KukaAbc abc = kuka_from_rotation(d.linear());
+                const std::array<double, 6> six{d.translation().x(), d.translation().y(), d.translation().z(),
+                                                abc.a_deg,           abc.b_deg,           abc.c_deg};
+                for (std::size_t k = 0; k < 6; ++k) {
+                    values[k].push_back(six[k]);
+                    result.stated_three_sigma[k] =
+                        3 * (k < 3 ? r.correction->sigma_xyz_mm[static_cast<int>(k)]
+                                   : r.correction->sigma_abc_deg[static_cast<int>(k) - 3]);
+                }
+                for (std::size_t i = 0; i < points.size(); ++i) moved[i] += d * points[i] - points[i];
+            }
+        if (values[0].empty()) {
+            zero.regions.pop_back();
+            continue;
+        }
+        for (std::size_t k = 0; k < 6; ++k) {
+            const Summary s = summarise(values[k]);
+            result.mean[k] = s.mean;
+            result.three_sigma[k] = s.three_sigma;
+        }
+        for (const Eigen::Vector3d& sum : moved)
+            result.worst_mean_mm =
+                std::max(result.worst_mean_mm, sum.norm() / static_cast<double>(values[0].size()));
+    }
+    return zero;
+}
+
+Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions& options) {
+    if (options.runs < 2 || options.runs > 1000)
+        return usage_error(fmt::format("{} runs", options.runs), "zero shift", "give 2 to 1000");
+    const Project setup = station.project();
+    std::vector<RunRecord> runs;
+    for (int n = 0; n < options.runs; ++n) {
+        RunOptions run_options;
+        run_options.part_id = fmt::format("{}{}", kZeroShiftPrefix, n + 1);
+        run_options.cancel = options.cancel;
+        if (options.progress)
+            run_options.progress = [&](const RunProgress& p) {
+                options.progress({n * p.total + p.done, options.runs * p.total,
+                                  fmt::format("{}/{}: {}", n + 1, options.runs, p.text)});
+            };
+        auto run = station.run(run_options);
+        if (!run) return tl::unexpected(run.error());
+        if (options.measured) options.measured(*run);
+        if (run->status == RunStatus::cancelled)
+            return usage_error(fmt::format("cancelled after {} runs", n), "zero shift", "start it again");
+        if (run->status == RunStatus::device) return device_error(run->message, "zero shift");
+        run->captures.clear();
+        runs.push_back(std::move(*run));
+    }
+    ZeroShift zero = summarise_zero_shift(setup, runs);
+    if (auto kept = station.file().append_evidence({0, {}, 0, zero}, setup); !kept)
+        return tl::unexpected(kept.error());
+    return zero;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,27 @@
+#pragma once
+// The calibration that a simulated cell has by construction: its own optics and mounting. For desks, demos
+// and tests; what a person calibrates is in core/calibration.
+
+#include <filesystem>
+
+#include "devices/simulated/gap_part.h"
+#include "projects/model/project.h"
+
+namespace seamwright {
+
+// Sensor and robot of driver "simulated", as connected (their identities go into the calibration). Error
+// (input): another driver, settings that the cell refuses.
+Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetup& robot);
+
+// The simulated gripper (devices/simulated/gripper_cell.h) as a project: its sensors and robot calibrated by
+// construction, one panel job "panel" of its places, not taught yet. `settings`:
+// those of the cell, without "head"; the job's frame is added to them.
+Expected<Project> simulated_panel_project(const nlohmann::json& settings);
+
+// The simulated cell before two sheets with a gap (devices/simulated/gap_part.h), as a project: calibrated by
+// construction, spots S1 .. S4 along the gap for the gap check. The sheets are written to `mesh_file` (PLY),
+// which must not be there yet. `settings`: those of the cell (cell.h), without "mesh" and "scene".
+Expected<Project> simulated_gap_project(nlohmann::json settings, const std::vector<GapStation>& gap,
+                                        const std::filesystem::path& mesh_file);
+
+}  // namespace seamwright

@@ -1,0 +1,194 @@
+#include "projects/station/acquire.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "devices/silence.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kJoggedMm = 0.5, kJoggedDeg = 0.1;
+
+bool hardware_triggered(const SensorSetup& sensor) {
+    const auto it = sensor.settings.find("hardware_trigger");
+    return it != sensor.settings.end() && it->is_boolean() && it->get<bool>();
+}
+
+}  // namespace
+
+MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor) {
+    MeasuringMove move;
+    move.spot_id = spot.id;
+    move.via = spot.via;
+    move.trigger = spot.base_from_flange;
+    const Eigen::Vector3d travel = (spot.base_from_flange * flange_from_sensor).linear().col(1);
+    move.entry = move.exit = move.trigger;
+    move.entry.translation() -= spot.entry_mm * travel;
+    move.exit.translation() += spot.exit_mm * travel;
+    move.speed_mm_s = spot.speed_mm_s;
+    move.stop_at_trigger = spot.stop_at_trigger;
+    return move;
+}
+
+std::vector<MeasuringMove> measuring_program(const Project& project, const std::string& robot_id) {
+    std::vector<MeasuringMove> moves;
+    for (const Spot& spot : project.spots) {
+        if (!spot.enabled || spot.robot_id != robot_id) continue;
+        const Calibration* calibration = calibration_of(project, spot);
+        moves.push_back(
+            measuring_move(spot, calibration ? calibration->flange_from_sensor : Pose::Identity()));
+    }
+    return moves;
+}
+
+namespace {
+
+// One wait of `timeout` in slices.
+template <class Wait>
+auto wait_in_slices(std::chrono::milliseconds timeout, const std::stop_token& cancel, const Wait& wait)
+    -> decltype(wait(timeout)) {
+    const auto until = std::chrono::steady_clock::now() + timeout;
+    for (;;) {
+        if (cancel.stop_requested()) return device_error(kCancelled);
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+        const auto slice = std::clamp(left, std::chrono::milliseconds(0), kCancelSlice);
+        auto got = wait(slice);
+        if (got || !is_silence(got.error()) || left <= kCancelSlice) return got;
+    }
+}
+
+}  // namespace
+
+Expected<FramePtr> next_frame(ProfileSource& sensor, std::chrono::milliseconds timeout,
+                              const std::stop_token& cancel) {
+    auto frame = wait_in_slices(timeout, cancel,
+                                [&](std::chrono::milliseconds slice) { return sensor.wait_next(slice); });
+    if (frame && !*frame) return device_error("the sensor gave no frame");
+    return frame;
+}
+
+Expected<TriggerEvent> next_trigger(RobotLink& robot, std::chrono::milliseconds timeout,
+                                    const std::stop_token& cancel) {
+    return wait_in_slices(timeout, cancel,
+                          [&](std::chrono::milliseconds slice) { return robot.wait_trigger(slice); });
+}
+
+Expected<FramePtr> TriggeredFrames::at(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                                       const std::stop_token& cancel,
+                                       const std::function<void(const Frame& dropped)>& dropped) {
+    if (hardware_triggered(setup_)) {
+        auto frame = in_order(trigger, timeout, cancel);
+        if (!frame) return frame;
+        const Frame& f = **frame;
+        if (f.spot_id.empty() || f.spot_id == trigger.spot_id) return frame;
+        return device_error(fmt::format("the frame is of spot {}", f.spot_id), "sensor " + setup_.id);
+    }
+    if (auto fired = sensor_.trigger(trigger.spot_id); !fired) return tl::unexpected(fired.error());
+    auto frame = next_frame(sensor_, timeout, cancel);
+    while (frame && !(*frame)->spot_id.empty() && (*frame)->spot_id != trigger.spot_id) {
+        if (dropped) dropped(**frame);
+        frame = next_frame(sensor_, timeout, cancel);
+    }
+    return frame;
+}
+
+Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                                             const std::stop_token& cancel) {
+    FramePtr frame = std::exchange(early_, nullptr);
+    while (!frame || is_over(*frame)) {
+        auto next = next_frame(sensor_, timeout, cancel);
+        if (!next) return next;
+        frame = std::move(*next);
+    }
+    if (!expected_) expected_ = frame->sequence;
+    const std::uint64_t expected = (*expected_)++;
+    if (frame->sequence < expected)
+        return device_error(fmt::format("frame {} came where frame {} was due", frame->sequence, expected),
+                            "sensor " + setup_.id,
+                            "the sensor restarted in the middle of the run; measure again");
+    if (frame->sequence > expected) {  // the one that is due was lost
+        early_ = std::move(frame);
+        auto lost = std::make_shared<Frame>();
+        lost->status = FrameStatus::incomplete;
+        lost->sequence = expected;
+        lost->host_time_ns = trigger.host_time_ns;
+        lost->spot_id = trigger.spot_id;
+        return lost;
+    }
+    const auto apart = std::chrono::nanoseconds(frame->host_time_ns - trigger.host_time_ns);
+    if (std::chrono::abs(apart) > kPairingWindow)
+        return device_error(fmt::format("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
+                                        std::abs(std::chrono::duration<double>(apart).count()),
+                                        apart.count() < 0 ? "before" : "after", trigger.spot_id),
+                            "sensor " + setup_.id, "check the trigger line between robot and sensor");
+    return frame;
+}
+
+Expected<void> TriggeredFrames::finish() {
+    if (!hardware_triggered(setup_)) return {};
+    bool more = early_ != nullptr;
+    while (!more) {
+        const auto left = sensor_.wait_next(std::chrono::milliseconds(0));
+        if (!left) break;
+        more = !is_over(**left);
+    }
+    if (more)
+        return device_error("the sensor exposed more often than the robot fired", "sensor " + setup_.id,
+                            "check the trigger line between robot and sensor");
+    return {};
+}
+
+Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange) {
+    const auto moved = robot.move_to(base_from_flange);
+    auto at = robot.base_from_flange();
+    if (moved && at) return at;
+    if (!at) return moved ? at : tl::unexpected(moved.error());
+    const double off_mm = distance_mm(*at, base_from_flange);
+    const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
+    if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
+    return device_error(fmt::format("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
+                                    off_mm, off_deg, moved.error().what),
+                        "spot " + spot_id, "jog it there");
+}
+
+Expected<SoftwareTriggered> SoftwareTriggered::begin(ProfileSource& sensor) {
+    SoftwareTriggered triggered;
+    for (const ParameterInfo& info : sensor.parameters()) {
+        const auto software = std::find(info.choices.begin(), info.choices.end(), "software");
+        if (info.name != "trigger" || software == info.choices.end()) continue;
+        const auto wanted = static_cast<double>(software - info.choices.begin());
+        auto now = sensor.get(info.name);
+        if (!now) return tl::unexpected(now.error());
+        if (*now == wanted) break;
+        if (auto set = sensor.set(info.name, wanted); !set) return tl::unexpected(set.error());
+        triggered.sensor_ = &sensor;
+        triggered.before_ = *now;
+    }
+    return triggered;
+}
+
+SoftwareTriggered::SoftwareTriggered(SoftwareTriggered&& other) noexcept
+    : sensor_(std::exchange(other.sensor_, nullptr)), before_(other.before_) {}
+
+SoftwareTriggered::~SoftwareTriggered() {
+    // A sensor that is gone comes back with its own settings.
+    if (sensor_) (void)sensor_->set("trigger", before_);
+}
+
+StartedSensors::~StartedSensors() {
+    watches_.clear();
+    for (ProfileSource* sensor : started_) sensor->stop();
+}
+
+Expected<void> StartedSensors::start(ProfileSource& sensor, const std::stop_token& cancel) {
+    watches_.emplace_back(cancel, [&sensor] { sensor.give_up(); });
+    started_.push_back(&sensor);  // one that did not start is stopped too: it may have got half the way
+    return sensor.start();
+}
+
+}  // namespace seamwright

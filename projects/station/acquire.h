@@ -1,0 +1,107 @@
+#pragma once
+// From a robot's trigger to the sensor's frame: one way for runs, teaching and passes.
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "devices/profile_source.h"
+#include "devices/robot_link.h"
+#include "projects/model/project.h"
+
+namespace seamwright {
+
+struct AcquireLimits {
+    std::chrono::milliseconds trigger_timeout{20000};  // robot: from one spot to the next
+    std::chrono::milliseconds frame_timeout{3000};     // sensor: from trigger to frame
+};
+
+// Via points -> entry -> trigger -> exit, the pass along the sensor's Y with the orientation held.
+MeasuringMove measuring_move(const Spot& spot, const Pose& flange_from_sensor);
+
+// The measuring program of a robot: its enabled spots in the project's order. A spot without calibration is
+// passed with the flange's Y as its sensor's.
+std::vector<MeasuringMove> measuring_program(const Project& project, const std::string& robot_id);
+
+// Waiting in slices, so that `cancel` is heard within kCancelSlice whatever the time-out. Cancelled = Error
+// whose `what` is kCancelled.
+inline constexpr std::chrono::milliseconds kCancelSlice{200};
+inline constexpr const char* kCancelled = "cancelled";
+Expected<FramePtr> next_frame(ProfileSource& sensor, std::chrono::milliseconds timeout,
+                              const std::stop_token& cancel);
+Expected<TriggerEvent> next_trigger(RobotLink& robot, std::chrono::milliseconds timeout,
+                                    const std::stop_token& cancel);
+
+// Which frame belongs to which trigger, for one sensor during one run.
+//
+// A sensor that knows the spot says so in its frame; frames of other spots (a free-running sensor may still
+// hold some of before) are dropped and told. A sensor wired to the robot (setting "hardware_trigger") knows
+// only the order: the k-th trigger has the k-th frame, by the sequence number, so that a frame lost on the
+// way leaves its own spot without measurement and not all the later ones with the wrong one. What the numbers
+// cannot tell (the camera missed a trigger, or exposed without one) the times and the count do: a frame that
+// came kPairingWindow before or after its trigger, or frames left over at the end, make the run fail.
+inline constexpr std::chrono::milliseconds kPairingWindow{1000};
+class TriggeredFrames {
+  public:
+    // `sensor` and `setup` must outlive it.
+    TriggeredFrames(ProfileSource& sensor, const SensorSetup& setup) : sensor_(sensor), setup_(setup) {}
+    // The frame of this trigger; one with status `incomplete` when it was lost. A sensor that is not wired to
+    // the robot is triggered here.
+    Expected<FramePtr> at(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                          const std::stop_token& cancel,
+                          const std::function<void(const Frame& dropped)>& dropped);
+    // After the last trigger: Error when the sensor has exposed more often than the robot fired.
+    Expected<void> finish();
+
+  private:
+    Expected<FramePtr> in_order(const TriggerEvent& trigger, std::chrono::milliseconds timeout,
+                                const std::stop_token& cancel);
+    // A late or damaged frame that was told as lost when its turn was over; a sound one is never passed over.
+    bool is_over(const Frame& frame) const {
+        return frame.status != FrameStatus::ok && expected_ && frame.sequence < *expected_;
+    }
+    ProfileSource& sensor_;
+    const SensorSetup& setup_;
+    FramePtr early_;  // came already, belongs to a later trigger
+    std::optional<std::uint64_t> expected_;
+};
+
+// For teaching: goes to `base_from_flange`. A robot that the program cannot move is jogged there by hand, and
+// must stand there, within half a millimetre and a tenth of a degree. Returns where it says that it stands.
+Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose& base_from_flange);
+
+// For teaching and calibrating: a sensor that is wired to the robot (parameter "trigger") listens to software
+// triggers while this lives, then to its own source again. Does nothing with other sensors. Error: the sensor
+// does not take it.
+class SoftwareTriggered {
+  public:
+    static Expected<SoftwareTriggered> begin(ProfileSource& sensor);
+    SoftwareTriggered(SoftwareTriggered&& other) noexcept;
+    SoftwareTriggered& operator=(SoftwareTriggered&&) = delete;
+    ~SoftwareTriggered();
+
+  private:
+    SoftwareTriggered() = default;
+    ProfileSource* sensor_ = nullptr;  // to be set back
+    double before_ = 0;
+};
+
+// Stops every started sensor, however the work ends; a sensor that keeps its start waiting is given up when
+// `cancel` is asked for.
+class StartedSensors {
+  public:
+    StartedSensors() = default;
+    StartedSensors(const StartedSensors&) = delete;
+    StartedSensors& operator=(const StartedSensors&) = delete;
+    ~StartedSensors();
+    Expected<void> start(ProfileSource& sensor, const std::stop_token& cancel = {});
+
+  private:
+    std::vector<ProfileSource*> started_;
+    std::deque<std::stop_callback<std::function<void()>>> watches_;  // go first
+};
+
+}  // namespace seamwright

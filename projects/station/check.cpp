@@ -1,0 +1,319 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "projects/gate/safety_gate.h"
+#include "projects/model/project.h"
+#include "projects/station/check.h"
+#include "projects/station/fields.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+namespace {
+
+// What a finding makes unsafe.
+enum class Concern {
+    setup,      // nothing by itself: the run says what it cannot do
+    measuring,  // how the robot moves while it measures
+    push        // what it does afterwards in the frames
+};
+
+class Findings {
+  public:
+    // What the findings from here on concern.
+    void concern(Concern c) { concern_ = c; }
+    void add(std::string where, std::string what, std::string mend = {}) {
+        add(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
+    }
+    void add(Error error) { list.emplace_back(concern_, std::move(error)); }
+    void unless(bool ok, const std::string& where, std::string what, std::string mend = {}) {
+        if (!ok) add(where, std::move(what), std::move(mend));
+    }
+    void rigid(const Pose& pose, const std::string& where) {
+        if (auto checked = pose_from_matrix(pose.matrix(), where, 1e-6); !checked) add(checked.error());
+    }
+    std::vector<std::pair<Concern, Error>> list;
+
+  private:
+    Concern concern_ = Concern::setup;
+};
+
+template <class T>
+void check_ids(const std::vector<T>& items, const char* kind, Findings& findings) {
+    std::set<std::string> seen;
+    for (const T& item : items) {
+        findings.unless(!item.id.empty(), fmt::format("{}s", kind), fmt::format("a {} has no id", kind),
+                        "give it a name");
+        findings.unless(seen.insert(item.id).second, fmt::format("{} {}", kind, item.id),
+                        "the id is used twice", "rename one");
+    }
+}
+
+template <class T>
+bool known(const std::vector<T>& items, const std::string& id) {
+    for (const T& item : items)
+        if (item.id == id) return true;
+    return false;
+}
+
+bool positive(double v) {
+    return std::isfinite(v) && v > 0;
+}
+
+void check_profile(const Profile& profile, const std::string& where, Findings& findings) {
+    const std::size_t n = profile.x_mm.size();
+    findings.unless(profile.z_mm.size() == n &&
+                        (profile.intensity.empty() || profile.intensity.size() == n) &&
+                        (profile.segment.empty() || profile.segment.size() == n),
+                    where, "the columns of the profile differ in length");
+}
+
+void check_calibration(const Calibration& c, Findings& findings) {
+    const std::string where = "calibration " + c.id;
+    findings.rigid(c.flange_from_sensor, where + ".flange_from_sensor");
+    findings.unless(c.covariance.allFinite(), where,
+                    "the covariance holds a value that is not a finite number");
+    if (!serves(c.verdict))
+        findings.add(
+            where,
+            fmt::format("its verdict is {}, nothing measured with it can be pushed", name_of(c.verdict)),
+            "calibrate again");
+    if (!c.model) return;
+    findings.rigid(c.model->camera_from_laser, where + ".camera_from_laser");
+    if (!c.model->table)
+        findings.unless(positive(c.model->camera.fx) && positive(c.model->camera.fy), where,
+                        "the camera's focal length is not positive");
+}
+
+void check_sensor(const Project& project, const SensorSetup& sensor, Findings& findings) {
+    const std::string where = "sensor " + sensor.id;
+    findings.unless(!sensor.driver.empty(), where, "it has no driver", "choose one of `seamwright devices`");
+    if (sensor.calibration_id.empty()) {
+        findings.add(where, "it has no calibration, nothing measured with it can be pushed", "calibrate it");
+        return;
+    }
+    for (const Calibration& c : project.calibrations) {
+        if (c.id != sensor.calibration_id) continue;
+        findings.unless(c.sensor_id.empty() || c.sensor_id == sensor.id, where,
+                        fmt::format("its calibration {} was made for sensor {}", c.id, c.sensor_id),
+                        "calibrate this sensor");
+        findings.unless(sensor.identity.serial.empty() || sensor.identity == c.sensor_identity, where,
+                        fmt::format("the connected sensor {} is not the one of calibration {} ({})",
+                                    sensor.identity.serial, c.id, c.sensor_identity.serial),
+                        "calibrate again after exchanging a sensor");
+        return;
+    }
+    findings.add(where, fmt::format("its calibration \"{}\" is not in the project", sensor.calibration_id));
+}
+
+void check_spot(const Project& project, const Spot& spot, Findings& findings) {
+    const std::string where = "spot " + spot.id;
+    findings.unless(known(project.sensors, spot.sensor_id), where,
+                    fmt::format("its sensor \"{}\" is not in the project", spot.sensor_id));
+    findings.unless(known(project.robots, spot.robot_id), where,
+                    fmt::format("its robot \"{}\" is not in the project", spot.robot_id));
+    if (spot.enabled) findings.concern(Concern::measuring);
+    findings.rigid(spot.base_from_flange, where + ".base_from_flange");
+    for (std::size_t i = 0; i < spot.via.size(); ++i)
+        findings.rigid(spot.via[i], fmt::format("{}.via[{}]", where, i));
+    findings.unless(positive(spot.speed_mm_s) && spot.speed_mm_s <= 5000, where,
+                    fmt::format("the speed of {} mm/s is not plausible (0..5000)", spot.speed_mm_s));
+    findings.unless(std::isfinite(spot.entry_mm) && spot.entry_mm >= 0 && std::isfinite(spot.exit_mm) &&
+                        spot.exit_mm >= 0 && spot.entry_mm <= 1000 && spot.exit_mm <= 1000,
+                    where, "entry and exit must be between 0 and 1000 mm");
+    findings.concern(Concern::setup);
+    if (auto finder = make_feature_finder(spot.feature); !finder)
+        findings.add(where + ".feature", finder.error().what, finder.error().mend);
+    findings.unless(spot.reference_mm.allFinite(), where, "the reference is not a finite point",
+                    "teach it again");
+    findings.unless(spot.weights.allFinite() && spot.weights.minCoeff() >= 0, where,
+                    "the weights must be finite and not negative");
+    findings.unless(spot.weights.maxCoeff() > 0, where, "no direction has a weight",
+                    "give x or z the weight 1");
+    findings.unless(positive(spot.sigma_mm) && spot.sigma_mm <= 10, where,
+                    fmt::format("sigma of {} mm is not plausible (0..10)", spot.sigma_mm));
+    findings.unless(std::isfinite(spot.jitter_mm) && spot.jitter_mm >= 0 && spot.jitter_mm <= 100, where,
+                    fmt::format("the jitter window of {} mm is not plausible (0..100)", spot.jitter_mm));
+    check_profile(spot.reference_profile, where + ".reference_profile", findings);
+    check_profile(spot.feature.template_profile, where + ".template_profile", findings);
+    if (spot.curve)
+        findings.unless(spot.curve->x_coefficients.allFinite() && spot.curve->z_coefficients.allFinite() &&
+                            spot.curve->valid_from_mm <= spot.curve->valid_to_mm,
+                        where, "the contour curve is not usable", "teach it again");
+    bool used = false;
+    for (const Region& region : project.regions)
+        for (const std::string& id : region.spot_ids) used = used || id == spot.id;
+    findings.unless(used || !spot.enabled, where, "no region uses it", "add it to a region or switch it off");
+}
+
+void check_region(const Project& project, const Region& region, Findings& findings) {
+    const std::string where = "region " + region.id;
+    std::set<std::string> seen;
+    int enabled = 0;
+    std::set<std::string> robots;
+    double observed = 0;
+    for (const std::string& id : region.spot_ids) {
+        findings.unless(seen.insert(id).second, where, fmt::format("spot {} is named twice", id));
+        const Spot* spot = find_spot(project, id);
+        if (!spot) {
+            findings.add(where, fmt::format("spot \"{}\" is not in the project", id));
+            continue;
+        }
+        findings.unless(spot->enabled || !spot->required, where,
+                        fmt::format("its required spot {} is switched off", id));
+        if (!spot->enabled) continue;
+        ++enabled;
+        robots.insert(spot->robot_id);
+        for (int axis = 0; axis < 3; ++axis) observed += spot->weights[axis] > 0;
+    }
+    const auto free = std::count(region.free.begin(), region.free.end(), true);
+    findings.unless(free > 0, where, "no degree of freedom is free");
+    findings.unless(enabled > 0, where, "it has no enabled spot");
+    if (enabled > 0)
+        findings.unless(
+            observed >= static_cast<double>(free), where,
+            fmt::format("{} observed coordinates cannot determine {} degrees of freedom", observed, free),
+            "add spots in other orientations");
+    findings.concern(Concern::push);
+    findings.unless(robots.size() <= 1, where,
+                    "its spots belong to several robots, one frame cannot serve them",
+                    "make one region per robot");
+    for (const std::string& none : limits_that_are_none(region)) findings.add(where, none);
+    findings.unless(!region.frame_name.empty(), where,
+                    "it names no frame on the controller, nothing can be pushed");
+    findings.rigid(region.base_from_frame, where + ".base_from_frame");
+    for (const Region& other : project.regions) {
+        if (&other == &region) break;
+        findings.unless(!same_frame(other.frame_name, region.frame_name), where,
+                        fmt::format("region {} writes the same frame {}", other.id, other.frame_name),
+                        "give each region its own frame");
+    }
+    findings.concern(Concern::setup);
+}
+
+void check_place(const Project& project, const PanelJob& job, const PanelPlace& place, Findings& findings) {
+    const std::string where = fmt::format("panel job {}, place {}", job.id, place.id);
+    findings.unless(known(project.sensors, place.sensor_id), where,
+                    fmt::format("its sensor \"{}\" is not in the project", place.sensor_id));
+    findings.unless(place.second_sensor_id.empty() || known(project.sensors, place.second_sensor_id), where,
+                    fmt::format("its second sensor \"{}\" is not in the project", place.second_sensor_id));
+    findings.unless(place.second_sensor_id != place.sensor_id, where, "both its heads are the same sensor",
+                    "a double head has two sensors");
+    if (auto good = check(place.gauge); !good)
+        findings.add(where + ".gauge", good.error().what, good.error().mend);
+    findings.concern(Concern::push);
+    findings.unless(place.panel_reference_mm.allFinite() && place.body_reference_mm.allFinite() &&
+                        std::isfinite(place.gap_mm) && std::isfinite(place.flush_mm) &&
+                        std::isfinite(place.surface_deg),
+                    where, "what was taught is not finite", "teach it again");
+    findings.unless(
+        place.weights.allFinite() && place.weights.minCoeff() >= 0 && place.weights.maxCoeff() > 0, where,
+        "the weights must be finite, not negative, and one of them positive");
+    findings.unless(positive(place.sigma_mm) && place.sigma_mm <= 10, where,
+                    fmt::format("sigma of {} mm is not plausible (0..10)", place.sigma_mm));
+    findings.concern(Concern::setup);
+    check_profile(place.reference_profile, where + ".reference_profile", findings);
+}
+
+void check_panel_job(const Project& project, const PanelJob& job, Findings& findings) {
+    const std::string where = "panel job " + job.id;
+    findings.unless(known(project.robots, job.robot_id), where,
+                    fmt::format("its robot \"{}\" is not in the project", job.robot_id));
+    std::set<std::string> seen, sensors;
+    int enabled = 0;
+    for (const PanelPlace& place : job.places) {
+        findings.unless(!place.id.empty() && seen.insert(place.id).second, where,
+                        fmt::format("place \"{}\" has no name of its own", place.id));
+        findings.unless(place.enabled || !place.required, where,
+                        fmt::format("its required place {} is switched off", place.id));
+        enabled += place.enabled;
+        for (const std::string& id : {place.sensor_id, place.second_sensor_id})
+            findings.unless(id.empty() || !place.enabled || sensors.insert(id).second, where,
+                            fmt::format("sensor {} is used at two places", id), "a sensor sees one place");
+        check_place(project, job, place, findings);
+    }
+    findings.unless(enabled >= 3, where, fmt::format("{} enabled places do not determine a motion", enabled),
+                    "measure at three or more places in different orientations");
+    findings.concern(Concern::push);
+    for (const Field<PanelJob>& f : panel_fields())
+        if (auto valid = validate({{f.info.name, f.get(job)}}, {f.info}, where); !valid)
+            findings.add(valid.error());
+    findings.unless(!job.frame_name.empty(), where,
+                    "it names no frame on the controller, nothing can be moved");
+    findings.rigid(job.base_from_frame, where + ".base_from_frame");
+    for (const Region& region : project.regions)
+        findings.unless(!same_frame(region.frame_name, job.frame_name), where,
+                        fmt::format("region {} writes the same frame {}", region.id, job.frame_name));
+    for (const PanelJob& other : project.panel_jobs) {
+        if (other.id == job.id) break;
+        findings.unless(!same_frame(other.frame_name, job.frame_name), where,
+                        fmt::format("panel job {} writes the same frame {}", other.id, job.frame_name));
+    }
+    findings.concern(Concern::measuring);
+    findings.rigid(job.base_from_gripper, where + ".base_from_gripper");
+    findings.concern(Concern::setup);
+}
+
+// Those that a run must not begin with.
+std::vector<Error> of_motion(Findings findings, bool push) {
+    std::vector<Error> list;
+    for (auto& [concern, error] : findings.list)
+        if (concern == Concern::measuring || (push && concern == Concern::push))
+            list.push_back(std::move(error));
+    return list;
+}
+
+}  // namespace
+
+std::vector<Error> motion_findings(const Project& project, bool push) {
+    Findings findings;
+    findings.concern(Concern::push);
+    findings.unless(!project.regions.empty(), "regions", "the project has no region, nothing can be pushed",
+                    "make a region of the spots");
+    findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
+    if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());
+    findings.concern(Concern::setup);
+    for (const Spot& spot : project.spots) check_spot(project, spot, findings);
+    for (const Region& region : project.regions) check_region(project, region, findings);
+    return of_motion(std::move(findings), push);
+}
+
+std::vector<Error> motion_findings(const Project& project, const PanelJob& job, bool push) {
+    Findings findings;
+    check_panel_job(project, job, findings);
+    return of_motion(std::move(findings), push);
+}
+
+Expected<void> none_of_motion(const std::vector<Error>& findings) {
+    if (findings.empty()) return {};
+    Error error = findings.front();
+    if (findings.size() > 1)
+        error.what += fmt::format(" (and {} more findings, see check)", findings.size() - 1);
+    return tl::unexpected(std::move(error));
+}
+
+std::vector<Error> check(const Project& project) {
+    Findings findings;
+    check_ids(project.sensors, "sensor", findings);
+    check_ids(project.robots, "robot", findings);
+    check_ids(project.calibrations, "calibration", findings);
+    check_ids(project.spots, "spot", findings);
+    check_ids(project.regions, "region", findings);
+    findings.rigid(project.part.base_from_workobject, "part.base_from_workobject");
+    if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());
+    for (const SensorSetup& sensor : project.sensors) check_sensor(project, sensor, findings);
+    for (const RobotSetup& robot : project.robots)
+        findings.unless(!robot.driver.empty(), "robot " + robot.id, "it has no driver",
+                        "choose one of `seamwright devices`");
+    for (const Calibration& calibration : project.calibrations) check_calibration(calibration, findings);
+    for (const Spot& spot : project.spots) check_spot(project, spot, findings);
+    for (const Region& region : project.regions) check_region(project, region, findings);
+    check_ids(project.panel_jobs, "panel job", findings);
+    for (const PanelJob& job : project.panel_jobs) check_panel_job(project, job, findings);
+    std::vector<Error> list;
+    for (auto& [concern, error] : findings.list) list.push_back(std::move(error));
+    return list;
+}
+
+}  // namespace seamwright

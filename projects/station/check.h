@@ -1,0 +1,20 @@
+#pragma once
+// Is a project plausible, and may a robot move by it? Judged before a device is touched.
+
+#include <vector>
+
+#include "core/error.h"
+#include "projects/model/project.h"
+
+namespace seamwright {
+
+// Empty when plausible; else one Error per finding (unknown ids, duplicates, spots without region, ...).
+std::vector<Error> check(const Project& project);
+// Those of them that concern how the robot moves: while it measures the enabled spots, and with `push` in the
+// frames of the regions. No run begins while there is one. The second: of a panel job.
+std::vector<Error> motion_findings(const Project& project, bool push);
+std::vector<Error> motion_findings(const Project& project, const PanelJob& job, bool push);
+// The first of them, which says how many more there are.
+Expected<void> none_of_motion(const std::vector<Error>& findings);
+
+}  // namespace seamwright

@@ -1,0 +1,401 @@
+#include "projects/station/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/correction/travel.h"
+
+namespace seamwright {
+namespace {
+
+template <class T>
+const T* find_by_id(const std::vector<T>& items, const std::string& id) {
+    const auto it = std::find_if(items.begin(), items.end(), [&](const T& item) { return item.id == id; });
+    return it == items.end() ? nullptr : &*it;
+}
+
+// Copies that keep the target's capacity.
+void keep_profile(const Profile& from, Profile& to) {
+    to.x_mm.assign(from.x_mm.begin(), from.x_mm.end());
+    to.z_mm.assign(from.z_mm.begin(), from.z_mm.end());
+    to.intensity.assign(from.intensity.begin(), from.intensity.end());
+    to.segment.clear();  // raw: the filter marks segments again
+}
+
+// Two observed coordinates share the feature's variance: the mean of the trace.
+double total_sigma_mm(const Spot& spot, const Feature& feature) {
+    return std::sqrt(spot.sigma_mm * spot.sigma_mm + 0.5 * feature.covariance_mm2.trace());
+}
+
+void clear_candidates(ProfileCandidates& c) {
+    c.lines = 0;
+    c.per_line = 1;
+    c.count.clear();
+    c.x_mm.clear();
+    c.z_mm.clear();
+    c.intensity.clear();
+}
+
+}  // namespace
+
+SpotStatus capture_frame(const Frame& frame, const PeakOptions& peak_options, const SensorModel* model,
+                         StripePeaks& peaks, Capture& capture, std::string& message) {
+    capture.status = frame.status;
+    capture.sequence = frame.sequence;
+    capture.device_time_ns = frame.device_time_ns;
+    capture.host_time_ns = frame.host_time_ns;
+    capture.base_from_flange = frame.base_from_flange;
+    capture.profile.clear();
+    clear_candidates(capture.candidates);
+    message.clear();
+    if (frame.status != FrameStatus::ok) {
+        message = fmt::format("the frame is {}", to_string(frame.status));
+        return SpotStatus::damaged_frame;
+    }
+    if (frame.profile.size() > 0) {
+        // What the sensor finished itself is not computed again from its image.
+        if (frame.profile.z_mm.size() != frame.profile.x_mm.size() ||
+            (!frame.profile.intensity.empty() &&
+             frame.profile.intensity.size() != frame.profile.x_mm.size())) {
+            message = "the columns of the profile differ in length";
+            return SpotStatus::damaged_frame;
+        }
+        keep_profile(frame.profile, capture.profile);
+        return SpotStatus::measured;
+    }
+    if (frame.image.empty()) {
+        message = "the frame holds neither a profile nor an image";
+        return SpotStatus::no_stripe;
+    }
+    if (!model) {
+        message = "the sensor delivers images and its calibration holds no model";
+        return SpotStatus::no_calibration;
+    }
+    if (auto found = find_peaks(frame.image, peak_options, peaks); !found) {
+        message = found.error().sentence();
+        return SpotStatus::no_stripe;
+    }
+    to_millimetres(peaks, *model, capture.candidates);
+    const auto& count = capture.candidates.count;
+    if (std::none_of(count.begin(), count.end(), [](std::uint8_t n) { return n > 0; })) {
+        message = "no stripe was found in the image";
+        return SpotStatus::no_stripe;
+    }
+    return SpotStatus::measured;
+}
+
+Expected<void> track_capture(const Capture& capture, const FilterOptions& options, Profile& profile) {
+    if (capture.profile.size() > 0) {
+        keep_profile(capture.profile, profile);
+        return filter_profile(profile, options);
+    }
+    return track_stripe(capture.candidates, options, profile);
+}
+
+Eigen::Vector3d in_taught_sensor(const Eigen::Vector2d& point_mm, const Pose& flange_from_sensor,
+                                 const Pose& base_from_flange_taught,
+                                 const std::optional<Pose>& base_from_flange_reported) {
+    const Eigen::Vector3d m(point_mm.x(), 0, point_mm.y());
+    if (!base_from_flange_reported) return m;
+    const Pose base_from_sensor = base_from_flange_taught * flange_from_sensor;
+    return base_from_sensor.inverse() * (*base_from_flange_reported * flange_from_sensor * m);
+}
+
+SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
+                            const Pose& flange_from_sensor, const SpotMeasurement& measurement) {
+    SpotObservation o;
+    o.id = spot.id;
+    o.workobject_from_sensor = base_from_workobject.inverse() * spot.base_from_flange * flange_from_sensor;
+    o.reference_mm = spot.reference_mm;
+    o.measured_mm = measurement.measured_mm;
+    o.weights = spot.weights;
+    o.sigma_mm = measurement.sigma_mm;
+    o.curve = spot.curve;
+    if (spot.weights.x() == spot.weights.z()) {
+        const Eigen::Matrix2d& feature = measurement.feature.covariance_mm2;
+        const double rest = o.sigma_mm * o.sigma_mm - 0.5 * feature.trace();
+        if (rest > 0) o.covariance_mm2 = feature + rest * Eigen::Matrix2d::Identity();
+    }
+    return o;
+}
+
+const SensorSetup* find_sensor(const Project& project, const std::string& id) {
+    return find_by_id(project.sensors, id);
+}
+const RobotSetup* find_robot(const Project& project, const std::string& id) {
+    return find_by_id(project.robots, id);
+}
+const Spot* find_spot(const Project& project, const std::string& id) {
+    return find_by_id(project.spots, id);
+}
+
+std::vector<SpotObservation> planned_observations(const Project& project, const Region& region) {
+    std::vector<SpotObservation> observations;
+    for (const std::string& id : region.spot_ids) {
+        const Spot* spot = find_spot(project, id);
+        if (!spot || !spot->enabled) continue;
+        const Calibration* calibration = calibration_of(project, *spot);
+        if (!calibration) continue;
+        SpotMeasurement at_reference;
+        at_reference.spot_id = id;
+        at_reference.measured_mm = spot->reference_mm;
+        if (spot->reference_profile.size() > 0)
+            if (const auto finder = make_feature_finder(spot->feature))
+                if (Feature found = (*finder)->find(spot->reference_profile);
+                    found.status == FeatureStatus::ok && found.covariance_mm2.allFinite())
+                    at_reference.feature = std::move(found);
+        at_reference.sigma_mm = total_sigma_mm(*spot, at_reference.feature);
+        observations.push_back(observation(*spot, project.part.base_from_workobject,
+                                           calibration->flange_from_sensor, at_reference));
+    }
+    return observations;
+}
+
+const PanelJob* find_panel_job(const Project& project, const std::string& id) {
+    return find_by_id(project.panel_jobs, id);
+}
+
+const Calibration* calibration_of(const Project& project, const Spot& spot) {
+    return calibration_of(project, spot.sensor_id);
+}
+
+const Calibration* calibration_of(const Project& project, const std::string& sensor_id) {
+    const SensorSetup* sensor = find_sensor(project, sensor_id);
+    return sensor && !sensor->calibration_id.empty()
+               ? find_by_id(project.calibrations, sensor->calibration_id)
+               : nullptr;
+}
+
+struct SpotMeasurer::Impl {
+    Spot spot;
+    PeakOptions peak_options;
+    FilterOptions filter;
+    std::optional<SensorModel> model;
+    Pose flange_from_sensor = Pose::Identity();
+    bool calibrated = false;
+    std::unique_ptr<FeatureFinder> finder;
+
+    StripePeaks peaks;
+    Capture capture;
+    Profile profile;
+    SpotMeasurement measurement;
+
+    void reset(std::int64_t host_time_ns) {
+        measurement.status = SpotStatus::not_measured;
+        measurement.message.clear();
+        measurement.feature.status = FeatureStatus::not_found;
+        measurement.feature.point_mm.setConstant(std::numeric_limits<double>::quiet_NaN());
+        measurement.feature.covariance_mm2.setZero();
+        measurement.feature.phi_rad.reset();
+        measurement.feature.rms_mm = 0;
+        measurement.feature.points_used = 0;
+        measurement.feature.message.clear();
+        measurement.measured_mm.setZero();
+        measurement.sigma_mm = 0;
+        measurement.pose_reported = false;
+        measurement.host_time_ns = host_time_ns;
+        profile.clear();
+    }
+
+    const SpotMeasurement& no(SpotStatus status, const std::string& message) {
+        measurement.status = status;
+        measurement.message = message;
+        return measurement;
+    }
+
+    // From the capture's profile or candidates to the end.
+    const SpotMeasurement& evaluate(const Capture& from) {
+        if (auto tracked = track_capture(from, filter, profile); !tracked)
+            return no(SpotStatus::no_stripe, tracked.error().sentence());
+        measurement.feature = finder->find(profile);
+        const Feature& feature = measurement.feature;
+        if (feature.status != FeatureStatus::ok)
+            return no(SpotStatus::no_feature,
+                      feature.message.empty() ? std::string(to_string(feature.status)) : feature.message);
+        if (!feature.point_mm.allFinite() || !feature.covariance_mm2.allFinite())
+            return no(SpotStatus::no_feature, "the feature is not a finite point");
+        if (from.base_from_flange && !pose_from_matrix(from.base_from_flange->matrix(), "", 1e-4))
+            return no(SpotStatus::not_measured, "the reported pose of the flange is no rigid pose");
+        // Without a calibration it is not known where the sensor sits: the point stays as seen.
+        measurement.pose_reported = calibrated && from.base_from_flange.has_value();
+        measurement.measured_mm =
+            in_taught_sensor(feature.point_mm, flange_from_sensor, spot.base_from_flange,
+                             calibrated ? from.base_from_flange : std::nullopt);
+        measurement.sigma_mm = total_sigma_mm(spot, feature);
+        measurement.status = SpotStatus::measured;
+        return measurement;
+    }
+};
+
+SpotMeasurer::SpotMeasurer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SpotMeasurer::SpotMeasurer(SpotMeasurer&&) noexcept = default;
+SpotMeasurer& SpotMeasurer::operator=(SpotMeasurer&&) noexcept = default;
+SpotMeasurer::~SpotMeasurer() = default;
+
+Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::string& spot_id) {
+    const Spot* spot = find_spot(project, spot_id);
+    if (!spot) return input_error(fmt::format("there is no spot \"{}\"", spot_id), "spots");
+    const std::string where = fmt::format("spot {}", spot_id);
+    const SensorSetup* sensor = find_sensor(project, spot->sensor_id);
+    if (!sensor)
+        return input_error(fmt::format("its sensor \"{}\" is not in the project", spot->sensor_id), where,
+                           "choose one of the project's sensors");
+    auto finder = make_feature_finder(spot->feature);
+    if (!finder) {
+        Error error = finder.error();
+        error.where = error.where.empty() ? where : where + ": " + error.where;
+        return tl::unexpected(error);
+    }
+    auto impl = std::make_unique<Impl>();
+    impl->spot = *spot;
+    impl->peak_options = sensor->peaks;
+    impl->filter = sensor->filter;
+    impl->finder = std::move(*finder);
+    if (const Calibration* calibration = calibration_of(project, *spot)) {
+        impl->calibrated = true;
+        impl->model = calibration->model;
+        impl->flange_from_sensor = calibration->flange_from_sensor;
+    }
+    impl->measurement.spot_id = spot_id;
+    impl->capture.spot_id = spot_id;
+    impl->capture.sensor_id = sensor->id;
+    return SpotMeasurer(std::move(impl));
+}
+
+const SpotMeasurement& SpotMeasurer::measure(const Frame& frame, const std::optional<Pose>& reported) {
+    Impl& i = *impl_;
+    i.reset(frame.host_time_ns);
+    const SpotStatus status = capture_frame(frame, i.peak_options, i.model ? &*i.model : nullptr, i.peaks,
+                                            i.capture, i.measurement.message);
+    if (reported) i.capture.base_from_flange = reported;
+    if (status != SpotStatus::measured) {
+        i.measurement.status = status;
+        return i.measurement;
+    }
+    return i.evaluate(i.capture);
+}
+
+const SpotMeasurement& SpotMeasurer::measure(const Capture& stored) {
+    Impl& i = *impl_;
+    if (stored.image && stored.status == FrameStatus::ok && stored.profile.size() == 0) {
+        Frame frame;
+        frame.status = stored.status;
+        frame.sequence = stored.sequence;
+        frame.device_time_ns = stored.device_time_ns;
+        frame.host_time_ns = stored.host_time_ns;
+        frame.base_from_flange = stored.base_from_flange;
+        frame.image = stored.image->view();
+        return measure(frame, stored.base_from_flange);
+    }
+    i.reset(stored.host_time_ns);
+    if (stored.status != FrameStatus::ok)
+        return i.no(SpotStatus::damaged_frame, fmt::format("the frame is {}", to_string(stored.status)));
+    const auto& count = stored.candidates.count;
+    const bool candidates = std::any_of(count.begin(), count.end(), [](std::uint8_t n) { return n > 0; });
+    if (stored.profile.size() == 0 && !candidates)
+        return i.no(SpotStatus::no_stripe, "the capture holds no profile");
+    return i.evaluate(stored);
+}
+
+const Spot& SpotMeasurer::spot() const {
+    return impl_->spot;
+}
+const Capture& SpotMeasurer::capture() const {
+    return impl_->capture;
+}
+const Profile& SpotMeasurer::profile() const {
+    return impl_->profile;
+}
+const StripePeaks& SpotMeasurer::peaks() const {
+    return impl_->peaks;
+}
+
+CorrectionOptions correction_options(const Region& region) {
+    CorrectionOptions options;
+    options.free = region.free;
+    options.limits = region.limits;
+    options.sigma_limit_mm = std::max(options.sigma_limit_mm, region.sigma_limit_mm);
+    options.sigma_limit_deg = std::max(options.sigma_limit_deg, region.sigma_limit_deg);
+    return options;
+}
+
+void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation) {
+    if (spot.stop_at_trigger || spot.jitter_mm == 0) return;
+    // A contour that came to lie along the laser line tells nothing; so much is as good as infinite.
+    constexpr double kNothingMm2 = 1e6;
+    const double sigma2 = observation.sigma_mm * observation.sigma_mm;
+    Eigen::Matrix2d c = travel_covariance(observation, displacement, spot.jitter_mm / std::sqrt(3.0));
+    if (!c.allFinite() || c.trace() > kNothingMm2) c = kNothingMm2 * Eigen::Matrix2d::Identity();
+    if (spot.weights.x() == spot.weights.z()) {
+        observation.covariance_mm2 =
+            c + observation.covariance_mm2.value_or(sigma2 * Eigen::Matrix2d::Identity());
+    } else {  // one sigma for both: the worse of those observed
+        const double worst = std::max(spot.weights.x() > 0 ? c(0, 0) : 0, spot.weights.z() > 0 ? c(1, 1) : 0);
+        observation.sigma_mm = std::sqrt(sigma2 + worst);
+    }
+}
+
+namespace {
+
+Expected<RegionCorrection> correct_region(const Project& project, const Region& region,
+                                          std::vector<SpotObservation> observations) {
+    // First where the part lies, to know what the travel does there. A good spot that the travel made look
+    // wrong does not matter to that.
+    CorrectionOptions roughly = correction_options(region);
+    roughly.limits = {};
+    auto rough = solve_region(observations, roughly);
+    if (rough && rough->status != CorrectionStatus::ok) {
+        roughly.reject_outliers = false;
+        rough = solve_region(observations, roughly);
+    }
+    if (rough && rough->status == CorrectionStatus::ok)
+        for (SpotObservation& o : observations) add_travel(*find_spot(project, o.id), rough->displacement, o);
+    return solve_region(observations, correction_options(region));
+}
+
+}  // namespace
+
+std::vector<RegionRecord> correct_regions(const Project& project,
+                                          std::span<const SpotMeasurement> measurements) {
+    std::vector<RegionRecord> records;
+    for (const Region& region : project.regions) {
+        RegionRecord& record = records.emplace_back();
+        record.region_id = region.id;
+        record.base_from_frame = region.base_from_frame;
+        record.push.frame_name = region.frame_name;
+        std::vector<SpotObservation> observations;
+        int uncalibrated = 0;
+        for (const std::string& id : region.spot_ids) {
+            const Spot* spot = find_spot(project, id);
+            const auto measured =
+                std::find_if(measurements.begin(), measurements.end(), [&](const SpotMeasurement& m) {
+                    return m.spot_id == id && m.status == SpotStatus::measured;
+                });
+            const Calibration* calibration = spot ? calibration_of(project, *spot) : nullptr;
+            if (!spot || !spot->enabled || measured == measurements.end()) continue;
+            if (!calibration) {
+                ++uncalibrated;
+                continue;
+            }
+            observations.push_back(observation(*spot, project.part.base_from_workobject,
+                                               calibration->flange_from_sensor, *measured));
+        }
+        if (observations.empty()) {
+            record.refusals.push_back(uncalibrated ? "the sensors at the region's spots have no calibration"
+                                                   : "no spot of the region was measured");
+            continue;
+        }
+        auto solved = correct_region(project, region, std::move(observations));
+        if (!solved) {
+            record.refusals.push_back("the correction refuses its input: " + solved.error().sentence());
+            continue;
+        }
+        record.correction = std::move(*solved);
+    }
+    return records;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,106 @@
+#pragma once
+// The data's way, one function per arrow: frame -> peaks -> candidates -> tracked profile -> feature ->
+// measurement
+// -> observation. Each is usable alone; SpotMeasurer strings them together with buffers that are allocated
+// once.
+//
+// Where the measured point goes. A spot was taught with the flange at base_from_flange; while the robot
+// moves, or repeats badly, the controller reports a slightly different pose at the trigger. The point m = (x,
+// 0, z) seen from the reported pose B' is carried into the taught sensor frame:
+//     m' = (B * F)^-1 * (B' * F) * m,      B = taught, B' = reported base_from_flange, F =
+//     flange_from_sensor,
+// so that the correction sees the part's motion and not the robot's. m' has a small y: the cut was made
+// there, which the spot's contour curve can use; with weight 0 along Y it changes nothing else. Jitter that
+// the controller does not report stays in the measurement; Spot::sigma_mm holds what it does to the contour
+// as taught.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "projects/model/project.h"
+#include "projects/model/run.h"
+
+namespace seamwright {
+
+// Frame -> capture (raw): peaks and candidates of an image, or the finished profile as it came. A damaged
+// frame keeps only its status. Buffers of `capture` and `peaks` are reused. `model` may be null for finished
+// profiles. Returns the reason when the frame holds nothing to measure.
+SpotStatus capture_frame(const Frame& frame, const PeakOptions& peak_options, const SensorModel* model,
+                         StripePeaks& peaks, Capture& capture, std::string& message);
+
+// Capture -> tracked, filtered profile. Error: the filter's.
+Expected<void> track_capture(const Capture& capture, const FilterOptions& options, Profile& profile);
+
+// m' of above.
+Eigen::Vector3d in_taught_sensor(const Eigen::Vector2d& point_mm, const Pose& flange_from_sensor,
+                                 const Pose& base_from_flange_taught,
+                                 const std::optional<Pose>& base_from_flange_reported);
+
+// The correction's input of a measured spot. W = base_from_workobject^-1 * base_from_flange *
+// flange_from_sensor. Where x and z weigh the same the feature's whole covariance counts: the end of a
+// contour is unsure along it, and well known across.
+SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
+                            const Pose& flange_from_sensor, const SpotMeasurement& measurement);
+
+// The plan's input of a region: each of its enabled spots standing at its reference, with the noise that its
+// feature has in the reference profile. Spots without calibration are left out, as they are in a run.
+std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
+
+// What the part's displacement does to a spot whose trigger may come anywhere in its jitter window, added to
+// the observation's noise: the contour stands still over the window as taught, not as displaced.
+void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation);
+
+// The calibration in use at a sensor, at a spot's sensor; nullptr when there is none.
+const Calibration* calibration_of(const Project& project, const std::string& sensor_id);
+const Calibration* calibration_of(const Project& project, const Spot& spot);
+const PanelJob* find_panel_job(const Project& project, const std::string& id);
+const SensorSetup* find_sensor(const Project& project, const std::string& id);
+const RobotSetup* find_robot(const Project& project, const std::string& id);
+const Spot* find_spot(const Project& project, const std::string& id);
+
+// A spot made ready. Keeps copies of what it needs from the project. One thread at a time; no allocation
+// after the first profile of a size (a longer profile than ever before grows the buffers once).
+class SpotMeasurer {
+  public:
+    // Refuses an unknown spot or sensor and a recipe its kind refuses. A missing calibration is no error
+    // here: images are then not measured (SpotStatus::no_calibration), finished profiles give their feature
+    // in the sensor frame, which no correction uses.
+    static Expected<SpotMeasurer> make(const Project& project, const std::string& spot_id);
+    SpotMeasurer(SpotMeasurer&&) noexcept;
+    SpotMeasurer& operator=(SpotMeasurer&&) noexcept;
+    ~SpotMeasurer();
+
+    // The whole way. The reference stays valid until the next call. `reported` (the trigger event's pose) is
+    // preferred to the frame's own.
+    const SpotMeasurement& measure(const Frame& frame, const std::optional<Pose>& reported = std::nullopt);
+    // From a stored capture: from the image where it was kept, else from candidates or profile. Same code,
+    // same bits.
+    const SpotMeasurement& measure(const Capture& capture);
+
+    const Spot& spot() const;
+    const Capture& capture() const;    // of the last frame
+    const Profile& profile() const;    // tracked profile of the last measurement
+    const StripePeaks& peaks() const;  // of the last image
+
+  private:
+    struct Impl;
+    explicit SpotMeasurer(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+// What correction and plan of a region are asked for: its free degrees and limits; a direction that the
+// region's sigma limits would refuse anyway by far is not observed at all.
+CorrectionOptions correction_options(const Region& region);
+
+// Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
+// Solved twice: where the part lies tells how far the contour of each spot moves in the laser plane while the
+// trigger jitters over Spot::jitter_mm (uniform, half width; travel.h), and that is part of the covariance of
+// the measured point. A spot with stop_at_trigger does not jitter.
+// Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
+// correction and says why in `refusals`.
+std::vector<RegionRecord> correct_regions(const Project& project,
+                                          std::span<const SpotMeasurement> measurements);
+
+}  // namespace seamwright

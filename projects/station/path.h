@@ -1,0 +1,43 @@
+#pragma once
+// The application path of a project, corrected point by point by what a run found (core/correction/
+// path_blend.h). Nothing is sent to a robot: the result is a path for the application program, to be run in
+// the taught frame. What stands between a number and a robot holds here as well:
+//   - every region that the path uses must have passed the safety gate in that run;
+//   - at every point, the displacement's translation and angle and the point's sigma must keep the limits of
+//     its region; within a transition the limits go over from one region's to the next's with the blend.
+
+#include <string>
+#include <vector>
+
+#include "core/correction/path_blend.h"
+#include "devices/exchange/path_csv.h"
+#include "projects/model/project.h"
+#include "projects/model/run.h"
+
+namespace seamwright {
+
+enum class PathFrame { base, workobject };  // what the points are expressed in
+
+struct PathRefusal {
+    std::string region_id;
+    std::size_t point = 0;   // the first one, from 0
+    std::size_t points = 0;  // how many; 0 = the region altogether
+    std::string reason;
+};
+
+struct PathAnswer {
+    ApplicationPath path;  // corrected, in the frame in which it was given, with every point's region
+    std::vector<std::string> region_ids;  // index of CorrectedPath
+    CorrectedPath corrected;
+    std::vector<PathRefusal> refusals;  // empty: the path may be run
+    bool ok() const { return refusals.empty(); }
+};
+
+// Regions of points that name none: with one region it is that one, else that of the nearest spot among
+// those which belong to one region only, judged at the spots' references.
+// Error (input): an unknown region in the path, no region can be told, what correct_path() refuses.
+Expected<PathAnswer> correct_application_path(const Project& setup, const RunRecord& run,
+                                              const ApplicationPath& path, PathFrame frame,
+                                              const PathBlendOptions& options);
+
+}  // namespace seamwright

@@ -1,0 +1,46 @@
+#include "projects/station/program.h"
+
+#include <algorithm>
+
+#include "projects/station/acquire.h"
+
+namespace seamwright {
+
+Expected<ProgramRequest> program_request(const Project& project, const std::string& robot_id) {
+    const auto& robots = project.robots;
+    if (robots.empty()) return input_error("the project has no robot", project.name, "add one");
+    if (robot_id.empty() && robots.size() > 1)
+        return input_error("the project has several robots", project.name, "say which with --robot");
+    const auto robot = robot_id.empty() ? robots.begin()
+                                        : std::find_if(robots.begin(), robots.end(),
+                                                       [&](const RobotSetup& r) { return r.id == robot_id; });
+    if (robot == robots.end())
+        return input_error("the project has no robot \"" + robot_id + "\"", project.name,
+                           "its first is \"" + robots.front().id + "\"");
+    ProgramRequest request;
+    request.project = project.name;
+    request.settings = robot->settings;
+    request.driver = robot->driver;
+    request.moves = measuring_program(project, robot->id);
+    if (request.moves.empty())
+        return input_error("no spot of it is enabled", "robot " + robot->id, "teach a spot first");
+    for (const Region& region : project.regions) {
+        const bool its =
+            std::any_of(region.spot_ids.begin(), region.spot_ids.end(), [&](const std::string& id) {
+                return std::any_of(request.moves.begin(), request.moves.end(),
+                                   [&](const MeasuringMove& m) { return m.spot_id == id; });
+            });
+        if (!its) continue;
+        if (region.frame_name.empty())
+            return input_error("it names no frame on the controller", "region " + region.id, "name one");
+        for (const ApplicationFrame& other : request.frames)
+            if (other.name == region.frame_name)
+                return input_error(
+                    "its frame \"" + region.frame_name + "\" is that of region " + other.region_id + " too",
+                    "region " + region.id, "give each region a frame of its own");
+        request.frames.push_back({region.id, region.frame_name, region.base_from_frame});
+    }
+    return request;
+}
+
+}  // namespace seamwright

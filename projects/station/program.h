@@ -1,0 +1,16 @@
+#pragma once
+// What a project asks of the controller's program.
+
+#include <string>
+
+#include "devices/robot_program.h"
+#include "projects/model/project.h"
+
+namespace seamwright {
+
+// The enabled spots of a robot as moves, and the frames of the regions that they correct. `robot_id` may be
+// empty when the project has one robot. Error (input): no such robot, no enabled spot, a frame without name,
+// one name for two regions.
+Expected<ProgramRequest> program_request(const Project& project, const std::string& robot_id);
+
+}  // namespace seamwright

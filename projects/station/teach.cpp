@@ -1,0 +1,212 @@
+#include "projects/station/teach.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "projects/station/acquire.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kSamePoseMm = 1e-3, kSamePoseDeg = 1e-4;
+
+// What a trigger of the session brought.
+using Visit =
+    std::function<void(std::size_t move, const SpotMeasurer& measurer, const SpotMeasurement& measurement)>;
+
+// Measures standing still at each of `poses` (base_from_flange).
+Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<Pose>& poses,
+                          const std::stop_token& cancel,
+                          const std::function<void(const RunProgress&)>& progress, const Visit& visit) {
+    ProfileSource* sensor = station.sensor(spot.sensor_id);
+    RobotLink* robot = station.robot(spot.robot_id);
+    if (!sensor || !robot)
+        return usage_error("its sensor or robot is not connected", "spot " + spot.id, "connect first");
+    Project project = station.project();
+    auto known = std::find_if(project.spots.begin(), project.spots.end(),
+                              [&](const Spot& s) { return s.id == spot.id; });
+    if (known == project.spots.end())
+        project.spots.push_back(spot);
+    else
+        *known = spot;
+    auto measurer = SpotMeasurer::make(project, spot.id);
+    if (!measurer) return tl::unexpected(measurer.error());
+
+    auto by_software = SoftwareTriggered::begin(*sensor);
+    if (!by_software) return tl::unexpected(by_software.error());
+    StartedSensors started;
+    if (auto on = started.start(*sensor); !on) return on;
+    const AcquireLimits limits;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (cancel.stop_requested())
+            return device_error(ErrorCode::cancelled, "cancelled", "spot " + spot.id);
+        auto at = stand_at(*robot, spot.id, poses[i]);
+        if (!at) return tl::unexpected(at.error());
+        if (auto fired = sensor->trigger(spot.id); !fired) return fired;
+        auto frame = next_frame(*sensor, limits.frame_timeout, cancel);
+        if (!frame) return tl::unexpected(frame.error());
+        visit(i, *measurer, measurer->measure(**frame, *at));
+        if (progress)
+            progress({static_cast<int>(i) + 1, static_cast<int>(poses.size()),
+                      fmt::format("{}: {} of {}", spot.id, i + 1, poses.size())});
+    }
+    return {};
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+Pose flange_from_sensor(const Station& station, const Spot& spot) {
+    const Calibration* calibration = calibration_of(station.project(), spot);
+    return calibration ? calibration->flange_from_sensor : Pose::Identity();
+}
+
+}  // namespace
+
+Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options) {
+    if (options.repeats < 1 || options.repeats > 1000)
+        return usage_error(fmt::format("{} repeats", options.repeats), "spot " + draft.id, "give 1 to 1000");
+    TaughtSpot taught;
+    taught.spot = draft;
+    std::vector<Profile> profiles;
+    // Standing still: the reference is free of trigger jitter.
+    auto measured = measure_at(
+        station, draft, std::vector<Pose>(static_cast<std::size_t>(options.repeats), draft.base_from_flange),
+        options.cancel, options.progress,
+        [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+            taught.measurements.push_back(m);
+            profiles.push_back(measurer.profile());
+        });
+    if (!measured) return tl::unexpected(measured.error());
+
+    std::vector<std::size_t> found;
+    std::string reason;
+    for (std::size_t i = 0; i < taught.measurements.size(); ++i) {
+        if (taught.measurements[i].status == SpotStatus::measured)
+            found.push_back(i);
+        else
+            reason = taught.measurements[i].message;
+    }
+    if (2 * found.size() < taught.measurements.size())
+        return input_error(fmt::format("the feature was found in {} of {} measurements ({})", found.size(),
+                                       options.repeats, reason),
+                           "spot " + draft.id, "choose another feature or move the sensor");
+
+    // A reflection that took the feature once must not pull the reference: what lies far from the median is
+    // left out.
+    const auto point = [&](std::size_t i) -> const Eigen::Vector2d& {
+        return taught.measurements[i].feature.point_mm;
+    };
+    Eigen::Vector2d middle, limit;
+    for (int axis = 0; axis < 2; ++axis) {
+        std::vector<double> values;
+        for (std::size_t i : found) values.push_back(point(i)[axis]);
+        middle[axis] = median(values);
+        for (double& v : values) v = std::abs(v - middle[axis]);
+        limit[axis] = std::max(5 * 1.4826 * median(values), 3 * draft.sigma_mm);
+    }
+    std::vector<std::size_t> kept;
+    for (std::size_t i : found)
+        if (((point(i) - middle).cwiseAbs().array() <= limit.array()).all()) kept.push_back(i);
+    taught.left_out = static_cast<int>(taught.measurements.size() - kept.size());
+    if (2 * kept.size() < taught.measurements.size())
+        return input_error(fmt::format("only {} of {} measurements agree", kept.size(), options.repeats),
+                           "spot " + draft.id,
+                           "choose another feature, shield reflections or move the sensor");
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
+    for (std::size_t i : kept) sum += point(i);
+    const Eigen::Vector2d mean = sum / static_cast<double>(kept.size());
+    for (std::size_t i : kept) squares += (point(i) - mean).cwiseAbs2();
+    if (kept.size() > 1) taught.spread_mm = (squares / static_cast<double>(kept.size() - 1)).cwiseSqrt();
+    taught.spot.reference_mm = {mean.x(), 0.0, mean.y()};
+    const auto typical = std::min_element(kept.begin(), kept.end(), [&](std::size_t i, std::size_t k) {
+        return (point(i) - mean).squaredNorm() < (point(k) - mean).squaredNorm();
+    });
+    taught.spot.reference_profile = profiles[*typical];
+    return taught;
+}
+
+bool measured_alike(const Spot& a, const Spot& b) {
+    const auto same = [](const Profile& p, const Profile& q) { return p.x_mm == q.x_mm && p.z_mm == q.z_mm; };
+    return a.sensor_id == b.sensor_id && a.robot_id == b.robot_id && a.feature.kind == b.feature.kind &&
+           a.feature.parameters == b.feature.parameters &&
+           same(a.feature.template_profile, b.feature.template_profile) &&
+           a.feature.template_reference_mm == b.feature.template_reference_mm &&
+           distance_mm(a.base_from_flange, b.base_from_flange) < kSamePoseMm &&
+           angle_rad(a.base_from_flange, b.base_from_flange) < rad_from_deg(kSamePoseDeg);
+}
+
+Spot with_reference_of(const Spot& before, Spot after) {
+    if (measured_alike(before, after)) return after;
+    after.reference_profile = {};
+    after.curve.reset();
+    return after;
+}
+
+Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options) {
+    if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
+        return usage_error(fmt::format("a step of {} mm", options.step_mm), "spot " + spot.id,
+                           "give 0.05 mm or more");
+    const MeasuringMove through = measuring_move(spot, flange_from_sensor(station, spot));
+    const Eigen::Vector3d before = through.entry.translation() - through.trigger.translation();
+    const Eigen::Vector3d after = through.exit.translation() - through.trigger.translation();
+    std::vector<Pose> poses;
+    std::vector<double> travel;
+    const int back = static_cast<int>(std::floor(spot.entry_mm / options.step_mm + 1e-9));
+    const int ahead = static_cast<int>(std::floor(spot.exit_mm / options.step_mm + 1e-9));
+    for (int k = -back; k <= ahead; ++k) {
+        const double y = k * options.step_mm;
+        Pose at = through.trigger;
+        at.translation() += y < 0   ? Eigen::Vector3d(before * (-y / spot.entry_mm))
+                            : y > 0 ? Eigen::Vector3d(after * (y / spot.exit_mm))
+                                    : Eigen::Vector3d(Eigen::Vector3d::Zero());
+        poses.push_back(at);
+        travel.push_back(y);
+    }
+    RecordedPass pass;
+    auto measured = measure_at(
+        station, spot, poses, options.cancel, options.progress,
+        [&](std::size_t i, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+            if (measurer.profile().size() > 0) pass.profiles.push_back({travel[i], measurer.profile()});
+            if (m.status == SpotStatus::measured)
+                pass.references.push_back({travel[i], m.feature.point_mm.x(), m.feature.point_mm.y()});
+        });
+    if (!measured) return tl::unexpected(measured.error());
+    return pass;
+}
+
+Spot cured(const Spot& spot, const AlignmentResult& result, const Pose& flange_from_sensor) {
+    const Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(rad_from_deg(result.cure_about_z_deg), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rad_from_deg(result.cure_about_x_deg), Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
+    const Eigen::Vector3d r = spot.reference_mm;
+    Spot after = spot;
+    after.base_from_flange = spot.base_from_flange * flange_from_sensor * make_pose(turn, r - turn * r) *
+                             flange_from_sensor.inverse();
+    return with_reference_of(spot, std::move(after));
+}
+
+FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,
+                             const AlignmentOptions& options) {
+    FrozenContour frozen{spot_id,
+                         result.status,
+                         result.yaw_deg,
+                         result.pitch_deg,
+                         result.radius_mm,
+                         result.expected_error_mm,
+                         options.tolerance_mm,
+                         options.jitter_mm,
+                         {}};
+    for (const TravelOffset& offset : result.offsets)
+        if (offset.ok) frozen.offsets.push_back(offset);
+    return frozen;
+}
+
+}  // namespace seamwright

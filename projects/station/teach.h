@@ -1,0 +1,65 @@
+#pragma once
+// Teaching on the part as it stands: the reference of a spot, and the pass entry -> exit that shows whether
+// the contour stands still. The robot makes the same moves as in a run; nothing is written to it.
+
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "core/alignment/alignment.h"
+#include "projects/model/evidence.h"
+#include "projects/model/run.h"
+#include "projects/station/station.h"
+
+namespace seamwright {
+
+struct TeachOptions {
+    int repeats = 5;  // measurements of the reference, 1 to 1000
+    std::stop_token cancel;
+    std::function<void(const RunProgress&)> progress;
+};
+
+// `spot` comes back with reference_mm (mean of the measurements, y = 0) and reference_profile (the first
+// one's).
+struct TaughtSpot {
+    Spot spot;
+    std::vector<SpotMeasurement> measurements;            // all, in order
+    int left_out = 0;                                     // not found, or far from the others
+    Eigen::Vector2d spread_mm = Eigen::Vector2d::Zero();  // standard deviation of x and z; 0 for a single one
+};
+
+// Measures `draft` (its recipe, sensor and pose) `repeats` times. Error: not connected, a device, cancelled,
+// or the feature was found, or agreed, in fewer than half of the measurements; the sentence carries the last
+// reason.
+Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options);
+
+// Whether what was measured with `a` holds for `b`: sensor, robot, feature, and the pose within a micrometre
+// and 0.0001 degree (what a pose loses on its way through a text).
+bool measured_alike(const Spot& a, const Spot& b);
+
+// `after` without the reference profile and the curve of `before` when they were measured otherwise.
+Spot with_reference_of(const Spot& before, Spot after);
+
+struct PassOptions {
+    double step_mm = 2.0;  // travel between two profiles; the ends are the spot's entry and exit
+    std::stop_token cancel;
+    std::function<void(const RunProgress&)> progress;
+};
+
+struct RecordedPass {
+    std::vector<TravelProfile> profiles;  // filtered, in the sensor frame of their own pose, travel ascending
+    std::vector<TravelPoint> references;  // where the spot's feature was found
+};
+
+// The robot stops at every step, so that travel is exact; the run itself triggers in motion.
+Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options);
+
+// `spot` turned about its reference point by the rotation that cures the drift; reference profile and curve
+// are gone with the pose that they were about.
+Spot cured(const Spot& spot, const AlignmentResult& result, const Pose& flange_from_sensor);
+
+// What the file keeps of an accepted pass: the verdict with what it was judged by, and the usable offsets.
+FrozenContour frozen_contour(const std::string& spot_id, const AlignmentResult& result,
+                             const AlignmentOptions& options);
+
+}  // namespace seamwright

@@ -1,0 +1,256 @@
+#include "projects/station/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "devices/silence.h"
+
+namespace seamwright {
+
+std::string_view to_string(WatchState state) {
+    switch (state) {
+        case WatchState::connecting:
+            return "connecting";
+        case WatchState::waiting:
+            return "waiting";
+        case WatchState::measuring:
+            return "measuring";
+        case WatchState::lost:
+            return "lost";
+        case WatchState::stopped:
+            return "stopped";
+    }
+    return "stopped";
+}
+
+namespace {
+
+class Watch {
+  public:
+    Watch(Station& station, const WatchOptions& options)
+        : station_(station), options_(options), retry_(options.retry_first) {}
+
+    Expected<WatchCounts> run() {
+        while (!ended()) {
+            if (!station_.connected()) {
+                auto connected = connect();
+                if (!connected) return tl::unexpected(connected.error());
+                if (!*connected) continue;
+            }
+            auto start = next_start();
+            if (!start) return tl::unexpected(start.error());
+            if (!start->has_value()) continue;
+            if (auto part = measure((*start)->part_id); !part) return tl::unexpected(part.error());
+        }
+        state_ = WatchState::stopped;
+        tell("info", "stopped", fmt::format("stopped after {} parts", counts_.parts));
+        return counts_;
+    }
+
+  private:
+    bool ended() const {
+        return options_.cancel.stop_requested() || (options_.parts > 0 && counts_.parts >= options_.parts);
+    }
+
+    void tell(std::string level, std::string event, std::string text,
+              nlohmann::json data = nlohmann::json::object()) {
+        if (!options_.tell) return;
+        options_.tell({utc_now(), std::move(level), std::move(event), std::move(text), std::move(data),
+                       state_, counts_});
+    }
+
+    void pause() {
+        const auto until = std::chrono::steady_clock::now() + retry_;
+        retry_ = std::min(2 * retry_, options_.retry_longest);
+        while (!options_.cancel.stop_requested()) {
+            const auto left = until - std::chrono::steady_clock::now();
+            if (left <= left.zero()) break;
+            std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(kCancelSlice, left));
+        }
+    }
+
+    // An outage is told and recorded once, however many attempts it lasts.
+    void lost(const std::string& subject, const Error& error) {
+        if (state_ != WatchState::lost) {
+            state_ = WatchState::lost;
+            ++counts_.lost;
+            // An event that the file does not take is told all the same; the next run's record shows the
+            // file's Error.
+            (void)station_.file().append_event(
+                {0, utc_now(), 0, EventKind::alarm, subject, "lost: " + error.sentence()});
+            tell("alarm", "lost", subject + " is lost: " + error.sentence(), {{"device", subject}});
+        }
+        pause();
+    }
+
+    void ready() {
+        retry_ = options_.retry_first;
+        if (state_ == WatchState::lost) {
+            (void)station_.file().append_event(
+                {0, utc_now(), 0, EventKind::note, "watch", "all devices answer again"});
+            state_ = WatchState::waiting;
+            tell("info", "back", "all devices answer again");
+        }
+        state_ = WatchState::waiting;
+    }
+
+    // False = not yet. An Error is one that no waiting mends: wrong settings, an unknown driver.
+    Expected<bool> connect() {
+        if (auto connected = station_.connect(); !connected) {
+            if (connected.error().kind != ErrorKind::device) return tl::unexpected(connected.error());
+            lost("station", connected.error());
+            return false;
+        }
+        ready();
+        tell("info", "connected", "waiting for the robot's start signal");
+        return true;
+    }
+
+    // Nothing = none yet. An Error is one that no waiting mends.
+    Expected<std::optional<StartSignal>> next_start() {
+        const auto& robots = station_.project().robots;
+        if (robots.empty())
+            return usage_error("the project has no robot", station_.file().path().string(), "add one");
+        const auto slice = kCancelSlice / static_cast<int>(robots.size());
+        for (const RobotSetup& setup : robots) {
+            RobotLink* robot = station_.robot(setup.id);
+            if (!robot) return usage_error("it is not connected", "robot " + setup.id, "connect it");
+            auto start = called_ && called_->first == setup.id
+                             ? Expected<StartSignal>(std::exchange(called_, std::nullopt)->second)
+                             : robot->wait_start(slice);
+            for (const std::string& notice : robot->take_notices())
+                tell("warning", "robot", "robot " + setup.id + ": " + notice);
+            if (start) {
+                ready();
+                newest(*robot, setup.id, *start);
+                if (expired(*robot, setup.id, *start)) return std::nullopt;
+                return std::optional(*start);
+            }
+            if (start.error().kind == ErrorKind::usage) return tl::unexpected(start.error());
+            if (!is_silence(start.error())) {
+                lost("robot " + setup.id, start.error());
+                return std::nullopt;
+            }
+        }
+        ready();
+        return std::nullopt;
+    }
+
+    // The newest of the calls that wait.
+    void newest(RobotLink& robot, const std::string& id, StartSignal& start) {
+        while (auto newer = robot.wait_start(std::chrono::milliseconds(0))) {
+            missed(id, start, fmt::format("part {}: a newer call came before it was measured", name(start)));
+            start = *newer;
+        }
+    }
+
+    // Whether nobody knows what stands there by now; the robot is told then, so that the line goes on.
+    bool expired(RobotLink& robot, const std::string& id, const StartSignal& start) {
+        const std::int64_t called_ns = start.not_before_ns != 0 ? start.not_before_ns : start.host_time_ns;
+        const auto age =
+            std::chrono::steady_clock::now().time_since_epoch() - std::chrono::nanoseconds(called_ns);
+        if (called_ns == 0 || age <= options_.start_expiry) return false;
+        const std::string why =
+            fmt::format("part {}: the call may be {:.0f} s old, another part may stand there; call again",
+                        name(start), std::chrono::duration<double>(age).count());
+        missed(id, start, why);
+        if (auto told = robot.confirm(PartVerdict::refused, why); !told)
+            tell("warning", "robot", "robot " + id + ": " + told.error().sentence());
+        return true;
+    }
+
+    void missed(const std::string& id, const StartSignal& start, const std::string& why) {
+        ++counts_.missed;
+        (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, "robot " + id, why});
+        tell("warning", "missed", why, {{"part", start.part_id}});
+    }
+
+    static std::string name(const StartSignal& start) {
+        return start.part_id.empty() ? "(no name)" : start.part_id;
+    }
+
+    Expected<void> measure(const std::string& part_id) {
+        state_ = WatchState::measuring;
+        ++counts_.parts;
+        tell("info", "start", "part " + (part_id.empty() ? "(no name)" : part_id), {{"part", part_id}});
+        RunOptions run;
+        run.part_id = part_id;
+        run.push = options_.push;
+        run.keep_images = options_.keep_images;
+        run.limits = options_.limits;
+        run.cancel = options_.cancel;
+        // The link is here to stay: held until the application has begun, or will not any more.
+        run.hold = kHoldForEver;
+        run.part_over = [&] { return part_called(); };
+        run.progress = [&](const RunProgress& p) {
+            tell("info", "spot", p.text, {{"done", p.done}, {"total", p.total}});
+        };
+        const auto begun = std::chrono::steady_clock::now();
+        auto record = station_.run(run);
+        if (!record) return tl::unexpected(record.error());
+        const auto took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun);
+        const bool alarm = record->status == RunStatus::alarm;
+        const bool failed = record->status == RunStatus::device || record->status == RunStatus::cancelled;
+        (record->status == RunStatus::ok ? counts_.corrected
+         : alarm                         ? counts_.alarms
+         : failed                        ? counts_.failed
+                                         : counts_.refused) += 1;
+        state_ = WatchState::waiting;
+        nlohmann::json data = {{"part", record->part_id},
+                               {"run", record->number},
+                               {"status", to_string(record->status)},
+                               {"seconds", took.count()},
+                               {"regions", nlohmann::json::array()}};
+        for (const RegionRecord& region : record->regions)
+            data["regions"].push_back({{"id", region.region_id},
+                                       {"passed", region.gate_passed},
+                                       {"push", to_string(region.push.status)},
+                                       {"release", to_string(region.push.release)},
+                                       {"refusals", region.refusals}});
+        tell(alarm || record->status == RunStatus::device ? "alarm"
+             : record->status == RunStatus::ok            ? "info"
+                                                          : "warning",
+             "run", fmt::format("part {}: {}", record->part_id, record->message), std::move(data));
+        return forget_old_runs();
+    }
+
+    // Whether the line calls for the next part while the last one is still to be taken; kept for the next
+    // round.
+    bool part_called() {
+        for (const RobotSetup& setup : station_.project().robots) {
+            if (called_) return true;
+            if (RobotLink* robot = station_.robot(setup.id))
+                if (auto start = robot->wait_start(std::chrono::milliseconds(1)))
+                    called_.emplace(setup.id, *start);
+        }
+        return called_.has_value();
+    }
+
+    Expected<void> forget_old_runs() {
+        if (options_.keep_runs <= 0) return {};
+        auto runs = station_.file().runs();
+        if (!runs) return tl::unexpected(runs.error());
+        const auto keep = static_cast<std::size_t>(options_.keep_runs);
+        for (std::size_t i = 0; i + keep < runs->size(); ++i)
+            if (auto deleted = station_.file().delete_run((*runs)[i].number); !deleted) return deleted;
+        return {};
+    }
+
+    Station& station_;
+    const WatchOptions& options_;
+    WatchState state_ = WatchState::connecting;
+    WatchCounts counts_;
+    std::optional<std::pair<std::string, StartSignal>> called_;  // by which robot, while a part was released
+    std::chrono::milliseconds retry_;
+};
+
+}  // namespace
+
+Expected<WatchCounts> watch(Station& station, const WatchOptions& options) {
+    return Watch(station, options).run();
+}
+
+}  // namespace seamwright

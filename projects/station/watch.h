@@ -1,0 +1,58 @@
+#pragma once
+// Car after car without a screen: wait for the robot's start signal, measure, correct, push, tell the robot,
+// wait for the next part. Lost devices are alarms, not the end: nothing is pushed while one is missing, and
+// work goes on when it is back.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stop_token>
+#include <string>
+
+#include "projects/station/station.h"
+
+namespace seamwright {
+
+struct WatchCounts {
+    std::int64_t parts = 0;  // started
+    // Pushed and taken by the application (or, in a dry run, judged ok); refused, or not taken.
+    std::int64_t corrected = 0, refused = 0;
+    std::int64_t failed = 0, alarms = 0, lost = 0;  // runs with a device failure; pushes gone wrong; outages
+    std::int64_t missed = 0;  // calls that were not measured: too old, or overtaken by a newer one
+};
+
+enum class WatchState { connecting, waiting, measuring, lost, stopped };
+std::string_view to_string(WatchState state);
+
+// One thing that happened, for a log that machines read.
+struct WatchEvent {
+    std::string utc;    // ISO 8601
+    std::string level;  // info | warning | alarm
+    std::string event;  // connected | lost | back | robot | start | missed | spot | run | stopped
+    std::string text;   // one sentence
+    nlohmann::json data = nlohmann::json::object();
+    WatchState state = WatchState::connecting;
+    WatchCounts counts;
+};
+
+struct WatchOptions {
+    bool push = false;
+    bool keep_images = false;
+    std::int64_t parts = 0;      // end after so many; 0 = never
+    std::int64_t keep_runs = 0;  // older runs are deleted from the file; 0 = keep all
+    AcquireLimits limits;
+    // A call that may be older (StartSignal::not_before_ns), after an outage, is refused: another part may
+    // stand there by now. Of several that wait the newest alone counts.
+    std::chrono::milliseconds start_expiry{10000};
+    std::chrono::milliseconds retry_first{100}, retry_longest{500};  // doubles between attempts
+    std::stop_token
+        cancel;  // heard within kCancelSlice; a part in the middle ends as cancelled, the robot is told
+    std::function<void(const WatchEvent&)> tell;  // on the watching thread
+};
+
+// Connects the station where it is not. Ends by `cancel` or after `parts`. Error: the file cannot be written,
+// or no robot of the project has a start signal; device failures are told and survived.
+Expected<WatchCounts> watch(Station& station, const WatchOptions& options);
+
+}  // namespace seamwright

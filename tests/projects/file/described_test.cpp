@@ -1,0 +1,126 @@
+// Every member of a stored type is written: a structured binding does not compile before a member that is
+// added is named here, and then the document must hold as many fields.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "projects/file/project_json.h"
+
+namespace seamwright {
+namespace {
+
+std::size_t names_in(std::string_view list) {
+    return static_cast<std::size_t>(std::count(list.begin(), list.end(), ',')) + 1;
+}
+
+// The type's members by name, in order.
+#define MEMBERS(T, ...)                                     \
+    std::size_t members(const T& value) {                   \
+        [[maybe_unused]] const auto& [__VA_ARGS__] = value; \
+        return names_in(#__VA_ARGS__);                      \
+    }
+MEMBERS(SpotResidual, a, b, c)
+MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(Feature, a, b, c, d, e, f, g)
+MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
+MEMBERS(PushRecord, a, b, c, d, e, f, g)
+MEMBERS(RegionRecord, a, b, c, d, e, f)
+MEMBERS(PanelMeasurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
+MEMBERS(PanelFit, a, b, c, d, e, f, g, h, i, j, k, l, m)
+MEMBERS(PanelSpotResult, a, b, c, d, e, f, g)
+MEMBERS(PanelRecord, a, b, c, d, e, f, g, h, i, j, k)
+MEMBERS(PartSetup, a, b, c, d)
+MEMBERS(SensorSetup, a, b, c, d, e, f, g)
+MEMBERS(PeakOptions, a, b, c, d, e, f, g)
+MEMBERS(FilterOptions, a, b, c, d, e, f)
+MEMBERS(RobotSetup, a, b, c, d, e)
+MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(FeatureRecipe, a, b, c, d)
+MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
+MEMBERS(Region, a, b, c, d, e, f, g, h)
+MEMBERS(PanelPlace, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l)
+MEMBERS(Requirements, a, b, c, d, e)
+MEMBERS(FrozenContour, a, b, c, d, e, f, g, h, i)
+MEMBERS(ZeroShift, a, b, c)
+MEMBERS(KnownShift, a, b, c, d)
+MEMBERS(HeadlessRun, a, b, c, d)
+#undef MEMBERS
+
+template <class T>
+void whole(const T& value, const nlohmann::json& document, std::size_t elsewhere = 0) {
+    EXPECT_EQ(document.size() + elsewhere, members(value)) << document.dump(1).substr(0, 1000);
+}
+
+TEST(Described, EveryMemberOfWhatIsStored) {
+    RegionRecord region;
+    region.correction.emplace();
+    region.correction->spots.resize(1);
+    const auto r = to_json_document(region);
+    whole(region, r);
+    whole(region.push, r["push"]);
+    whole(*region.correction, r["correction"]);
+    whole(region.correction->spots[0], r["correction"]["spots"][0]);
+
+    SpotMeasurement spot;
+    const auto s = to_json_document(spot);
+    whole(spot, s);
+    whole(spot.feature, s["feature"]);
+
+    PanelRecord panel;
+    panel.before.resize(1);
+    panel.fit.emplace();
+    panel.fit->spots.resize(1);
+    const auto p = to_json_document(panel);
+    whole(panel, p);
+    whole(panel.before[0], p["before"][0]);
+    whole(*panel.fit, p["fit"]);
+    whole(panel.fit->spots[0], p["fit"]["spots"][0]);
+
+    whole(PartSetup{}, to_json_document(PartSetup{}), 1);  // the mesh is a row of its own
+    const SensorSetup sensor;
+    const auto c = to_json_document(sensor);
+    whole(sensor, c);
+    whole(sensor.peaks, c["peaks"]);
+    whole(sensor.filter, c["filter"]);
+    whole(RobotSetup{}, to_json_document(RobotSetup{}));
+    whole(Calibration{}, to_json_document(Calibration{}));
+    Spot taught;
+    taught.via.resize(1, Pose::Identity());
+    const auto t = to_json_document(taught);
+    whole(taught, t);
+    whole(taught.feature, t["feature"]);
+    whole(Region{}, to_json_document(Region{}));
+    PanelJob job;
+    job.places.resize(1);
+    const auto j = to_json_document(job);
+    whole(job, j);
+    whole(job.places[0], j["places"][0]);
+    whole(Requirements{}, to_json_document(Requirements{}));
+    whole(FrozenContour{}, to_json_document(FrozenContour{}));
+    whole(ZeroShift{}, to_json_document(ZeroShift{}));
+    whole(KnownShift{}, to_json_document(KnownShift{}));
+    whole(HeadlessRun{}, to_json_document(HeadlessRun{}));
+}
+
+TEST(Described, ACorrectionComesBackWhole) {
+    RegionRecord region;
+    region.correction.emplace();
+    region.correction->sigma_at_spots_mm = 0.125;
+    region.correction->variance_factor = 3.5;
+    region.correction->consistent = false;
+    const auto again = from_json_document<RegionRecord>(to_json_document(region), "region");
+    ASSERT_TRUE(again) << again.error().sentence();
+    EXPECT_EQ(again->correction->sigma_at_spots_mm, 0.125);
+    EXPECT_EQ(again->correction->variance_factor, 3.5);
+    EXPECT_FALSE(again->correction->consistent);
+    auto old = to_json_document(region);
+    for (const char* name : {"sigma_at_spots_mm", "variance_factor", "consistent"})
+        old["correction"].erase(name);
+    ASSERT_TRUE(from_json_document<RegionRecord>(old, "region")) << "a file of before is read";
+}
+
+}  // namespace
+}  // namespace seamwright

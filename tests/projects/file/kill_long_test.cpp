@@ -1,0 +1,24 @@
+#include <gtest/gtest.h>
+
+#include "tests/projects/file/flipped_bits_test.h"
+#include "tests/projects/file/kill_test.h"
+
+namespace seamwright {
+
+TEST(KillLong, TwoHundredKills) {
+    kill_while_appending(200, 2, false);
+}
+
+TEST(KillLong, TwoHundredKillsWithWriteAheadLog) {
+    kill_while_appending(200, 4, true);
+}
+
+TEST(FlippedBitsLong, OfTheFile) {
+    flip_bits_of_the_file(10000, 3);
+}
+
+TEST(FlippedBitsLong, OfTheRows) {
+    flip_bits_of_the_rows(5000, 4);
+}
+
+}  // namespace seamwright

@@ -1,0 +1,227 @@
+#include "projects/proof/checklist.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "projects/proof/known_shift.h"
+#include "projects/station/measure.h"
+#include "tests/projects/door_project.h"
+
+namespace seamwright {
+namespace {
+
+constexpr const char* kToday = "2024-06-01T00:00:00.000Z";
+
+// A project with everything done, and its evidence.
+class Checklist : public testing::Test {
+  protected:
+    Project project;
+    Facts facts;
+
+    void SetUp() override {
+        const nlohmann::json settings = cell_settings(Pose::Identity());
+        const auto cell = SimulatedCell::open(settings);
+        ASSERT_TRUE(cell);
+        project = door_project(**cell, settings);
+        project.calibrations[0].created_utc = "2024-05-01T10:00:00.000Z";
+        project.requirements.sigma3_mm = 1;
+        for (Spot& spot : project.spots) {
+            spot.reference_profile.x_mm = {0, 1};
+            spot.reference_profile.z_mm = {0, 0};
+            spot.curve.emplace();
+        }
+        project.regions[0].limits = {5, 0.5};
+        project.regions[0].sigma_limit_mm = 0.3;
+        facts.now_utc = kToday;
+        for (const Spot& spot : project.spots) {
+            FrozenContour f;
+            f.spot_id = spot.id;
+            f.status = AlignmentStatus::frozen;
+            f.jitter_mm = spot.jitter_mm;
+            put(f);
+        }
+        ZeroShift zero;
+        zero.runs = {1, 2, 3};
+        zero.regions = {{"all", {}, {}, {}, 0.1}};
+        put(zero);
+        KnownShift proof;
+        ShiftGrid grid;
+        grid.step_mm = 10, grid.step_deg = 1;
+        proof.range_mm = grid.range_mm, proof.range_deg = grid.range_deg;
+        proof.tests = shift_tests(project, grid).value();
+        for (ShiftTest& test : proof.tests) test.regions = {{"all", true, 0.1, {0.1, 0.05, -0.05}, ""}};
+        put(proof);
+        put(HeadlessRun{9, "car", false, "pc"});
+    }
+    template <class T>
+    void put(const T& what) {
+        const auto id = static_cast<std::int64_t>(facts.evidence.size()) + 1;
+        facts.evidence.push_back({id, "2024-05-20T10:00:00.000Z", id, what});
+        facts.setups[id] = std::make_shared<const Project>(project);
+    }
+    template <class T>
+    T& proof_of() {
+        for (auto e = facts.evidence.rbegin(); e != facts.evidence.rend(); ++e)
+            if (T* what = std::get_if<T>(&e->what)) return *what;
+        throw std::logic_error("no such evidence");
+    }
+    CheckItem item(CheckStep step) const {
+        for (const CheckItem& i : checklist(project, facts))
+            if (i.step == step) return i;
+        return {};
+    }
+    void expect(CheckStep step, CheckStatus status, const std::string& why) const {
+        const CheckItem i = item(step);
+        EXPECT_EQ(i.status, status) << to_string(step) << ": " << i.why.in(Language::english);
+        EXPECT_THAT(i.why.in(Language::english), testing::HasSubstr(why));
+        EXPECT_NE(i.why.in(Language::german), i.why.in(Language::english));
+    }
+};
+
+TEST_F(Checklist, EverythingDoneShowsItsEvidence) {
+    const auto items = checklist(project, facts);
+    ASSERT_EQ(items.size(), kCheckSteps.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        EXPECT_EQ(items[i].step, kCheckSteps[i]);
+        EXPECT_TRUE(items[i].done()) << to_string(items[i].step) << ": "
+                                     << items[i].why.in(Language::english);
+        EXPECT_FALSE(items[i].evidence.empty()) << to_string(items[i].step);
+    }
+}
+
+TEST_F(Checklist, NothingIsDoneInAnEmptyProject) {
+    for (const CheckItem& i : checklist({}, {})) {
+        EXPECT_EQ(i.status, CheckStatus::missing) << to_string(i.step);
+        EXPECT_FALSE(i.why.empty());
+    }
+}
+
+TEST_F(Checklist, DevicesCountAsTheyAnswer) {
+    facts.sensors = {{"A", false, ""}};
+    expect(CheckStep::sensors, CheckStatus::missing, "connect");
+    facts.sensors = {{"A", true, "no light"}};
+    expect(CheckStep::sensors, CheckStatus::missing, "no light");
+    facts.sensors = {{"A", true, ""}};
+    expect(CheckStep::sensors, CheckStatus::done, "all sensors answer (1)");
+    facts.robots.emplace();
+    expect(CheckStep::robots, CheckStatus::missing, "connect");
+    facts.robots.reset();
+    project.robots[0].identity = {};
+    expect(CheckStep::robots, CheckStatus::missing, "who it is");
+}
+
+TEST_F(Checklist, CalibrationMustBeOfThisDeviceGoodAndFresh) {
+    facts.now_utc = "2026-01-01T00:00:00.000Z";
+    expect(CheckStep::calibrations, CheckStatus::stale, "610 days old, 365");
+    project.requirements.calibration_age_days = 700;
+    expect(CheckStep::calibrations, CheckStatus::done, "fresh");
+    project.sensors[0].identity.serial = "another";
+    expect(CheckStep::calibrations, CheckStatus::stale, "another");
+    project.sensors[0].identity = project.calibrations[0].sensor_identity;
+    project.calibrations[0].verdict = Verdict::poor;
+    expect(CheckStep::calibrations, CheckStatus::missing, "is poor");
+    project.calibrations[0].verdict = Verdict::good;
+    project.calibrations[0].created_utc = "yesterday";
+    expect(CheckStep::calibrations, CheckStatus::stale, "no date");
+    project.sensors[0].calibration_id = "";
+    expect(CheckStep::calibrations, CheckStatus::missing, "no calibration in use");
+}
+
+TEST_F(Checklist, FrozenIsStaleWhenItsSpotWasTurned) {
+    project.spots[2].base_from_flange.translate(Eigen::Vector3d(0, 0.1, 0));
+    expect(CheckStep::frozen, CheckStatus::stale, project.spots[2].id);
+    project.spots[2] = facts.setups.begin()->second->spots[2];
+    // Teaching its reference again leaves the contour where it is; a wider jitter does not.
+    project.spots[2].reference_mm.x() += 1;
+    expect(CheckStep::frozen, CheckStatus::done, "stands still");
+    project.spots[2].jitter_mm *= 2;
+    expect(CheckStep::frozen, CheckStatus::stale, project.spots[2].id);
+    project.spots[2].curve.reset();
+    expect(CheckStep::frozen, CheckStatus::missing, "record the pass");
+    project.spots[2].enabled = false;
+    expect(CheckStep::frozen, CheckStatus::done, "stands still");
+    const std::vector<Evidence> kept = facts.evidence;
+    facts.evidence.clear();
+    expect(CheckStep::frozen, CheckStatus::missing, "holds no accepted pass");
+    facts.evidence = kept;
+    FrozenContour drifting;
+    drifting.spot_id = project.spots[0].id;
+    drifting.status = AlignmentStatus::drifting;
+    put(drifting);
+    expect(CheckStep::frozen, CheckStatus::missing, "drifting");
+}
+
+TEST_F(Checklist, RegionsMustReachTheRequired3Sigma) {
+    project.requirements.sigma3_mm = 0.02;
+    expect(CheckStep::observable, CheckStatus::missing, "0.020 mm are required: ");
+    project.requirements.sigma3_mm = 1;
+    // What the gate would refuse at every part is not sure enough either.
+    project.regions[0].sigma_limit_mm = 0.01;
+    expect(CheckStep::observable, CheckStatus::missing, "0.030 mm are required: ");
+    project.regions[0].sigma_limit_mm = 1;
+    project.regions[0].sigma_limit_deg = 1e-4;
+    expect(CheckStep::observable, CheckStatus::missing, "its limit is 0.0001 deg");
+    project.regions[0].sigma_limit_deg = 0.5;
+    project.requirements.sigma3_mm = 1;
+    project.regions[0].spot_ids.resize(1);
+    expect(CheckStep::observable, CheckStatus::missing, "under-determined");
+}
+
+TEST_F(Checklist, ProofsAreStaleBySpotButNotByLimit) {
+    project.regions[0].limits.translation_mm = 4;
+    project.requirements.sigma3_mm = 0.95;
+    for (const CheckStep step : {CheckStep::zero_shift, CheckStep::known_shift, CheckStep::headless})
+        EXPECT_TRUE(item(step).done()) << to_string(step);
+    project.spots[1].weights.x() = 0.5;
+    for (const CheckStep step : {CheckStep::zero_shift, CheckStep::known_shift, CheckStep::headless})
+        expect(step, CheckStatus::stale, "spot " + project.spots[1].id + " was changed");
+    project.spots[1].weights.x() = 1;
+    project.calibrations[0].flange_from_sensor.translate(Eigen::Vector3d(0, 0, 1));
+    expect(CheckStep::zero_shift, CheckStatus::stale, "calibration truth");
+    project.calibrations[0] = facts.setups.begin()->second->calibrations[0];
+    // The simulated part is moved by every proof.
+    project.sensors[0].settings["part"] = {{"bend_mm", 3}};
+    EXPECT_TRUE(item(CheckStep::zero_shift).done());
+}
+
+TEST_F(Checklist, ZeroShiftIsJudged) {
+    proof_of<ZeroShift>().regions[0].worst_mean_mm = 1.5;
+    expect(CheckStep::zero_shift, CheckStatus::missing, "1.500 mm");
+    proof_of<ZeroShift>().runs = {1, 2};
+    expect(CheckStep::zero_shift, CheckStatus::missing, "2 of 3");
+    proof_of<ZeroShift>().refused = 1;
+    expect(CheckStep::zero_shift, CheckStatus::missing, "refused");
+}
+
+TEST_F(Checklist, KnownShiftIsJudgedByAccuracyAndRange) {
+    project.requirements.known_shift_mm = 15;
+    expect(CheckStep::known_shift, CheckStatus::missing, "required are 15 mm");
+    project.requirements.known_shift_mm = 10;
+    project.requirements.sigma3_mm = 0.2;
+    expect(CheckStep::known_shift, CheckStatus::missing, "required are 0.200 mm");
+    project.requirements.sigma3_mm = 1;
+    proof_of<KnownShift>().tests[4].regions[0].ok = false;
+    expect(CheckStep::known_shift, CheckStatus::missing, "1 of 18");
+}
+
+TEST_F(Checklist, LimitsMayNotExceedWhatWasProven) {
+    project.regions[0].limits.translation_mm = 25;
+    expect(CheckStep::limits, CheckStatus::missing, "lets 25 mm");
+    project.regions[0].limits = {5, std::numeric_limits<double>::infinity()};
+    expect(CheckStep::limits, CheckStatus::missing, "through");
+    project.regions[0].limits = {5, 0.5};
+    project.regions[0].sigma_limit_mm = 0.4;
+    expect(CheckStep::limits, CheckStatus::missing, "lower its sigma limit");
+    project.regions[0].sigma_limit_mm = 0.3;
+    facts.evidence.clear();
+    expect(CheckStep::limits, CheckStatus::missing, "known shift");
+}
+
+TEST(Dates, AreCountedInDays) {
+    EXPECT_EQ(days_between("2024-02-28T23:59:00.000Z", "2024-03-01T00:00:00.000Z"), 2);
+    EXPECT_FALSE(days_between("2024-02-30", "2024-03-01"));
+    EXPECT_FALSE(days_between("", "2024-03-01"));
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -20,6 +20,7 @@ struct Tally {
     void add(const MatchTrial& t, const Registration& r) {
         ++trials;
         if (r.status != RegistrationStatus::ok) {
+            if (std::getenv("MATCH_TRIALS") && t.determined()) std::printf("    refused %s: %s, %.2f off, best sigma %.3f, share %.2f, inside %d\n", std::string(to_string(r.status)).c_str(), t.what.c_str(), t.error_mm(r.scene_from_template), t.landmark_sigma_mm, r.inlier_share, t.inside);
             ++refused[r.status];
             return;
         }

@@ -20,16 +20,22 @@ struct Tally {
     void add(const MatchTrial& t, const Registration& r) {
         ++trials;
         if (r.status != RegistrationStatus::ok) {
-            if (std::getenv("MATCH_TRIALS") && t.determined()) std::printf("    refused %s: %s, %.2f off, best sigma %.3f, share %.2f, inside %d\n", std::string(to_string(r.status)).c_str(), t.what.c_str(), t.error_mm(r.scene_from_template), t.landmark_sigma_mm, r.inlier_share, t.inside);
+            if (std::getenv("MATCH_TRIALS") && t.determined())
+                std::printf("    refused %s: %s, %.2f off, best sigma %.3f, share %.2f, inside %d\n",
+                            std::string(to_string(r.status)).c_str(), t.what.c_str(),
+                            t.error_mm(r.scene_from_template), t.landmark_sigma_mm, r.inlier_share, t.inside);
             ++refused[r.status];
             return;
         }
         if (!t.right(r.scene_from_template)) {
             ++wrong;
             if (std::getenv("MATCH_TRIALS"))
-                std::printf("    wrong: %s: %.2f mm off, share %.2f, best sigma %.3f, inside %d, window %.1f %.1f, moved %.2f %.2f\n", t.what.c_str(),
-                            t.error_mm(r.scene_from_template), r.inlier_share, t.landmark_sigma_mm, t.inside, t.window.dx_mm, t.window.dz_mm,
-                            (t.truth * t.reference - t.reference).x(), (t.truth * t.reference - t.reference).y());
+                std::printf(
+                    "    wrong: %s: %.2f mm off, share %.2f, best sigma %.3f, inside %d, window %.1f %.1f, "
+                    "moved %.2f %.2f\n",
+                    t.what.c_str(), t.error_mm(r.scene_from_template), r.inlier_share, t.landmark_sigma_mm,
+                    t.inside, t.window.dx_mm, t.window.dz_mm, (t.truth * t.reference - t.reference).x(),
+                    (t.truth * t.reference - t.reference).y());
             return;
         }
         ++right;

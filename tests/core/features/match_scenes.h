@@ -182,9 +182,9 @@ struct MatchTrial {
     PlanarMotion truth;
     Eigen::Vector2d reference;
     SearchWindow window;
-    bool inside = true;          // the motion lies within the window
+    bool inside = true;            // the motion lies within the window
     double landmark_sigma_mm = 0;  // what the two profiles could tell at best; infinite where nothing
-    double scale_mm = 0.1;       // the coarser pitch
+    double scale_mm = 0.1;         // the coarser pitch
     std::string what;
 
     double error_mm(const PlanarMotion& m) const { return (m * reference - truth * reference).norm(); }
@@ -275,8 +275,10 @@ inline MatchTrial make_trial(const Section& section, const TrialRange& range, Ra
         inverse(scene.information) + r * inverse(taught.information) * r.transpose();
     const bool enough = taught.points_on_piece >= 20 && scene.points_on_piece >= taught.points_on_piece / 2;
     trial.landmark_sigma_mm =
-        enough ? std::sqrt(covariance.topLeftCorner<2, 2>().selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff())
-               : std::numeric_limits<double>::infinity();
+        enough
+            ? std::sqrt(
+                  covariance.topLeftCorner<2, 2>().selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff())
+            : std::numeric_limits<double>::infinity();
     trial.taught = std::move(taught.profile);
     trial.scene = std::move(scene.profile);
     if (range.may_mirror && unit(random) < 0.5) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "core/features/registration_kernel.h"
 
@@ -169,7 +171,22 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
     }
     const Impl::Finish f = m.finish(first->pose, std::max(2 * first->gate, m.smallest_gate()), 1, 30);
     const Impl::Support s = m.support(f, sigma, 1);
-    result = m.conclude(f, s);
+    result = m.conclude(f, s, sigma);
+    if (getenv("DBG")) {
+        fprintf(stderr, "sigma %.4f noise %.4f places:", sigma, m.noise_mm());
+        for (const Impl::Finish& g : m.finishes) {
+            auto q = m.support(g, sigma, support_stride);
+            fprintf(stderr, " (%.2f %.2f %.3f: cost %.1f miss %.1f share %.2f inf %.2f %.2f %.2f gate %.2f)",
+                    g.pose.dx, g.pose.dz, g.pose.phi, q.cost, q.missing, q.share, q.informed[0],
+                    q.informed[1], q.informed[2], g.gate);
+        }
+        fprintf(
+            stderr,
+            "\n   final %.2f %.2f cost %.1f miss %.1f share %.2f inf %.2f %.2f %.2f det %d %d %d status %d\n",
+            f.pose.dx, f.pose.dz, s.cost, s.missing, s.share, s.informed[0], s.informed[1], s.informed[2],
+            m.directions[0].determined, m.directions[1].determined, m.directions[2].determined,
+            int(result.status));
+    }
     if (result.status != RegistrationStatus::ok) return result;
     if (!m.within(window, f.pose)) {
         result.status = RegistrationStatus::no_match;
@@ -220,7 +237,7 @@ Registration ContourMatcher::refine(const Profile& profile, const PlanarMotion& 
         return result;
     }
     const Impl::Finish f = m.finish(CentredPose(d.x(), d.y(), start.phi_rad), 1.5, 1, 40);
-    return m.conclude(f, m.support(f, m.noise_mm(), 1));
+    return m.conclude(f, m.support(f, m.noise_mm(), 1), m.noise_mm());
 }
 
 Eigen::Vector2d PlanarMotion::operator*(const Eigen::Vector2d& p) const {

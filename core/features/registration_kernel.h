@@ -85,6 +85,7 @@ struct ContourMatcher::Impl {
         // each: minus twice the logarithm of the likelihood, up to a constant. `missing` is the part of those
         // without a partner.
         double cost = 0, missing = 0;
+        double contradicted = 0;  // the part of the cost where the scene has points near the template
         int on = 0, off = 0;  // scene points near the template that lie on it, that do not
         double least_informed() const { return *std::min_element(informed.begin(), informed.end()); }
     };
@@ -102,7 +103,7 @@ struct ContourMatcher::Impl {
     mutable int iterations = 0;
 
     // No gate grows beyond this: noise that large hides any shape of the template's size.
-    double gate_limit() const { return std::max(0.02 * model.extent_mm(), 0.1); }
+    double gate_limit() const { return std::max(0.06 * model.extent_mm(), 0.1); }
     double noise_mm() const { return std::hypot(model.sigma_mm(), scene.sigma_mm); }
     double smallest_gate() const { return std::min(4 * noise_mm(), gate_limit()); }
     double largest_final_gate() const {
@@ -132,9 +133,11 @@ struct ContourMatcher::Impl {
     void collect_jumps(const CentredPose& pose, double gate) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
     Support support(const Finish& finish, double sigma, int stride) const;
+    // The scene contradicts a motion along the twist, to either side, within a search step.
+    bool held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
     // By how much the cost of the second must exceed that of the first to be told from it.
     static double telling_difference(const Support& first);
-    Registration conclude(const Finish& finish, const Support& support) const;
+    Registration conclude(const Finish& finish, const Support& support, double sigma) const;
 
     // False: fewer points than the least within reach of the window.
     bool gather(const Profile& profile, const SearchWindow& window) const;

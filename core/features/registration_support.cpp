@@ -17,6 +17,7 @@ constexpr double kMissing = 9;
 // A partner lies within this part of the final gate (four sigma).
 constexpr double kPartner = 0.75;
 constexpr int kMostBins = 20000;
+constexpr float kContradicted = 1e6F;
 
 }  // namespace
 
@@ -34,7 +35,7 @@ void ContourMatcher::Impl::learn_directions() {
     };
     Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
     for (const auto& edge : model.edges()) {
-        if (edge.wall) continue;
+        if (edge.wall || edge.count < 4) continue;
         const RegistrationRow row = registration_row(edge, 0);
         all += 2 * edge.half * (row.across * row.across.transpose() - false_part(edge, 0, row.along));
     }
@@ -67,6 +68,9 @@ void ContourMatcher::Impl::learn_directions() {
         const RegistrationRow row = registration_row(edge, u);
         const Eigen::Matrix3d doubt = false_part(edge, u, row.along);
         bin_across[b] = static_cast<float>(std::abs(edge.tx));
+        // Between two points of which no wider piece is known, the slope is not: a step or a bend within a
+        // pitch.
+        if (edge.count < 4) continue;
         for (int k = 0; k < 3; ++k) {
             const Eigen::Vector3d& v = directions[k].twist;
             const double noise = v.dot(doubt * v);
@@ -115,14 +119,14 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     for (const Match& m : matches) {
         const auto& edge = model.edges()[m.foot.edge];
         const double size = std::abs(m.foot.residual);
-        if (size > result.gate) {
-            ++result.off;
-            continue;
-        }
-        ++result.on;
-        if (edge.wall || size > partner) continue;
+        ++(size > result.gate ? result.off : result.on);
+        if (edge.wall) continue;
         const double s = arc[static_cast<std::size_t>(m.foot.edge)] + edge.half +
                          std::clamp(m.foot.u, -edge.half, edge.half);
+        if (size > partner) {
+            mark(s, s, kContradicted);
+            continue;
+        }
         const double r2 = size * size * over;
         const bool neighbours = last_scene >= 0 && m.scene - last_scene <= 2 * stride &&
                                 edge.run == last_run && std::abs(s - last_s) < bridge;
@@ -140,9 +144,10 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     int marked = 0;
     for (int b = 0; b < bins; ++b) {
         const double points = density * std::max(bin_across[b], 0.25F);
-        const bool partnered = bin_residual2[b] >= 0;
+        const bool partnered = bin_residual2[b] >= 0 && bin_residual2[b] < kContradicted;
         const double cost = points * (partnered ? std::min<double>(bin_residual2[b], kMissing) : kMissing);
         result.cost += cost;
+        if (bin_residual2[b] >= 0) result.contradicted += cost;
         if (!partnered) {
             result.missing += cost;
             continue;
@@ -164,6 +169,22 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     for (int k = 0; k < 3; ++k)
         result.informed[k] = directions[k].determined ? met[k] / directions[k].information : 1;
     return result;
+}
+
+bool ContourMatcher::Impl::held(const Finish& found, const Support& here, double sigma,
+                                const Eigen::Vector3d& twist) const {
+    const double told = telling_difference(here);
+    for (const double side : {-1.0, 1.0}) {
+        double most = 0;
+        for (const double part : {0.3, 0.6, 1.0}) {
+            Finish beside = found;
+            beside.pose = moved_along(found.pose, twist, side * part * search.step_mm());
+            most = std::max(most, support(beside, sigma, 1).contradicted - here.contradicted);
+            if (most > told) break;
+        }
+        if (most <= told) return false;
+    }
+    return true;
 }
 
 double ContourMatcher::Impl::telling_difference(const Support& first) {

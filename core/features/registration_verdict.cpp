@@ -16,7 +16,7 @@ constexpr double kSmallestInformationShare = 0.35;
 
 }  // namespace
 
-Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating) const {
+Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating, double sigma) const {
     Registration result;
     const CentredPose& pose = found.pose;
     const Eigen::Vector2d& o = model.origin();
@@ -141,8 +141,14 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
         }
         return scatter;
     };
-    const bool sliding = seen - false_part < n * kStraight_rad * kStraight_rad +
-                                                 4 * std::sqrt(weak_scatter(weak)) + 0.5 * false_part;
+    const bool unsure = seen - false_part < n * kStraight_rad * kStraight_rad +
+                                                4 * std::sqrt(weak_scatter(weak)) + 0.5 * false_part;
+
+    // Where the slopes leave it open, a small motion along the direction decides: the scene speaks against it
+    // or not.
+    const bool open = unsure || !directions[0].determined;
+    const bool holds = open && held(found, rating, sigma, unsure ? weak : directions[0].twist);
+    const bool sliding = open && !holds;
 
     const Eigen::Matrix2d r =
         (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
@@ -158,7 +164,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
         const Eigen::Matrix3d s = scale.asDiagonal() * usable * scale.asDiagonal();
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> e(s);
         // An undetermined direction gets a very large variance, finite so that callers can keep computing.
-        const double least = 1e-9 * std::max(e.eigenvalues()[2], 1e-12);
+        const double least = std::max(1e-9 * std::max(e.eigenvalues()[2], 1e-12), holds ? 0.25 * seen : 0.0);
         const Eigen::Vector3d inverse = e.eigenvalues().cwiseMax(least).cwiseInverse();
         const Eigen::Matrix3d inv = scale.asDiagonal() *
                                     (e.eigenvectors() * inverse.asDiagonal() * e.eigenvectors().transpose()) *

@@ -100,6 +100,8 @@ struct Seen {
     Profile profile;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     int points_on_piece = 0;
+    int telling_points = 0;  // that stand out of the line in which the piece begins by more than four sigma of
+                             // a difference of two points: fewer than a handful do not tell a shape from noise
 };
 
 struct SensorSettings {
@@ -133,7 +135,11 @@ inline Seen look(const Section& section, const PlanarMotion& motion, const Senso
     Seen seen;
     std::normal_distribution<double> noise;
     const double variance = std::max(sensor.noise * sensor.noise, 1e-8);
-    std::size_t last = n;
+    std::size_t last = n, begin = 1;
+    while (begin + 1 < s.x.size() && section.shape.x[begin] < section.from_x) ++begin;
+    const Eigen::Vector2d at(s.x[begin], s.z[begin]);
+    const Eigen::Vector2d along =
+        Eigen::Vector2d(s.x[begin] - s.x[begin - 1], s.z[begin] - s.z[begin - 1]).normalized();
     for (std::size_t cell = 0; cell < n; ++cell) {
         const std::size_t i = edge_of[cell];
         if (i == 0) continue;
@@ -152,6 +158,9 @@ inline Seen look(const Section& section, const PlanarMotion& motion, const Senso
             continue;
         }
         ++seen.points_on_piece;
+        const Eigen::Vector2d from = Eigen::Vector2d(x, height[cell]) - at;
+        const double out = std::abs(along.x() * from.y() - along.y() * from.x());
+        seen.telling_points += out > 4 * std::sqrt(2.0) * sensor.noise;
         const Eigen::Vector2d p = Eigen::Vector2d(x, height[cell]) - about;
         // z = height(x): a shift (u, v) and a turn w change it by v + w x - slope (u - w z).
         const double slope = t.y() / t.x();
@@ -161,8 +170,8 @@ inline Seen look(const Section& section, const PlanarMotion& motion, const Senso
         if (last + 1 == cell &&
             std::abs(height[cell] - height[last]) >
                 std::max(8 * sensor.noise, 4 * sensor.pitch) + std::abs(slope) * sensor.pitch) {
-            const Eigen::Vector3d along(1, 0, -p.y());
-            seen.information += along * along.transpose() * 12 / (sensor.pitch * sensor.pitch);
+            const Eigen::Vector3d place(1, 0, -p.y());
+            seen.information += place * place.transpose() * 12 / (sensor.pitch * sensor.pitch);
         }
         last = cell;
     }
@@ -273,7 +282,8 @@ inline MatchTrial make_trial(const Section& section, const TrialRange& range, Ra
     };
     const Eigen::Matrix3d covariance =
         inverse(scene.information) + r * inverse(taught.information) * r.transpose();
-    const bool enough = taught.points_on_piece >= 20 && scene.points_on_piece >= taught.points_on_piece / 2;
+    const bool enough = taught.points_on_piece >= 20 && scene.points_on_piece >= taught.points_on_piece / 2 &&
+                        std::min(taught.telling_points, scene.telling_points) >= 5;
     trial.landmark_sigma_mm =
         enough
             ? std::sqrt(

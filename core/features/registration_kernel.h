@@ -85,7 +85,9 @@ struct ContourMatcher::Impl {
         // each: minus twice the logarithm of the likelihood, up to a constant. `missing` is the part of those
         // without a partner.
         double cost = 0, missing = 0;
-        double contradicted = 0;  // the part of the cost where the scene has points near the template
+        // The same of the scene's points near the template, less its expectation for points that lie on it:
+        // what is missing takes no part.
+        double contradicted = 0;
         int on = 0, off = 0;  // scene points near the template that lie on it, that do not
         double least_informed() const { return *std::min_element(informed.begin(), informed.end()); }
     };
@@ -102,12 +104,13 @@ struct ContourMatcher::Impl {
     mutable std::vector<std::array<Eigen::Vector3d, 3>> influence;
     mutable int iterations = 0;
 
-    // No gate grows beyond this: noise that large hides any shape of the template's size.
-    double gate_limit() const { return std::max(0.06 * model.extent_mm(), 0.1); }
     double noise_mm() const { return std::hypot(model.sigma_mm(), scene.sigma_mm); }
-    double smallest_gate() const { return std::min(4 * noise_mm(), gate_limit()); }
+    // Noise larger than this hides any shape of the template's size.
+    double smallest_gate() const { return std::min(4 * noise_mm(), std::max(0.06 * model.extent_mm(), 0.1)); }
+    // A gate beyond the noise lets a shape pass that is a little another one.
     double largest_final_gate() const {
-        return std::min(std::max(0.25, 1.5 * smallest_gate()), gate_limit());
+        return std::max(smallest_gate(), std::min(std::max(0.25, 1.5 * smallest_gate()),
+                                                  std::max(0.02 * model.extent_mm(), 0.1)));
     }
     // A flank so steep that neighbours on it lie far apart: its points are on it, so its place is known.
     bool sampled_wall(std::size_t edge) const {
@@ -133,8 +136,13 @@ struct ContourMatcher::Impl {
     void collect_jumps(const CentredPose& pose, double gate) const;
     Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
     Support support(const Finish& finish, double sigma, int stride) const;
-    // The scene contradicts a motion along the twist, to either side, within a search step.
-    bool held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
+    // What the scene's points say about a motion along the twist within a search step: held where they speak
+    // against it to either side; the likeliest shift (in units of the twist) and its variance.
+    struct Held {
+        bool held = false;
+        double shift = 0, variance = 0;
+    };
+    Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
     // By how much the cost of the second must exceed that of the first to be told from it.
     static double telling_difference(const Support& first);
     Registration conclude(const Finish& finish, const Support& support, double sigma) const;

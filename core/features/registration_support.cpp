@@ -107,6 +107,8 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     const double per_mm = bins / model.length_mm();
     const double bridge = 4 * std::max(model.pitch().distance, stride * scene.pitch.distance);
     const double over = 1 / std::max(sigma * sigma, 1e-10);
+    // A template coarser than the scene tells no more than its own points.
+    const double thinner = std::min(1.0, stride * scene.pitch.along_x / model.pitch().along_x);
     // Between neighbours of the scene that both lie on the curve all of it is met.
     double last_s = 0, last_r2 = 0;
     int last_scene = -1, last_run = -1;
@@ -120,6 +122,7 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
         const auto& edge = model.edges()[m.foot.edge];
         const double size = std::abs(m.foot.residual);
         ++(size > result.gate ? result.off : result.on);
+        result.contradicted += thinner * (std::min(kMissing, size * size * over) - 1);
         if (edge.wall) continue;
         const double s = arc[static_cast<std::size_t>(m.foot.edge)] + edge.half +
                          std::clamp(m.foot.u, -edge.half, edge.half);
@@ -147,7 +150,6 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
         const bool partnered = bin_residual2[b] >= 0 && bin_residual2[b] < kContradicted;
         const double cost = points * (partnered ? std::min<double>(bin_residual2[b], kMissing) : kMissing);
         result.cost += cost;
-        if (bin_residual2[b] >= 0) result.contradicted += cost;
         if (!partnered) {
             result.missing += cost;
             continue;
@@ -171,20 +173,34 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     return result;
 }
 
-bool ContourMatcher::Impl::held(const Finish& found, const Support& here, double sigma,
-                                const Eigen::Vector3d& twist) const {
-    const double told = telling_difference(here);
-    for (const double side : {-1.0, 1.0}) {
-        double most = 0;
-        for (const double part : {0.3, 0.6, 1.0}) {
-            Finish beside = found;
-            beside.pose = moved_along(found.pose, twist, side * part * search.step_mm());
-            most = std::max(most, support(beside, sigma, 1).contradicted - here.contradicted);
-            if (most > told) break;
-        }
-        if (most <= told) return false;
+ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const Support& here, double sigma,
+                                                      const Eigen::Vector3d& twist) const {
+    constexpr int kSide = 20;
+    constexpr std::size_t kPoints = 1500;
+    std::array<double, 2 * kSide + 1> cost;
+    const int stride = static_cast<int>(scene.x.size() / kPoints) + 1;
+    const double step = search.step_mm() / kSide;
+    Finish beside = found;
+    for (int i = -kSide; i <= kSide; ++i) {
+        beside.pose = moved_along(found.pose, twist, i * step);
+        cost[i + kSide] = support(beside, sigma, stride).contradicted * stride;
     }
-    return true;
+    const double least = *std::min_element(cost.begin(), cost.end());
+    const double told = least + telling_difference(here);
+    Held result;
+    result.held = *std::max_element(cost.begin(), cost.begin() + kSide) > told &&
+                  *std::max_element(cost.begin() + kSide + 1, cost.end()) > told;
+    // Mean and variance of the place along the direction, all of the step alike likely before.
+    double sum = 0, first = 0, second = 0;
+    for (int i = -kSide; i <= kSide; ++i) {
+        const double w = std::exp(-0.5 * (cost[i + kSide] - least)), t = i * step;
+        sum += w;
+        first += w * t;
+        second += w * t * t;
+    }
+    result.shift = first / sum;
+    result.variance = second / sum - result.shift * result.shift + step * step / 12;
+    return result;
 }
 
 double ContourMatcher::Impl::telling_difference(const Support& first) {

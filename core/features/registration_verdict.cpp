@@ -18,11 +18,15 @@ constexpr double kSmallestInformationShare = 0.35;
 
 Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating, double sigma) const {
     Registration result;
-    const CentredPose& pose = found.pose;
+    CentredPose pose = found.pose;
     const Eigen::Vector2d& o = model.origin();
-    const Eigen::Vector2d turned(pose.cosine * o.x() - pose.sine * o.y(),
-                                 pose.sine * o.x() + pose.cosine * o.y());
-    result.scene_from_template = {pose.dx + o.x() - turned.x(), pose.dz + o.y() - turned.y(), pose.phi};
+    const auto set_pose = [&] {
+        const Eigen::Vector2d turned(pose.cosine * o.x() - pose.sine * o.y(),
+                                     pose.sine * o.x() + pose.cosine * o.y());
+        result.scene_from_template = {pose.dx + o.x() - turned.x(), pose.dz + o.y() - turned.y(), pose.phi};
+        return turned;
+    };
+    set_pose();
     result.inlier_share = rating.share;
     result.iterations = iterations;
 
@@ -144,12 +148,13 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     const bool unsure = seen - false_part < n * kStraight_rad * kStraight_rad +
                                                 4 * std::sqrt(weak_scatter(weak)) + 0.5 * false_part;
 
-    // Where the slopes leave it open, a small motion along the direction decides: the scene speaks against it
-    // or not.
+    // Where the slopes leave it open, what the points say about a small motion along the direction decides.
     const bool open = unsure || !directions[0].determined;
-    const bool holds = open && held(found, rating, sigma, unsure ? weak : directions[0].twist);
-    const bool sliding = open && !holds;
-
+    Held place;
+    if (open) place = held(found, rating, sigma, weak);
+    const bool sliding = open && !place.held;
+    if (place.held) pose = moved_along(pose, weak, place.shift);
+    const Eigen::Vector2d turned = set_pose();
     const Eigen::Matrix2d r =
         (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
     Eigen::Matrix3d to_scene = Eigen::Matrix3d::Identity();
@@ -161,15 +166,21 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     Eigen::Matrix3d usable = information - tilt;
     Eigen::Matrix3d covariance;
     {
-        const Eigen::Matrix3d s = scale.asDiagonal() * usable * scale.asDiagonal();
+        const Eigen::Vector3d w = eigen.eigenvectors().col(0);
+        // Held by the points, not by the slopes: the rest is solved without this direction.
+        const Eigen::Matrix3d rest =
+            Eigen::Matrix3d::Identity() - (place.held ? 1.0 : 0.0) * Eigen::Matrix3d(w * w.transpose());
+        const Eigen::Matrix3d s = rest * scale.asDiagonal() * usable * scale.asDiagonal() * rest;
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> e(s);
         // An undetermined direction gets a very large variance, finite so that callers can keep computing.
-        const double least = std::max(1e-9 * std::max(e.eigenvalues()[2], 1e-12), holds ? 0.25 * seen : 0.0);
+        const double least = 1e-9 * std::max(e.eigenvalues()[2], 1e-12);
         const Eigen::Vector3d inverse = e.eigenvalues().cwiseMax(least).cwiseInverse();
         const Eigen::Matrix3d inv = scale.asDiagonal() *
                                     (e.eigenvectors() * inverse.asDiagonal() * e.eigenvectors().transpose()) *
                                     scale.asDiagonal();
-        covariance = inv * gradient_covariance * inv;
+        const Eigen::Matrix3d solved = scale.asDiagonal() * rest * scale.cwiseInverse().asDiagonal() * inv;
+        covariance = solved * gradient_covariance * solved.transpose();
+        if (place.held) covariance += place.variance * weak * weak.transpose();
     }
     result.covariance = to_scene * covariance * to_scene.transpose();
 

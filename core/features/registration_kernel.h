@@ -53,6 +53,7 @@ struct ContourMatcher::Impl {
         bool determined = false;
     };
     std::array<Direction, 3> directions;
+    double fit_variance = 0;   // of the template's curve, in parts of one point's
     double weakest_share = 1;  // information of the least beside that of the best determined one
     // The contour in bins of about half a pitch, then one for each jump.
     int bins = 1;

@@ -88,6 +88,9 @@ void ContourMatcher::Impl::learn_directions() {
             directions[k].information += told;
         }
     const double points = model.length_mm() / pitch;
+    fit_variance = 0;
+    for (const auto& edge : model.edges())
+        if (!edge.wall) fit_variance += model.weights(edge, 0).value_variance / double(model.edges().size());
     for (int k = 0; k < 3; ++k)
         directions[k].determined =
             directions[k].information > 4 * std::sqrt(scatter[k]) + points * kStraight_rad * kStraight_rad;
@@ -186,7 +189,9 @@ ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const
         cost[i + kSide] = support(beside, sigma, stride).contradicted * stride;
     }
     const double least = *std::min_element(cost.begin(), cost.end());
-    const double told = least + telling_difference(here);
+    // Of a straight line the template's own waves tell a place: their part in the cost scatters by this.
+    const double waves = std::sqrt(8 * here.on * fit_variance * model.sigma_mm() * model.sigma_mm()) / sigma;
+    const double told = least + telling_difference(here) + 3 * waves;
     Held result;
     result.held = *std::max_element(cost.begin(), cost.begin() + kSide) > told &&
                   *std::max_element(cost.begin() + kSide + 1, cost.end()) > told;

@@ -187,10 +187,13 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     // Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of
     // it).
     const bool scatter = rating.off > 1.5 * rating.on || result.rms_mm > 0.45 * rating.gate;
-    // What fixes a direction must be there, or it is not known in it, however well the rest fits.
+    // What fixes a direction must be there, or it is not known in it, however well the rest fits. Where most
+    // of it is hidden, what is left must hold the direction.
     int unmet = 0, least = 0;
     for (int k = 0; k < 3; ++k) {
-        unmet += rating.informed[k] < kSmallestInformationShare;
+        if (rating.informed[k] >= kSmallestInformationShare) continue;
+        if (held(found, rating, sigma, directions[k].twist).held) continue;
+        ++unmet;
         if (rating.informed[k] < rating.informed[least]) least = k;
     }
     if (rating.share < kSmallestShare || scatter || unmet > 1) {

@@ -13,6 +13,8 @@ namespace {
 // A pose that meets this much of the template's length and of each direction's information needs no further
 // search.
 constexpr double kConvincingShare = 0.85, kConvincingInformation = 0.7;
+// Cost of what is missing (nine for each point) up to which nothing is.
+constexpr double kComplete = 27;
 // Coarse ratings worse by this are not followed up.
 constexpr double kHopeless = 0.2;
 constexpr int kStarts = 10, kFinishedAtOnce = 3, kAlong = 4;
@@ -53,9 +55,10 @@ Expected<ContourMatcher> ContourMatcher::make(const Profile& contour, const Eige
         const auto& edge = impl->model.edges()[e];
         if (!edge.wall || impl->sampled_wall(e)) continue;
         const bool rising = tz[edge.point + 1] > tz[edge.point];
-        impl->jumps.push_back(jump_end(tx, tz, rising ? edge.point : edge.point + 1,
-                                       rising ? edge.point + 1 : edge.point, 0,
-                                       static_cast<int>(tx.size()) - 1));
+        const JumpEnd end =
+            jump_end(tx, tz, rising ? edge.point : edge.point + 1, rising ? edge.point + 1 : edge.point, 0,
+                     static_cast<int>(tx.size()) - 1);
+        if (end.is_edge) impl->jumps.push_back(end);
     }
     impl->learn_directions();
     impl->search.prepare(impl->model);
@@ -131,6 +134,24 @@ void ContourMatcher::Impl::search_places(const SearchWindow& window) const {
     }
 }
 
+// A direction of which little is met is a flat valley of the finish: the pose may still be on its way along
+// it.
+void ContourMatcher::Impl::follow(Finish& f, Support& s, double sigma) const {
+    constexpr int kMostSteps = 6;
+    for (int step = 0; step < kMostSteps && s.least_informed() < kConvincingInformation; ++step) {
+        const auto least = std::min_element(s.informed.begin(), s.informed.end()) - s.informed.begin();
+        const Eigen::Vector3d& twist = directions[static_cast<std::size_t>(least)].twist;
+        const Held place = held(f, s, sigma, twist);
+        if (std::abs(place.shift) < 0.1 * search.step_mm()) return;
+        const Finish next =
+            finish(moved_along(f.pose, twist, place.shift), std::max(2 * f.gate, smallest_gate()), 1, 30);
+        const Support there = support(next, sigma, 1);
+        if (there.cost >= s.cost) return;
+        f = next;
+        s = there;
+    }
+}
+
 Registration ContourMatcher::match(const Profile& profile, const SearchWindow& window) const {
     const Impl& m = *impl_;
     m.iterations = 0;
@@ -169,8 +190,9 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
             second_cost = cost;
         }
     }
-    const Impl::Finish f = m.finish(first->pose, std::max(2 * first->gate, m.smallest_gate()), 1, 30);
-    const Impl::Support s = m.support(f, sigma, 1);
+    Impl::Finish f = m.finish(first->pose, std::max(2 * first->gate, m.smallest_gate()), 1, 30);
+    Impl::Support s = m.support(f, sigma, 1);
+    m.follow(f, s, sigma);
     result = m.conclude(f, s, sigma);
     if (getenv("DBG")) {
         fprintf(stderr, "sigma %.4f noise %.4f places:", sigma, m.noise_mm());
@@ -204,8 +226,9 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
             return result;
         }
     }
-    if (s.share >= kConvincingShare && s.least_informed() >= kConvincingInformation) return result;
-    // Much of the template is missing. Where it is found better beyond the window, it is there and not here.
+    if (s.share >= kConvincingShare && s.least_informed() >= kConvincingInformation && s.missing < kComplete)
+        return result;
+    // Part of the template is missing. Where it is found better beyond the window, it is there and not here.
     SearchWindow wide = window;
     wide.dx_mm = 2.5 * window.dx_mm + 3;
     wide.dz_mm = 2.5 * window.dz_mm + 3;

@@ -144,6 +144,7 @@ struct ContourMatcher::Impl {
         double shift = 0, variance = 0;
     };
     Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
+    void follow(Finish& finish, Support& support, double sigma) const;
     // By how much the cost of the second must exceed that of the first to be told from it.
     static double telling_difference(const Support& first);
     Registration conclude(const Finish& finish, const Support& support, double sigma) const;

@@ -6,6 +6,10 @@
 namespace seamwright {
 namespace {
 
+// Cosine of the steepest surface whose end is an edge: a rounded one ends for the sensor where it gets too
+// steep to be seen, which is another place of it at another turn.
+constexpr double kSteepest = 0.6;
+
 // Appends the polygon through `kept` with no edge longer than `spacing`.
 void append_polygon(const std::vector<double>& x, const std::vector<double>& z, const std::vector<int>& kept,
                     double spacing, ReducedContour& out) {
@@ -106,7 +110,9 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
     for (int i = 0; i + 1 < solid; ++i) {
         if (!pitch.is_wall(solid_x_[i + 1] - solid_x_[i], solid_z_[i + 1] - solid_z_[i])) continue;
         const bool rising = solid_z_[i + 1] > solid_z_[i];
-        jumps.push_back(jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1));
+        const JumpEnd end =
+            jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1);
+        if (end.is_edge) jumps.push_back(end);
     }
 }
 
@@ -124,6 +130,9 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
     }
     JumpEnd end{x[upper], z[upper], double(-step), 0, 0, std::abs(z[upper] - z[lower])};
     const double dx = x[upper] - x[behind], dz = z[upper] - z[behind], d = std::hypot(dx, dz);
+    const int near = std::clamp(upper - 3 * step, std::min(behind, upper), std::max(behind, upper));
+    const double nx = x[upper] - x[near], nz = z[upper] - z[near];
+    end.is_edge = std::abs(nx) > kSteepest * std::hypot(nx, nz) || std::abs(dx) > kSteepest * d;
     if (d > 0) {
         end.tx = dx / d;
         end.tz = dz / d;

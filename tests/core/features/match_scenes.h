@@ -100,8 +100,9 @@ struct Seen {
     Profile profile;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     int points_on_piece = 0;
-    int telling_points = 0;  // that stand out of the line in which the piece begins by more than four sigma of
-                             // a difference of two points: fewer than a handful do not tell a shape from noise
+    int telling_points =
+        0;  // that stand out of the line in which the piece begins by more than four sigma of
+            // a difference of two points: fewer than a handful do not tell a shape from noise
 };
 
 struct SensorSettings {

@@ -17,6 +17,9 @@ constexpr double kConvincingShare = 0.85, kConvincingInformation = 0.7;
 constexpr double kComplete = 27;
 // Coarse ratings worse by this are not followed up.
 constexpr double kHopeless = 0.2;
+// Residuals of the best place beyond this multiple of the noise are a shape that is a little another one.
+constexpr double kMisfit = 1.5;
+constexpr int kMostRivals = 4;
 constexpr int kStarts = 10, kFinishedAtOnce = 3, kAlong = 4;
 
 }  // namespace
@@ -174,54 +177,31 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
     double kept = std::numeric_limits<double>::infinity();
     for (const Impl::Finish& f : m.finishes)
         if (m.support(f, sigma, support_stride).share >= kConvincingShare) kept = std::min(kept, f.sigma);
-    if (std::isfinite(kept)) sigma = std::max(sigma, kept);
-    const Impl::Finish* first = nullptr;
-    const Impl::Finish* second = nullptr;
-    double first_cost = 0, second_cost = 0;
-    for (const Impl::Finish& f : m.finishes) {
-        const double cost = m.support(f, sigma, support_stride).cost;
-        if (first == nullptr || cost < first_cost) {
-            second = first;
-            second_cost = first_cost;
-            first = &f;
-            first_cost = cost;
-        } else if (second == nullptr || cost < second_cost) {
-            second = &f;
-            second_cost = cost;
-        }
-    }
-    Impl::Finish f = m.finish(first->pose, std::max(2 * first->gate, m.smallest_gate()), 1, 30);
+    if (std::isfinite(kept) && kept > kMisfit * sigma) sigma = kept;
+    std::vector<Impl::Finish>& places = m.finishes;
+    for (Impl::Finish& f : places) f.cost = m.support(f, sigma, support_stride).cost;
+    std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    const double start_gate = 1.2 * m.search.step_mm();
+    Impl::Finish f = m.finish(places[0].pose, std::max(2 * places[0].gate, m.smallest_gate()), 1, 30);
     Impl::Support s = m.support(f, sigma, 1);
     m.follow(f, s, sigma);
     result = m.conclude(f, s, sigma);
-    if (getenv("DBG")) {
-        fprintf(stderr, "sigma %.4f noise %.4f places:", sigma, m.noise_mm());
-        for (const Impl::Finish& g : m.finishes) {
-            auto q = m.support(g, sigma, support_stride);
-            fprintf(stderr, " (%.2f %.2f %.3f: cost %.1f miss %.1f share %.2f inf %.2f %.2f %.2f gate %.2f)",
-                    g.pose.dx, g.pose.dz, g.pose.phi, q.cost, q.missing, q.share, q.informed[0],
-                    q.informed[1], q.informed[2], g.gate);
-        }
-        fprintf(
-            stderr,
-            "\n   final %.2f %.2f cost %.1f miss %.1f share %.2f inf %.2f %.2f %.2f det %d %d %d status %d\n",
-            f.pose.dx, f.pose.dz, s.cost, s.missing, s.share, s.informed[0], s.informed[1], s.informed[2],
-            m.directions[0].determined, m.directions[1].determined, m.directions[2].determined,
-            int(result.status));
-    }
     if (result.status != RegistrationStatus::ok) return result;
     if (!m.within(window, f.pose)) {
         result.status = RegistrationStatus::no_match;
         return result;
     }
-    const double start_gate = 1.2 * m.search.step_mm();
     const double told = Impl::telling_difference(s);
-    if (second != nullptr && second_cost < first_cost + 2 * told + 0.1 * first_cost) {
+    int rivals = 0;
+    for (std::size_t i = 1; i < places.size() && rivals < kMostRivals; ++i) {
+        if (places[i].cost > 1.1 * places[0].cost + 2 * told) break;
+        const double apart = std::max(m.search.step_mm(), 3 * f.gate);
+        if (m.apart_mm(places[i].pose, f.pose) < apart) continue;
+        ++rivals;
         // Both to their end: a start that was merely on its way is no second place.
-        Impl::Finish other = m.finish(second->pose, start_gate, 1, 40);
+        Impl::Finish other = m.finish(places[i].pose, start_gate, 1, 40);
         other.gate = f.gate;
-        if (m.apart_mm(other.pose, f.pose) > std::max(m.search.step_mm(), 3 * f.gate) &&
-            m.support(other, sigma, 1).cost < s.cost + told) {
+        if (m.apart_mm(other.pose, f.pose) > apart && m.support(other, sigma, 1).cost < s.cost + told) {
             result.status = RegistrationStatus::ambiguous;
             return result;
         }
@@ -235,16 +215,20 @@ Registration ContourMatcher::match(const Profile& profile, const SearchWindow& w
     wide.phi_rad = std::min(1.25 * window.phi_rad + 0.03, kPi);
     if (!m.gather(profile, wide)) return result;
     m.search_places(wide);
+    Impl::Finish better = f;
+    Impl::Support best = s;
     for (const Impl::Finish& elsewhere : m.finishes) {
-        if (m.apart_mm(elsewhere.pose, f.pose) < m.search.step_mm()) continue;
         if (m.support(elsewhere, sigma, support_stride).cost > s.cost / support_stride + told) continue;
         const Impl::Finish other = m.finish(elsewhere.pose, start_gate, 1, 40);
-        if (m.apart_mm(other.pose, f.pose) < m.search.step_mm()) continue;
-        if (m.support(other, sigma, 1).cost < s.cost - told) {
-            result.status = RegistrationStatus::no_match;
-            return result;
-        }
+        const Impl::Support there = m.support(other, sigma, 1);
+        if (there.cost >= best.cost) continue;
+        better = other;
+        best = there;
     }
+    if (best.cost > s.cost - told) return result;
+    m.follow(better, best, sigma);
+    result = m.conclude(better, best, sigma);
+    if (!m.within(window, better.pose)) result.status = RegistrationStatus::no_match;
     return result;
 }
 

@@ -75,6 +75,7 @@ struct ContourMatcher::Impl {
         CentredPose pose;
         double gate = 0;  // final
         double sigma = 0;
+        double cost = 0;  // once rated
     };
     // What speaks for a pose.
     struct Support {

@@ -315,7 +315,7 @@ void RegistrationSearch::find(const SceneContour& scene, const SearchWindow& win
         const MotionBox box = motion_box(window, origin, reference, phi);
         const int shifts = std::max(1, static_cast<int>(std::ceil((box.x1 - box.x0) / step)));
         const double low = box.z0 - cell_mm;
-        const int heights = std::min(2000, static_cast<int>((box.z1 - box.z0) * per_cell) + 4);
+        const int heights = static_cast<int>(std::min(2000.0, (box.z1 - box.z0) * per_cell + 4));
         histogram_.resize(static_cast<std::size_t>(heights) + 1);
         for (int shift = 0; shift <= shifts; ++shift) {
             const double dx = box.x0 + (box.x1 - box.x0) * shift / shifts;

@@ -14,6 +14,9 @@ constexpr double kSmallestShare = 0.5;
 // ... and at least this share of what fixes each of its directions.
 constexpr double kSmallestInformationShare = 0.35;
 
+// Slopes worth fewer points than this may be chance.
+constexpr double kFewPoints = 10;
+
 }  // namespace
 
 Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating, double sigma) const {
@@ -151,8 +154,10 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     // Where the slopes leave it open, what the points say about a small motion along the direction decides.
     const bool open = unsure || !directions[0].determined;
     Held place;
-    if (open) place = held(found, rating, sigma, weak);
-    const bool sliding = open && !place.held;
+    const bool thin = jump_matches.empty() && seen - false_part < kFewPoints;
+    if (open || thin) place = held(found, rating, sigma, weak);
+    const bool sliding = (open || thin) && !place.held;
+    place.held = place.held && open;
     if (place.held) pose = moved_along(pose, weak, place.shift);
     const Eigen::Vector2d turned = set_pose();
     const Eigen::Matrix2d r =

@@ -16,6 +16,7 @@ namespace {
 
 struct Tally {
     int trials = 0, right = 0, wrong = 0, covered = 0;
+    int far = 0;  // of the wrong ones: at another place, not beside the right one
     std::map<RegistrationStatus, int> refused;
     void add(const MatchTrial& t, const Registration& r) {
         ++trials;
@@ -37,6 +38,7 @@ struct Tally {
         // Farther off than it should be, and not within what it states (four sigma) either.
         if (!t.right(r.scene_from_template) && (square > 20 || e.norm() > 1)) {
             ++wrong;
+            far += e.norm() > 1 + 20 * t.scale_mm;
             if (std::getenv("MATCH_TRIALS"))
                 std::printf(
                     "    wrong: %s: %.2f mm off (%.1f sigma), share %.2f, best sigma %.3f, inside %d, window "
@@ -99,6 +101,13 @@ TEST(MatchEverywhere, RightWhereDeterminedRefusedOtherwise) {
         }
         all.print("ALL determined");
         never.print("ALL not determined");
+        if (place == 0) {
+            EXPECT_GE(all.right, 0.97 * all.trials);
+        }
+        EXPECT_LE(all.wrong, 0.005 * all.trials + 1);
+        EXPECT_LE(never.wrong, 0.005 * never.trials + 1);
+        EXPECT_EQ(all.far + never.far, 0);
+        EXPECT_GE(all.covered, (place == 0 ? 0.87 : 0.8) * all.right);
     }
 }
 
@@ -116,6 +125,41 @@ TEST(MatchEverywhere, SmallRimsWithFlats) {
         }
         known.print(radius < 1.5 ? "r 1" : "r 2");
         unknown.print("  not determined");
+        EXPECT_GE(known.right, 0.98 * known.trials);
+        EXPECT_EQ(known.far + unknown.far, 0);
+    }
+}
+
+// Two scans of a room by a turning range finder, millimetres in thousands: pitch and noise of other kinds,
+// much of each scan unseen in the other.
+TEST(MatchEverywhere, TwoScansOfARoom) {
+    Random random(43);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    head("scans of a room");
+    for (const double noise : {3.0, 10.0, 25.0}) {
+        Tally tally;
+        for (int i = 0; i < trials_of(40); ++i) {
+            const RoomScan a = scan_room({0, 0}, 0, noise, random);
+            const PlanarMotion there{400 * unit(random), 400 * unit(random), 0.3 * unit(random)};
+            const RoomScan b = scan_room({there.dx_mm, there.dz_mm}, there.phi_rad, noise, random);
+            MatchTrial t;
+            t.taught = a.profile;
+            t.scene = b.profile;
+            // From the first scanner's frame to the second's.
+            const double c = std::cos(there.phi_rad), s = std::sin(there.phi_rad);
+            t.truth = {-(c * there.dx_mm + s * there.dz_mm), -(-s * there.dx_mm + c * there.dz_mm),
+                       -there.phi_rad};
+            t.window.dx_mm = t.window.dz_mm = 600;
+            t.window.phi_rad = 0.5;
+            t.window.pivot = SearchPivot::reference_or_origin;
+            t.scale_mm = 2 * noise;
+            t.landmark_sigma_mm = 0.05;
+            t.what = "room";
+            tally.add(t, matched(t));
+        }
+        EXPECT_GE(tally.right, 0.95 * tally.trials);
+        EXPECT_EQ(tally.wrong, 0);
+        tally.print(("noise " + std::to_string(static_cast<int>(noise)) + " mm").c_str());
     }
 }
 

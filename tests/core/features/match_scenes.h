@@ -190,7 +190,7 @@ inline void mirror_x(Profile& p) {
 struct MatchTrial {
     Profile taught, scene;
     PlanarMotion truth;
-    Eigen::Vector2d reference;
+    Eigen::Vector2d reference = Eigen::Vector2d::Zero();
     SearchWindow window;
     bool inside = true;            // the motion lies within the window
     double landmark_sigma_mm = 0;  // what the two profiles could tell at best; infinite where nothing
@@ -302,6 +302,48 @@ inline MatchTrial make_trial(const Section& section, const TrialRange& range, Ra
     trial.what = section.name + " " + std::to_string(sensor.points) + " points, pitch " +
                  std::to_string(sensor.pitch) + ", noise " + std::to_string(sensor.noise);
     return trial;
+}
+
+// What a range finder turning in the plane sees of a room of 8 x 6 m with a recess, a pillar and two
+// cupboards: half a degree a ray over 270 degrees.
+struct RoomScan {
+    Profile profile;
+};
+inline RoomScan scan_room(const Eigen::Vector2d& at, double turn, double noise, Random& random) {
+    const std::vector<std::vector<Eigen::Vector2d>> walls{
+        {{-3500, -2500},
+         {4500, -2500},
+         {4500, 1000},
+         {5500, 1000},
+         {5500, 2600},
+         {4500, 2600},
+         {4500, 3500},
+         {-3500, 3500},
+         {-3500, -2500}},
+        {{1500, 1200}, {1900, 1200}, {1900, 1600}, {1500, 1600}, {1500, 1200}},
+        {{-3500, 800}, {-2900, 800}, {-2900, 2000}, {-3500, 2000}},
+        {{1000, -2500}, {1000, -2050}, {2600, -2050}, {2600, -2500}}};
+    std::normal_distribution<double> error(0, noise);
+    RoomScan scan;
+    for (int ray = 0; ray <= 540; ++ray) {
+        const double local = rad_from_deg(-135 + 0.5 * ray), angle = local + turn;
+        const Eigen::Vector2d d(std::cos(angle), std::sin(angle));
+        double nearest = 1e9;
+        for (const auto& wall : walls)
+            for (std::size_t i = 1; i < wall.size(); ++i) {
+                const Eigen::Vector2d e = wall[i] - wall[i - 1], f = wall[i - 1] - at;
+                const double cross = d.x() * e.y() - d.y() * e.x();
+                if (std::abs(cross) < 1e-9) continue;
+                const double range = (f.x() * e.y() - f.y() * e.x()) / cross;
+                const double along = (f.x() * d.y() - f.y() * d.x()) / cross;
+                if (range > 0 && along >= 0 && along <= 1) nearest = std::min(nearest, range);
+            }
+        if (nearest > 1e8) continue;
+        const double range = nearest + error(random);
+        scan.profile.x_mm.push_back(range * std::cos(local));
+        scan.profile.z_mm.push_back(range * std::sin(local));
+    }
+    return scan;
 }
 
 }  // namespace seamwright::test

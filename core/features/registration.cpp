@@ -245,6 +245,22 @@ Registration ContourMatcher::refine(const Profile& profile, const PlanarMotion& 
     return m.conclude(f, m.support(f, m.noise_mm(), 1), m.noise_mm());
 }
 
+void ContourMatcher::deviations(const Profile& profile, const PlanarMotion& scene_from_template,
+                                double reach_mm, std::vector<ContourDeviation>& out) const {
+    out.clear();
+    const Impl& m = *impl_;
+    const Eigen::Vector2d d = scene_from_template * m.model.origin() - m.model.origin();
+    if (!d.allFinite() || !std::isfinite(scene_from_template.phi_rad)) return;
+    m.scene.gather(profile, m.model.origin(), d, m.model.extent_mm() + reach_mm + 1);
+    m.collect(CentredPose(d.x(), d.y(), scene_from_template.phi_rad), reach_mm, 1);
+    for (const Impl::Match& match : m.matches) {
+        const auto& edge = m.model.edges()[match.foot.edge];
+        if (edge.wall) continue;
+        const double s = m.arc[static_cast<std::size_t>(match.foot.edge)] + edge.half + match.foot.u;
+        out.push_back({std::clamp(s / m.model.length_mm(), 0.0, 1.0), match.foot.residual});
+    }
+}
+
 Eigen::Vector2d PlanarMotion::operator*(const Eigen::Vector2d& p) const {
     const double c = std::cos(phi_rad), s = std::sin(phi_rad);
     return {c * p.x() - s * p.y() + dx_mm, s * p.x() + c * p.y() + dz_mm};

@@ -158,6 +158,7 @@ json alignment_json(const AlignmentResult& a) {
             {"dx_mm_per_mm", a.dx_mm_per_mm},
             {"dz_mm_per_mm", a.dz_mm_per_mm},
             {"expected_error_mm", a.expected_error_mm},
+            {"expected_error_sigma_mm", a.expected_error_sigma_mm},  // null: a direction is not seen
             {"shape_change_mm", a.shape_change_mm},
             {"cure", a.cure},
             {"offsets", offsets}};
@@ -167,9 +168,9 @@ std::string alignment_text(const AlignmentResult& a) {
     std::string radius = std::isfinite(a.radius_mm) ? fmt::format("{:.0f} mm", a.radius_mm) : "straight";
     return fmt::format(
         "{}   yaw {:+.3f} ± {:.3f} deg   pitch {:+.3f} ± {:.3f} deg   roll {:+.3f} deg   radius {}\n"
-        "expected error from jitter {:.4f} mm, shape change {:.4f} mm\n{}{}",
+        "expected error from jitter {:.4f} ± {:.4f} mm, shape change {:.4f} mm\n{}{}",
         to_string(a.status), a.yaw_deg, a.sigma_yaw_deg, a.pitch_deg, a.sigma_pitch_deg, a.roll_deg, radius,
-        a.expected_error_mm, a.shape_change_mm,
+        a.expected_error_mm, a.expected_error_sigma_mm, a.shape_change_mm,
         a.cure.empty() ? "" : "to cure: ", a.cure.empty() ? "" : a.cure + "\n");
 }
 

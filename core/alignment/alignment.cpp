@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -21,6 +22,15 @@ constexpr double kSmallestShare = 0.5;
 // Below this share within the jitter the contour does not stay the same.
 constexpr double kSteadyShare = 0.8;
 constexpr double kSignificant = 3.0;
+// A profile noisier than this multiple of the pass's usual noise is not what the others are registered to.
+constexpr double kNoisy = 1.5;
+// A good one shows most of the contour in most of the profiles.
+constexpr double kWholeShare = 0.85, kGoodShare = 0.8;
+constexpr int kReferencesTried = 2;
+// What lies farther from the contour is no part of it.
+constexpr double kReach_mm = 2.0;
+// Rotations below this are not worth a word, degrees.
+constexpr double kLeastTurn_deg = 0.02;
 
 struct Registered {
     Eigen::Vector2d shift = Eigen::Vector2d::Zero();
@@ -89,6 +99,15 @@ bool accept(const Registration& r, const Eigen::Vector2d& reference, const Eigen
     return out.ok;
 }
 
+// The motion as taken over, i.e. without what a straight line creeps along itself.
+PlanarMotion motion_of(const Registered& r, const Eigen::Vector2d& reference) {
+    const double c = std::cos(r.phi), sn = std::sin(r.phi);
+    const Eigen::Vector2d moved =
+        reference + r.shift -
+        Eigen::Vector2d(c * reference.x() - sn * reference.y(), sn * reference.x() + c * reference.y());
+    return {moved.x(), moved.y(), r.phi};
+}
+
 // From the trigger outwards, each profile starts where its inner neighbours point to.
 void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
            const std::vector<std::size_t>& outwards, const Eigen::Vector2d& reference,
@@ -117,12 +136,7 @@ void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
         }
         before = last;
         before_y = last_y;
-        // The motion as taken over, so that a straight line does not creep along itself.
-        const double c = std::cos(out[i].phi), sn = std::sin(out[i].phi);
-        const Eigen::Vector2d moved =
-            reference + out[i].shift -
-            Eigen::Vector2d(c * reference.x() - sn * reference.y(), sn * reference.x() + c * reference.y());
-        last = {moved.x(), moved.y(), out[i].phi};
+        last = motion_of(out[i], reference);
         last_y = y;
         ++known;
     }
@@ -133,6 +147,108 @@ double median(std::vector<double> v) {
     const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
     std::nth_element(v.begin(), middle, v.end());
     return *middle;
+}
+
+// A profile as the one that the others are registered to.
+struct Reference {
+    std::size_t index = 0;
+    ContourMatcher matcher;
+    std::vector<Registered> found;
+    double quality = 0;  // profiles that register, by the share that they show; half for those that slide
+    bool good = false;   // most do, and with most of the contour
+};
+
+double noise_of(const Profile& p) {
+    std::vector<double> x, z, scratch;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (usable(p, i)) {
+            x.push_back(p.x_mm[i]);
+            z.push_back(p.z_mm[i]);
+        }
+    return contour_noise_mm(x, z, scratch);
+}
+
+Reference register_to(std::size_t index, ContourMatcher matcher, std::span<const TravelProfile> pass,
+                      const std::vector<std::size_t>& order, const Eigen::Vector2d& reference) {
+    Reference r{index, std::move(matcher), std::vector<Registered>(pass.size()), 0, false};
+    const Eigen::Vector2d straight = straight_direction(pass[index].profile);
+    const double y0 = pass[index].travel_mm;
+    for (const bool forward : {true, false}) {
+        std::vector<std::size_t> outwards;
+        for (const std::size_t i : order)
+            if (i != index && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
+        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
+            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
+        });
+        track(r.matcher, pass, outwards, reference, straight, r.found);
+    }
+    double whole = 0;
+    for (const Registered& f : r.found) {
+        if (!f.ok) continue;
+        r.quality += f.share * (f.slides.isZero() ? 1.0 : 0.5);
+        whole += f.slides.isZero() && f.share > kWholeShare;
+    }
+    r.good = whole >= kGoodShare * static_cast<double>(order.size() - 1);
+    return r;
+}
+
+// The nearest to travel 0 that has about as many points and about as little noise as the pass usually shows,
+// and to which most of the pass registers. Where none is good, the best of a few.
+std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
+                                          const std::vector<std::size_t>& order,
+                                          const std::optional<Eigen::Vector2d>& point) {
+    std::vector<double> counts, noises;
+    for (const std::size_t i : order) {
+        counts.push_back(static_cast<double>(usable_points(pass[i].profile)));
+        noises.push_back(noise_of(pass[i].profile));
+    }
+    const double usual = median(counts), quiet = median(noises);
+    std::optional<Reference> best;
+    int tried = 0;
+    for (std::size_t k = 0; k < order.size() && tried < kReferencesTried; ++k) {
+        const std::size_t i = order[k];
+        if (counts[k] < 0.8 * usual || noises[k] > kNoisy * quiet + 1e-6) continue;
+        const Eigen::Vector2d reference = point ? *point : centroid(pass[i].profile);
+        auto made = ContourMatcher::make(pass[i].profile, reference);
+        if (!made) continue;
+        ++tried;
+        Reference r = register_to(i, std::move(*made), pass, order, reference);
+        if (!best || r.quality > 1.02 * best->quality || (r.good && !best->good)) best.emplace(std::move(r));
+        if (best->good) break;
+    }
+    return best;
+}
+
+// How much a piece of the contour grows or sinks against the rest within the jitter, beyond its noise: the
+// largest over the pieces.
+double growth_mm(const Reference& reference, std::span<const TravelProfile> pass,
+                 const Eigen::Vector2d& point, double jitter_mm) {
+    constexpr int kPieces = 12;
+    constexpr std::size_t kFewestInPiece = 4;
+    std::array<std::vector<double>, kPieces> travel, middle, piece;
+    std::vector<ContourDeviation> deviations;
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        const Registered& f = reference.found[i];
+        if (!f.ok) continue;
+        reference.matcher.deviations(pass[i].profile, motion_of(f, point), kReach_mm, deviations);
+        for (auto& p : piece) p.clear();
+        for (const ContourDeviation& d : deviations)
+            piece[static_cast<std::size_t>(std::min(d.along * kPieces, kPieces - 1.0))].push_back(
+                d.across_mm);
+        for (std::size_t k = 0; k < kPieces; ++k) {
+            if (piece[k].size() < kFewestInPiece) continue;
+            travel[k].push_back(pass[i].travel_mm);
+            middle[k].push_back(median(piece[k]));
+        }
+    }
+    double most = 0;
+    for (std::size_t k = 0; k < kPieces; ++k) {
+        if (travel[k].size() < static_cast<std::size_t>(kFewestProfiles)) continue;
+        const PolynomialFit fit = fit_polynomial(travel[k], middle[k], 1);
+        if (!fit.ok || std::abs(fit.coefficient[1]) < 4 * fit.coefficient_sigma[1]) continue;
+        most = std::max(most, std::abs(fit.coefficient[1]) * jitter_mm);
+    }
+    return most;
 }
 
 double quantile(std::vector<double> v, double share) {
@@ -165,6 +281,8 @@ std::string_view to_string(AlignmentStatus status) {
             return "shape_changes";
         case AlignmentStatus::not_enough_profiles:
             return "not_enough_profiles";
+        case AlignmentStatus::undetermined:
+            return "undetermined";
     }
     return "unknown";
 }
@@ -197,22 +315,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         return std::abs(pass[a].travel_mm) < std::abs(pass[b].travel_mm);
     });
 
-    // The trigger profile: the nearest to 0 that has about as many points as the pass usually shows.
-    std::vector<double> counts;
-    for (const std::size_t i : order) counts.push_back(static_cast<double>(usable_points(pass[i].profile)));
-    const double usual = median(counts);
-    std::optional<ContourMatcher> matcher;
-    std::size_t trigger = 0;
-    Eigen::Vector2d reference = Eigen::Vector2d::Zero();
-    for (const std::size_t i : order) {
-        if (static_cast<double>(usable_points(pass[i].profile)) < 0.8 * usual) continue;
-        reference = options.reference_mm ? *options.reference_mm : centroid(pass[i].profile);
-        auto made = ContourMatcher::make(pass[i].profile, reference);
-        if (!made) continue;
-        matcher.emplace(std::move(*made));
-        trigger = i;
-        break;
-    }
+    std::optional<Reference> best = choose_reference(pass, order, options.reference_mm);
     const auto too_few = [&](std::size_t enough) {
         result.status = AlignmentStatus::not_enough_profiles;
         result.cure = fmt::format(
@@ -221,21 +324,9 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
             enough, pass.size(), options.window_mm, kFewestProfiles + 1, kShortestTravel_mm);
         return result;
     };
-    if (!matcher) return too_few(0);
-
-    const Eigen::Vector2d straight = straight_direction(pass[trigger].profile);
-    std::vector<Registered> found(pass.size());
-    const double y0 = pass[trigger].travel_mm;
-    for (const bool forward : {true, false}) {
-        std::vector<std::size_t> outwards;
-        for (const std::size_t i : order) {
-            if (i != trigger && (pass[i].travel_mm >= y0) == forward) outwards.push_back(i);
-        }
-        std::stable_sort(outwards.begin(), outwards.end(), [&](auto a, auto b) {
-            return std::abs(pass[a].travel_mm - y0) < std::abs(pass[b].travel_mm - y0);
-        });
-        track(*matcher, pass, outwards, reference, straight, found);
-    }
+    if (!best) return too_few(0);
+    const std::size_t trigger = best->index;
+    std::vector<Registered>& found = best->found;
 
     // A straight profile slides on itself: when most say so, all are judged across their common direction
     // only.
@@ -309,6 +400,10 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         result.curve.x_coefficients[static_cast<Eigen::Index>(k)] = fx.coefficient[k + 1];
         result.curve.z_coefficients[static_cast<Eigen::Index>(k)] = fz.coefficient[k + 1];
     }
+    result.expected_error_sigma_mm =
+        options.jitter_mm * std::hypot(fx.coefficient_sigma[1], fz.coefficient_sigma[1]);
+    if (!std::isfinite(result.sigma_yaw_deg) || !std::isfinite(result.sigma_pitch_deg))
+        result.expected_error_sigma_mm = infinity;
     result.curve.valid_from_mm = from;
     result.curve.valid_to_mm = to;
 
@@ -324,18 +419,30 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
     }
     if (near_rms.empty()) near_rms = all_rms;
     const double noise = quantile(all_rms, 0.1), worst = quantile(near_rms, 0.9);
-    result.shape_change_mm = std::sqrt(std::max(0.0, worst * worst - noise * noise));
-    const bool share_lost = !near_share.empty() && quantile(near_share, 0.1) < kSteadyShare;
+    const Eigen::Vector2d point =
+        options.reference_mm ? *options.reference_mm : centroid(pass[trigger].profile);
+    result.shape_change_mm = std::max(std::sqrt(std::max(0.0, worst * worst - noise * noise)),
+                                      growth_mm(*best, pass, point, options.jitter_mm));
+    // One profile alone is a profile gone wrong.
+    const bool share_lost =
+        near_share.size() > 1 &&
+        quantile(near_share, std::max(0.1, 1.0 / double(near_share.size() - 1))) < kSteadyShare;
 
     const bool drifts = result.expected_error_mm > options.tolerance_mm;
     const bool changes = result.shape_change_mm > options.tolerance_mm || share_lost;
-    result.status = drifts    ? AlignmentStatus::drifting
-                    : changes ? AlignmentStatus::shape_changes
-                              : AlignmentStatus::frozen;
+    // Too uncertain to tell: within two sigma it may be either, and two sigma are more than the tolerance.
+    const bool unsure = 2 * result.expected_error_sigma_mm > options.tolerance_mm;
+    const bool seen_to_drift =
+        drifts && (!unsure || result.sliding ||
+                   result.expected_error_mm - 2 * result.expected_error_sigma_mm > options.tolerance_mm);
+    result.status = seen_to_drift ? AlignmentStatus::drifting
+                    : unsure      ? AlignmentStatus::undetermined
+                    : changes     ? AlignmentStatus::shape_changes
+                                  : AlignmentStatus::frozen;
     const auto say = [&](const std::string& sentence) {
         result.cure += (result.cure.empty() ? "" : "; ") + sentence;
     };
-    if (drifts) {
+    if (result.status == AlignmentStatus::drifting) {
         // What the bend alone costs cannot be turned away.
         double rest = 0;
         for (int k = -50; k <= 50; ++k) {
@@ -343,13 +450,17 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
             rest = std::max(rest,
                             std::hypot(rise(fx, at, from, to) - sx * at, rise(fz, at, from, to) - sz * at));
         }
-        const double share = options.tolerance_mm / options.jitter_mm / 4;
         std::string turn;
-        if (std::abs(sx) > share) turn = "about Z by " + degrees(result.cure_about_z_deg);
-        if (std::abs(sz) > share)
-            turn += (turn.empty() ? "about X by " : " and then about its X by ") +
-                    degrees(result.cure_about_x_deg);
-        if (!turn.empty()) say("rotate the sensor, with its travel, " + turn);
+        if (std::abs(result.cure_about_z_deg) > kLeastTurn_deg)
+            turn = "about the sensor's own Z axis by " + degrees(result.cure_about_z_deg);
+        if (std::abs(result.cure_about_x_deg) > kLeastTurn_deg)
+            turn +=
+                (turn.empty() ? "about the sensor's own X axis by " : ", then about its turned X axis by ") +
+                degrees(result.cure_about_x_deg);
+        if (!turn.empty())
+            say("rotate the sensor at the trigger position, about the reference point and together with its "
+                "travel, " +
+                turn);
         if (rest > options.tolerance_mm)
             say(
                 fmt::format("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
@@ -357,6 +468,12 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
                             "the correction use the contour curve, or trigger more exactly",
                             result.radius_mm, rest));
     }
+    if (result.status == AlignmentStatus::undetermined && !result.sliding)
+        say(
+            fmt::format("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
+                        "record the pass "
+                        "again with more profiles or less noise",
+                        result.expected_error_mm, result.expected_error_sigma_mm));
     if (changes)
         say("the profile changes its shape along the travel: teach the spot where the contour stays the "
             "same");

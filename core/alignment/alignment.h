@@ -2,10 +2,11 @@
 // The frozen contour (methods.md 4; thesis 5.2.1, footnote 5): does the contour stand still while the robot
 // passes the spot?
 //
-// Every profile of the pass is registered to the one at the trigger position (the nearest usable to travel
-// 0), giving the shift dx(y), dz(y) of the spot's reference point and the turn dphi(y) against travel y.
-// Polynomials of the lowest order that the data ask for (1..3, F test) are fitted robustly; their slopes at y
-// = 0 are the misalignment, their bend the local radius, what registration leaves over is shape change.
+// Every profile of the pass is registered to one of them, the nearest to travel 0 to which the pass as a
+// whole registers (a noisy profile or one with a ghost in it does not do), giving the shift dx(y), dz(y) of
+// the spot's reference point and the turn dphi(y) against travel y. Polynomials of the lowest order that the
+// data ask for (1..3, F test) are fitted robustly; their slopes at y = 0 are the misalignment, their bend the
+// local radius, what registration leaves over is shape change.
 //
 // Noise model: independent, equal noise of the registered shifts from profile to profile, estimated from the
 // fits' residuals; the trigger profile's own noise is common to all and only moves the constant, so it takes
@@ -40,10 +41,11 @@ struct AlignmentOptions {
 };
 
 enum class AlignmentStatus {
-    frozen,              // the jitter causes at most the tolerance
-    drifting,            // it causes more; `cure` says which rotation mends it
-    shape_changes,       // stands still as a whole, but the profile changes its shape within the jitter
-    not_enough_profiles  // fewer than 5 usable profiles within the window, or less than 1 mm of travel
+    frozen,               // the jitter causes at most the tolerance
+    drifting,             // it causes more; `cure` says which rotation mends it
+    shape_changes,        // stands still as a whole, but the profile changes its shape within the jitter
+    not_enough_profiles,  // fewer than 5 usable profiles within the window, or less than 1 mm of travel
+    undetermined          // what is seen does not tell frozen from drifting: the drift's sigma is too large
 };
 std::string_view to_string(AlignmentStatus status);
 
@@ -64,18 +66,21 @@ struct AlignmentResult {
     // Infinite for a direction along which the profile slides on itself (straight line).
     double sigma_yaw_deg = 0, sigma_pitch_deg = 0;
     // Rotation of the sensor, together with its travel, that lets the contour stand still: right-handed about
-    // the sensor's Z first, then about its turned X. About Z: -yaw; about X: pitch (times the cosine of yaw
+    // the sensor's own Z first, then about its turned X, both through the reference point so that it stays in
+    // view. About Z: -yaw; about X: pitch (times the cosine of yaw
     // in the tangent).
     double cure_about_z_deg = 0, cure_about_x_deg = 0;
     double radius_mm = std::numeric_limits<double>::infinity();  // of the contour's curvature; infinity when
                                                                  // straight within noise (3 sigma)
-    double expected_error_mm = 0;  // largest shift within the jitter, from slope and curvature
-    double shape_change_mm =
-        0;                 // rms of what remains after rigid registration, the profile's noise taken off
-    bool sliding = false;  // the profile is a straight line: only the drift across it is seen
-    ContourCurve curve;    // of the reference point, for the correction, see correction.h
+    double expected_error_mm = 0;        // largest shift within the jitter, from slope and curvature
+    double expected_error_sigma_mm = 0;  // infinite where a direction is not seen
+    // The larger of: rms of what remains after rigid registration, the profile's noise taken off; steady
+    // growth within the jitter of the deviation of a piece of the contour.
+    double shape_change_mm = 0;
+    bool sliding = false;               // the profile is a straight line: only the drift across it is seen
+    ContourCurve curve;                 // of the reference point, for the correction, see correction.h
     std::vector<TravelOffset> offsets;  // in the order given
-    std::string cure;                   // "rotate the sensor about Z by -0.6 degrees"
+    std::string cure;                   // what to do, in whole sentences; empty when frozen
 };
 
 // Refuses (Error): an empty pass, x and z of different length, options that are not positive and finite.

@@ -39,17 +39,35 @@ struct WindowSums {
 }  // namespace
 
 double contour_noise_mm(std::span<const double> x, std::span<const double> z, std::vector<double>& scratch) {
-    scratch.clear();
-    for (std::size_t i = 4; i < x.size(); ++i) {
-        const double tx = x[i] - x[i - 4], tz = z[i] - z[i - 4];
-        const double length = std::hypot(tx, tz);
-        if (!(length > 0)) continue;
-        const double fx = x[i] - 4 * x[i - 1] + 6 * x[i - 2] - 4 * x[i - 3] + x[i - 4];
-        const double fz = z[i] - 4 * z[i - 1] + 6 * z[i - 2] - 4 * z[i - 3] + z[i - 4];
-        scratch.push_back(std::abs(fz * tx - fx * tz) / length);
+    // Where the noise is of the size of the pitch, the direction of a chord of four points is noise too: the
+    // chord is then taken as long as twelve sigma.
+    constexpr std::size_t kLongest = 96;
+    const std::size_t n = x.size();
+    std::size_t reach = 2;
+    double sigma = 0;
+    for (int pass = 0; pass < 3; ++pass) {
+        scratch.clear();
+        double chord = 0;
+        for (std::size_t i = 2; i + 2 < n; ++i) {
+            const std::size_t a = i > reach ? i - reach : 0, b = std::min(i + reach, n - 1);
+            const double tx = x[b] - x[a], tz = z[b] - z[a];
+            const double length = std::hypot(tx, tz);
+            if (!(length > 0)) continue;
+            const double fx = x[i + 2] - 4 * x[i + 1] + 6 * x[i] - 4 * x[i - 1] + x[i - 2];
+            const double fz = z[i + 2] - 4 * z[i + 1] + 6 * z[i] - 4 * z[i - 1] + z[i - 2];
+            scratch.push_back(std::abs(fz * tx - fx * tz) / length);
+        }
+        if (scratch.size() < 8) return sigma;
+        sigma = kMadToSigma * median(scratch) / std::sqrt(70.0);
+        scratch.clear();
+        for (std::size_t i = 0; i + 2 * reach < n; ++i)
+            scratch.push_back(std::hypot(x[i + 2 * reach] - x[i], z[i + 2 * reach] - z[i]));
+        chord = median(scratch);
+        if (chord >= 12 * sigma || 2 * reach >= std::min(kLongest, n / 4)) break;
+        reach = std::min({static_cast<std::size_t>(std::ceil(12 * sigma / chord * double(reach))), kLongest / 2,
+                          std::max<std::size_t>(2, n / 8)});
     }
-    if (scratch.size() < 8) return 0;
-    return kMadToSigma * median(scratch) / std::sqrt(70.0);
+    return sigma;
 }
 
 bool ContourPitch::is_wall(double dx, double dz) const {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/error.h"
 #include "core/profile/profile.h"
@@ -50,6 +51,12 @@ enum class SearchPivot {
                          // unknown making
 };
 
+// Where a scene point lies beside the template: at which part of its length (0..1), how far across it (mm,
+// towards the left of the template's order).
+struct ContourDeviation {
+    double along = 0, across_mm = 0;
+};
+
 // How far from its taught place the template is looked for. The search reaches a little over the rim, so that
 // a motion just on it is found; what is found farther out is `no_match`.
 struct SearchWindow {
@@ -74,6 +81,10 @@ class ContourMatcher {
     Registration match(const Profile& scene, const SearchWindow& window) const;
     // Only the finish, from a start within about a millimetre: consecutive profiles, tracking.
     Registration refine(const Profile& scene, const PlanarMotion& start) const;
+    // Of every scene point within `reach_mm` of the template at the given pose, on straights and bends (not
+    // on walls).
+    void deviations(const Profile& scene, const PlanarMotion& scene_from_template, double reach_mm,
+                    std::vector<ContourDeviation>& out) const;
 
   private:
     struct Impl;

@@ -6,6 +6,10 @@
 namespace seamwright {
 namespace {
 
+// Cosine of the steepest surface whose end is an edge: a rounded one ends for the sensor where it gets too
+// steep to be seen, which is another place of it at another turn.
+constexpr double kSteepest = 0.6;
+
 // Appends the polygon through `kept` with no edge longer than `spacing`.
 void append_polygon(const std::vector<double>& x, const std::vector<double>& z, const std::vector<int>& kept,
                     double spacing, ReducedContour& out) {
@@ -106,7 +110,9 @@ void SceneContour::gather(const Profile& scene, const Eigen::Vector2d& origin, c
     for (int i = 0; i + 1 < solid; ++i) {
         if (!pitch.is_wall(solid_x_[i + 1] - solid_x_[i], solid_z_[i + 1] - solid_z_[i])) continue;
         const bool rising = solid_z_[i + 1] > solid_z_[i];
-        jumps.push_back(jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1));
+        const JumpEnd end =
+            jump_end(solid_x_, solid_z_, rising ? i : i + 1, rising ? i + 1 : i, 0, solid - 1);
+        if (end.is_edge) jumps.push_back(end);
     }
 }
 
@@ -124,6 +130,9 @@ JumpEnd jump_end(const std::vector<double>& x, const std::vector<double>& z, int
     }
     JumpEnd end{x[upper], z[upper], double(-step), 0, 0, std::abs(z[upper] - z[lower])};
     const double dx = x[upper] - x[behind], dz = z[upper] - z[behind], d = std::hypot(dx, dz);
+    const int near = std::clamp(upper - 3 * step, std::min(behind, upper), std::max(behind, upper));
+    const double nx = x[upper] - x[near], nz = z[upper] - z[near];
+    end.is_edge = std::abs(nx) > kSteepest * std::hypot(nx, nz) || std::abs(dx) > kSteepest * d;
     if (d > 0) {
         end.tx = dx / d;
         end.tz = dz / d;
@@ -306,7 +315,7 @@ void RegistrationSearch::find(const SceneContour& scene, const SearchWindow& win
         const MotionBox box = motion_box(window, origin, reference, phi);
         const int shifts = std::max(1, static_cast<int>(std::ceil((box.x1 - box.x0) / step)));
         const double low = box.z0 - cell_mm;
-        const int heights = std::min(2000, static_cast<int>((box.z1 - box.z0) * per_cell) + 4);
+        const int heights = static_cast<int>(std::min(2000.0, (box.z1 - box.z0) * per_cell + 4));
         histogram_.resize(static_cast<std::size_t>(heights) + 1);
         for (int shift = 0; shift <= shifts; ++shift) {
             const double dx = box.x0 + (box.x1 - box.x0) * shift / shifts;

@@ -42,9 +42,10 @@ struct ReducedContour {
 // whatever the tilt; the lower one may lie in the upper one's shadow.
 struct JumpEnd {
     double x, z;
-    double tx, tz;  // unit, along the upper surface, outwards
-    double pitch;   // along the surface
-    double height;  // of the jump
+    double tx, tz;        // unit, along the upper surface, outwards
+    double pitch;         // along the surface
+    double height;        // of the jump
+    bool is_edge = true;  // a sharp end; false where the surface bends out of sight
 };
 // The jump between neighbours `lower` and `upper` (indices, side by side); the surface's direction comes from
 // up to `most` points behind the upper one within the range [first, last].

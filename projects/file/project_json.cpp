@@ -21,7 +21,8 @@ SEAMWRIGHT_WORDS(SpotStatus, "measured", "not_measured", "damaged_frame", "no_st
                  "no_feature");
 SEAMWRIGHT_WORDS(PushStatus, "not_pushed", "written", "failed", "restored", "not_restored");
 SEAMWRIGHT_WORDS(Release, "none", "given", "taken", "not_taken", "withdrawn");
-SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_enough_profiles");
+SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_enough_profiles",
+                 "undetermined");
 SEAMWRIGHT_WORDS(ShiftBy, "simulated_part", "robot_moves", "by_hand");
 SEAMWRIGHT_WORDS(GapFlushSettings::Reference, "left", "right");
 SEAMWRIGHT_WORDS(GapBy, "along_surface", "edge_distance");

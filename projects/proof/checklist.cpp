@@ -140,6 +140,7 @@ Phrase name_of_status(AlignmentStatus status) {
         case AlignmentStatus::shape_changes:
             return Phrase("changing its shape");
         case AlignmentStatus::not_enough_profiles:
+        case AlignmentStatus::undetermined:
             break;
     }
     return Phrase("seen too little");

@@ -5913,6 +5913,10 @@
         <translation>ZU WENIGE PROFILE</translation>
     </message>
     <message>
+        <source>UNDETERMINED</source>
+        <translation>UNBESTIMMT</translation>
+    </message>
+    <message>
         <source>yaw %1 deg, pitch %2 deg, radius %3, expected error %4 mm</source>
         <translation>Gieren %1 Grad, Nicken %2 Grad, Radius %3, erwarteter Fehler %4 mm</translation>
     </message>
@@ -6137,6 +6141,14 @@
     <message>
         <source>TOO FEW PROFILES</source>
         <translation>ZU WENIGE PROFILE</translation>
+    </message>
+    <message>
+        <source>UNDETERMINED</source>
+        <translation>UNBESTIMMT</translation>
+    </message>
+    <message>
+        <source>What is seen does not tell whether the contour stands still.</source>
+        <translation>Was zu sehen ist, sagt nicht, ob die Kontur stillsteht.</translation>
     </message>
     <message>
         <source>Fewer than 5 usable profiles, or less than 1 mm of travel: record the pass again, slower.</source>

@@ -248,6 +248,10 @@ void AlignView::set_result(std::span<const TravelProfile> pass, const AlignmentR
                           "slower."),
                        Impl::Mood::attention, palette());
             break;
+        case AlignmentStatus::undetermined:
+            impl_->say(tr("UNDETERMINED"), tr("What is seen does not tell whether the contour stands still."),
+                       Impl::Mood::attention, palette());
+            break;
     }
     if (result.sliding)
         impl_->reason->setText(impl_->reason->text() + "\n" +

@@ -137,6 +137,9 @@ void AlignPage::show_result() {
         case AlignmentStatus::not_enough_profiles:
             set_verdict(*verdict_, tr("NOT ENOUGH PROFILES"), Tone::attention);
             break;
+        case AlignmentStatus::undetermined:
+            set_verdict(*verdict_, tr("UNDETERMINED"), Tone::attention);
+            break;
     }
     QString text =
         tr("yaw %1 deg, pitch %2 deg, radius %3, expected error %4 mm")

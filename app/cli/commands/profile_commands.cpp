@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "app/cli/command.h"
@@ -12,6 +14,7 @@
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
 #include "devices/exchange/profile_csv.h"
+#include "projects/project_file.h"
 
 namespace seamwright::cli {
 namespace {
@@ -182,7 +185,41 @@ Expected<Answer> match(const MatchArguments& a) {
     return answer;
 }
 
-Expected<Answer> align(const std::string& file, const std::string& unit, const AlignmentOptions& options) {
+struct AlignArguments {
+    std::string file, unit, project, spot;
+    std::optional<double> jitter_mm, tolerance_mm, window_mm;
+    std::vector<double> reference;
+};
+
+// As the desk judges: jitter, travel and reference point are the spot's, unless told.
+Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
+    AlignmentOptions options;
+    if (a.project.empty() != a.spot.empty())
+        return usage_error("a spot is one of a project: give both", "--project, --spot");
+    if (!a.project.empty()) {
+        auto file = ProjectFile::open(a.project, FileAccess::read_only);
+        if (!file) return tl::unexpected(file.error());
+        auto project = file->load();
+        if (!project) return tl::unexpected(project.error());
+        const auto spot = std::find_if(project->spots.begin(), project->spots.end(),
+                                       [&](const Spot& s) { return s.id == a.spot; });
+        if (spot == project->spots.end())
+            return input_error(fmt::format("the project has no spot \"{}\"", a.spot), "--spot");
+        options.jitter_mm = spot->jitter_mm;
+        options.window_mm = std::max(spot->entry_mm, spot->exit_mm);
+        options.reference_mm = Eigen::Vector2d(spot->reference_mm.x(), spot->reference_mm.z());
+    }
+    if (a.jitter_mm) options.jitter_mm = *a.jitter_mm;
+    if (a.tolerance_mm) options.tolerance_mm = *a.tolerance_mm;
+    if (a.window_mm) options.window_mm = *a.window_mm;
+    if (a.reference.size() == 2) options.reference_mm = Eigen::Vector2d(a.reference[0], a.reference[1]);
+    return options;
+}
+
+Expected<Answer> align(const AlignArguments& a) {
+    const std::string &file = a.file, &unit = a.unit;
+    auto options = alignment_options(a);
+    if (!options) return tl::unexpected(options.error());
     auto pass = read_align_csv(file);
     if (!pass) return tl::unexpected(pass.error());
     for (TravelProfile& p : *pass) {
@@ -193,7 +230,7 @@ Expected<Answer> align(const std::string& file, const std::string& unit, const A
     for (TravelProfile& p : *pass)
         if (auto done = filter_profile(p.profile, FilterOptions{}); !done)
             return tl::unexpected(done.error());
-    auto result = check_alignment(*pass, options);
+    auto result = check_alignment(*pass, *options);
     if (!result) return tl::unexpected(result.error());
     Answer answer;
     answer.json = alignment_json(*result);
@@ -277,23 +314,27 @@ void add_match(CommandLine& line) {
 }
 
 void add_align(CommandLine& line) {
-    struct Arguments {
-        std::string file, unit;
-        AlignmentOptions options;
-    };
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<AlignArguments>();
     CLI::App* command = line.add("align", "Does the contour stand still while the robot passes the spot?",
                                  "seamwright align pass.csv --jitter-mm 5 --json -\n"
+                                 "  seamwright align pass.csv --project cell.seam --spot S1\n"
                                  "  pass.csv: travel_mm,profile_index,x_mm,z_mm");
     command->add_option("in", a->file, "The recorded pass")->required()->type_name("SEQ.csv");
-    command->add_option("--jitter-mm", a->options.jitter_mm, "Half width of the trigger jitter")
-        ->capture_default_str();
-    command->add_option("--tolerance-mm", a->options.tolerance_mm, "Error that the jitter may cause")
-        ->capture_default_str();
-    command->add_option("--window-mm", a->options.window_mm, "Travel that is judged, +- mm")
-        ->capture_default_str();
+    command->add_option("--project", a->project, "Project whose spot says jitter, travel and reference point")
+        ->type_name("P.seam");
+    command->add_option("--spot", a->spot, "Spot of the project that was passed")->type_name("ID");
+    command
+        ->add_option("--reference", a->reference,
+                     "Point x,z in mm whose drift counts (default: the spot's, or the middle of the profile)")
+        ->delimiter(',')
+        ->expected(2);
+    command->add_option("--jitter-mm", a->jitter_mm,
+                        "Half width of the trigger jitter (default: the spot's, or 5)");
+    command->add_option("--tolerance-mm", a->tolerance_mm, "Error that the jitter may cause (default: 0.05)");
+    command->add_option("--window-mm", a->window_mm,
+                        "Travel that is judged, +- mm (default: the spot's entry and exit, or 20)");
     add_unit(command, a->unit);
-    line.on(command, [a] { return align(a->file, a->unit, a->options); });
+    line.on(command, [a] { return align(*a); });
 }
 
 }  // namespace seamwright::cli

@@ -199,6 +199,102 @@ TEST(Alignment, AProfileThatChangesItsShapeIsNoticed) {
     EXPECT_THAT(r.cure, HasSubstr("shape"));
 }
 
+// A joggle that gets deeper along the travel: either flat may be taken for what stands still, the other does
+// not.
+TEST(Alignment, AJoggleThatGetsDeeperIsNotFrozen) {
+    for (const double left : {8.0, 4.0, 14.0}) {
+        for (const double noise : {0.01, 0.03}) {
+            Rng rng(17);
+            std::vector<TravelProfile> p;
+            for (double y = -20; y <= 20 + 1e-9; y += 1) {
+                TravelProfile t;
+                t.travel_mm = y;
+                const double depth = 2 + 0.04 * y;
+                for (double x = -left; x < 20 - left; x += 0.06) {
+                    t.profile.x_mm.push_back(x);
+                    t.profile.z_mm.push_back(depth * std::clamp(x / 2, 0.0, 1.0) + noise * normal(rng));
+                }
+                p.push_back(t);
+            }
+            const AlignmentResult r = checked(p);
+            EXPECT_NE(r.status, AlignmentStatus::frozen) << left << " " << noise;
+            EXPECT_TRUE(r.shape_change_mm > 0.05 || r.status == AlignmentStatus::drifting)
+                << left << " " << noise;
+        }
+    }
+}
+
+// The profile at the trigger position is noisy, or half of it belongs to a reflection: the others say what
+// there is.
+TEST(Alignment, OneBadTriggerProfileDoesNotSpoilTheVerdict) {
+    Rng rng(18);
+    for (const double yaw : {0.0, 1.0, -2.0}) {
+        for (int kind = 0; kind < 4; ++kind) {
+            SCOPED_TRACE(testing::Message() << "yaw " << yaw << ", kind " << kind);
+            std::vector<TravelProfile> p = pass(turn(yaw, 0), 1, 0.02, rng);
+            Profile& trigger = p[20].profile;
+            ASSERT_NEAR(p[20].travel_mm, 0, 1e-9);
+            for (std::size_t i = 0; i < trigger.size(); ++i) {
+                const double x = trigger.x_mm[i];
+                if (kind == 0) trigger.z_mm[i] += 0.5 * normal(rng);
+                if (kind == 1 && x > -9 && x < -2) trigger.z_mm[i] += 1.5;  // a ghost over the bead
+                if (kind == 2) trigger.z_mm[i] += 0.15 * normal(rng);
+                if (kind == 3 && x > 0) trigger.z_mm[i] = 4 + 0.3 * x + 0.02 * normal(rng);  // over the rim
+            }
+            const AlignmentResult r = checked(p);
+            EXPECT_EQ(r.status, yaw == 0 ? AlignmentStatus::frozen : AlignmentStatus::drifting) << r.cure;
+            EXPECT_NEAR(r.yaw_deg, yaw, 0.05);
+            EXPECT_LT(r.sigma_yaw_deg, 0.05);
+        }
+    }
+}
+
+TEST(Alignment, WhatIsNotSeenIsNotFrozen) {
+    Rng rng(19);
+    // A straight line that drifts along itself only, or not at all: nobody knows.
+    std::vector<Eigen::Vector2d> line;
+    for (double u = -15; u < 15; u += 0.1) line.emplace_back(u, 0.0);
+    for (const double yaw : {0.0, 3.0}) {
+        const AlignmentResult r = checked(pass(turn(yaw, 0), 1, 0.02, rng, line));
+        EXPECT_EQ(r.status, AlignmentStatus::undetermined);
+        EXPECT_TRUE(std::isinf(r.expected_error_sigma_mm));
+        EXPECT_THAT(r.cure, HasSubstr("straight line"));
+    }
+    // A few profiles of much noise.
+    std::vector<TravelProfile> p = pass(Eigen::Matrix3d::Identity(), 6, 0.05, rng);
+    for (TravelProfile& t : p) {
+        const double dx = 0.3 * normal(rng), dz = 0.3 * normal(rng);  // the robot's path is rough
+        for (double& x : t.profile.x_mm) x += dx;
+        for (double& z : t.profile.z_mm) z += dz;
+    }
+    const AlignmentResult r = checked(p);
+    EXPECT_EQ(r.status, AlignmentStatus::undetermined)
+        << r.expected_error_mm << " " << r.expected_error_sigma_mm;
+    EXPECT_THAT(r.cure, HasSubstr("sigma"));
+}
+
+// The sentence, followed to the letter.
+TEST(Alignment, TheCureAsWordedCures) {
+    Rng rng(20);
+    for (const auto& [z, x] : {std::pair{0.1, 0.0}, {3.0, -2.0}, {-9.0, 8.0}, {14.0, 12.0}, {-20.0, -15.0}}) {
+        const Eigen::Matrix3d r0 = turn(0.5 * x, 0) * turn(z, x);
+        const AlignmentResult before = checked(pass(r0, 1, 0.003, rng));
+        if (before.status == AlignmentStatus::frozen) continue;
+        Eigen::Matrix3d r = r0;
+        std::string rest = before.cure;
+        for (std::size_t at; (at = rest.find(" axis by ")) != std::string::npos; rest = rest.substr(at + 9)) {
+            const bool about_z = rest[at - 1] == 'Z';
+            const double degrees = std::stod(rest.substr(at + 9));
+            r = r * (about_z ? turn(degrees, 0) : turn(0, degrees));
+        }
+        const AlignmentResult after = checked(pass(r, 1, 0.003, rng));
+        EXPECT_EQ(after.status, AlignmentStatus::frozen) << before.cure;
+        const Eigen::Vector3d contour = r.transpose().col(1);
+        EXPECT_LT(deg_from_rad(std::atan(std::hypot(contour.x(), contour.z()) / contour.y())), 0.05)
+            << before.cure;
+    }
+}
+
 TEST(Alignment, OrderDuplicatesGapsAndBadProfilesDoNotMatter) {
     Rng rng(8);
     const Eigen::Matrix3d r0 = turn(1.5, -1.0);

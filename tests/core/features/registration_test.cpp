@@ -278,6 +278,82 @@ TEST(Registration, StraightTemplateSlidesAndSaysWhere) {
     }
 }
 
+// Six points of the rim say where along the flat it is.
+TEST(Registration, ASmallRimIsNotSlidAlongItsFlat) {
+    Random random(13);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const auto rim = [](double left, double radius) {
+        Shape s;
+        s.line_to(left, 0);
+        s.line_to(0, 0);
+        s.arc(0, -radius, radius, 90, 15);
+        return s;
+    };
+    int right = 0, wrong = 0;
+    for (int i = 0; i < 40; ++i) {
+        const double radius = i % 2 ? 1 : 2, side = i % 4 < 2 ? 1 : -1;
+        const PlanarMotion truth{side * (5 + 4 * unit(random)), 2 - 4 * unit(random),
+                                 0.1 - 0.2 * unit(random)};
+        Profile t = sample(rim(-10, radius), 0.1),
+                s = sample(rim(-40, radius).moved(truth), 0.1, unit(random));
+        add_noise(t, 0.02, random);
+        add_noise(s, 0.02, random);
+        auto matcher = ContourMatcher::make(t, {0, 0});
+        ASSERT_TRUE(matcher);
+        const Registration r = matcher->match(s, {});
+        if (r.status != RegistrationStatus::ok) continue;
+        const bool here = std::hypot(r.scene_from_template.dx_mm - truth.dx_mm,
+                                     r.scene_from_template.dz_mm - truth.dz_mm) < 0.15;
+        right += here;
+        wrong += !here;
+    }
+    EXPECT_GE(right, 39);
+    EXPECT_EQ(wrong, 0);
+}
+
+// The rim lies in the dark: its flat alone may slide, and the sigma says so.
+TEST(Registration, AFlatWithoutItsRimSlides) {
+    Random random(14);
+    Shape rim, flat;
+    rim.line_to(-10, 0);
+    rim.line_to(0, 0);
+    rim.arc(0, -1, 1, 90, 15);
+    flat.line_to(-40, 1);
+    flat.line_to(5, 1);
+    for (int i = 0; i < 10; ++i) {
+        Profile t = sample(rim, 0.1), s = sample(flat, 0.1);
+        add_noise(t, 0.02, random);
+        add_noise(s, 0.02, random);
+        auto matcher = ContourMatcher::make(t, {0, 0});
+        ASSERT_TRUE(matcher);
+        const Registration r = matcher->match(s, {});
+        ASSERT_EQ(r.status, RegistrationStatus::sliding) << to_string(r.status);
+        EXPECT_GT(std::abs(r.sliding_direction.x()), 0.99);
+        EXPECT_GT(std::sqrt(r.covariance(0, 0)), 100);
+    }
+}
+
+// What lies beyond the window is not found in it, half seen, at its rim.
+TEST(Registration, WhatLiesBeyondTheWindowIsRefused) {
+    Random random(15);
+    SearchWindow window, wide;
+    window.dx_mm = window.dz_mm = 6;
+    window.phi_rad = wide.phi_rad = 0.1;
+    wide.dx_mm = wide.dz_mm = 20;
+    for (const auto& shape : {&hem, &joggle}) {
+        auto matcher = ContourMatcher::make(sample(shape(-15, 15), 0.05), {0, 0});
+        ASSERT_TRUE(matcher);
+        for (const double dx : {-14.0, -11.0, -9.0, 8.5, 10.0, 13.0}) {
+            Profile s = sample(shape(-45, 45).moved({dx, 2, 0.03}), 0.05, 0.3);
+            add_noise(s, 0.02, random);
+            EXPECT_NE(matcher->match(s, window).status, RegistrationStatus::ok) << dx;
+            const Registration r = matcher->match(s, wide);
+            ASSERT_EQ(r.status, RegistrationStatus::ok) << dx;
+            EXPECT_NEAR(r.scene_from_template.dx_mm, dx, 0.1);
+        }
+    }
+}
+
 TEST(Registration, TwoEqualPlacesAreAmbiguous) {
     Random random(11);
     Shape two;

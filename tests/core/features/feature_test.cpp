@@ -388,7 +388,7 @@ TEST(Features, FindAllocatesNothingAfterTheFirstCalls) {
     Random random(6);
     std::vector<Profile> profiles;
     for (int i = 0; i < 6; ++i) {
-        Profile p = sample(hem(-20, 20).moved({i - 3.5, 2.0 - i, 0.03 * i}), 0.05);
+        Profile p = sample(hem(-20, 20).moved({i - 3.5, 2.0 - i, 0.02 * i}), 0.05);
         add_noise(p, 0.02, random);
         profiles.push_back(p);
     }

@@ -351,6 +351,30 @@ inline Scene z_fold(Dice& dice) {
     return at_random_place(s, dice, 5);
 }
 
+// A block with flanks of `slope` degrees; how many of their points a filter may not throw away.
+struct Flanks {
+    Profile profile;
+    std::vector<int> of_flank;  // lines, without the two next to an edge
+};
+inline Flanks flanks(const SensorModel& sensor, double slope_deg, int points, Dice& dice) {
+    const double run = points * sensor.pitch, height = run * std::tan(rad(slope_deg));
+    const double half = dice.uniform(5, 10), left = -half - run, right = half + run;
+    const std::vector<Sheet> sheets{
+        {{-kFar, 0}, {left, 0}, {-half, height}, {half, height}, {right, 0}, {kFar, 0}}};
+    Flanks f;
+    SensorModel s = sensor;
+    s.steepest_deg = 89;
+    s.reversed = false;
+    f.profile = seen(sheets, s, dice);
+    for (int i = 0; i < s.points; ++i) {
+        const double x = std::abs(-s.half_field() + s.pitch * (i + 0.5));
+        if (x > half + 2 * s.pitch + 3 * s.noise && x < half + run - 2 * s.pitch - 3 * s.noise &&
+            std::isfinite(f.profile.z_mm[std::size_t(i)]))
+            f.of_flank.push_back(i);
+    }
+    return f;
+}
+
 struct Tally {
     int right = 0, refused = 0, wrong = 0;
     void add(const Scene& s, const Feature& f) {

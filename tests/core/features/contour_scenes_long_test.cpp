@@ -74,5 +74,33 @@ TEST(ContourScenes, RightOrRefusedButNeverWrong) {
     }
 }
 
+TEST(ContourScenes, FlanksKeepTheirPoints) {
+    static constexpr const char* grids[] = {"x with noise", "exact x", "resampled"};
+    for (const double slope : {45., 60., 70., 75., 80., 83.})
+        for (int grid = 0; grid < 3; ++grid) {
+            Dice dice(12);
+            int lost = 0, all = 0, bad = 0, marked = 0;
+            for (int i = 0; i < 100; ++i) {
+                SensorModel sensor = SensorModel::any(dice);
+                sensor.grid = static_cast<Grid>(grid);
+                sensor.noise = std::min(sensor.noise, 0.3 * sensor.pitch);
+                Flanks f = flanks(sensor, slope, static_cast<int>(dice.uniform(10, 110)), dice);
+                ASSERT_TRUE(filter_profile(f.profile, {}));
+                int here = 0;
+                for (const int k : f.of_flank) here += f.profile.segment[std::size_t(k)] == kOutlier;
+                for (std::size_t k = 0; k < f.profile.size(); ++k)
+                    marked += std::isfinite(f.profile.z_mm[k]) && f.profile.segment[k] == kOutlier;
+                lost += here;
+                all += static_cast<int>(f.of_flank.size());
+                bad += here > 0.2 * double(f.of_flank.size());
+            }
+            std::printf(
+                "flanks of %2.0f degrees, %-12s lost %5.2f %%  (%d profiles lost more than a fifth), marked "
+                "%d\n",
+                slope, grids[grid], 100. * lost / all, bad, marked);
+            EXPECT_LE(lost, 0.01 * all) << slope << " " << grids[grid];
+        }
+}
+
 }  // namespace
 }  // namespace seamwright::scenes

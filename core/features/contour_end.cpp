@@ -27,8 +27,9 @@
 //       quartile of the fit's points: that far beyond it the light is gone, and any threshold below I ends
 //       the returns in between (only where the sensor gives intensities);
 // and longer by p for each of the lines beyond the end, up to six, whose return the filter rejected: they do
-// not say that the surface has ended. noise: a sensor's is in z and moves the last point along a sloping
-// contour as well.
+// not say that the surface has ended; behind a line without return only where they stand within three p of
+// the contour's continuation. noise: a sensor's is in z and moves the last point along a sloping contour as
+// well.
 //
 // What is systematic stays: where light grazes a rounded rim, returns stop before the silhouette, at the
 // teaching as at the measuring. On a fold of 1.15 mm radius that is 0.15 mm; it repeats within the
@@ -66,6 +67,7 @@ constexpr double kEndFaded = 0.6;          // of the intensity before the end
 constexpr double kEndLongStep = 1.5;       // pitches
 constexpr std::size_t kEndLastPoints = 3;
 constexpr int kEndDoubtfulLines = 6;
+constexpr double kEndBeside = 3;  // pitches
 
 // A contour near its end: d = b0 + b1 s + b2 s^2 about `centre`; b2 = 0 for a line.
 struct EndCurve {
@@ -377,10 +379,23 @@ class ContourEnd final : public FeatureFinder {
             end += inwards;
         if (!within(end)) return reach;
         reach = std::max(reach, fading_length(profile, end, inwards));
+        bool beside = true;
         for (int i = 1; i <= kEndDoubtfulLines; ++i) {
             const std::ptrdiff_t at = end - i * inwards;
-            if (!within(at) || !rejected(at) || !std::isfinite(profile.z_mm[std::size_t(at)])) break;
-            reach += pitch;
+            if (!within(at) || !rejected(at)) break;
+            if (!std::isfinite(profile.z_mm[std::size_t(at)])) {
+                beside = false;
+                continue;
+            }
+            if (beside) {
+                reach += pitch;
+                continue;
+            }
+            // Beyond a line without return it speaks for the surface only where that would go on.
+            const Eigen::Vector2d d =
+                Eigen::Vector2d(profile.x_mm[std::size_t(at)], profile.z_mm[std::size_t(at)]) - point(0);
+            const double ahead = tangent.dot(d), off = tangent.x() * d.y() - tangent.y() * d.x();
+            if (ahead > 0 && std::abs(off) < kEndBeside * pitch) reach = std::max(reach, ahead + 0.5 * pitch);
         }
         return reach;
     }

@@ -10,10 +10,12 @@ namespace {
 
 constexpr int kHoleLines = 6;
 constexpr double kByChance = 1e-5;
-constexpr int kStepSide = 8, kStepFewest = 4, kStepBetween = 1;
+constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
 constexpr double kStepSigma = 6;
+constexpr double kGoesOn = 5;  // sigma
+constexpr double kCloseUp = 0.5;
 constexpr double kRisen = 0.75;
-constexpr double kStepRms = 2;  // sigma: a side that is no line
+constexpr double kStepRms = 1.6;    // sigma: a side that is no line
 constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow
 constexpr double kShadow = 0.6;   // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
@@ -45,13 +47,13 @@ ContourSheets::Side ContourSheets::side(int from, int to, double at) const {
 }
 
 // How far the lines before and behind miss each other behind point i, `between` points standing there.
-ContourSheets::Jump ContourSheets::jump(int i, int between) const {
+ContourSheets::Jump ContourSheets::jump(int i, int between, int points) const {
     Jump j;
     const int next = i + 1 + between, n = static_cast<int>(all_x_.size());
     if (next >= n || line_[next] - line_[i] > kHoleLines) return j;
     if (between == 0 && run_[next] == 1) return j;
-    int from = i - run_[i] + 1, to = next;
-    while (to + 1 < n && to - next + 1 < kStepSide && run_[to + 1] > 1) ++to;
+    int from = i - std::min(run_[i], points) + 1, to = next;
+    while (to + 1 < n && to - next + 1 < points && run_[to + 1] > 1) ++to;
     for (int k = from; k < i; ++k)
         if (cut_[k]) from = k + 1;
     for (int k = to - 1; k >= next; --k)
@@ -75,8 +77,15 @@ ContourSheets::Jump ContourSheets::jump(int i, int between) const {
 }
 
 // Height of the step, or 0 where noise, a sharp edge or a flank explains it.
-double ContourSheets::step(const Jump& j, int between) const {
-    if (!(j.height > 0) || j.rms > kStepRms * noise_ + 0.02 * pitch_.distance) return 0;
+double ContourSheets::step(const Jump& over_all, int i, int between) const {
+    if (!(over_all.height > 0)) return 0;
+    if (over_all.height < 0.3 * kStepSigma * noise_ * over_all.spread) return 0;
+    const auto bent = [&](const Jump& j) { return j.rms > kStepRms * noise_ + 0.02 * pitch_.distance; };
+    const Jump close = jump(i, between, kStepShort);
+    const Jump& j = bent(over_all) ? close : over_all;
+    if (!(j.height > 0) || bent(j)) return 0;
+    // On a radius the lines miss each other the less the shorter they are.
+    if (close.height < kCloseUp * j.height) return 0;
     if (!(j.height > std::max(kStepSigma * noise_ * j.spread, j.lines * j.longer))) return 0;
     // On a flank the points themselves rise by less than the lines miss each other.
     if (j.risen < kRisen * j.height - 3 * noise_) return 0;
@@ -102,7 +111,7 @@ void ContourSheets::find_steps() {
     jumps_.clear();
     scratch_.clear();
     for (int i = 0; i + 1 < n; ++i) {
-        jumps_.push_back(jump(i, 0));
+        jumps_.push_back(jump(i, 0, kStepSide));
         if (jumps_.back().spread > 0) scratch_.push_back(jumps_.back().height / jumps_.back().spread);
     }
     // What the lines miss each other by all over the profile is noise, however its points depend on another.
@@ -112,7 +121,7 @@ void ContourSheets::find_steps() {
         noise_ = std::max(noise_, kMadToSigma * *middle);
     }
     height_.assign(static_cast<std::size_t>(n), 0);
-    for (int i = 0; i + 1 < n; ++i) height_[i] = step(jumps_[i], 0);
+    for (int i = 0; i + 1 < n; ++i) height_[i] = step(jumps_[i], i, 0);
     for (int i = 0; i + 1 < n; ++i) {
         const double best = height_[i];
         if (best == 0) continue;
@@ -128,7 +137,7 @@ void ContourSheets::find_steps() {
             for (int k = std::max(0, i - kStepSide / 2); k <= std::min(n - 1, i + between + kStepSide / 2);
                  ++k)
                 free = free && !cut_[k] && !mixed_[k];
-            if (!free || step(jump(i, between), between) == 0) continue;
+            if (!free || step(jump(i, between, kStepSide), i, between) == 0) continue;
             cut_[i] = cut_[i + between] = 1;
             for (int k = 1; k <= between; ++k) mixed_[i + k] = 1;
         }
@@ -166,13 +175,18 @@ void ContourSheets::divide(const Profile& profile) {
             if (cut_[k]) return true;
         return false;
     };
+    // A border of the filter where nothing is missing and one side continues the other: noise made it.
+    const auto goes_on = [&](int i) {
+        const Jump& j = jumps_[std::size_t(i)];
+        return j.spread > 0 && missing(i) == 0 && j.height < kGoesOn * noise_ * j.spread;
+    };
     for (int i = 0, first = 0; i < n; ++i) {
         if (mixed_[i]) {
             first = i + 1;
             continue;
         }
         const bool broken = i + 1 == n || cut_[i] || missing(i) >= hole ||
-                            (segment_[i] != segment_[i + 1] && !beside_step(i));
+                            (segment_[i] != segment_[i + 1] && !beside_step(i) && !goes_on(i));
         if (!broken) continue;
         whole_.push_back({first, i - first + 1, SheetEnd::open, SheetEnd::open});
         first = i + 1;

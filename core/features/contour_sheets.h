@@ -7,9 +7,10 @@
 //     at a hole: more lines without return in a row than missing returns explain. With the share q of points
 //         whose next line has none, n points have a run of k by chance with n q^k; the limit is that at 1e-5
 //         and at least six lines. Lines whose return the filter rejected say nothing and do not count.
-//     at a step: lines through up to eight points on either side, x and z over the line number, miss each
+//     at a step: lines through up to twelve points on either side (six where those are bent), x and z over
+//     the line number, miss each
 //         other by more than their noise (six sigma) and by more than one spacing, measured across both of
-//         them; up to two points may stand in between (the light of an edge falls on both sheets).
+//         them; one point may stand in between (the light of an edge falls on both sheets).
 //
 // Noise model: equal all over the profile, across the contour; the larger of contour_noise_mm and of what the
 // lines miss each other by in the median, which sees noise that runs from point to point (resampling). Not
@@ -73,8 +74,8 @@ class ContourSheets {
                rms = 0;  // sigma of the height in units of the points'; of the points on the lines
         double longer = 0, shorter = 0;  // spacing of the two
     };
-    Jump jump(int i, int between) const;
-    double step(const Jump& jump, int between) const;
+    Jump jump(int i, int between, int points) const;
+    double step(const Jump& over_all, int i, int between) const;
     void find_steps();
     void judge_ends(const Profile& profile, const SensorField& field);
 
@@ -87,7 +88,7 @@ class ContourSheets {
     using Sums = std::array<double, 9>;  // of k, x, z, k k, k x, k z, x x, x z, z z; k the line
     std::vector<Sums> sums_;
     double first_line_ = 0;       // from which k counts
-    std::vector<int> run_;        // [points] how many up to it lie side by side, at most eight
+    std::vector<int> run_;        // [points] how many up to it lie side by side, at most twelve
     std::vector<Jump> jumps_;     // behind every point
     std::vector<double> height_;  // of the steps, per point
     std::vector<double> x_, z_;

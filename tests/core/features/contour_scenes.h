@@ -245,9 +245,10 @@ inline Scene edge_out_of_field(Dice& dice) {
     s.sound = false;
     return s;
 }
-// The step of a lap, large enough that nobody can take it for noise or for the contour's own slope.
+// The step of a lap, large enough that nobody can take it for noise, nor for a flank of 65 degrees where an
+// interpolated line stands in it.
 inline double lap_step(const SensorModel& s, Dice& dice) {
-    return std::max(dice.uniform(0.5, 2), 8 * s.noise);
+    return std::max({dice.uniform(0.5, 2), 8 * s.noise, (s.grid == Grid::resampled ? 4.5 : 1.5) * s.pitch});
 }
 inline Scene lap(Dice& dice, const char* meant) {
     Scene s = end_on_the_right(dice);

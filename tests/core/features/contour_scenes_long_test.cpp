@@ -41,7 +41,7 @@ const std::vector<Kind>& kinds() {
 }
 
 TEST(ContourScenes, RightOrRefusedButNeverWrong) {
-    constexpr int kTrials = 300;
+    constexpr int kTrials = 600;
     for (const Kind& kind : kinds()) {
         Tally tally;
         Dice dice(11);

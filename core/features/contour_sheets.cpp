@@ -12,10 +12,10 @@ constexpr int kHoleLines = 6;
 constexpr double kByChance = 1e-5;
 constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
 constexpr double kStepSigma = 6;
-constexpr double kGoesOn = 5;  // sigma
-constexpr double kCloseUp = 0.5;
+constexpr double kGoesOn = 5;     // sigma
+constexpr double kCloseUp = 4.5;  // sigma
 constexpr double kRisen = 0.75;
-constexpr double kStepRms = 1.6;    // sigma: a side that is no line
+constexpr double kStepRms = 1.6;  // sigma: a side that is no line
 constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow
 constexpr double kShadow = 0.6;   // of a step's height: so far a higher sheet may hide the lower one
 constexpr double kCoverSigma = 4;
@@ -85,7 +85,7 @@ double ContourSheets::step(const Jump& over_all, int i, int between) const {
     const Jump& j = bent(over_all) ? close : over_all;
     if (!(j.height > 0) || bent(j)) return 0;
     // On a radius the lines miss each other the less the shorter they are.
-    if (close.height < kCloseUp * j.height) return 0;
+    if (close.height < kCloseUp * noise_ * close.spread) return 0;
     if (!(j.height > std::max(kStepSigma * noise_ * j.spread, j.lines * j.longer))) return 0;
     // On a flank the points themselves rise by less than the lines miss each other.
     if (j.risen < kRisen * j.height - 3 * noise_) return 0;

@@ -151,10 +151,11 @@ class Corner final : public FeatureFinder {
         for (std::size_t i = 0; i < std::min(feature.rivals_mm.size(), kCornersNamed); ++i)
             places += fmt::format("{}x {:.2f} z {:.2f}", i ? ", " : "", feature.rivals_mm[i].x(),
                                   feature.rivals_mm[i].y());
+        if (feature.rivals_mm.size() > kCornersNamed) places += " ...";
         feature.status = FeatureStatus::ambiguous;
-        feature.message = fmt::format(
-            "{} corners lie in the window ({}{}); say which by the window or by the setting which",
-            feature.rivals_mm.size(), places, feature.rivals_mm.size() > kCornersNamed ? " ..." : "");
+        feature.message =
+            fmt::format("{} corners lie in the window ({}); say which by the window or by the setting which",
+                        feature.rivals_mm.size(), places);
         return nullptr;
     }
 

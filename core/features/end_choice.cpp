@@ -53,20 +53,20 @@ struct EndsInWindow {
         return n.y() < 0 ? Eigen::Vector2d(-n) : n;
     }
 
-    void ambiguous(Feature& feature, const char* why, double least) const {
+    // The ends between which nothing decides, by name.
+    std::string ambiguous(Feature& feature) const {
         feature.status = FeatureStatus::ambiguous;
         std::string places;
         for (const Sheet& s : sheets.sheets()) {
-            if (!counts(s) || how(s) != SheetEnd::open || length(s) < least) continue;
+            if (!counts(s) || how(s) != SheetEnd::open) continue;
             feature.rivals_mm.push_back(place(s));
             if (feature.rivals_mm.size() <= kMostNamed)
                 places += fmt::format("{}x {:.2f} z {:.2f}", places.empty() ? "" : ", ", place(s).x(),
                                       place(s).y());
         }
         if (feature.rivals_mm.size() > kMostNamed)
-            places += fmt::format(" and {} more", feature.rivals_mm.size() - kMostNamed);
-        feature.message =
-            fmt::format("{} ({}); say which by the window or by the setting segment", why, places);
+            places += fmt::format(" + {}", feature.rivals_mm.size() - kMostNamed);
+        return places;
     }
 
     const Sheet* only(Feature& feature) const {
@@ -79,19 +79,24 @@ struct EndsInWindow {
             if (how(s) == SheetEnd::field && (!outside || reach(s) > reach(*outside))) outside = &s;
         }
         if (ends > 1) {
-            ambiguous(feature, "several contours end on that side", 0);
+            feature.message = fmt::format(
+                "several contours end on that side ({}); say which by the window or by the setting segment",
+                ambiguous(feature));
             return nullptr;
         }
         if (open && outside && reach(*outside) > reach(*open)) {
-            ambiguous(feature, "a contour ends on that side and another one leaves the sensor's field there",
-                      0);
+            feature.message = fmt::format(
+                "a contour ends on that side ({}) and another one leaves the sensor's field there; say which "
+                "by the "
+                "window or by the setting segment",
+                ambiguous(feature));
             return nullptr;
         }
         return open ? open : any;
     }
 
     template <class Value>
-    const Sheet* most(Value value, double margin, double share, const char* why, Feature& feature) const {
+    const Sheet* most(Value value, double margin, double share, const Sheet*& rival) const {
         const Sheet *best = nullptr, *next = nullptr;
         for (const Sheet& s : sheets.sheets()) {
             if (!counts(s)) continue;
@@ -100,10 +105,7 @@ struct EndsInWindow {
             else if (!next || value(s) > value(*next))
                 next = &s;
         }
-        if (next && value(*next) >= share * value(*best) - margin) {
-            ambiguous(feature, why, 0);
-            return nullptr;
-        }
+        rival = next && value(*next) >= share * value(*best) - margin ? next : nullptr;
         return best;
     }
 
@@ -139,7 +141,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
         feature.message = fmt::format("no segment with {} points in the window", rule.minimum_points);
         return std::nullopt;
     }
-    const Sheet* chosen = nullptr;
+    const Sheet *chosen = nullptr, *rival = nullptr;
     switch (rule.of) {
         case EndOf::only:
             chosen = ends.only(feature);
@@ -151,18 +153,26 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
                     fmt::format("fewer than {} contours end on that side in the window", rule.order);
             break;
         case EndOf::longest:
-            chosen = ends.most([&](const Sheet& s) { return ends.length(s); }, 0, kNearlyAsLong,
-                               "two contours are about equally long", feature);
+            chosen = ends.most([&](const Sheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
+            if (rival)
+                feature.message = fmt::format(
+                    "two contours are about equally long ({}); say which by the window or by the setting "
+                    "segment",
+                    ends.ambiguous(feature));
             break;
         case EndOf::highest:
         case EndOf::lowest: {
             const Eigen::Vector2d up = ends.up() * (rule.of == EndOf::highest ? 1 : -1);
             chosen = ends.most([&](const Sheet& s) { return up.dot(ends.middle(s)); },
-                               kAsHigh * sheets.noise_mm(), 1, "two contours are equally high", feature);
+                               kAsHigh * sheets.noise_mm(), 1, rival);
+            if (rival)
+                feature.message = fmt::format(
+                    "two contours are equally high ({}); say which by the window or by the setting segment",
+                    ends.ambiguous(feature));
             break;
         }
     }
-    if (!chosen) return std::nullopt;
+    if (!chosen || rival) return std::nullopt;
     switch (ends.how(*chosen)) {
         case SheetEnd::window:
             feature.message = "the contour runs on beyond the window on that side";

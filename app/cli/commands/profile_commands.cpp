@@ -8,6 +8,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/feature_setting.h"
+#include "app/cli/no_return_option.h"
 #include "app/cli/result_json.h"
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
@@ -36,18 +37,19 @@ void add_unit(CLI::App* command, std::string& unit) {
         ->check(CLI::IsMember({"mm", "m", "um"}));
 }
 
-Expected<Profile> read_in_unit(const std::string& file, const std::string& unit) {
+Expected<Profile> read_in_unit(const std::string& file, const std::string& unit, NoReturnOption& invalid) {
     auto profile = read_profile_csv(file);
     if (!profile) return profile;
+    invalid.apply(*profile, file);
     if (auto ok = check_unit(*profile, file, unit); !ok) return tl::unexpected(ok.error());
     convert_to_mm(*profile, unit);
     return profile;
 }
 
 // A profile as it comes from a sensor is filtered first; one that carries its segments is taken at its word.
-Expected<Profile> read_filtered(const std::string& file, const std::string& unit,
+Expected<Profile> read_filtered(const std::string& file, const std::string& unit, NoReturnOption& invalid,
                                 const FilterOptions& options) {
-    auto profile = read_in_unit(file, unit);
+    auto profile = read_in_unit(file, unit, invalid);
     if (!profile) return profile;
     if (!profile->filtered())
         if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
@@ -68,8 +70,8 @@ void add_filter_options(CLI::App* command, FilterOptions& o) {
 }
 
 Expected<Answer> filter(const std::string& in, const std::string& out, const std::string& unit,
-                        const FilterOptions& options) {
-    auto profile = read_in_unit(in, unit);
+                        NoReturnOption& invalid, const FilterOptions& options) {
+    auto profile = read_in_unit(in, unit, invalid);
     if (!profile) return tl::unexpected(profile.error());
     if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
     if (auto written = write_profile_csv(out, *profile); !written) return tl::unexpected(written.error());
@@ -89,6 +91,7 @@ Expected<Answer> filter(const std::string& in, const std::string& out, const std
                    {"outliers", outliers}, {"no_return", missing},      {"segments", segments}};
     answer.text = fmt::format("{} points: {} accepted in {} segments, {} outliers, {} without return\n",
                               profile->size(), accepted, segments, outliers, missing);
+    invalid.warn(answer);
     return answer;
 }
 
@@ -104,9 +107,10 @@ struct FeatureArguments {
     std::vector<double> reference;
     std::map<std::string, std::string> values;
     FilterOptions filter;
+    NoReturnOption invalid;
 };
 
-Expected<Answer> feature(const FeatureArguments& a) {
+Expected<Answer> feature(FeatureArguments& a) {
     auto kind = find_feature_kind(a.kind);
     if (!kind) return tl::unexpected(kind.error());
     FeatureRecipe recipe;
@@ -120,7 +124,7 @@ Expected<Answer> feature(const FeatureArguments& a) {
     if (a.kind == "template") {
         if (a.template_file.empty())
             return usage_error("the kind \"template\" needs --template T.csv", "--template");
-        auto contour = read_filtered(a.template_file, a.unit, a.filter);
+        auto contour = read_filtered(a.template_file, a.unit, a.invalid, a.filter);
         if (!contour) return tl::unexpected(contour.error());
         recipe.template_profile = std::move(*contour);
         if (a.reference.size() == 2) recipe.template_reference_mm = {a.reference[0], a.reference[1]};
@@ -129,12 +133,13 @@ Expected<Answer> feature(const FeatureArguments& a) {
     }
     auto finder = make_feature_finder(recipe);
     if (!finder) return tl::unexpected(finder.error());
-    auto profile = read_filtered(a.file, a.unit, a.filter);
+    auto profile = read_filtered(a.file, a.unit, a.invalid, a.filter);
     if (!profile) return tl::unexpected(profile.error());
     const Feature found = (*finder)->find(*profile);
     Answer answer;
     answer.json = feature_json(found);
     answer.text = feature_text(found);
+    a.invalid.warn(answer);
     answer.exit_code = found.status == FeatureStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -144,6 +149,7 @@ struct MatchArguments {
     std::vector<double> window;  // mm, mm, deg
     std::vector<double> reference;
     FilterOptions filter;
+    NoReturnOption invalid;
 };
 
 // The landmark that the window is about: the middle of the template's points unless told.
@@ -155,10 +161,10 @@ Eigen::Vector2d middle(const Profile& profile) {
     return n > 0 ? Eigen::Vector2d(sum / n) : sum;
 }
 
-Expected<Answer> match(const MatchArguments& a) {
-    auto contour = read_filtered(a.template_file, a.unit, a.filter);
+Expected<Answer> match(MatchArguments& a) {
+    auto contour = read_filtered(a.template_file, a.unit, a.invalid, a.filter);
     if (!contour) return tl::unexpected(contour.error());
-    auto scene = read_filtered(a.scene_file, a.unit, a.filter);
+    auto scene = read_filtered(a.scene_file, a.unit, a.invalid, a.filter);
     if (!scene) return tl::unexpected(scene.error());
     const Eigen::Vector2d reference =
         a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(*contour);
@@ -178,14 +184,17 @@ Expected<Answer> match(const MatchArguments& a) {
     Answer answer;
     answer.json = registration_json(found);
     answer.text = registration_text(found);
+    a.invalid.warn(answer);
     answer.exit_code = found.status == RegistrationStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
 
-Expected<Answer> align(const std::string& file, const std::string& unit, const AlignmentOptions& options) {
+Expected<Answer> align(const std::string& file, const std::string& unit, NoReturnOption& invalid,
+                       const AlignmentOptions& options) {
     auto pass = read_align_csv(file);
     if (!pass) return tl::unexpected(pass.error());
     for (TravelProfile& p : *pass) {
+        invalid.apply(p.profile, file);
         if (auto ok = check_unit(p.profile, file, unit); !ok) return tl::unexpected(ok.error());
         convert_to_mm(p.profile, unit);
         p.travel_mm *= mm_of_unit(unit);
@@ -198,6 +207,7 @@ Expected<Answer> align(const std::string& file, const std::string& unit, const A
     Answer answer;
     answer.json = alignment_json(*result);
     answer.text = alignment_text(*result);
+    invalid.warn(answer);
     answer.exit_code = result->status == AlignmentStatus::frozen ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -208,6 +218,7 @@ void add_filter(CommandLine& line) {
     struct Arguments {
         std::string in, out, unit;
         FilterOptions options;
+        NoReturnOption invalid;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* command =
@@ -217,8 +228,9 @@ void add_filter(CommandLine& line) {
     command->add_option("in", a->in, "Profile: x_mm,z_mm[,intensity]")->required()->type_name("IN.csv");
     command->add_option("--out", a->out, "Where the marked profile goes")->required()->type_name("OUT.csv");
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     add_filter_options(command, a->options);
-    line.on(command, [a] { return filter(a->in, a->out, a->unit, a->options); });
+    line.on(command, [a] { return filter(a->in, a->out, a->unit, a->invalid, a->options); });
 }
 
 void add_feature(CommandLine& line) {
@@ -248,6 +260,7 @@ void add_feature(CommandLine& line) {
         }
     for (const auto& [name, text] : help) command->add_option(flag(name), a->values[name], text);
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     add_filter_options(command, a->filter);
     line.on(command, [a] { return feature(*a); });
 }
@@ -272,6 +285,7 @@ void add_match(CommandLine& line) {
         ->delimiter(',')
         ->expected(2);
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     add_filter_options(command, a->filter);
     line.on(command, [a] { return match(*a); });
 }
@@ -280,6 +294,7 @@ void add_align(CommandLine& line) {
     struct Arguments {
         std::string file, unit;
         AlignmentOptions options;
+        NoReturnOption invalid;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* command = line.add("align", "Does the contour stand still while the robot passes the spot?",
@@ -293,7 +308,8 @@ void add_align(CommandLine& line) {
     command->add_option("--window-mm", a->options.window_mm, "Travel that is judged, +- mm")
         ->capture_default_str();
     add_unit(command, a->unit);
-    line.on(command, [a] { return align(a->file, a->unit, a->options); });
+    a->invalid.add_to(command);
+    line.on(command, [a] { return align(a->file, a->unit, a->invalid, a->options); });
 }
 
 }  // namespace seamwright::cli

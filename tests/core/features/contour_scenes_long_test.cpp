@@ -98,7 +98,8 @@ TEST(ContourScenes, FlanksKeepTheirPoints) {
                 "flanks of %2.0f degrees, %-12s lost %5.2f %%  (%d profiles lost more than a fifth), marked "
                 "%d\n",
                 slope, grids[grid], 100. * lost / all, bad, marked);
-            EXPECT_LE(lost, 0.01 * all) << slope << " " << grids[grid];
+            // Interpolated points of a flank of 80 degrees scatter by more than noise alone.
+            EXPECT_LE(lost, (grid == 2 ? 0.03 : 0.002) * all) << slope << " " << grids[grid];
         }
 }
 

@@ -98,6 +98,7 @@ json feature_json(const Feature& f) {
               {"points_used", f.points_used},
               {"message", f.message}};
     if (f.phi_rad) j["phi_deg"] = deg_from_rad(*f.phi_rad);
+    for (const Eigen::Vector2d& rival : f.rivals_mm) j["rivals_mm"].push_back(vector_json(rival));
     return j;
 }
 

@@ -27,14 +27,16 @@
 //       quartile of the fit's points: that far beyond it the light is gone, and any threshold below I ends
 //       the returns in between (only where the sensor gives intensities);
 // and longer by p for each of the lines beyond the end, up to six, whose return the filter rejected: they do
-// not say that the surface has ended. noise: a sensor's is in z and moves the last point along a sloping
-// contour as well.
+// not say that the surface has ended; behind a line without return only where they stand within three p of
+// the contour's continuation. noise: a sensor's is in z and moves the last point along a sloping contour as
+// well.
 //
 // What is systematic stays: where light grazes a rounded rim, returns stop before the silhouette, at the
 // teaching as at the measuring. On a fold of 1.15 mm radius that is 0.15 mm; it repeats within the
 // covariance. An arc of fewer than about eight points is not seen as one.
 //
-// Degenerate: a contour that runs on beyond the window has no end there (not_found); a segment shorter than
+// Which end is meant: choose_end() (end_choice.h). Degenerate: a contour that runs on beyond the window,
+// leaves the sensor's field or runs under a higher one has no end there (not_found); a sheet shorter than
 // minimum_points is passed over; fewer than 6 points within fit_length_mm, or all of them in one place, know
 // no curvature.
 
@@ -45,16 +47,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/features/end_choice.h"
 #include "core/features/feature_kinds.h"
-#include "core/features/feature_points.h"
 #include "core/features/line_fit.h"
 #include "core/numbers.h"
 
 namespace seamwright {
 namespace {
-
-enum class EndSide { left, right };
-enum class EndSegment { outermost, longest, highest };
 
 constexpr double kEndGate = 3.5;  // sigma
 constexpr double kEndSmallest_mm = 1e-9;
@@ -68,6 +67,7 @@ constexpr double kEndFaded = 0.6;          // of the intensity before the end
 constexpr double kEndLongStep = 1.5;       // pitches
 constexpr std::size_t kEndLastPoints = 3;
 constexpr int kEndDoubtfulLines = 6;
+constexpr double kEndBeside = 3;  // pitches
 
 // A contour near its end: d = b0 + b1 s + b2 s^2 about `centre`; b2 = 0 for a line.
 struct EndCurve {
@@ -107,65 +107,36 @@ std::vector<ParameterInfo> contour_end_parameters() {
         {"segment",
          "",
          0,
-         2,
+         4,
+         4,
          0,
-         0,
-         "Of several segments in the window: the outermost on that side, the longest, or the highest.",
-         {"outermost", "longest", "highest"}},
+         "Which end is meant where several lie in the window: the outermost on that side, that of the "
+         "longest, "
+         "the highest or the lowest contour, or the only one.",
+         {"outermost", "longest", "highest", "lowest", "only"}},
+        {"order", "", 1, 20, 1, 0, "Outermost: the how-manyth end from outside."},
         {"minimum_points", "", 3, 10000, 6, 0, "Shorter segments are passed over."},
         {"fit_length_mm", "mm", 0.01, 1000, 1.5, 2,
          "Length of contour before its end that says where the line goes."},
+        {"field_x_min_mm", "mm", -1e5, 1e5, -1e5, 3,
+         "Left rim of the sensor's field, where profiles come without their empty lines."},
+        {"field_x_max_mm", "mm", -1e5, 1e5, 1e5, 3,
+         "Right rim of the sensor's field, where profiles come without their empty lines."},
     });
 }
 
 class ContourEnd final : public FeatureFinder {
   public:
-    ContourEnd(FeatureWindow window, EndSide side, EndSegment segment, int minimum_points,
-               double fit_length_mm)
-        : window_(window),
-          side_(side),
-          segment_(segment),
-          minimum_points_(minimum_points),
-          fit_length_(fit_length_mm) {}
+    ContourEnd(FeatureWindow window, SensorField field, EndRule rule, double fit_length_mm)
+        : window_(window), field_(field), rule_(rule), fit_length_(fit_length_mm) {}
 
     Feature find(const Profile& profile) const override {
         Feature feature;
-        points_.gather(profile, window_);
-        const double outward = side_ == EndSide::right ? 1 : -1;
-        const FeaturePoints::Piece* chosen = nullptr;
-        double best = -std::numeric_limits<double>::infinity();
-        for (const auto& piece : points_.pieces) {
-            if (piece.count < minimum_points_) continue;
-            const int last = piece.first + piece.count - 1;
-            double value = 0;
-            switch (segment_) {
-                case EndSegment::outermost:
-                    value = std::max(outward * points_.x[piece.first], outward * points_.x[last]);
-                    break;
-                case EndSegment::longest:
-                    value = piece.count;
-                    break;
-                case EndSegment::highest:
-                    for (int i = piece.first; i <= last; ++i) value += points_.z[i] / piece.count;
-                    break;
-            }
-            if (value > best) {
-                best = value;
-                chosen = &piece;
-            }
-        }
-        if (!chosen) {
-            feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("no segment with {} points in the window", minimum_points_);
-            return feature;
-        }
-        const int first = chosen->first, last = first + chosen->count - 1;
-        const bool at_last = outward * points_.x[last] >= outward * points_.x[first];
-        if (at_last ? chosen->cut_after : chosen->cut_before) {
-            feature.message = "the contour runs on beyond the window on that side";
-            return feature;
-        }
-        take_end(first, last, at_last);
+        sheets_.gather(profile, window_, field_);
+        const auto chosen = choose_end(sheets_, rule_, feature);
+        if (!chosen) return feature;
+        const bool at_last = chosen->at_last;
+        take_end(chosen->first, chosen->last, at_last);
         const LineFit line = fit_line(fit_x_, fit_z_, workspace_);
         if (!line.ok) {
             feature.message = "the points before the end do not form a line";
@@ -212,10 +183,10 @@ class ContourEnd final : public FeatureFinder {
         fit_x_.clear();
         fit_z_.clear();
         for (int i = end; i >= first && i <= last; i += step) {
-            const double d = std::hypot(points_.x[i] - points_.x[end], points_.z[i] - points_.z[end]);
+            const double d = std::hypot(sheets_.x()[i] - sheets_.x()[end], sheets_.z()[i] - sheets_.z()[end]);
             if (d > fit_length_ && fit_x_.size() >= 4) break;
-            fit_x_.push_back(points_.x[i]);
-            fit_z_.push_back(points_.z[i]);
+            fit_x_.push_back(sheets_.x()[i]);
+            fit_z_.push_back(sheets_.z()[i]);
         }
     }
 
@@ -408,10 +379,23 @@ class ContourEnd final : public FeatureFinder {
             end += inwards;
         if (!within(end)) return reach;
         reach = std::max(reach, fading_length(profile, end, inwards));
+        bool beside = true;
         for (int i = 1; i <= kEndDoubtfulLines; ++i) {
             const std::ptrdiff_t at = end - i * inwards;
-            if (!within(at) || !rejected(at) || !std::isfinite(profile.z_mm[std::size_t(at)])) break;
-            reach += pitch;
+            if (!within(at) || !rejected(at)) break;
+            if (!std::isfinite(profile.z_mm[std::size_t(at)])) {
+                beside = false;
+                continue;
+            }
+            if (beside) {
+                reach += pitch;
+                continue;
+            }
+            // Beyond a line without return it speaks for the surface only where that would go on.
+            const Eigen::Vector2d d =
+                Eigen::Vector2d(profile.x_mm[std::size_t(at)], profile.z_mm[std::size_t(at)]) - point(0);
+            const double ahead = tangent.dot(d), off = tangent.x() * d.y() - tangent.y() * d.x();
+            if (ahead > 0 && std::abs(off) < kEndBeside * pitch) reach = std::max(reach, ahead + 0.5 * pitch);
         }
         return reach;
     }
@@ -449,11 +433,10 @@ class ContourEnd final : public FeatureFinder {
     }
 
     FeatureWindow window_;
-    EndSide side_;
-    EndSegment segment_;
-    int minimum_points_;
+    SensorField field_;
+    EndRule rule_;
     double fit_length_;
-    mutable FeaturePoints points_;
+    mutable ContourSheets sheets_;
     mutable std::vector<double> fit_x_, fit_z_, intensity_, scratch_;
     mutable std::vector<std::uint8_t> keep_;
     mutable LineWorkspace workspace_;
@@ -464,10 +447,14 @@ Expected<std::unique_ptr<FeatureFinder>> make_contour_end(const FeatureRecipe& r
     const auto window = FeatureWindow::from(recipe.parameters, infos);
     if (!window) return tl::unexpected(window.error());
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
-    return std::make_unique<ContourEnd>(*window, static_cast<EndSide>(std::lround(value("side"))),
-                                        static_cast<EndSegment>(std::lround(value("segment"))),
-                                        static_cast<int>(std::lround(value("minimum_points"))),
-                                        value("fit_length_mm"));
+    const SensorField field{value("field_x_min_mm"), value("field_x_max_mm")};
+    if (!(field.x_min < field.x_max))
+        return input_error(fmt::format("a field from x = {} to {} mm is empty", field.x_min, field.x_max),
+                           "field_x_min_mm", "give a minimum below the maximum");
+    const auto whole = [&](const char* name) { return static_cast<int>(std::lround(value(name))); };
+    const EndRule rule{static_cast<EndSide>(whole("side")), static_cast<EndOf>(whole("segment")),
+                       whole("order"), whole("minimum_points")};
+    return std::make_unique<ContourEnd>(*window, field, rule, value("fit_length_mm"));
 }
 
 }  // namespace

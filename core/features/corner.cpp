@@ -2,10 +2,12 @@
 // corner point of its own; the intersection is where the two surfaces would meet and is far less noisy than
 // any single point.
 //
-// Left and right line come from given x ranges, or from an automatic split: the place that divides the points
-// in the window into two straight pieces with the smallest sum of squared distances (total least squares by
-// running sums), then both lines are fitted robustly again without the zone `blend_mm` around their
-// intersection.
+// Left and right line come from given x ranges, or from the bends of the contour in the window
+// (contour_bends.h): the two straight stretches that meet at the one that is meant. More than one is
+// ambiguous unless `which` tells them apart; a bend of less than a third of the sharpest turn is no rival.
+// Where no bend shows, the split is the place that divides the points into two straight pieces with the
+// smallest sum of squared distances (total least squares by running sums). Then both lines are fitted
+// robustly without the zone `blend_mm` around their intersection.
 //
 // Covariance: each line fixes the point across itself with the variance of the fit at that place,
 // sigma_i^2 (1 / n_i + s_i^2 / S_i); two lines with normals N = (n_1 n_2)^T give N^-1 diag(v) N^-T. As the
@@ -20,6 +22,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/features/contour_bends.h"
 #include "core/features/feature_kinds.h"
 #include "core/features/feature_points.h"
 #include "core/features/line_fit.h"
@@ -48,14 +51,30 @@ std::vector<ParameterInfo> corner_parameters() {
          "Automatic split: length of each line from the corner; 0 takes all."},
         {"blend_mm", "mm", 0, 1000, 0, 2,
          "Points nearer to the corner than this are left out: radius or burr."},
+        {"which",
+         "",
+         0,
+         5,
+         0,
+         0,
+         "Automatic split: which corner is meant where several lie in the window.",
+         {"only", "highest", "lowest", "leftmost", "rightmost", "sharpest"}},
         {"minimum_angle_deg", "deg", 0.1, 90, 5, 1, "Lines that meet at a smaller angle make no corner."},
     });
 }
+
+enum class CornerOf { only, highest, lowest, leftmost, rightmost, sharpest };
+
+constexpr double kCornerRival = 1.0 / 3;  // of the sharpest turn: a weaker bend is no rival
+constexpr double kCornerSharper = 1.25;   // of the next turn
+constexpr double kCornerApart = 0.1;      // of their distance: what tells two corners apart by x or z
+constexpr std::size_t kCornersNamed = 4;
 
 class Corner final : public FeatureFinder {
   public:
     struct Settings {
         bool given = false;
+        CornerOf which = CornerOf::only;
         double left_from = 0, left_to = 0, right_from = 0, right_to = 0;
         double side_length = 0, blend = 0, minimum_angle = 0;
     };
@@ -82,12 +101,64 @@ class Corner final : public FeatureFinder {
                     return points_.x[i] >= settings_.right_from && points_.x[i] <= settings_.right_to;
                 },
                 right_x_, right_z_);
-            return intersect(feature, settings_.blend > 0 ? 3 : 1, 0);
+            return intersect(feature, settings_.blend > 0 ? 3 : 1, 0, 0, n);
         }
-        return intersect(feature, 4, best_split());
+        const auto& bends = bends_.find(points_.x, points_.z, settings_.minimum_angle, settings_.blend);
+        if (bends.empty()) return intersect(feature, 4, best_split(), 0, n);
+        const Bend* bend = choose(bends, feature);
+        if (!bend) return feature;
+        return intersect(feature, 4, static_cast<std::size_t>(bend->split),
+                         static_cast<std::size_t>(bend->first), static_cast<std::size_t>(bend->last) + 1);
     }
 
   private:
+    // nullptr with status, message and rivals in `feature` where nothing tells which one is meant.
+    const Bend* choose(const std::vector<Bend>& bends, Feature& feature) const {
+        double sharpest = 0;
+        for (const Bend& b : bends) sharpest = std::max(sharpest, std::abs(b.turn_rad));
+        const auto rank = [&](const Bend& b) {
+            switch (settings_.which) {
+                case CornerOf::highest:
+                    return b.place.y();
+                case CornerOf::lowest:
+                    return -b.place.y();
+                case CornerOf::leftmost:
+                    return -b.place.x();
+                case CornerOf::rightmost:
+                    return b.place.x();
+                case CornerOf::only:
+                case CornerOf::sharpest:
+                    break;
+            }
+            return std::abs(b.turn_rad);
+        };
+        const Bend* best = nullptr;
+        for (const Bend& b : bends)
+            if (std::abs(b.turn_rad) >= kCornerRival * sharpest && (!best || rank(b) > rank(*best)))
+                best = &b;
+        const auto told_apart = [&](const Bend& other) {
+            if (settings_.which == CornerOf::only) return false;
+            if (settings_.which == CornerOf::sharpest) return rank(*best) > kCornerSharper * rank(other);
+            return rank(*best) - rank(other) > kCornerApart * (best->place - other.place).norm();
+        };
+        std::string places;
+        for (const Bend& b : bends) {
+            if (&b == best || std::abs(b.turn_rad) < kCornerRival * sharpest || told_apart(b)) continue;
+            if (feature.rivals_mm.empty()) feature.rivals_mm.push_back(best->place);
+            feature.rivals_mm.push_back(b.place);
+        }
+        if (feature.rivals_mm.empty()) return best;
+        for (std::size_t i = 0; i < std::min(feature.rivals_mm.size(), kCornersNamed); ++i)
+            places += fmt::format("{}x {:.2f} z {:.2f}", i ? ", " : "", feature.rivals_mm[i].x(),
+                                  feature.rivals_mm[i].y());
+        if (feature.rivals_mm.size() > kCornersNamed) places += " ...";
+        feature.status = FeatureStatus::ambiguous;
+        feature.message =
+            fmt::format("{} corners lie in the window ({}); say which by the window or by the setting which",
+                        feature.rivals_mm.size(), places);
+        return nullptr;
+    }
+
     template <class Keep>
     void take(Keep keep, std::vector<double>& x, std::vector<double>& z) const {
         x.clear();
@@ -130,12 +201,13 @@ class Corner final : public FeatureFinder {
         return best;
     }
 
-    // `split` = 0: the sides are already taken. Rounds: the intersection decides which points count, and so
-    // on.
-    Feature intersect(Feature feature, int rounds, std::size_t split) const {
+    // `split` = 0: the sides are already taken. Else they are taken from the points first..end. Rounds: the
+    // intersection decides which points count, and so on.
+    Feature intersect(Feature feature, int rounds, std::size_t split, std::size_t first,
+                      std::size_t end) const {
         if (split > 0) {
-            take([&](std::size_t i) { return i < split; }, left_x_, left_z_);
-            take([&](std::size_t i) { return i >= split; }, right_x_, right_z_);
+            take([&](std::size_t i) { return i >= first && i < split; }, left_x_, left_z_);
+            take([&](std::size_t i) { return i >= split && i < end; }, right_x_, right_z_);
         }
         LineFit a, b;
         Eigen::Matrix2d normals;
@@ -171,17 +243,17 @@ class Corner final : public FeatureFinder {
             const double longest = settings_.side_length > 0 ? settings_.side_length : 1e9;
             if (split > 0) {
                 // Divide at the point nearest to the intersection.
-                std::size_t nearest = 0;
-                for (std::size_t i = 0; i < points_.x.size(); ++i)
+                std::size_t nearest = first;
+                for (std::size_t i = first; i < end; ++i)
                     if (near(i) < near(nearest)) nearest = i;
                 take(
                     [&](std::size_t i) {
-                        return i < nearest && near(i) >= settings_.blend && near(i) <= longest;
+                        return i >= first && i < nearest && near(i) >= settings_.blend && near(i) <= longest;
                     },
                     left_x_, left_z_);
                 take(
                     [&](std::size_t i) {
-                        return i > nearest && near(i) >= settings_.blend && near(i) <= longest;
+                        return i > nearest && i < end && near(i) >= settings_.blend && near(i) <= longest;
                     },
                     right_x_, right_z_);
             } else {
@@ -225,6 +297,7 @@ class Corner final : public FeatureFinder {
     FeatureWindow window_;
     Settings settings_;
     mutable FeaturePoints points_;
+    mutable ContourBends bends_;
     mutable std::vector<double> left_x_, left_z_, right_x_, right_z_;
     mutable std::vector<std::array<double, 5>> sums_;
     mutable LineWorkspace workspace_;
@@ -237,6 +310,7 @@ Expected<std::unique_ptr<FeatureFinder>> make_corner(const FeatureRecipe& recipe
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
     Corner::Settings s;
     s.given = value("split") > 0.5;
+    s.which = static_cast<CornerOf>(std::lround(value("which")));
     s.left_from = value("left_from_mm");
     s.left_to = value("left_to_mm");
     s.right_from = value("right_from_mm");

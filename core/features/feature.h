@@ -34,7 +34,8 @@ struct Feature {
     std::optional<double> phi_rad;
     double rms_mm = 0;  // residual of the points that the feature rests on
     int points_used = 0;
-    std::string message;  // empty when ok, else why, in plain words
+    std::string message;                     // empty when ok, else why, in plain words
+    std::vector<Eigen::Vector2d> rivals_mm;  // ambiguous: the places between which nothing decides
 };
 
 // What is taught at a spot. `kind` names an entry of the registry (below).

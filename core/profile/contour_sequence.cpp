@@ -8,6 +8,8 @@ namespace {
 constexpr int kRoughSamples = 256, kSamples = 1024;  // of a first look, and along a path
 constexpr double kMedianToSigma = 1 / 0.6744897501960817;
 constexpr double kUpperToSigma = 1 / 1.1503493803760083;  // of the 75 % quantile of |normal|
+constexpr double kSteep = 2;  // slope from which noise of x counts for more than that of z
+constexpr std::size_t kFewestSteep = 6;
 constexpr double kNoiseFloor = 0.01;  // of the spacing: below it the direction decides, not the noise
 
 double quantile(std::vector<double>& values, double share) {
@@ -27,6 +29,30 @@ double sigma_of(std::vector<double>& differences, bool clean) {
         sigma = sigma > 0 ? 0.5 * (sigma + upper) : upper;
     }
     return sigma / std::sqrt(6.);
+}
+
+// Noise of x that a profile on an exact grid of x hides in z: resampled there, it stands in z times the
+// slope. From the steep places of the path alone; 0 where there are too few of them or z shows no more noise
+// than on the flat.
+double sigma_along_x(Workspace& w, const std::vector<int>& pick, const Scale& scale) {
+    auto& a = w.samples_x;
+    auto& slopes = w.samples_z;
+    a.clear(), slopes.clear();
+    const auto at = [&](std::size_t k) -> const Candidate& { return w.candidates[std::size_t(pick[k])]; };
+    const auto smooth = [&](std::size_t k) { return w.nodes[std::size_t(pick[k])].link == Link::smooth; };
+    // Over every second line: neighbours on the grid share what they were interpolated from.
+    for (std::size_t k = 2; k + 2 < pick.size(); ++k) {
+        const Candidate &p = at(k - 2), &c = at(k), &q = at(k + 2);
+        const double dx = std::abs(q.x - p.x), dz = std::abs(q.z - p.z);
+        if (!(dz > kSteep * dx) || c.line - p.line != 2 || q.line - c.line != 2) continue;
+        // Up or down all the way: no peak of noise.
+        if ((c.z - p.z) * (q.z - c.z) <= 0 || !smooth(k) || !smooth(k + 1) || !smooth(k + 2)) continue;
+        slopes.push_back(dz / std::max(dx, 1e-12 * dz));
+        a.push_back(std::abs(p.z - 2 * c.z + q.z) / slopes.back());
+    }
+    if (a.size() < kFewestSteep) return 0;
+    const double slope = quantile(slopes, 0.5), sigma = sigma_of(a, true);
+    return std::sqrt(std::max(sigma * sigma - scale.sz * scale.sz / (slope * slope), 0.0));
 }
 
 // Logarithm of a jump's size in spacings; 0 where there is none.
@@ -74,6 +100,7 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
     }
     scale.sx = sigma_of(a, along_path);
     scale.sz = sigma_of(b, along_path);
+    if (along_path) scale.sx = std::max(scale.sx, sigma_along_x(w, pick, scale));
     if (options.noise_mm > 0) {
         scale.sx = std::min(scale.sx, options.noise_mm);
         scale.sz = options.noise_mm;

@@ -17,6 +17,7 @@ namespace seamwright::contour {
 
 inline constexpr double kTurn = 0.04;  // rad, what the direction may turn from line to line (one sigma)
 inline constexpr double kSpacingReach = 3.5;  // spacing ratio a sharp edge may show; 1/cos 70 degrees = 2.9
+inline constexpr double kFlankReach = 9;  // the same into a flank, in usual spacings; 1/cos 83 degrees = 8.2
 inline constexpr double kMinSpacingSigma = 0.05;
 inline constexpr double kMaxTurnNoise = 4;  // the same across the contour, in units of the measuring variance
 inline constexpr int kShortGap = 10;  // lines without points across which the direction is still believed
@@ -49,7 +50,7 @@ struct Model {
         sx2 = scale.sx * scale.sx, sz2 = scale.sz * scale.sz;
         sxz = sx2 * sz2, inv_sxz = 1 / sxz;
         least_spacing2 = 0.01 * scale.spacing * scale.spacing;
-        largest_spacing2 = 100 * scale.spacing * scale.spacing;
+        largest_spacing2 = 225 * scale.spacing * scale.spacing;
         outlier_cost = 0.5 * band * band + 0.75;
         edge_cost = 2.2 * outlier_cost;
         jump_cost = (o.lookahead + 0.6) * outlier_cost;
@@ -237,12 +238,12 @@ inline void hold(const Model& m, const State& s, const Deviation& d, Held& h) {
 
 // A point that lies within reach of the foot point in any direction: the thesis's test of the spacing alone.
 // Used where the direction is unknown: second point of a segment, first point after a sharp edge. Returns the
-// ratio to the reach.
+// ratio to the reach. The next line may stand up a flank, farther off than any spacing before.
 inline double reach_ratio(const Model& m, const State& s, double x, double z, int i) {
     const double dx = x - s.x, dz = z - s.z;
-    const double reach =
-        kSpacingReach * std::max(s.spacing(), 0.5 * m.scale.spacing) * i + m.band * 1.5 * m.scale.largest();
-    return std::sqrt(dx * dx + dz * dz) / reach;
+    double reach = kSpacingReach * std::max(s.spacing(), 0.5 * m.scale.spacing) * i;
+    if (i == 1) reach = std::max(reach, kFlankReach * m.scale.spacing);
+    return std::sqrt(dx * dx + dz * dz) / (reach + m.band * 1.5 * m.scale.largest());
 }
 
 // The state after such a point: direction from the two points, shrunk to what spacing and noise make
@@ -256,7 +257,7 @@ inline void accept_any_direction(const Model& m, State& s, double x, double z, i
     s.x = x, s.z = z;
     s.p11 = 1, s.p12 = w / i, s.p22 = 2 * w / (double(i) * i);
     const double usual2 = m.scale.spacing * m.scale.spacing;
-    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, 0.09 * usual2, 9 * usual2);
+    s.spacing2 = std::clamp(s.vx * s.vx + s.vz * s.vz, 0.09 * usual2, 100 * usual2);
     s.drift = 0;
     s.variance = m.initial_sigma * m.initial_sigma;
     s.excess = 1;

@@ -1,6 +1,7 @@
 #include "core/profile/filter.h"
 
 #include "core/profile/contour_sequence.h"
+#include "core/profile/no_return.h"
 
 namespace seamwright {
 namespace {
@@ -420,6 +421,8 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
         return input_error("the columns of the profile differ in length", "x_mm, z_mm, intensity",
                            "give one x, one z and, if any, one intensity per point");
     profile.segment.assign(n, kOutlier);
+    if (const auto codes = find_no_return_codes(profile); !codes.empty())
+        for (const NoReturnCode& c : codes) erase_no_returns(profile, {c.value});
 
     Workspace& w = workspace();
     w.candidates.clear(), w.first.clear(), w.path.clear();

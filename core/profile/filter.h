@@ -51,7 +51,7 @@ double map_spacing_closed_form(double s_meas, double s_0, double mu, double sigm
 Expected<void> check(const FilterOptions& options);
 
 // Marks `profile.segment`: 0.. in order for accepted points, kOutlier for outliers and missing returns. A
-// missing return (NaN, infinite or absurd coordinate) is a line without a point: the spacing to the next one
+// missing return (NaN, infinite or absurd coordinate; a code for it, no_return.h, becomes NaN) is a line without a point: the spacing to the next one
 // grows with it. Refuses (Error): arrays of different length, options out of range. An empty profile is no
 // error. Linear time; no allocation after the first profile of a size (the working memory belongs to the
 // calling thread).

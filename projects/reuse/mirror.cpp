@@ -120,11 +120,13 @@ Expected<FeatureRecipe> mirrored_recipe(const FeatureRecipe& recipe) {
     if (recipe.kind != "template") negate_range(out, "window_x_min_mm", "window_x_max_mm");
     if (recipe.kind == "contour-end") {
         swap_choice(out, "side", 0, 1);
+        negate_range(out, "field_x_min_mm", "field_x_max_mm");
     } else if (recipe.kind == "extremum") {
         swap_choice(out, "which", 2, 3);
     } else if (recipe.kind == "corner") {
         negate_range(out, "left_from_mm", "right_to_mm");
         negate_range(out, "left_to_mm", "right_from_mm");
+        swap_choice(out, "which", 3, 4);
     } else if (recipe.kind == "template") {
         out.template_profile = mirrored_profile(recipe.template_profile);
         out.template_reference_mm.x() = -recipe.template_reference_mm.x();

@@ -2666,6 +2666,42 @@
         <translation>die Kontur läuft auf dieser Seite über das Fenster hinaus weiter</translation>
     </message>
     <message>
+        <source>several contours end on that side (%1); say which by the window or by the setting segment</source>
+        <translation>mehrere Konturen enden auf dieser Seite (%1); welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+    </message>
+    <message>
+        <source>a contour ends on that side (%1) and another one leaves the sensor&apos;s field there; say which by the window or by the setting segment</source>
+        <translation>eine Kontur endet auf dieser Seite (%1), eine andere verlässt dort das Feld des Sensors; welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+    </message>
+    <message>
+        <source>two contours are about equally long (%1); say which by the window or by the setting segment</source>
+        <translation>zwei Konturen sind etwa gleich lang (%1); welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+    </message>
+    <message>
+        <source>two contours are equally high (%1); say which by the window or by the setting segment</source>
+        <translation>zwei Konturen sind gleich hoch (%1); welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+    </message>
+    <message>
+        <source>fewer than %1 contours end on that side in the window</source>
+        <translation>weniger als %1 Konturen enden im Fenster auf dieser Seite</translation>
+    </message>
+    <message>
+        <source>the contour leaves the sensor&apos;s field on that side at x = %1 mm: its end is not seen</source>
+        <translation>die Kontur verlässt auf dieser Seite bei x = %1 mm das Feld des Sensors: ihr Ende ist nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the contour runs under a higher one at x = %1 mm: its end on that side is not seen</source>
+        <translation>die Kontur läuft bei x = %1 mm unter eine höhere: ihr Ende auf dieser Seite ist nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>%1 corners lie in the window (%2); say which by the window or by the setting which</source>
+        <translation>%1 Ecken liegen im Fenster (%2); welche gemeint ist, sagt das Fenster oder die Einstellung „Welches“</translation>
+    </message>
+    <message>
+        <source>a field from x = %1 to %2 mm is empty</source>
+        <translation>ein Feld von x = %1 bis %2 mm ist leer</translation>
+    </message>
+    <message>
         <source>the contour runs on without a gap</source>
         <translation>die Kontur läuft ohne Spalt weiter</translation>
     </message>
@@ -5343,6 +5379,26 @@
         <translation>rechtestes</translation>
     </message>
     <message>
+        <source>Counted from outside</source>
+        <translation>Von außen gezählt</translation>
+    </message>
+    <message>
+        <source>Sensor&apos;s field, x from</source>
+        <translation>Feld des Sensors, x von</translation>
+    </message>
+    <message>
+        <source>Sensor&apos;s field, x to</source>
+        <translation>Feld des Sensors, x bis</translation>
+    </message>
+    <message>
+        <source>the only one</source>
+        <translation>das einzige</translation>
+    </message>
+    <message>
+        <source>sharpest</source>
+        <translation>schärfstes</translation>
+    </message>
+    <message>
         <source>automatic</source>
         <translation>Automatik</translation>
     </message>
@@ -5503,8 +5559,24 @@
         <translation>Die Seite, auf der die Kontur endet.</translation>
     </message>
     <message>
-        <source>Of several segments in the window: the outermost on that side, the longest, or the highest.</source>
-        <translation>Von mehreren Segmenten im Fenster: das äußerste auf dieser Seite, das längste oder das höchste.</translation>
+        <source>Which end is meant where several lie in the window: the outermost on that side, that of the longest, the highest or the lowest contour, or the only one.</source>
+        <translation>Welches Ende gemeint ist, wenn mehrere im Fenster liegen: das äußerste auf dieser Seite, das der längsten, der höchsten oder der niedrigsten Kontur, oder das einzige.</translation>
+    </message>
+    <message>
+        <source>Outermost: the how-manyth end from outside.</source>
+        <translation>Äußerstes: das wievielte Ende von außen.</translation>
+    </message>
+    <message>
+        <source>Left rim of the sensor&apos;s field, where profiles come without their empty lines.</source>
+        <translation>Linker Rand des Sensorfelds, wenn Profile ohne ihre leeren Zeilen kommen.</translation>
+    </message>
+    <message>
+        <source>Right rim of the sensor&apos;s field, where profiles come without their empty lines.</source>
+        <translation>Rechter Rand des Sensorfelds, wenn Profile ohne ihre leeren Zeilen kommen.</translation>
+    </message>
+    <message>
+        <source>Automatic split: which corner is meant where several lie in the window.</source>
+        <translation>Automatische Teilung: welche Ecke gemeint ist, wenn mehrere im Fenster liegen.</translation>
     </message>
     <message>
         <source>Shorter segments are passed over.</source>

@@ -10,6 +10,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/feature_setting.h"
+#include "app/cli/no_return_option.h"
 #include "app/cli/result_json.h"
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
@@ -39,18 +40,19 @@ void add_unit(CLI::App* command, std::string& unit) {
         ->check(CLI::IsMember({"mm", "m", "um"}));
 }
 
-Expected<Profile> read_in_unit(const std::string& file, const std::string& unit) {
+Expected<Profile> read_in_unit(const std::string& file, const std::string& unit, NoReturnOption& invalid) {
     auto profile = read_profile_csv(file);
     if (!profile) return profile;
+    invalid.apply(*profile, file);
     if (auto ok = check_unit(*profile, file, unit); !ok) return tl::unexpected(ok.error());
     convert_to_mm(*profile, unit);
     return profile;
 }
 
 // A profile as it comes from a sensor is filtered first; one that carries its segments is taken at its word.
-Expected<Profile> read_filtered(const std::string& file, const std::string& unit,
+Expected<Profile> read_filtered(const std::string& file, const std::string& unit, NoReturnOption& invalid,
                                 const FilterOptions& options) {
-    auto profile = read_in_unit(file, unit);
+    auto profile = read_in_unit(file, unit, invalid);
     if (!profile) return profile;
     if (!profile->filtered())
         if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
@@ -71,8 +73,8 @@ void add_filter_options(CLI::App* command, FilterOptions& o) {
 }
 
 Expected<Answer> filter(const std::string& in, const std::string& out, const std::string& unit,
-                        const FilterOptions& options) {
-    auto profile = read_in_unit(in, unit);
+                        NoReturnOption& invalid, const FilterOptions& options) {
+    auto profile = read_in_unit(in, unit, invalid);
     if (!profile) return tl::unexpected(profile.error());
     if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
     if (auto written = write_profile_csv(out, *profile); !written) return tl::unexpected(written.error());
@@ -92,6 +94,7 @@ Expected<Answer> filter(const std::string& in, const std::string& out, const std
                    {"outliers", outliers}, {"no_return", missing},      {"segments", segments}};
     answer.text = fmt::format("{} points: {} accepted in {} segments, {} outliers, {} without return\n",
                               profile->size(), accepted, segments, outliers, missing);
+    invalid.warn(answer);
     return answer;
 }
 
@@ -107,9 +110,10 @@ struct FeatureArguments {
     std::vector<double> reference;
     std::map<std::string, std::string> values;
     FilterOptions filter;
+    NoReturnOption invalid;
 };
 
-Expected<Answer> feature(const FeatureArguments& a) {
+Expected<Answer> feature(FeatureArguments& a) {
     auto kind = find_feature_kind(a.kind);
     if (!kind) return tl::unexpected(kind.error());
     FeatureRecipe recipe;
@@ -123,7 +127,7 @@ Expected<Answer> feature(const FeatureArguments& a) {
     if (a.kind == "template") {
         if (a.template_file.empty())
             return usage_error("the kind \"template\" needs --template T.csv", "--template");
-        auto contour = read_filtered(a.template_file, a.unit, a.filter);
+        auto contour = read_filtered(a.template_file, a.unit, a.invalid, a.filter);
         if (!contour) return tl::unexpected(contour.error());
         recipe.template_profile = std::move(*contour);
         if (a.reference.size() == 2) recipe.template_reference_mm = {a.reference[0], a.reference[1]};
@@ -132,12 +136,13 @@ Expected<Answer> feature(const FeatureArguments& a) {
     }
     auto finder = make_feature_finder(recipe);
     if (!finder) return tl::unexpected(finder.error());
-    auto profile = read_filtered(a.file, a.unit, a.filter);
+    auto profile = read_filtered(a.file, a.unit, a.invalid, a.filter);
     if (!profile) return tl::unexpected(profile.error());
     const Feature found = (*finder)->find(*profile);
     Answer answer;
     answer.json = feature_json(found);
     answer.text = feature_text(found);
+    a.invalid.warn(answer);
     answer.exit_code = found.status == FeatureStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -147,6 +152,7 @@ struct MatchArguments {
     std::vector<double> window;  // mm, mm, deg
     std::vector<double> reference;
     FilterOptions filter;
+    NoReturnOption invalid;
 };
 
 // The landmark that the window is about: the middle of the template's points unless told.
@@ -158,10 +164,10 @@ Eigen::Vector2d middle(const Profile& profile) {
     return n > 0 ? Eigen::Vector2d(sum / n) : sum;
 }
 
-Expected<Answer> match(const MatchArguments& a) {
-    auto contour = read_filtered(a.template_file, a.unit, a.filter);
+Expected<Answer> match(MatchArguments& a) {
+    auto contour = read_filtered(a.template_file, a.unit, a.invalid, a.filter);
     if (!contour) return tl::unexpected(contour.error());
-    auto scene = read_filtered(a.scene_file, a.unit, a.filter);
+    auto scene = read_filtered(a.scene_file, a.unit, a.invalid, a.filter);
     if (!scene) return tl::unexpected(scene.error());
     const Eigen::Vector2d reference =
         a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(*contour);
@@ -181,6 +187,7 @@ Expected<Answer> match(const MatchArguments& a) {
     Answer answer;
     answer.json = registration_json(found);
     answer.text = registration_text(found);
+    a.invalid.warn(answer);
     answer.exit_code = found.status == RegistrationStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -189,6 +196,7 @@ struct AlignArguments {
     std::string file, unit, project, spot;
     std::optional<double> jitter_mm, tolerance_mm, window_mm;
     std::vector<double> reference;
+    NoReturnOption invalid;
 };
 
 // As the desk judges: jitter, travel and reference point are the spot's, unless told.
@@ -216,13 +224,14 @@ Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
     return options;
 }
 
-Expected<Answer> align(const AlignArguments& a) {
+Expected<Answer> align(AlignArguments& a) {
     const std::string &file = a.file, &unit = a.unit;
     auto options = alignment_options(a);
     if (!options) return tl::unexpected(options.error());
     auto pass = read_align_csv(file);
     if (!pass) return tl::unexpected(pass.error());
     for (TravelProfile& p : *pass) {
+        a.invalid.apply(p.profile, file);
         if (auto ok = check_unit(p.profile, file, unit); !ok) return tl::unexpected(ok.error());
         convert_to_mm(p.profile, unit);
         p.travel_mm *= mm_of_unit(unit);
@@ -235,6 +244,7 @@ Expected<Answer> align(const AlignArguments& a) {
     Answer answer;
     answer.json = alignment_json(*result);
     answer.text = alignment_text(*result);
+    a.invalid.warn(answer);
     answer.exit_code = result->status == AlignmentStatus::frozen ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -245,6 +255,7 @@ void add_filter(CommandLine& line) {
     struct Arguments {
         std::string in, out, unit;
         FilterOptions options;
+        NoReturnOption invalid;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* command =
@@ -254,8 +265,9 @@ void add_filter(CommandLine& line) {
     command->add_option("in", a->in, "Profile: x_mm,z_mm[,intensity]")->required()->type_name("IN.csv");
     command->add_option("--out", a->out, "Where the marked profile goes")->required()->type_name("OUT.csv");
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     add_filter_options(command, a->options);
-    line.on(command, [a] { return filter(a->in, a->out, a->unit, a->options); });
+    line.on(command, [a] { return filter(a->in, a->out, a->unit, a->invalid, a->options); });
 }
 
 void add_feature(CommandLine& line) {
@@ -285,6 +297,7 @@ void add_feature(CommandLine& line) {
         }
     for (const auto& [name, text] : help) command->add_option(flag(name), a->values[name], text);
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     add_filter_options(command, a->filter);
     line.on(command, [a] { return feature(*a); });
 }
@@ -309,6 +322,7 @@ void add_match(CommandLine& line) {
         ->delimiter(',')
         ->expected(2);
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     add_filter_options(command, a->filter);
     line.on(command, [a] { return match(*a); });
 }
@@ -334,6 +348,7 @@ void add_align(CommandLine& line) {
     command->add_option("--window-mm", a->window_mm,
                         "Travel that is judged, +- mm (default: the spot's entry and exit, or 20)");
     add_unit(command, a->unit);
+    a->invalid.add_to(command);
     line.on(command, [a] { return align(*a); });
 }
 

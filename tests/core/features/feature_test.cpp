@@ -75,11 +75,19 @@ TEST(ContourEnd, EitherSideAndSegments) {
     }
     p.segment.assign(200, 0);
     p.segment.insert(p.segment.end(), 100, 1);
-    const Feature left = finder("contour-end", {{"side", 0}})->find(p);
+    const Feature several = finder("contour-end", {{"side", 0}})->find(p);
+    EXPECT_EQ(several.status, FeatureStatus::ambiguous);
+    EXPECT_EQ(several.rivals_mm.size(), 2U);
+    const double outermost = 0;
+    const Feature left = finder("contour-end", {{"side", 0}, {"segment", outermost}})->find(p);
     ASSERT_EQ(left.status, FeatureStatus::ok);
     EXPECT_NEAR(left.point_mm.x(), -10.025, 1e-9);
     EXPECT_NEAR(left.point_mm.y(), 5, 1e-9);
-    EXPECT_NEAR(finder("contour-end", {{"side", 1}})->find(p).point_mm.x(), 3 + 0.05 * 99 + 0.025, 1e-9);
+    EXPECT_NEAR(finder("contour-end", {{"side", 1}, {"segment", outermost}})->find(p).point_mm.x(),
+                3 + 0.05 * 99 + 0.025, 1e-9);
+    EXPECT_NEAR(
+        finder("contour-end", {{"side", 1}, {"segment", outermost}, {"order", 2}})->find(p).point_mm.x(),
+        -0.025, 1e-9);
     for (const double choice : {1.0, 2.0}) {  // longest, highest: the left sheet's right end
         const Feature f = finder("contour-end", {{"side", 1}, {"segment", choice}})->find(p);
         ASSERT_EQ(f.status, FeatureStatus::ok);
@@ -380,7 +388,7 @@ TEST(Features, FindAllocatesNothingAfterTheFirstCalls) {
     Random random(6);
     std::vector<Profile> profiles;
     for (int i = 0; i < 6; ++i) {
-        Profile p = sample(hem(-20, 20).moved({i - 3.0, 2.0 - i, 0.03 * i}), 0.05);
+        Profile p = sample(hem(-20, 20).moved({i - 3.5, 2.0 - i, 0.02 * i}), 0.05);
         add_noise(p, 0.02, random);
         profiles.push_back(p);
     }

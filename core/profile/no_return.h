@@ -1,0 +1,35 @@
+#pragma once
+// Values that stand for "no return". A sensor writes one and the same number (-9999, -32768, -99.999, 0,
+// 9999.99) where it saw nothing; taken for heights they are a straight, dense contour with two ends.
+
+#include <string>
+#include <vector>
+
+#include "core/profile/profile.h"
+
+namespace seamwright {
+
+struct NoReturnCode {
+    double value = 0;
+    int points = 0;
+};
+
+// The heights that are no heights, at most kMostNoReturnCodes. A code is one value to the last bit, in at
+// least three points and in a pair of neighbours, where the other points carry noise (drawn contours have
+// flats of one value; a code written like one may stand far off those too), and either
+//     far off: farther than five times their spread (95 % of them) and 50 mm from the others, or
+//     written like a code (0; all nines; a limit of 16 or 32 bits; with the decimal point anywhere) and in
+//     runs too long for chance: with the share q of neighbours that agree among the other points, a run of L
+//     has n q^(L - 1) < 1e-4 (unless the others lie about it in steps, as a coarse sensor's do); or alone, with no other point within 0.2 mm.
+// Unit: as the profile. Not seen: a code among heights like it that stands in single points.
+inline constexpr std::size_t kMostNoReturnCodes = 4;
+// Allocates nothing where there is none, after the first profile of a size.
+std::vector<NoReturnCode> find_no_return_codes(const Profile& profile);
+
+// Makes NaN of the heights that equal one of `values`. Returns how many.
+int erase_no_returns(Profile& profile, const std::vector<double>& values);
+
+// "213 points stand at z = -9999 ..." for a list that is not empty.
+std::string no_return_sentence(const std::vector<NoReturnCode>& codes);
+
+}  // namespace seamwright

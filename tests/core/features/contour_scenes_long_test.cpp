@@ -1,0 +1,107 @@
+// Single features over some hundred scenes of every kind: right, refused, wrong and yet ok.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <functional>
+
+#include "contour_scenes.h"
+#include "core/profile/filter.h"
+
+namespace seamwright::scenes {
+namespace {
+
+struct Kind {
+    const char* name;
+    std::function<Scene(Dice&)> make;
+    double least_right;
+};
+
+const std::vector<Kind>& kinds() {
+    static const std::vector<Kind> all{
+        {"bare edge", bare_edge, 0.99},
+        {"edge beyond the field", edge_out_of_field, 1},
+        {"window ends before the edge", window_before_the_end, 1},
+        {"lap, upper sheet asked for", [](Dice& d) { return lap(d, "highest"); }, 0.99},
+        {"lap, lower sheet asked for", [](Dice& d) { return lap(d, "lowest"); }, 0.99},
+        {"lap, nothing asked for", [](Dice& d) { return lap(d, "default"); }, 1},
+        {"hem flange, radius 0.9 to 1.5", [](Dice& d) { return rounded_rim(d, 0.9, 1.5); }, 0.99},
+        {"rounded rim, radius 1.5 to 8", [](Dice& d) { return rounded_rim(d, 1.5, 8); }, 0.99},
+        {"butt gap 0.2 to 3", [](Dice& d) { return gap_rim(d, 0.2, 3, 0.3); }, 0.99},
+        {"hole rim, 3 to 20 wide", [](Dice& d) { return gap_rim(d, 3, 20, 0); }, 0.99},
+        {"one sharp corner", [](Dice& d) { return bend(d, false); }, 0.99},
+        {"one rounded corner", [](Dice& d) { return bend(d, true); }, 0.99},
+        {"groove in a window", [](Dice& d) { return groove(d, "window"); }, 0.99},
+        {"groove, lowest asked for", [](Dice& d) { return groove(d, "lowest"); }, 0.99},
+        {"groove, nothing asked for", [](Dice& d) { return groove(d, "default"); }, 1},
+        {"T-joint, flank 70 to 80 degrees", t_joint, 0.99},
+        {"Z-fold, nothing asked for", z_fold, 1},
+    };
+    return all;
+}
+
+TEST(ContourScenes, RightOrRefusedButNeverWrong) {
+    constexpr int kTrials = 600;
+    for (const Kind& kind : kinds()) {
+        Tally tally;
+        Dice dice(11);
+        for (int i = 0; i < kTrials; ++i) {
+            Scene scene = kind.make(dice);
+            if (dice.chance(0.5)) scene.mirror();
+            Profile profile = scene.profile(dice);
+            ASSERT_TRUE(filter_profile(profile, {}));
+            auto finder = make_feature_finder(scene.recipe);
+            if (!finder) {
+                ++tally.refused;
+                continue;
+            }
+            const Feature f = (*finder)->find(profile);
+            const int wrong = tally.wrong, refused = tally.refused;
+            tally.add(scene, f);
+            if ((tally.wrong > wrong || tally.refused > refused) && std::getenv("SEAMWRIGHT_SCENES"))
+                std::printf(
+                    "  %s %d: %s (%.3f %.3f) for (%.3f %.3f), sigma %.3f; %d x %.3f noise %.3f grid %d "
+                    "missing %.3f reversed %d: %s\n",
+                    kind.name, i, std::string(to_string(f.status)).c_str(), f.point_mm.x(), f.point_mm.y(),
+                    scene.truth.x(), scene.truth.y(), std::sqrt(f.covariance_mm2.trace()),
+                    scene.sensor.points, scene.sensor.pitch, scene.sensor.noise, int(scene.sensor.grid),
+                    scene.sensor.missing, scene.sensor.reversed, f.message.c_str());
+        }
+        std::printf("%-34s right %3d  refused %3d  wrong %3d of %d\n", kind.name, tally.right, tally.refused,
+                    tally.wrong, tally.all());
+        EXPECT_EQ(tally.wrong, 0) << kind.name;
+        EXPECT_GE(tally.right, kind.least_right * tally.all()) << kind.name;
+    }
+}
+
+TEST(ContourScenes, FlanksKeepTheirPoints) {
+    static constexpr const char* grids[] = {"x with noise", "exact x", "resampled"};
+    for (const double slope : {45., 60., 70., 75., 80., 83.})
+        for (int grid = 0; grid < 3; ++grid) {
+            Dice dice(12);
+            int lost = 0, all = 0, bad = 0, marked = 0;
+            for (int i = 0; i < 100; ++i) {
+                SensorModel sensor = SensorModel::any(dice);
+                sensor.grid = static_cast<Grid>(grid);
+                sensor.noise = std::min(sensor.noise, 0.3 * sensor.pitch);
+                Flanks f = flanks(sensor, slope, static_cast<int>(dice.uniform(10, 110)), dice);
+                ASSERT_TRUE(filter_profile(f.profile, {}));
+                int here = 0;
+                for (const int k : f.of_flank) here += f.profile.segment[std::size_t(k)] == kOutlier;
+                for (std::size_t k = 0; k < f.profile.size(); ++k)
+                    marked += std::isfinite(f.profile.z_mm[k]) && f.profile.segment[k] == kOutlier;
+                lost += here;
+                all += static_cast<int>(f.of_flank.size());
+                bad += here > 0.2 * double(f.of_flank.size());
+            }
+            std::printf(
+                "flanks of %2.0f degrees, %-12s lost %5.2f %%  (%d profiles lost more than a fifth), marked "
+                "%d\n",
+                slope, grids[grid], 100. * lost / all, bad, marked);
+            // Interpolated points of a flank of 80 degrees scatter by more than noise alone.
+            EXPECT_LE(lost, (grid == 2 ? 0.03 : 0.002) * all) << slope << " " << grids[grid];
+        }
+}
+
+}  // namespace
+}  // namespace seamwright::scenes

@@ -197,6 +197,7 @@ void describe(A& a, Feature& v) {
     a("rms_mm", v.rms_mm);
     a("points_used", v.points_used);
     a("message", v.message);
+    a("rivals_mm", v.rivals_mm);
 }
 template <class A>
 void describe(A& a, SpotResidual& v) {

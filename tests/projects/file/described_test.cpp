@@ -23,7 +23,7 @@ std::size_t names_in(std::string_view list) {
     }
 MEMBERS(SpotResidual, a, b, c)
 MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
-MEMBERS(Feature, a, b, c, d, e, f, g)
+MEMBERS(Feature, a, b, c, d, e, f, g, h)
 MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
 MEMBERS(RegionRecord, a, b, c, d, e, f)

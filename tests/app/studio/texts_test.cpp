@@ -307,6 +307,12 @@ TEST(Texts, WhatTheLayersBelowRefuseIsInTheList) {
                                              "projects/path.cpp",
                                              "projects/program.cpp",
                                              "projects/import_folder.cpp",
+                                             "projects/calibrate/example.cpp",
+                                             "devices/exchange/point_table.cpp",
+                                             "devices/exchange/point_formats.cpp",
+                                             "devices/exchange/pose_table.cpp",
+                                             "devices/exchange/profile_layout.cpp",
+                                             "devices/replay/recording_layout.cpp",
                                              "projects/watch.cpp",
                                              "projects/gap_check.cpp",
                                              "core/features/gap_scan.cpp"};

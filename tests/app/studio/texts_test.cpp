@@ -306,7 +306,7 @@ TEST(Texts, WhatTheLayersBelowRefuseIsInTheList) {
                                              "projects/panel_json.cpp",
                                              "projects/path.cpp",
                                              "projects/program.cpp",
-                                             "projects/import_folder.cpp",
+                                             "projects/reuse/import_folder.cpp",
                                              "projects/calibrate/example.cpp",
                                              "devices/exchange/point_table.cpp",
                                              "devices/exchange/point_formats.cpp",

@@ -5,6 +5,7 @@ int main(int argc, char** argv) {
     CommandLine line;
     add_demo(line);
     add_project_commands(line);
+    add_import(line);
     add_run(line);
     add_record(line);
     add_proof(line);

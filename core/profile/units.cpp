@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace seamwright {
@@ -13,6 +14,8 @@ namespace {
 constexpr double kLeastSpan = 1, kMostSpan = 5000;  // mm
 constexpr double kWideInMetres = 3,
                  kCloseInMetres = 4e-3;  // mm: up to 3 m at 4 mm a point, if it were metres
+constexpr double kWideInInches = 6, kCloseInInches = 0.02;  // mm: up to 6 in (or m) at 0.02 of it a point
+constexpr double kNarrowInMicrometres = 50, kFarInMicrometres = 5, kNoisyInMicrometres = 2;  // mm
 constexpr std::size_t kLeastPoints = 10;
 constexpr const char* kMend = "give x and z in millimetres";
 
@@ -29,29 +32,102 @@ Expected<void> check_span_millimetres(double span_mm, const std::string& where) 
     return {};
 }
 
-Expected<void> check_profile_millimetres(const Profile& profile, const std::string& where) {
-    Eigen::Array2d low = Eigen::Array2d::Constant(INFINITY), high = -low, last = low;
-    std::vector<double> steps;
-    std::size_t seen = 0;
+std::optional<double> mm_of_unit(std::string_view unit) {
+    if (unit == "mm") return 1;
+    if (unit == "m") return 1000;
+    if (unit == "um") return 1e-3;
+    if (unit == "in") return 25.4;
+    return std::nullopt;
+}
+
+namespace {
+
+double median(std::vector<double>& values) {
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// At most three digits that count.
+bool is_round(double value) {
+    const double scaled = value / std::pow(10, std::floor(std::log10(value)) - 2);
+    return std::abs(scaled - std::round(scaled)) < 1e-3 * std::max(1e-2, 1e-2 * scaled);
+}
+
+// A grid in x that was round in millimetres before somebody divided by 25.4.
+bool inch_grid(const std::vector<double>& x_steps) {
+    std::vector<double> sorted = x_steps;
+    const double pitch = std::abs(median(sorted));
+    if (!(pitch > 0)) return false;
+    const auto even = std::count_if(x_steps.begin(), x_steps.end(),
+                                    [&](double s) { return std::abs(std::abs(s) - pitch) < 1e-4 * pitch; });
+    return 10 * static_cast<std::size_t>(even) > 9 * x_steps.size() && !is_round(pitch) &&
+           is_round(pitch * 25.4);
+}
+
+void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
+    const auto say = [&](const char* unit, std::string why) {
+        s.suspected = unit;
+        s.why = std::move(why);
+    };
+    const std::string apart =
+        fmt::format("the points stand {:.2g} mm apart and span {:.3g} mm", s.pitch, s.span);
+    if (s.span > 0 && s.span < kLeastSpan)
+        say("metres or inches", fmt::format("the laser points span {:.3g} mm", s.span));
+    else if (s.span > kMostSpan)
+        say("micrometres", fmt::format("the laser points span {:.4g} mm", s.span));
+    else if (s.span < kWideInMetres && s.pitch < kCloseInMetres)
+        say("metres or inches", apart);
+    else if (s.span < kWideInInches && s.pitch < kCloseInInches)
+        say("metres or inches", apart);
+    else if (s.span > kNarrowInMicrometres && s.pitch > kFarInMicrometres)
+        say("micrometres", apart);
+    else if (s.span > kNarrowInMicrometres && s.noise > kNoisyInMicrometres)
+        say("micrometres", fmt::format("the points scatter by {:.2g} mm", s.noise));
+    else if (inch_grid(x_steps))
+        say("inches", fmt::format("the pitch is {:.6g}, which is {:.3g} mm if it is inches", s.pitch,
+                                  std::abs(x_steps.front()) * 25.4));
+}
+
+}  // namespace
+
+ProfileScale profile_scale(const Profile& profile) {
+    ProfileScale s;
+    Eigen::Array2d low = Eigen::Array2d::Constant(INFINITY), high = -low;
+    std::vector<Eigen::Vector2d> points;
     for (std::size_t i = 0; i < profile.size(); ++i) {
         const Eigen::Array2d point(profile.x_mm[i], profile.z_mm[i]);
         if (!point.allFinite()) continue;
         low = low.min(point);
         high = high.max(point);
-        if (seen++ > 0) steps.push_back((point - last).matrix().norm());
-        last = point;
+        points.emplace_back(point);
     }
-    if (seen < kLeastPoints) return {};
-    const double span = (high - low).matrix().norm();
-    if (auto ok = check_span_millimetres(span, where); !ok) return ok;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    if (span < kWideInMetres && *middle < kCloseInMetres)
-        return input_error(
-            fmt::format("the points stand {:.2g} mm apart and span {:.3g} mm, which looks like metres",
-                        *middle, span),
-            where, kMend);
-    return {};
+    s.points = points.size();
+    s.span = s.pitch = s.noise = s.x_low = s.x_high = s.z_low = s.z_high =
+        std::numeric_limits<double>::quiet_NaN();
+    if (s.points < kLeastPoints) return s;
+    s.x_low = low.x(), s.x_high = high.x(), s.z_low = low.y(), s.z_high = high.y();
+    s.span = (high - low).matrix().norm();
+    std::vector<double> steps, x_steps, bends;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        steps.push_back((points[i] - points[i - 1]).norm());
+        x_steps.push_back(points[i].x() - points[i - 1].x());
+        // Second differences of white noise scatter by sqrt(6) of its sigma; 0.6745: median to sigma.
+        if (i > 1)
+            bends.push_back(std::abs(points[i].y() - 2 * points[i - 1].y() + points[i - 2].y()) /
+                            (std::sqrt(6.0) * 0.6745));
+    }
+    s.pitch = median(steps);
+    s.noise = median(bends);
+    suspect(s, x_steps);
+    return s;
+}
+
+Expected<void> check_profile_millimetres(const Profile& profile, const std::string& where) {
+    const ProfileScale s = profile_scale(profile);
+    if (s.suspected.empty()) return {};
+    return input_error(fmt::format("{}, which looks like {}", s.why, s.suspected), where, kMend);
 }
 
 }  // namespace seamwright

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
+#include "core/profile/peaks.h"
 #include "devices/exchange/files.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -28,9 +30,140 @@ bool is_known_format(const std::string& bytes) {
     return bytes.starts_with("II*");  // TIFF, little-endian
 }
 
+constexpr std::pair<ImageChannel, std::string_view> kChannels[] = {
+    {ImageChannel::grey, "grey"},
+    {ImageChannel::red, "red"},
+    {ImageChannel::green, "green"},
+    {ImageChannel::blue, "blue"},
+    {ImageChannel::red_difference, "red-difference"}};
+
+// BGR or BGRA to one channel.
+cv::Mat one_channel(const cv::Mat& image, ImageChannel channel) {
+    cv::Mat result;
+    if (channel == ImageChannel::grey) {
+        cv::cvtColor(image, result, image.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
+        return result;
+    }
+    if (channel != ImageChannel::red_difference) {
+        cv::extractChannel(image, result,
+                           channel == ImageChannel::blue    ? 0
+                           : channel == ImageChannel::green ? 1
+                                                            : 2);
+        return result;
+    }
+    std::vector<cv::Mat> bgr;
+    cv::split(image, bgr);
+    cv::addWeighted(bgr[0], 0.5, bgr[1], 0.5, 0, result);
+    cv::subtract(bgr[2], result, result);
+    return result;
+}
+
+struct LineShown {
+    double share = 0;   // of the lines whose strongest peak goes on from the line before
+    double height = 0;  // the middle peak over the picture's bright rest
+};
+LineShown line_shown(const StripeImage& image) {
+    LineShown shown;
+    PeakOptions options;
+    options.per_line = 1;
+    const auto scan = guess_scan_lines(image);
+    if (!scan) return shown;
+    options.scan = *scan;
+    StripePeaks peaks;
+    if (!find_peaks(image, options, peaks)) return shown;
+    std::vector<float> heights;
+    for (int line = 1; line < peaks.lines; ++line) {
+        if (!peaks.count[static_cast<std::size_t>(line)] || !peaks.count[static_cast<std::size_t>(line - 1)])
+            continue;
+        const auto at = static_cast<std::size_t>(line);
+        if (std::abs(peaks.position_px[at] - peaks.position_px[at - 1]) > 3) continue;
+        heights.push_back(peaks.intensity[at]);
+    }
+    if (heights.empty()) return shown;
+    shown.share = static_cast<double>(heights.size()) / std::max(1, peaks.lines - 1);
+    const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+    std::nth_element(heights.begin(), middle, heights.end());
+    std::vector<int> greys;
+    for (int r = 0; r < image.height; r += 4)
+        for (int c = 0; c < image.width; c += 4) {
+            const std::byte* at = image.pixels + static_cast<std::size_t>(r) * image.row_bytes +
+                                  static_cast<std::size_t>(c * image.bytes_per_pixel());
+            int value = std::to_integer<int>(at[0]);
+            if (image.bytes_per_pixel() == 2) value |= std::to_integer<int>(at[1]) << 8;
+            greys.push_back(value);
+        }
+    const auto bright = greys.begin() + static_cast<std::ptrdiff_t>(greys.size() * 9 / 10);
+    std::nth_element(greys.begin(), bright, greys.end());
+    shown.height = *middle / (*bright + 0.02 * image.full_scale());
+    return shown;
+}
+
 }  // namespace
 
-Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, int bit_depth) {
+std::string_view to_string(ImageChannel channel) {
+    for (const auto& [known, word] : kChannels)
+        if (known == channel) return word;
+    return "grey";
+}
+std::optional<ImageChannel> image_channel(std::string_view word) {
+    for (const auto& [channel, known] : kChannels)
+        if (known == word) return channel;
+    return std::nullopt;
+}
+
+Expected<ChannelChoice> choose_channel(const std::filesystem::path& path, int bit_depth) {
+    ChannelChoice choice;
+    Frame grey, frame;
+    if (auto read = read_image_file(path, grey, bit_depth); !read) return tl::unexpected(read.error());
+    const auto bytes = read_text_file(path, std::size_t{1} << 30);
+    if (!bytes) return tl::unexpected(bytes.error());
+    int channels = 1;
+    try {
+        const cv::Mat raw(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data()));
+        channels = cv::imdecode(raw, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION).channels();
+    } catch (const std::exception&) {
+        return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
+    }
+    for (const ImageChannel channel : {ImageChannel::red, ImageChannel::green, ImageChannel::blue}) {
+        if (channels == 1) break;
+        if (auto read = read_image_file(path, frame, bit_depth, channel); !read)
+            return tl::unexpected(read.error());
+        choice.colour = choice.colour || frame.pixels != grey.pixels;
+    }
+    double best = -1;
+    for (const auto& [channel, word] : kChannels) {
+        const bool is_grey = channel == ImageChannel::grey;
+        if (!is_grey && !choice.colour) break;
+        if (!is_grey)
+            if (auto read = read_image_file(path, frame, bit_depth, channel); !read)
+                return tl::unexpected(read.error());
+        const LineShown shown = line_shown(is_grey ? grey.image : frame.image);
+        // A line that stands four times above the rest stands out; more is no better.
+        const double score = shown.share * std::min(shown.height, 4.0);
+        if (is_grey) choice.share_grey = shown.share;
+        if (score <= best * 1.02) continue;  // as good: the earlier one
+        best = score;
+        choice.channel = channel;
+        choice.share = shown.share;
+    }
+    return choice;
+}
+
+Expected<void> subtract_image(Frame& on, const Frame& off) {
+    const StripeImage& a = on.image;
+    const StripeImage& b = off.image;
+    if (a.width != b.width || a.height != b.height || a.bit_depth != b.bit_depth || a.empty())
+        return input_error(fmt::format("{} x {} of {} bit and {} x {} of {} bit are no pair", a.width,
+                                       a.height, a.bit_depth, b.width, b.height, b.bit_depth));
+    const int type = a.bit_depth > 8 ? CV_16U : CV_8U;
+    cv::Mat lit(a.height, a.width, type, on.pixels.data(), a.row_bytes);
+    const cv::Mat dark(b.height, b.width, type, const_cast<std::byte*>(b.pixels), b.row_bytes);
+    cv::subtract(lit, dark, lit);
+    return {};
+}
+
+Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, int bit_depth,
+                               ImageChannel channel) {
     frame.image = {};
     if (bit_depth != 0 && bit_depth != 8 && bit_depth != 10 && bit_depth != 12 && bit_depth != 16) {
         return input_error(fmt::format("a bit depth of {} is not supported", bit_depth), path.string(),
@@ -57,8 +190,7 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
         }
         if (image.total() > (std::size_t{1} << 28))
             return file_error("the image is too large", path.string());
-        if (image.channels() == 3) cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
-        if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_BGRA2GRAY);
+        if (image.channels() == 3 || image.channels() == 4) image = one_channel(image, channel);
         if (image.channels() != 1) return file_error("the image is neither grey nor colour", path.string());
         const bool wide = image.depth() == CV_16U;
         const int depth = bit_depth == 0 ? (wide ? 16 : 8) : bit_depth;

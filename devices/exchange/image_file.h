@@ -2,6 +2,9 @@
 // Camera images as files.
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/profile/stripe_image.h"
@@ -9,13 +12,35 @@
 
 namespace seamwright {
 
+// What becomes of colour. `grey`: the luminance weights (equal channels keep their value exactly), in which a
+// red laser all but drowns in white light; `red_difference`: R - (G + B) / 2, not below 0, in which white
+// light is gone.
+enum class ImageChannel { grey, red, green, blue, red_difference };
+std::string_view to_string(ImageChannel channel);  // "red-difference"
+std::optional<ImageChannel> image_channel(std::string_view word);
+
 // PNG, BMP, TIFF, PGM/PPM or JPEG (lossy: smears a stripe) of 8 or 16 bit into `frame.pixels` and
-// `frame.image`, rows packed. Colour becomes grey by the luminance weights (equal channels keep their value
-// exactly). `bit_depth` 0 takes the container's 8 or 16; 10 or 12 says that the words of a 16 bit file hold
-// only so many bits, right-aligned (a larger value is then an Error). Error (file): missing, unreadable,
-// truncated, not an image, floating point, larger than 2^28 pixels. Of a failed read the frame keeps no
-// image.
-Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, int bit_depth = 0);
+// `frame.image`, rows packed, colour as `channel` says. `bit_depth` 0 takes the container's 8 or 16; 10 or 12
+// says that the words of a 16 bit file hold only so many bits, right-aligned (a larger value is then an
+// Error). Error (file): missing, unreadable, truncated, not an image, floating point, larger than 2^28
+// pixels. Of a failed read the frame keeps no image.
+Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, int bit_depth = 0,
+                               ImageChannel channel = ImageChannel::grey);
+
+// Which channel shows a stripe, for images whose laser has a colour: that in which a thin bright line goes on
+// from image line to image line and stands highest above the rest of the picture. Grey for pictures without
+// colour.
+struct ChannelChoice {
+    ImageChannel channel = ImageChannel::grey;
+    bool colour = false;    // the picture has colour at all
+    double share = 0;       // of the image lines on which that line goes on
+    double share_grey = 0;  // the same in grey
+};
+Expected<ChannelChoice> choose_channel(const std::filesystem::path& path, int bit_depth = 0);
+
+// `on` minus `off`, not below 0: two pictures of one place, the laser on and off. Error (input): other sizes
+// or depths. `on` owns its pixels.
+Expected<void> subtract_image(Frame& on, const Frame& off);
 
 // Lossless, format by extension (.png, .tiff, .pgm, .bmp for 8 bit). Atomic as write_text_file().
 Expected<void> write_image_file(const std::filesystem::path& path, const StripeImage& image);

@@ -6,6 +6,9 @@
 //    "search": [],             addresses asked one by one for the serial, instead of a broadcast everywhere
 //    "exposure_us", "gain_db", "frame_rate_hz", "region": {"x","y","width","height"}, "pixel_format":
 //    "Mono8", "trigger": "software",    or "free", or a source that the camera has: "Line1"
+//    "channel": "grey",        of colour formats (RGB8, BGR8, Bayer of 8, 10, 12 bit): grey, red, green, blue
+//    or
+//                              red-difference (R - (G + B) / 2, in which white light is gone)
 //    "hardware_trigger": false, the robot fires the sensor: trigger defaults to "Line1" instead
 //    "features": {NAME: VALUE}, any GenICam feature: number, text, true/false; null executes a command; in
 //    the

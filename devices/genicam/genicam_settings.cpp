@@ -122,6 +122,7 @@ Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& json) {
                         "frame_rate_hz",
                         "region",
                         "pixel_format",
+                        "channel",
                         "trigger",
                         "hardware_trigger",
                         "features",
@@ -156,6 +157,14 @@ Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& json) {
         if (region.error()) r.fail(*region.error());
     }
     r.text("pixel_format", s.pixel_format);
+    std::string channel = "grey";
+    r.text("channel", channel);
+    if (const auto known = image_channel(channel))
+        s.channel = *known;
+    else
+        r.fail(input_error("\"" + channel + "\" is no channel", "settings.channel",
+                           "give grey, red, green, blue or red-difference")
+                   .value());
     bool hardware = false;
     r.truth("hardware_trigger", hardware);
     if (hardware) s.trigger = "Line1";

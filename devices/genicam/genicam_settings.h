@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "devices/exchange/image_file.h"
 #include "devices/genicam/range_image.h"
 
 namespace seamwright {
@@ -19,6 +20,7 @@ struct GenicamSettings {
     std::optional<double> exposure_us, gain_db, frame_rate_hz;
     std::optional<int> x, y, width, height;
     std::string pixel_format;
+    ImageChannel channel = ImageChannel::grey;  // of colour formats
     std::string trigger = "software";
     nlohmann::json features = nlohmann::json::object();
     std::vector<std::string> chunks;

@@ -614,9 +614,9 @@ void GenicamSource::fill_payload(ArvBuffer* buffer, Frame& frame) {
         frame.status = FrameStatus::corrupt;
         return;
     }
-    auto image =
-        unpack_image(*format, {static_cast<const std::byte*>(data), size}, arv_buffer_get_image_width(buffer),
-                     arv_buffer_get_image_height(buffer), static_cast<std::size_t>(px), frame.pixels);
+    auto image = unpack_image(*format, {static_cast<const std::byte*>(data), size},
+                              arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer),
+                              static_cast<std::size_t>(px), frame.pixels, settings_.channel);
     if (image)
         frame.image = *image;
     else

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "devices/genicam/colour.h"
+
 namespace seamwright {
 
 const std::vector<PixelFormat>& pixel_formats() {
@@ -18,6 +20,20 @@ const std::vector<PixelFormat>& pixel_formats() {
         {"Mono12p", 0x010C0047, lsb, 12, "", false},
         {"Mono14", 0x01100025, words, 14, "", false},
         {"Mono16", 0x01100007, words, 16, "", false},
+        {"BayerGR8", 0x01080008, bytes, 8, "", false, "GR"},
+        {"BayerRG8", 0x01080009, bytes, 8, "", false, "RG"},
+        {"BayerGB8", 0x0108000A, bytes, 8, "", false, "GB"},
+        {"BayerBG8", 0x0108000B, bytes, 8, "", false, "BG"},
+        {"BayerGR10", 0x0110000C, words, 10, "", false, "GR"},
+        {"BayerRG10", 0x0110000D, words, 10, "", false, "RG"},
+        {"BayerGB10", 0x0110000E, words, 10, "", false, "GB"},
+        {"BayerBG10", 0x0110000F, words, 10, "", false, "BG"},
+        {"BayerGR12", 0x01100010, words, 12, "", false, "GR"},
+        {"BayerRG12", 0x01100011, words, 12, "", false, "RG"},
+        {"BayerGB12", 0x01100012, words, 12, "", false, "GB"},
+        {"BayerBG12", 0x01100013, words, 12, "", false, "BG"},
+        {"RGB8", 0x02180014, bytes, 8, "", false, "RGB"},
+        {"BGR8", 0x02180015, bytes, 8, "", false, "BGR"},
         {"Coord3D_A8", 0x010800AF, bytes, 8, "A", false},
         {"Coord3D_A16", 0x011000B6, words, 16, "A", false},
         {"Coord3D_A32f", 0x012000BD, floats, 32, "A", false},
@@ -63,7 +79,8 @@ std::size_t image_bytes(const PixelFormat& format, int width, int height, std::s
 }
 
 Expected<StripeImage> unpack_image(const PixelFormat& format, std::span<const std::byte> payload, int width,
-                                   int height, std::size_t row_padding, std::vector<std::byte>& pixels) {
+                                   int height, std::size_t row_padding, std::vector<std::byte>& pixels,
+                                   ImageChannel channel) {
     const std::string where(format.name);
     if (format.is_range()) return device_error("holds coordinates, no grey values", where);
     if (width <= 0 || height <= 0 || width > 65536 || height > 65536) {
@@ -76,6 +93,8 @@ Expected<StripeImage> unpack_image(const PixelFormat& format, std::span<const st
             fmt::format("{} x {} pixels need {} bytes, only {} came", width, height, need, payload.size()),
             where);
     }
+    if (!format.colour.empty())
+        return unpack_colour(format, payload, width, height, row_padding, channel, pixels);
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
     const std::size_t row_out = w * (format.bit_depth > 8 ? 2 : 1);
     if (pixels.size() < row_out * h) pixels.resize(row_out * h);

@@ -18,6 +18,7 @@
 
 #include "core/error.h"
 #include "core/profile/stripe_image.h"
+#include "devices/exchange/image_file.h"
 
 namespace seamwright {
 
@@ -31,6 +32,9 @@ struct PixelFormat {
     // Coordinates of a point, in the order of the data ("AC"); empty: a grey value.
     std::string_view coordinates;
     bool planar = false;  // coordinates one after another, each a whole image
+    // "RGB", "BGR": components of a pixel; "RG", "GR", "GB", "BG": the first two of a Bayer mosaic. Empty:
+    // grey.
+    std::string_view colour = {};
     int bits_per_pixel() const { return static_cast<int>((code >> 16) & 0xFF); }
     bool is_range() const { return !coordinates.empty(); }
 };
@@ -51,9 +55,10 @@ void unpack_pixels(const PixelFormat& format, std::span<const std::byte> packed,
 void pack_pixels(const PixelFormat& format, const std::byte* pixels, std::size_t count, std::byte* out);
 
 // The image in `pixels` (grown when too small), ready for extraction. Error (device): a range format, sizes
-// that are not positive or beyond 65536, too few bytes.
+// that are not positive or beyond 65536, too few bytes. Of colour the `channel` (colour.h).
 Expected<StripeImage> unpack_image(const PixelFormat& format, std::span<const std::byte> payload, int width,
-                                   int height, std::size_t row_padding, std::vector<std::byte>& pixels);
+                                   int height, std::size_t row_padding, std::vector<std::byte>& pixels,
+                                   ImageChannel channel = ImageChannel::grey);
 
 // "Mono8, RGB8": what a camera offers, for sentences.
 std::string join_names(std::span<const std::string> names);

@@ -38,6 +38,7 @@ void read_row(const std::byte* x, const std::byte* z, std::size_t step, std::siz
 Expected<void> range_row(const PixelFormat& format, std::span<const std::byte> payload, int width, int height,
                          int row, std::size_t row_padding, const RangeMapping& mapping, Profile& profile) {
     const std::string where(format.name);
+    if (!format.colour.empty()) return device_error("holds colour, no coordinates", where);
     if (format.packing == Packing::lsb || format.packing == Packing::gige)
         return device_error("packed values are not read as a range image", where,
                             "set a pixel format of 8, 16 or 32 bit");

@@ -76,8 +76,9 @@ struct ServedCamera::Impl {
 void ServedCamera::Impl::deliver(const SimulatedCell::Waiting& exposure, const WireState& state) {
     const PixelFormat* format = pixel_format_by_code(state.pixel_format);
     const auto& optics = cell->settings().optics;
-    if (!format || format->is_range() || state.width < 1 || state.height < 1 || state.x < 0 || state.y < 0 ||
-        state.x + state.width > optics.width || state.y + state.height > optics.height)
+    if (!format || format->is_range() || !format->colour.empty() || state.width < 1 || state.height < 1 ||
+        state.x < 0 || state.y < 0 || state.x + state.width > optics.width ||
+        state.y + state.height > optics.height)
         return;  // registers that make no image: a client wrote past the description's bounds
     frame.status = FrameStatus::ok;
     cell->render(exposure.base_from_flange, exposure.number, frame);

@@ -104,7 +104,7 @@ std::size_t packed_bytes(const PixelFormat& format, std::size_t count) {
 
 void unpack_pixels(const PixelFormat& format, std::span<const std::byte> packed, std::size_t count,
                    std::byte* out) {
-    assert(!format.is_range() && packed.size() >= packed_bytes(format, count));
+    assert(!format.is_range() && format.colour.empty() && packed.size() >= packed_bytes(format, count));
     const auto in = reinterpret_cast<Bytes>(packed.data());
     std::size_t done = 0;
     switch (format.packing) {
@@ -130,7 +130,7 @@ void unpack_pixels(const PixelFormat& format, std::span<const std::byte> packed,
 }
 
 void pack_pixels(const PixelFormat& format, const std::byte* pixels, std::size_t count, std::byte* out) {
-    assert(!format.is_range());
+    assert(!format.is_range() && format.colour.empty());
     const auto value = [pixels](std::size_t i) {
         std::uint16_t word = 0;
         std::memcpy(&word, pixels + 2 * i, 2);

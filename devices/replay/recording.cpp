@@ -21,8 +21,13 @@ std::string lower(std::string s) {
     return s;
 }
 
+// In the order in which they count where a folder holds several.
+constexpr std::string_view kProfileExtensions[] = {".csv", ".tsv", ".npy", ".ply", ".pcd",
+                                                   ".asc", ".xyz", ".dat", ".txt"};
 bool is_profile_file(const fs::path& p) {
-    return lower(p.extension().string()) == ".csv";
+    const std::string extension = lower(p.extension().string());
+    return std::find(std::begin(kProfileExtensions), std::end(kProfileExtensions), extension) !=
+           std::end(kProfileExtensions);
 }
 bool is_image_file(const fs::path& p) {
     static const std::set<std::string> known = {".png", ".bmp", ".tif", ".tiff", ".pgm", ".jpg", ".jpeg"};
@@ -40,6 +45,12 @@ Expected<fs::path> inside(const fs::path& folder, const std::string& name, const
     return folder / relative;
 }
 
+// The name under which a table of all poses is found by itself.
+bool is_pose_table(const fs::path& p) {
+    const std::string name = lower(p.filename().string());
+    return name == "poses.csv" || name == "poses.txt" || name == "poses.ls" || name == "poses.json";
+}
+
 // The pose file that belongs to `file` by its name.
 std::optional<fs::path> pose_beside(const fs::path& file) {
     const std::string stem = file.stem().string();
@@ -55,7 +66,7 @@ std::optional<fs::path> pose_beside(const fs::path& file) {
             std::error_code ignored;
             fs::path candidate = s;
             candidate += extension;
-            if (fs::is_regular_file(candidate, ignored)) return candidate;
+            if (candidate != file && fs::is_regular_file(candidate, ignored)) return candidate;
         }
     }
     return std::nullopt;
@@ -171,13 +182,28 @@ Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, co
         std::error_code ignored;
         if (!it->is_regular_file(ignored)) continue;
         const fs::path& p = it->path();
-        if (is_profile_file(p)) profiles.push_back({p, p.stem().string(), std::nullopt, false});
-        if (is_image_file(p)) images.push_back({p, p.stem().string(), std::nullopt, true});
+        if (is_pose_table(p)) continue;
+        if (is_profile_file(p) &&
+            !(lower(p.extension().string()) == ".txt" && lower(p.stem().string()).starts_with("pose")))
+            profiles.push_back({p, p.stem().string(), std::nullopt, false, {}});
+        if (is_image_file(p)) images.push_back({p, p.stem().string(), std::nullopt, true, {}});
         if (profiles.size() + images.size() > kFrameLimit) {
             return input_error(fmt::format("holds more than {} frames", kFrameLimit), folder.string());
         }
     }
     if (problem) return file_error("cannot be listed (" + problem.message() + ")", folder.string());
+    // Of several kinds the first counts; text beside images is their poses.
+    for (const std::string_view extension : kProfileExtensions) {
+        const auto is = [&](const RecordedFrame& f) {
+            return lower(f.file.extension().string()) == extension;
+        };
+        if (std::none_of(profiles.begin(), profiles.end(), is)) continue;
+        if (!images.empty() && kind != "profiles" && extension != ".csv")
+            profiles.clear();
+        else
+            std::erase_if(profiles, [&](const RecordedFrame& f) { return !is(f); });
+        break;
+    }
     if (kind.empty() && !profiles.empty() && !images.empty()) {
         return input_error(
             "holds both profiles (.csv) and images", folder.string(),
@@ -218,28 +244,88 @@ bool natural_less(std::string_view a, std::string_view b) {
     return a < b;  // "a01" and "a1": any fixed order
 }
 
-Expected<std::vector<RecordedFrame>> list_recording(const fs::path& folder, const std::string& kind,
-                                                    bool poses_required) {
-    std::error_code ignored;
-    if (!fs::is_directory(folder, ignored)) {
-        return file_error("is no folder", folder.string(), "give the folder that holds the recorded frames");
+namespace {
+
+// The profiles of one file.
+Expected<std::vector<RecordedFrame>> frames_of_file(const fs::path& file, const RecordingLayout& layout,
+                                                    std::vector<std::string>* told) {
+    auto read = read_profiles(file, layout.profile);
+    if (!read) return tl::unexpected(read.error());
+    if (told) told->push_back(file.filename().string() + ": " + read->understood);
+    std::vector<RecordedFrame> frames;
+    for (ReadProfile& one : read->profiles) {
+        RecordedFrame frame;
+        frame.file = file;
+        frame.spot_id = read->profiles.size() == 1 ? file.stem().string() : fmt::format("{}", one.number);
+        if (one.y_mm.empty()) frame.profile = std::make_shared<const Profile>(std::move(one.profile));
+        frames.push_back(std::move(frame));
     }
-    const bool json = fs::exists(folder / "spots.json", ignored),
-               csv = fs::exists(folder / "frames.csv", ignored);
-    auto frames = json
-                      ? frames_of_json(folder, folder / "spots.json")
-                      : (csv ? frames_of_csv(folder, folder / "frames.csv") : frames_of_folder(folder, kind));
+    return frames;
+}
+
+// From one table, where there is one.
+Expected<bool> poses_from_table(const fs::path& folder, const RecordingLayout& layout,
+                                std::vector<RecordedFrame>& frames, std::vector<std::string>* told) {
+    std::optional<fs::path> path;
+    if (!layout.poses.empty()) {
+        path = fs::path(layout.poses).is_absolute() ? fs::path(layout.poses) : folder / layout.poses;
+    } else {
+        std::error_code ignored;
+        std::vector<fs::path> found;
+        for (auto it = fs::directory_iterator(folder, ignored); !ignored && it != fs::directory_iterator();
+             it.increment(ignored))
+            if (is_pose_table(it->path())) found.push_back(it->path());
+        std::sort(found.begin(), found.end());
+        if (!found.empty()) path = found.front();
+    }
+    if (!path) return false;
+    const auto table = read_pose_table(*path, layout.pose);
+    if (!table) return tl::unexpected(table.error());
+    // Frames that are profiles of one file have its numbers as names.
+    std::vector<std::string> names;
+    for (const RecordedFrame& frame : frames)
+        names.push_back(frame.profile && frame.file.stem() != frame.spot_id ? frame.spot_id
+                                                                            : frame.file.filename().string());
+    const auto poses = poses_of_frames(*table, names, path->string());
+    if (!poses) return tl::unexpected(poses.error());
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (!frames[i].base_from_flange) frames[i].base_from_flange = (*poses)[i];
+    if (told) told->push_back(path->filename().string() + ": " + table->understood);
+    return true;
+}
+
+}  // namespace
+
+Expected<std::vector<RecordedFrame>> list_recording(const fs::path& source, const std::string& kind,
+                                                    bool poses_required, const RecordingLayout& layout,
+                                                    std::vector<std::string>* told) {
+    std::error_code ignored;
+    const bool one_file = fs::is_regular_file(source, ignored) && is_profile_file(source);
+    if (!one_file && !fs::is_directory(source, ignored)) {
+        return file_error("is no folder", source.string(), "give the folder that holds the recorded frames");
+    }
+    const fs::path folder = one_file ? source.parent_path() : source;
+    const bool json = !one_file && fs::exists(folder / "spots.json", ignored),
+               csv = !one_file && fs::exists(folder / "frames.csv", ignored);
+    auto frames = one_file ? frames_of_file(source, layout, told)
+                  : json   ? frames_of_json(folder, folder / "spots.json")
+                  : csv    ? frames_of_csv(folder, folder / "frames.csv")
+                           : frames_of_folder(folder, kind);
     if (!frames) return frames;
     if (frames->empty()) {
         return input_error("holds no frames", folder.string(),
                            "profiles are .csv, images .png, .bmp, .tiff or .pgm");
     }
+    if (!json && !csv) {
+        const auto taken = poses_from_table(folder, layout, *frames, told);
+        if (!taken) return tl::unexpected(taken.error());
+    }
     std::size_t with_pose = 0;
     const RecordedFrame* missing = nullptr;
     for (RecordedFrame& frame : *frames) {
-        if (!frame.base_from_flange) {
+        if (!frame.base_from_flange && (!one_file || frames->size() == 1)) {
             if (const auto path = pose_beside(frame.file)) {
-                const auto pose = read_pose_file(*path);
+                const auto pose = read_frame_pose(*path, layout.pose);
                 if (!pose) return tl::unexpected(pose.error());
                 frame.base_from_flange = *pose;
             }

@@ -6,10 +6,15 @@
 //   ..]} frames.csv   header file,spot_id[,pose_file], one frame a row otherwise    every *.csv (profiles),
 //   or every *.png *.bmp *.tif *.tiff *.pgm *.jpg (images), in natural order
 //                (frame2 before frame10). The spot id is the file's name without extension.
-// Without a manifest, and where the manifest names no pose, the pose of frame0007.png is looked for as
-// frame0007.{json,txt,yaml,yml}, pose0007.{..} and poses/0007.{..} beside or one folder above it (pose_json.h
-// says what the formats mean). Either every frame has a pose or none: a folder where some are missing is an
-// Error, since a spot measured at an assumed pose would move a robot wrongly.
+// Where there are no CSVs, profiles are the files of the first of these kinds that is there: .tsv .npy .ply
+// .pcd .asc .xyz .dat .txt (profile_layout.h). A single file with several profiles stands for a folder: its
+// profiles are the frames, their spot ids the numbers that the file gives them ("3"), or its stem where there
+// is only one. A table of all poses (pose_table.h), named in the layout or called poses.{csv,txt,ls,json},
+// counts before pose files. Without a manifest, and where the manifest names no pose, the pose of
+// frame0007.png is looked for as frame0007.{json,txt,yaml,yml}, pose0007.{..} and poses/0007.{..} beside or
+// one folder above it (pose_json.h says what the formats mean). Either every frame has a pose or none: a
+// folder where some are missing is an Error, since a spot measured at an assumed pose would move a robot
+// wrongly.
 //
 // Names in a manifest must stay inside the folder. Files are opened only when replayed; one that cannot be
 // read gives a frame of status corrupt.
@@ -18,6 +23,7 @@
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,6 +32,7 @@
 
 #include "devices/device_session.h"
 #include "devices/profile_source.h"
+#include "devices/replay/recording_layout.h"
 #include "devices/robot_link.h"
 
 namespace seamwright {
@@ -34,15 +41,19 @@ struct RecordedFrame {
     std::filesystem::path file;
     std::string spot_id;
     std::optional<Pose> base_from_flange;
-    bool image = false;  // else a profile
+    bool image = false;                      // else a profile
+    std::shared_ptr<const Profile> profile;  // of a file with several: read with the list
 };
 
 // Less-than with runs of digits compared as numbers ("frame2" < "frame10").
 bool natural_less(std::string_view a, std::string_view b);
 
 // `kind`: "profiles", "images" or "" (either, but not both in one folder).
+// `told`, where given, becomes what was understood, a sentence each.
 Expected<std::vector<RecordedFrame>> list_recording(const std::filesystem::path& folder,
-                                                    const std::string& kind, bool poses_required);
+                                                    const std::string& kind, bool poses_required,
+                                                    const RecordingLayout& layout = {},
+                                                    std::vector<std::string>* told = nullptr);
 
 // What the replayed sensor and robot share. Thread-safe.
 //
@@ -86,7 +97,8 @@ class Recording {
 // Settings of sensor and robot, both with the same "folder" (those that name a "file": capture_replay.h):
 //   sensor {"folder": path, "loop": false, "rate_hz": 0 (as fast as asked), "kind": "profiles"|"images",
 //   "bit_depth": 0,
-//           "require_poses": false, "buffers": 16, "vendor": "", "model": "", "serial": folder's name}
+//           "layout": {} (recording_layout.h, alike in both), "require_poses": false, "buffers": 16,
+//           "vendor": "", "model": "", "serial": folder's name}
 //   robot  {"folder": path, "loop": false, "kind": .., "accept_frames": false, "frames": {name: POSE},
 //   "mode": "automatic",
 //           "brand": "", "model": "", "serial": folder's name}

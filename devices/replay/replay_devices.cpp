@@ -6,10 +6,8 @@
 #include <condition_variable>
 #include <thread>
 
-#include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/exchange/profile_csv.h"
 #include "devices/replay/capture_replay.h"
 #include "devices/replay/recording.h"
 #include "devices/silence.h"
@@ -28,6 +26,7 @@ struct ReplaySettings {
     std::filesystem::path folder;
     std::string kind, serial;
     bool loop = false, require_poses = false;
+    RecordingLayout layout;
 };
 
 Expected<ReplaySettings> common_settings(const nlohmann::json& json) {
@@ -53,13 +52,18 @@ Expected<ReplaySettings> common_settings(const nlohmann::json& json) {
     const auto serial = json_string_or(json, "serial", s.folder.filename().string(), "settings");
     if (!serial) return tl::unexpected(serial.error());
     s.serial = *serial;
+    if (json.contains("layout")) {
+        auto layout = parse_recording_layout(json["layout"], "settings.layout");
+        if (!layout) return tl::unexpected(layout.error());
+        s.layout = std::move(*layout);
+    }
     return s;
 }
 
 Expected<std::shared_ptr<Recording>> shared_recording(const ReplaySettings& s, DeviceSession& session) {
     const std::string key = "replay:" + s.folder.string();
     auto recording = session.shared<Recording>(key, [&]() -> Expected<std::shared_ptr<Recording>> {
-        auto frames = list_recording(s.folder, s.kind, s.require_poses);
+        auto frames = list_recording(s.folder, s.kind, s.require_poses, s.layout);
         if (!frames) return tl::unexpected(frames.error());
         return std::make_shared<Recording>(s.folder, std::move(*frames), s.loop);
     });
@@ -77,12 +81,13 @@ Expected<std::shared_ptr<Recording>> shared_recording(const ReplaySettings& s, D
 class ReplaySensor final : public ProfileSource {
   public:
     ReplaySensor(std::shared_ptr<Recording> recording, SensorIdentity identity, double rate_hz, int bit_depth,
-                 std::size_t buffers)
+                 std::size_t buffers, RecordingLayout layout)
         : recording_(std::move(recording)),
           identity_(std::move(identity)),
           rate_hz_(rate_hz),
           bit_depth_(bit_depth),
-          pool_(buffers) {}
+          pool_(buffers),
+          layout_(std::move(layout)) {}
 
     SensorIdentity identity() const override { return identity_; }
     Expected<void> start() override {
@@ -178,22 +183,12 @@ class ReplaySensor final : public ProfileSource {
     // A file that cannot be read, or has another size than the first image, gives a corrupt frame: counted,
     // never measured.
     void fill(const RecordedFrame& recorded, Frame& frame) {
-        frame.spot_id = recorded.spot_id;
-        frame.base_from_flange = recorded.base_from_flange;
-        if (!recorded.image) {
-            auto profile = read_profile_csv(recorded.file);
-            if (profile) {
-                profile->segment.clear();  // what a sensor delivers is not filtered
-                frame.profile = std::move(*profile);
-            } else {
-                frame.status = FrameStatus::corrupt;
-            }
-            return;
-        }
-        if (!read_image_file(recorded.file, frame, bit_depth_)) {
+        if (!read_recorded(recorded, layout_, bit_depth_, frame)) {
             frame.status = FrameStatus::corrupt;
             return;
         }
+        frame.profile.segment.clear();  // what a sensor delivers is not filtered
+        if (!recorded.image) return;
         const auto& image = frame.image;
         if (!first_)
             first_ = StripeImage{nullptr, image.width, image.height, image.row_bytes, image.bit_depth};
@@ -209,6 +204,7 @@ class ReplaySensor final : public ProfileSource {
     std::atomic<double> rate_hz_;
     int bit_depth_;
     FramePool pool_;
+    RecordingLayout layout_;
     std::atomic<bool> running_ = false;
     Clock::time_point due_{};           // of the next frame; only the thread of wait_next()
     std::optional<StripeImage> first_;  // size of the first image; only the thread of wait_next()
@@ -280,7 +276,7 @@ Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json
     if (settings.is_object() && settings.contains("file")) return open_capture_sensor(settings, session);
     if (auto ok = only_fields(settings,
                               {"folder", "loop", "rate_hz", "kind", "bit_depth", "require_poses", "buffers",
-                               "vendor", "model", "serial"},
+                               "layout", "vendor", "model", "serial"},
                               "settings");
         !ok) {
         return tl::unexpected(ok.error());
@@ -304,17 +300,17 @@ Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json
     if (!model) return tl::unexpected(model.error());
     auto recording = shared_recording(*common, session);
     if (!recording) return tl::unexpected(recording.error());
-    return std::make_unique<ReplaySensor>(*recording,
-                                          SensorIdentity{"replay", *vendor, *model, common->serial}, *rate,
-                                          static_cast<int>(*depth), static_cast<std::size_t>(*buffers));
+    return std::make_unique<ReplaySensor>(
+        *recording, SensorIdentity{"replay", *vendor, *model, common->serial}, *rate,
+        static_cast<int>(*depth), static_cast<std::size_t>(*buffers), common->layout);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& settings,
                                                        DeviceSession& session) {
     if (settings.is_object() && settings.contains("file")) return open_capture_robot(settings, session);
     if (auto ok = only_fields(settings,
-                              {"folder", "loop", "kind", "require_poses", "accept_frames", "frames", "mode",
-                               "brand", "model", "serial"},
+                              {"folder", "loop", "kind", "require_poses", "layout", "accept_frames", "frames",
+                               "mode", "brand", "model", "serial"},
                               "settings");
         !ok) {
         return tl::unexpected(ok.error());

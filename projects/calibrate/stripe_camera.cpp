@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <tuple>
 
 #include "core/calibration/camera.h"
+#include "core/profile/peaks.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
@@ -216,6 +219,36 @@ Expected<BoardSpec> parse_board_json(const json& value, const std::string& where
     return spec;
 }
 
+namespace {
+
+// Of a colour picture the stripe in the channel that shows it best; the plate is found in grey. nullopt: grey
+// does.
+using Stripe = std::pair<ScanLines, std::vector<Eigen::Vector2d>>;
+Expected<std::optional<Stripe>> stripe_in_colour(const fs::path& path) {
+    const auto choice = choose_channel(path);
+    if (!choice) return tl::unexpected(choice.error());
+    if (!choice->colour || choice->channel == ImageChannel::grey) return std::nullopt;
+    Frame frame;
+    if (auto read = read_image_file(path, frame, 0, choice->channel); !read)
+        return tl::unexpected(read.error());
+    PeakOptions options;
+    const auto scan = guess_scan_lines(frame.image);
+    if (!scan) return tl::unexpected(scan.error());
+    options.scan = *scan;
+    StripePeaks peaks;
+    if (auto found = find_peaks(frame.image, options, peaks); !found) return tl::unexpected(found.error());
+    Stripe stripe{*scan, {}};
+    for (int line = 0; line < peaks.lines; ++line)
+        for (int k = 0; k < peaks.count[static_cast<std::size_t>(line)]; ++k) {
+            const auto i = static_cast<std::size_t>(peaks.index(line, k));
+            if (!(peaks.flags[i] & StripePeaks::kTruncated))
+                stripe.second.push_back(pixel_of(*scan, line, peaks.position_px[i]));
+        }
+    return stripe;
+}
+
+}  // namespace
+
 Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardSpec& spec) {
     Frame frame;
     if (auto read = read_image_file(path, frame); !read)
@@ -231,7 +264,12 @@ Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardS
         return tl::unexpected(std::move(error));
     }
     f.base_from_flange = *pose;
-    return observe(f, spec);
+    StripeObservation o = observe(f, spec);
+    if (auto stripe = stripe_in_colour(path); !stripe)
+        return tl::unexpected(stripe.error());
+    else if (*stripe)
+        std::tie(o.scan, o.stripe) = std::move(**stripe);
+    return o;
 }
 
 Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& directory,

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/profile/units.h"
+#include "devices/replay/recording_layout.h"
 #include "projects/file/project_file.h"
 
 namespace seamwright {
@@ -37,11 +39,21 @@ struct FolderImport {
     FeatureRecipe feature;             // used at every spot
     std::optional<SensorModel> model;  // for images; absent = measured in pixels
     Verdict calibration_verdict = Verdict::undetermined;  // with `model` or for profiles
+    // A calibration that was stored or solved before: its model, its place on the flange, covariance and
+    // verdict count, and `model`, `calibration_verdict` and `flange_from_sensor` do not.
+    std::optional<Calibration> calibration;
     Pose flange_from_sensor = Pose::Identity();
     Pose base_from_workobject = Pose::Identity();
     PeakOptions peaks;
     FilterOptions filter;
-    double sigma_mm = 0.05;
+    RecordingLayout layout;  // what the files do not say themselves; a named unit is believed
+    // Kind template: the taught profile is that of the reference frame, its piece these x (absent: all of
+    // it), its landmark this point (absent: the piece's middle).
+    std::optional<Eigen::Vector2d> piece_x_mm, template_reference_mm;
+    // A robot that repeats to 0.1 mm (ISO 9283: three sigma) puts a coordinate there with 0.03; a region
+    // whose spots are spread soundly then keeps its sigma limit below.
+    double sigma_mm = 0.03;
+    double sigma_limit_mm = 0.1;
     CorrectionLimits limits{25.0, 3.0};
 };
 
@@ -49,10 +61,34 @@ struct FolderImportResult {
     Project project;
     bool in_pixels = false;          // no calibration: one pixel counts as one unit, nothing can be pushed
     std::vector<std::string> notes;  // spots without feature, frames without pose, ...
+    std::vector<std::string> understood;  // how the files were read, a sentence each
 };
 
+// What a recording is, before anything is made of it.
+struct RecordingLook {
+    struct File {
+        std::string name, spot_id;
+        std::string understood;  // or why it cannot be read
+        bool readable = false, image = false;
+        ProfileScale scale;
+        std::vector<Eigen::Vector2d> first;        // points
+        int width = 0, height = 0, bit_depth = 0;  // of an image
+        std::optional<ChannelChoice> channel;
+        std::optional<Pose> base_from_flange;
+    };
+    std::vector<File> files;              // the first `most`
+    std::size_t frames = 0;               // in all
+    std::vector<std::string> understood;  // of poses and of files with several profiles
+    std::string problem;                  // why there are no poses or no frames
+};
+// Error: there is no such folder or file, or nothing in it.
+Expected<RecordingLook> look_at_recording(const std::filesystem::path& source, const RecordingLayout& layout,
+                                          std::size_t most = 5);
+
 // One spot per frame (id = file stem), one region of all spots, sensor and robot of the driver `replay` on
-// the folder. References come from the reference folder, by equal stem.
+// the folder. References come from the reference folder, by equal stem. Error (input) besides what the files
+// give: a unit that must be said, a calibration of another image size or without a place on the flange, a
+// piece without points.
 Expected<FolderImportResult> import_folder(const FolderImport& options);
 
 }  // namespace seamwright

@@ -18,6 +18,9 @@ Expected<Retaught> after_exchange(const Project& project, const Exchange& exchan
     if (before == project.calibrations.end())
         return input_error("its spots were taught without a calibration, so that nobody knows where it stood",
                            where, "teach them again");
+    if (before->method == "pixels")
+        return input_error("its spots were taught in pixels, so that their references are no millimetres",
+                           where, "import the recording again with --calibration");
     if (after == project.calibrations.end())
         return input_error("there is no calibration \"" + exchange.calibration_id + "\"", where,
                            "calibrate the new sensor first");

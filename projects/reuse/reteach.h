@@ -35,8 +35,8 @@ struct Retaught {
 };
 
 // Error (input): unknown sensor or calibration, one of another sensor, a verdict that may not be used, a
-// sensor without a calibration in use until now, a new work object while other sensors' spots would stay
-// behind.
+// sensor without a calibration in use until now or taught in pixels, a new work object while other sensors'
+// spots would stay behind.
 Expected<Retaught> after_exchange(const Project& project, const Exchange& exchange);
 
 }  // namespace seamwright

@@ -870,8 +870,12 @@
         <translation>die Laserpunkte erstrecken sich über %1 mm, das sieht nach Mikrometern aus</translation>
     </message>
     <message>
-        <source>the points stand %1 mm apart and span %2 mm, which looks like metres</source>
-        <translation>die Punkte liegen %1 mm auseinander und erstrecken sich über %2 mm, das sieht nach Metern aus</translation>
+        <source>%1, which looks like %2</source>
+        <translation>%1, das sieht nach %2 aus</translation>
+    </message>
+    <message>
+        <source>%1 x %2 of %3 bit and %4 x %5 of %6 bit are no pair</source>
+        <translation>%1 x %2 mit %3 Bit und %4 x %5 mit %6 Bit sind kein Paar</translation>
     </message>
     <message>
         <source>the id of a %1 is longer than %2 bytes</source>
@@ -4384,6 +4388,26 @@
     <message>
         <source>there is no calibration &quot;%1&quot;</source>
         <translation>es gibt keine Kalibrierung „%1“</translation>
+    </message>
+    <message>
+        <source>its spots were taught in pixels, so that their references are no millimetres</source>
+        <translation>seine Stellen wurden in Pixeln gelehrt, die Bezüge sind also keine Millimeter</translation>
+    </message>
+    <message>
+        <source>holds colour, no coordinates</source>
+        <translation>enthält Farbe, keine Koordinaten</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; is no channel</source>
+        <translation>„%1“ ist kein Kanal</translation>
+    </message>
+    <message>
+        <source>give grey, red, green, blue or red-difference</source>
+        <translation>grey, red, green, blue oder red-difference angeben</translation>
+    </message>
+    <message>
+        <source>import the recording again with --calibration</source>
+        <translation>die Aufzeichnung mit --calibration neu importieren</translation>
     </message>
     <message>
         <source>calibrate the new sensor first</source>

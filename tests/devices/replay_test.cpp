@@ -211,7 +211,7 @@ TEST(Replay, ImagesAndTheirFaults) {
 
 TEST(Replay, HostileProfilesAreCorruptFrames) {
     const TemporaryFolder folder;
-    folder.write("1.csv", "x_mm;z_mm\n1;2\n");
+    folder.write("1.csv", "x_mm;z_mm\n1;two\n");
     folder.write("2.csv", "");
     folder.write("3.csv", profile_text(3));
     std::filesystem::create_directories(folder.path() / "4.csv");

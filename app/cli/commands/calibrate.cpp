@@ -9,6 +9,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/calibrate/answer.h"
+#include "projects/calibrate/example.h"
 #include "projects/calibrate/methods.h"
 #include "projects/calibrate/report_page.h"
 #include "projects/file/project_file.h"
@@ -21,7 +22,7 @@ using nlohmann::json;
 using Exclude = std::vector<std::string>;
 
 struct CalibrateArguments {
-    std::string data, board, pattern = "chessboard", report, project, sensor, table;
+    std::string data, board, pattern = "chessboard", report, project, sensor, table, example;
     double pitch_mm = 0;
     Exclude exclude;
 };
@@ -113,16 +114,28 @@ Expected<std::string> store(const CalibrateArguments& a, const Method& method, c
     return c.id;
 }
 
+// A parameter that was not solved for has no uncertainty of its own.
+std::string sigma_text(const json& sigma) {
+    if (!sigma.is_number()) return "";
+    return sigma.get<double>() == 0 ? "fixed" : fmt::format("± {:.2g}", sigma.get<double>());
+}
+
 std::string text_of(const Method& method, const json& r) {
     std::string text =
         fmt::format("{}: {}. {}\n", method.name, r.value("verdict", ""), r.value("reason", ""));
     if (!r.value("cure", "").empty()) text += "cure: " + r.value("cure", "") + "\n";
     for (const json& p : r.value("parameters", json::array()))
         if (p["value"].is_number())
-            text += fmt::format(
-                "  {:<12} {:>14.6g} {} {}\n", p["name"].get<std::string>(), p["value"].get<double>(),
-                p["sigma"].is_number() ? fmt::format("± {:.2g}", p["sigma"].get<double>()) : "",
-                p["unit"].get<std::string>());
+            text +=
+                fmt::format("  {:<12} {:>14.6g} {} {}\n", p["name"].get<std::string>(),
+                            p["value"].get<double>(), sigma_text(p["sigma"]), p["unit"].get<std::string>());
+    if (const auto plane = r.find("laser_plane"); plane != r.end() && plane->is_object()) {
+        const json& n = (*plane)["normal"];
+        text +=
+            fmt::format("  laser plane in the camera: normal {:.5f}, {:.5f}, {:.5f}, distance {:.3f} mm\n",
+                        n[0].get<double>(), n[1].get<double>(), n[2].get<double>(),
+                        (*plane)["distance_mm"].get<double>());
+    }
     for (const json& p : r.value("per_pose", json::array())) {
         text += "  " + p["id"].get<std::string>();
         for (const char* key : {"rms_mm", "deg", "rms_px"})
@@ -136,6 +149,20 @@ std::string text_of(const Method& method, const json& r) {
 }
 
 Expected<Answer> calibrate(const Method& method, const CalibrateArguments& a) {
+    if (!a.example.empty()) {
+        auto data = calibration_example(method.name);
+        if (!data) return tl::unexpected(data.error());
+        if (auto written = write_text_file(a.example, data->dump(1) + "\n"); !written)
+            return tl::unexpected(written.error());
+        Answer answer;
+        answer.json = {{"status", "ok"}, {"file", a.example}};
+        answer.text = fmt::format("{} written; solve it with: seamwright calibrate {} {}\n", a.example,
+                                  method.name, a.example);
+        return answer;
+    }
+    if (a.data.empty())
+        return usage_error("the data are missing", "calibrate " + std::string(method.name),
+                           "give them, or see their layout with --help and --example FILE.json");
     if (a.project.empty() != a.sensor.empty())
         return usage_error("--store and --sensor belong together", "calibrate");
     json data;
@@ -169,13 +196,21 @@ void add_calibrate(CommandLine& line) {
         "  seamwright calibrate stripe-camera images --board 7x6 --pitch-mm 10 --report report.html");
     for (const Method& method : kMethods) {
         auto a = std::make_shared<CalibrateArguments>();
-        CLI::App* command = line.add(*group, method.name, method.help,
-                                     fmt::format("seamwright calibrate {} {}", method.name, method.example));
+        CLI::App* command =
+            line.add(*group, method.name, method.help,
+                     fmt::format("seamwright calibrate {0} {1}\n  seamwright calibrate {0} "
+                                 "--example {0}.json\nLayout of DATA.json (? = optional; POSE = "
+                                 "{{\"xyz\":[mm],\"abc\":[deg]}} or "
+                                 "{{\"matrix\":[16]}}):\n  {2}",
+                                 method.name, method.example, calibration_layout(method.name)));
         command
             ->add_option("data", a->data,
                          method.images ? "Folder of images (with pose files), or JSON" : "The data (JSON)")
-            ->required()
             ->type_name(method.images ? "DIR|DATA.json" : "DATA.json");
+        command
+            ->add_option("--example", a->example,
+                         "Write data as this method takes them, to look at and to try, and solve nothing")
+            ->type_name("FILE.json");
         command->add_option("--exclude", a->exclude, "Leave these poses out of the solution")
             ->delimiter(',')
             ->type_name("ID,..");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/cli/command.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/files.h"
@@ -10,8 +12,10 @@
 namespace seamwright::cli {
 namespace {
 
+constexpr float kStep_px = 3;  // of a stripe from one line to the next
+
 struct ExtractArguments {
-    std::string image, out, method = "centre-of-gravity";
+    std::string image, off, out, method = "centre-of-gravity", channel = "automatic";
     bool rows = false, columns = false;
     PeakOptions options;
 };
@@ -23,8 +27,19 @@ Expected<Answer> extract(ExtractArguments a) {
         a.options.method = PeakMethod::gaussian;
     else
         a.options.method = PeakMethod::steger;
+    auto choice = choose_channel(a.image);
+    if (!choice) return tl::unexpected(choice.error());
+    const ImageChannel channel = a.channel == "automatic" ? choice->channel : *image_channel(a.channel);
     Frame frame;
-    if (auto read = read_image_file(a.image, frame); !read) return tl::unexpected(read.error());
+    if (auto read = read_image_file(a.image, frame, 0, channel); !read) return tl::unexpected(read.error());
+    if (!a.off.empty()) {
+        Frame off;
+        if (auto read = read_image_file(a.off, off, 0, channel); !read) return tl::unexpected(read.error());
+        if (auto taken = subtract_image(frame, off); !taken) {
+            taken.error().where = a.off;
+            return tl::unexpected(taken.error());
+        }
+    }
     if (a.rows) {
         a.options.scan = ScanLines::rows;
     } else if (!a.columns) {
@@ -35,9 +50,13 @@ Expected<Answer> extract(ExtractArguments a) {
     StripePeaks peaks;
     if (auto found = find_peaks(frame.image, a.options, peaks); !found) return tl::unexpected(found.error());
     std::string csv = "index,position_px,intensity,width_px,peak\n";
-    int lines_with_stripe = 0;
+    int lines_with_stripe = 0, lines_going_on = 0;
     for (int line = 0; line < peaks.lines; ++line) {
         if (peaks.count[line]) ++lines_with_stripe;
+        if (line > 0 && peaks.count[line] && peaks.count[line - 1] &&
+            std::abs(peaks.position_px[peaks.index(line, 0)] - peaks.position_px[peaks.index(line - 1, 0)]) <=
+                kStep_px)
+            ++lines_going_on;
         for (int k = 0; k < peaks.count[line]; ++k) {
             const int i = peaks.index(line, k);
             fmt::format_to(std::back_inserter(csv), "{},{:.4f},{:.1f},{:.3f},{}\n", line,
@@ -51,10 +70,29 @@ Expected<Answer> extract(ExtractArguments a) {
                    {"scan", scan},
                    {"lines", peaks.lines},
                    {"lines_with_stripe", lines_with_stripe},
+                   {"lines_going_on", lines_going_on},
+                   {"colour", choice->colour},
+                   {"channel", to_string(channel)},
                    {"width", frame.image.width},
                    {"height", frame.image.height},
                    {"bit_depth", frame.image.bit_depth}};
-    answer.text = fmt::format("{} of {} {} show the stripe\n", lines_with_stripe, peaks.lines, scan);
+    answer.text =
+        fmt::format("{} of {} {} have a peak, {} of them beside that of the {} before\n", lines_with_stripe,
+                    peaks.lines, scan, lines_going_on, peaks.scan == ScanLines::rows ? "row" : "column");
+    if (choice->colour) answer.text += fmt::format("colour: read in {}\n", to_string(channel));
+    std::vector<std::string> warnings;
+    if (choice->colour && channel == ImageChannel::grey && choice->channel != ImageChannel::grey)
+        warnings.push_back(
+            fmt::format("colour is folded to grey; in {} a line goes on over {:.0f} % of the lines, in "
+                        "grey over {:.0f} %",
+                        to_string(choice->channel), 100 * choice->share, 100 * choice->share_grey));
+    if (lines_with_stripe > 0 && 2 * lines_going_on < lines_with_stripe)
+        warnings.push_back(
+            "the strongest peaks jump from line to line: they may be no laser stripe (--channel, "
+            "--laser-off, "
+            "--threshold)");
+    for (const std::string& w : warnings) answer.text += "warning: " + w + "\n";
+    answer.json["warnings"] = warnings;
     answer.exit_code = lines_with_stripe ? kExitOk : kExitVerdict;
     return answer;
 }
@@ -84,6 +122,15 @@ void add_extract(CommandLine& line) {
         ->capture_default_str();
     command->add_option("--threshold", a->options.threshold, "Grey value above background; 0 = automatic")
         ->capture_default_str();
+    command
+        ->add_option(
+            "--channel", a->channel,
+            "Colour images: grey, red, green, blue, red-difference (R - (G+B)/2), or automatic: in which a "
+            "thin bright line stands out best")
+        ->check(CLI::IsMember({"automatic", "grey", "red", "green", "blue", "red-difference"}))
+        ->capture_default_str();
+    command->add_option("--laser-off", a->off, "The same place with the laser off: taken away from IMAGE")
+        ->type_name("IMAGE");
     line.on(command, [a] { return extract(*a); });
 }
 

@@ -21,12 +21,12 @@ namespace seamwright::cli {
 namespace {
 
 // --unit: what the numbers of the file are in. Empty: millimetres, unless they look otherwise.
-double mm_of_unit(const std::string& unit) {
-    return unit == "m" ? 1000 : unit == "um" ? 1e-3 : 1;
+double mm_of(const std::string& unit) {
+    return mm_of_unit(unit).value_or(1);
 }
 void convert_to_mm(Profile& profile, const std::string& unit) {
     for (auto* column : {&profile.x_mm, &profile.z_mm})
-        for (double& value : *column) value *= mm_of_unit(unit);
+        for (double& value : *column) value *= mm_of(unit);
 }
 Expected<void> check_unit(const Profile& profile, const std::string& file, const std::string& unit) {
     if (!unit.empty()) return {};
@@ -36,8 +36,9 @@ Expected<void> check_unit(const Profile& profile, const std::string& file, const
 }
 void add_unit(CLI::App* command, std::string& unit) {
     command
-        ->add_option("--unit", unit, "What lengths in the profiles are in: mm (as the header says), m or um")
-        ->check(CLI::IsMember({"mm", "m", "um"}));
+        ->add_option("--unit", unit,
+                     "What lengths in the profiles are in: mm (as the header says), m, um or in (inches)")
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(kLengthUnits), std::end(kLengthUnits))));
 }
 
 Expected<Profile> read_in_unit(const std::string& file, const std::string& unit, NoReturnOption& invalid) {
@@ -234,7 +235,7 @@ Expected<Answer> align(AlignArguments& a) {
         a.invalid.apply(p.profile, file);
         if (auto ok = check_unit(p.profile, file, unit); !ok) return tl::unexpected(ok.error());
         convert_to_mm(p.profile, unit);
-        p.travel_mm *= mm_of_unit(unit);
+        p.travel_mm *= mm_of(unit);
     }
     for (TravelProfile& p : *pass)
         if (auto done = filter_profile(p.profile, FilterOptions{}); !done)

@@ -1,4 +1,4 @@
-// seamwright new, info, check, export, import: project files.
+// seamwright new, info, check, export, mirror: project files.
 
 #include <fmt/format.h>
 
@@ -7,12 +7,9 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
-#include "app/cli/feature_setting.h"
 #include "app/cli/recording.h"
 #include "app/cli/result_json.h"
 #include "devices/exchange/files.h"
-#include "devices/exchange/json_fields.h"
-#include "devices/exchange/pose_json.h"
 #include "projects/file/project_file.h"
 #include "projects/proof/checklist.h"
 #include "projects/reuse/exchange.h"
@@ -217,83 +214,6 @@ Expected<Answer> export_command(const ExportArguments& a) {
     return answer;
 }
 
-struct ImportArguments {
-    std::string file, source, reference, kind = "contour-end", flange_from_sensor, base_from_workobject;
-    std::vector<std::string> set;
-    bool rows = false, columns = false, replace = false;
-    double sigma_mm = 0.05;
-};
-
-Expected<Pose> read_pose_argument(const std::string& argument, const std::string& where) {
-    if (argument.empty()) return Pose::Identity();
-    std::string text = argument;
-    if (text.find('{') == std::string::npos) {
-        auto read = read_text_file(argument);
-        if (!read) return tl::unexpected(read.error());
-        text = *read;
-    }
-    auto document = parse_json(text, where);
-    if (!document) return tl::unexpected(document.error());
-    return parse_pose(*document, where);
-}
-
-Expected<Answer> import_command(const ImportArguments& a) {
-    Project project;
-    std::vector<std::string> notes;
-    bool in_pixels = false;
-    if (fs::is_directory(a.source)) {
-        FolderImport options;
-        options.folder = a.source;
-        if (!a.reference.empty()) options.reference_folder = a.reference;
-        options.project_name = fs::path(a.file).stem().string();
-        options.feature.kind = a.kind;
-        auto kind = find_feature_kind(a.kind);
-        if (!kind) return tl::unexpected(kind.error());
-        for (const std::string& entry : a.set) {
-            auto value = feature_setting(**kind, entry);
-            if (!value) return tl::unexpected(value.error());
-            options.feature.parameters[value->first] = value->second;
-        }
-        auto flange = read_pose_argument(a.flange_from_sensor, "--flange-from-sensor");
-        if (!flange) return tl::unexpected(flange.error());
-        options.flange_from_sensor = *flange;
-        auto base = read_pose_argument(a.base_from_workobject, "--base-from-workobject");
-        if (!base) return tl::unexpected(base.error());
-        options.base_from_workobject = *base;
-        options.sigma_mm = a.sigma_mm;
-        if (a.rows) options.peaks.scan = ScanLines::rows;
-        if (a.columns) options.peaks.scan = ScanLines::columns;
-        if (!a.flange_from_sensor.empty()) options.calibration_verdict = Verdict::usable;
-        auto imported = import_folder(options);
-        if (!imported) return tl::unexpected(imported.error());
-        project = std::move(imported->project);
-        notes = std::move(imported->notes);
-        in_pixels = imported->in_pixels;
-    } else {
-        auto text = read_text_file(a.source);
-        if (!text) return tl::unexpected(text.error());
-        auto document = parse_json(*text, a.source);
-        if (!document) return tl::unexpected(document.error());
-        auto imported = import_project(*document);
-        if (!imported) return tl::unexpected(imported.error());
-        project = std::move(*imported);
-    }
-    auto file = ProjectFile::create(a.file, project, a.replace);
-    if (!file) return tl::unexpected(file.error());
-    Answer answer;
-    answer.json = {{"status", "ok"},
-                   {"file", a.file},
-                   {"spots", project.spots.size()},
-                   {"regions", project.regions.size()},
-                   {"in_pixels", in_pixels},
-                   {"notes", notes}};
-    answer.text =
-        fmt::format("{} created: {} spots, {} regions{}\n", a.file, project.spots.size(),
-                    project.regions.size(), in_pixels ? ", measured in pixels (no calibration)" : "");
-    for (const std::string& note : notes) answer.text += "  " + note + "\n";
-    return answer;
-}
-
 struct MirrorArguments {
     std::string file, plane, out;
     double offset_mm = 0;
@@ -379,40 +299,6 @@ void add_project_commands(CommandLine& line) {
             ->capture_default_str();
         command->add_option("--run", a->run, "Which run (default: the last)");
         line.on(command, [a] { return export_command(*a); });
-    }
-    {
-        auto a = std::make_shared<ImportArguments>();
-        CLI::App* command = line.add(
-            "import",
-            "A project from exported JSON, or from a folder of profiles or camera images with robot poses.",
-            "seamwright import door.seam --from recorded/car7 --reference recorded/master \\\n"
-            "      --flange-from-sensor '{\"xyz\":[0,0,120],\"abc\":[0,0,0]}' --kind contour-end --set "
-            "side=right\n"
-            "  then: seamwright run door.seam");
-        command->add_option("file", a->file, "The project to create")->required()->type_name("FILE.seam");
-        command->add_option("--from", a->source, "FILE.json of `export`, or a folder")
-            ->required()
-            ->type_name("FILE.json|DIR");
-        command
-            ->add_option("--reference", a->reference,
-                         "Folder recorded on the taught part (default: --from itself)")
-            ->type_name("DIR");
-        command->add_option("--kind", a->kind, "Feature kind of every spot")->capture_default_str();
-        command->add_option("--set", a->set, "Setting of the feature, NAME=VALUE; may be repeated")
-            ->type_name("NAME=VALUE");
-        command
-            ->add_option("--flange-from-sensor", a->flange_from_sensor,
-                         "Sensor on the flange: POSE or a file holding one")
-            ->type_name("POSE");
-        command
-            ->add_option("--base-from-workobject", a->base_from_workobject, "Work object in the robot's base")
-            ->type_name("POSE");
-        command->add_option("--sigma-mm", a->sigma_mm, "Standard deviation of a measured coordinate")
-            ->capture_default_str();
-        auto* rows = command->add_flag("--rows", a->rows, "Images: one cut per row");
-        command->add_flag("--columns", a->columns, "Images: one cut per column")->excludes(rows);
-        command->add_flag("--replace", a->replace, "Replace an existing project file");
-        line.on(command, [a] { return import_command(*a); });
     }
     {
         auto a = std::make_shared<MirrorArguments>();

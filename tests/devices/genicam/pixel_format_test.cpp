@@ -102,8 +102,63 @@ TEST(PixelFormat, ImagesWithPaddingAndTooFewBytes) {
     EXPECT_FALSE(unpack_image(f, payload, 0, 2, 0, pixels));
     EXPECT_FALSE(unpack_image(f, payload, 70000, 2, 0, pixels));
     EXPECT_FALSE(unpack_image(*pixel_format_by_name("Coord3D_C16"), payload, 2, 2, 0, pixels));
-    EXPECT_EQ(pixel_format_by_name("RGB8"), nullptr);
-    EXPECT_EQ(pixel_format_by_code(0x02180014), nullptr);
+    EXPECT_EQ(pixel_format_by_name("YUV422_8"), nullptr);
+    EXPECT_EQ(pixel_format_by_code(0x02100032), nullptr);
+}
+
+// A red line in white light: in the red difference it stands alone and in its place, in every colour format.
+TEST(PixelFormat, ColourCamerasShowTheLaserInTheRedDifference) {
+    constexpr int kWidth = 32, kHeight = 24;
+    const auto red = [](int y) { return 90 * std::exp(-0.5 * std::pow((y - 11.3) / 2.0, 2)); };
+    for (const char* name :
+         {"RGB8", "BGR8", "BayerRG8", "BayerGR8", "BayerGB8", "BayerBG8", "BayerRG10", "BayerBG12"}) {
+        SCOPED_TRACE(name);
+        const PixelFormat* format = pixel_format_by_name(name);
+        ASSERT_NE(format, nullptr);
+        const std::string pattern =
+            std::string(name).starts_with("Bayer") ? std::string(name).substr(5, 2) : "";
+        const double white = 80;
+        std::vector<std::byte> payload;
+        const auto put = [&](double value) {
+            const int v = static_cast<int>(value);
+            payload.push_back(static_cast<std::byte>(v & 0xFF));
+            if (format->bit_depth > 8) payload.push_back(static_cast<std::byte>(v >> 8));
+        };
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                if (pattern.empty()) {
+                    for (const char c : std::string(name).substr(0, 3)) put(white + (c == 'R' ? red(y) : 0));
+                    continue;
+                }
+                // The mosaic's two rows, written out: the second row of RG is GB, of GR BG, of GB RG, of BG
+                // GR.
+                const std::string below = pattern == "RG"   ? "GB"
+                                          : pattern == "GR" ? "BG"
+                                          : pattern == "GB" ? "RG"
+                                                            : "GR";
+                const char c = (y % 2 ? below : pattern)[static_cast<std::size_t>(x % 2)];
+                put(white + (c == 'R' ? red(y) : 0));
+            }
+        std::vector<std::byte> pixels;
+        const auto image =
+            unpack_image(*format, payload, kWidth, kHeight, 0, pixels, ImageChannel::red_difference);
+        ASSERT_TRUE(image) << image.error().sentence();
+        EXPECT_EQ(image->bit_depth, format->bit_depth);
+        for (const int x : {8, 9, 15}) {
+            double sum = 0, moment = 0;
+            for (int y = 2; y < kHeight - 2; ++y) {
+                const std::size_t at = static_cast<std::size_t>(y) * image->row_bytes +
+                                       static_cast<std::size_t>(x * image->bytes_per_pixel());
+                const double v =
+                    std::to_integer<int>(pixels[at]) +
+                    (image->bytes_per_pixel() == 2 ? std::to_integer<int>(pixels[at + 1]) << 8 : 0);
+                sum += v, moment += v * y;
+            }
+            EXPECT_GT(sum, 300);
+            EXPECT_NEAR(moment / sum, 11.3, 0.1) << x;
+        }
+        EXPECT_FALSE(unpack_image(*format, std::span(payload).first(100), kWidth, kHeight, 0, pixels));
+    }
 }
 
 template <class T>

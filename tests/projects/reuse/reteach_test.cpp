@@ -23,6 +23,16 @@ Calibration another(const Project& project, const Pose& offset) {
     return c;
 }
 
+TEST(Reteach, WhatWasTaughtInPixelsIsNotLedToMillimetres) {
+    Project project = sample_project();
+    project.calibrations.push_back(another(project, make_pose(rotation_exp({0, 3, 0}), {500, -3, 200})));
+    project.calibrations[0].method = "pixels";
+    const auto refused = after_exchange(project, {"A", "C2", {}});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::input);
+    EXPECT_THAT(refused.error().sentence(), testing::HasSubstr("taught in pixels"));
+}
+
 TEST(Reteach, TheSensorStandsWhereItStood) {
     Project project = sample_project();
     project.calibrations.push_back(another(project, make_pose(rotation_exp({0.1, -0.05, 0.2}), {5, -3, 12})));

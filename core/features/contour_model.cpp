@@ -47,7 +47,6 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
     double sigma = 0;
     for (int pass = 0; pass < 3; ++pass) {
         scratch.clear();
-        double chord = 0;
         for (std::size_t i = 2; i + 2 < n; ++i) {
             const std::size_t a = i > reach ? i - reach : 0, b = std::min(i + reach, n - 1);
             const double tx = x[b] - x[a], tz = z[b] - z[a];
@@ -62,10 +61,10 @@ double contour_noise_mm(std::span<const double> x, std::span<const double> z, st
         scratch.clear();
         for (std::size_t i = 0; i + 2 * reach < n; ++i)
             scratch.push_back(std::hypot(x[i + 2 * reach] - x[i], z[i + 2 * reach] - z[i]));
-        chord = median(scratch);
+        const double chord = median(scratch);
         if (chord >= 12 * sigma || 2 * reach >= std::min(kLongest, n / 4)) break;
-        reach = std::min({static_cast<std::size_t>(std::ceil(12 * sigma / chord * double(reach))), kLongest / 2,
-                          std::max<std::size_t>(2, n / 8)});
+        reach = std::min({static_cast<std::size_t>(std::ceil(12 * sigma / chord * double(reach))),
+                          kLongest / 2, std::max<std::size_t>(2, n / 8)});
     }
     return sigma;
 }

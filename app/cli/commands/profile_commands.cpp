@@ -15,7 +15,7 @@
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
 #include "devices/exchange/profile_csv.h"
-#include "projects/project_file.h"
+#include "projects/file/project_file.h"
 
 namespace seamwright::cli {
 namespace {

@@ -103,23 +103,22 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors", "the contour may slide along itself: the template needs an edge or a bend"),
     QT_TRANSLATE_NOOP("Errors", "the contour runs on beyond the window on that side"),
     QT_TRANSLATE_NOOP(
-        "Errors",
-        "several contours end on that side (%1); say which by the window or by the setting segment"),
+        "Errors", "several contours end on that side: %1; say which by the window or by the setting segment"),
     QT_TRANSLATE_NOOP("Errors",
-                      "a contour ends on that side (%1) and another one leaves the sensor's field there; say "
+                      "a contour ends on that side, %1, and another one leaves the sensor's field there; say "
                       "which by the window or by the setting segment"),
     QT_TRANSLATE_NOOP(
         "Errors",
-        "two contours are about equally long (%1); say which by the window or by the setting segment"),
-    QT_TRANSLATE_NOOP(
-        "Errors", "two contours are equally high (%1); say which by the window or by the setting segment"),
+        "two contours are about equally long: %1; say which by the window or by the setting segment"),
+    QT_TRANSLATE_NOOP("Errors",
+                      "two contours are equally high: %1; say which by the window or by the setting segment"),
     QT_TRANSLATE_NOOP("Errors", "fewer than %1 contours end on that side in the window"),
     QT_TRANSLATE_NOOP("Errors",
                       "the contour leaves the sensor's field on that side at x = %1 mm: its end is not seen"),
     QT_TRANSLATE_NOOP("Errors",
                       "the contour runs under a higher one at x = %1 mm: its end on that side is not seen"),
     QT_TRANSLATE_NOOP("Errors",
-                      "%1 corners lie in the window (%2); say which by the window or by the setting which"),
+                      "%1 corners lie in the window: %2; say which by the window or by the setting which"),
     QT_TRANSLATE_NOOP("Errors", "a field from x = %1 to %2 mm is empty"),
     QT_TRANSLATE_NOOP("Errors", "the contour runs on without a gap"),
     QT_TRANSLATE_NOOP("Errors", "the frame holds neither a profile nor an image"),

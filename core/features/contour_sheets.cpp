@@ -13,7 +13,7 @@ constexpr double kByChance = 1e-5;
 constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
 constexpr double kStepSigma = 6;
 constexpr double kGoesOn = 5;     // sigma
-constexpr double kCloseUp = 4.5;  // sigma
+constexpr double kCloseUp = 4;  // sigma
 constexpr double kRisen = 0.75;
 constexpr double kStepRms = 1.6;  // sigma: a side that is no line
 constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow

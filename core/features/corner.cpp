@@ -154,7 +154,7 @@ class Corner final : public FeatureFinder {
         if (feature.rivals_mm.size() > kCornersNamed) places += " ...";
         feature.status = FeatureStatus::ambiguous;
         feature.message =
-            fmt::format("{} corners lie in the window ({}); say which by the window or by the setting which",
+            fmt::format("{} corners lie in the window: {}; say which by the window or by the setting which",
                         feature.rivals_mm.size(), places);
         return nullptr;
     }

@@ -80,13 +80,13 @@ struct EndsInWindow {
         }
         if (ends > 1) {
             feature.message = fmt::format(
-                "several contours end on that side ({}); say which by the window or by the setting segment",
+                "several contours end on that side: {}; say which by the window or by the setting segment",
                 ambiguous(feature));
             return nullptr;
         }
         if (open && outside && reach(*outside) > reach(*open)) {
             feature.message = fmt::format(
-                "a contour ends on that side ({}) and another one leaves the sensor's field there; say which "
+                "a contour ends on that side, {}, and another one leaves the sensor's field there; say which "
                 "by the "
                 "window or by the setting segment",
                 ambiguous(feature));
@@ -156,7 +156,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
             chosen = ends.most([&](const Sheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
             if (rival)
                 feature.message = fmt::format(
-                    "two contours are about equally long ({}); say which by the window or by the setting "
+                    "two contours are about equally long: {}; say which by the window or by the setting "
                     "segment",
                     ends.ambiguous(feature));
             break;
@@ -167,7 +167,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
                                kAsHigh * sheets.noise_mm(), 1, rival);
             if (rival)
                 feature.message = fmt::format(
-                    "two contours are equally high ({}); say which by the window or by the setting segment",
+                    "two contours are equally high: {}; say which by the window or by the setting segment",
                     ends.ambiguous(feature));
             break;
         }

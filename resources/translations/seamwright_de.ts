@@ -2670,20 +2670,20 @@
         <translation>die Kontur läuft auf dieser Seite über das Fenster hinaus weiter</translation>
     </message>
     <message>
-        <source>several contours end on that side (%1); say which by the window or by the setting segment</source>
-        <translation>mehrere Konturen enden auf dieser Seite (%1); welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+        <source>several contours end on that side: %1; say which by the window or by the setting segment</source>
+        <translation>mehrere Konturen enden auf dieser Seite: %1; welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
     </message>
     <message>
-        <source>a contour ends on that side (%1) and another one leaves the sensor&apos;s field there; say which by the window or by the setting segment</source>
-        <translation>eine Kontur endet auf dieser Seite (%1), eine andere verlässt dort das Feld des Sensors; welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+        <source>a contour ends on that side, %1, and another one leaves the sensor&apos;s field there; say which by the window or by the setting segment</source>
+        <translation>eine Kontur endet auf dieser Seite, %1, eine andere verlässt dort das Feld des Sensors; welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
     </message>
     <message>
-        <source>two contours are about equally long (%1); say which by the window or by the setting segment</source>
-        <translation>zwei Konturen sind etwa gleich lang (%1); welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+        <source>two contours are about equally long: %1; say which by the window or by the setting segment</source>
+        <translation>zwei Konturen sind etwa gleich lang: %1; welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
     </message>
     <message>
-        <source>two contours are equally high (%1); say which by the window or by the setting segment</source>
-        <translation>zwei Konturen sind gleich hoch (%1); welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
+        <source>two contours are equally high: %1; say which by the window or by the setting segment</source>
+        <translation>zwei Konturen sind gleich hoch: %1; welche gemeint ist, sagt das Fenster oder die Einstellung Segment</translation>
     </message>
     <message>
         <source>fewer than %1 contours end on that side in the window</source>
@@ -2698,8 +2698,8 @@
         <translation>die Kontur läuft bei x = %1 mm unter eine höhere: ihr Ende auf dieser Seite ist nicht zu sehen</translation>
     </message>
     <message>
-        <source>%1 corners lie in the window (%2); say which by the window or by the setting which</source>
-        <translation>%1 Ecken liegen im Fenster (%2); welche gemeint ist, sagt das Fenster oder die Einstellung „Welches“</translation>
+        <source>%1 corners lie in the window: %2; say which by the window or by the setting which</source>
+        <translation>%1 Ecken liegen im Fenster: %2; welche gemeint ist, sagt das Fenster oder die Einstellung „Welches“</translation>
     </message>
     <message>
         <source>a field from x = %1 to %2 mm is empty</source>

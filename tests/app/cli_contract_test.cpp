@@ -321,7 +321,13 @@ TEST_F(Cli, FilterMarksEveryPointAndLosesNone) {
 TEST_F(Cli, FeatureFindsTheContourEndOnEitherSide) {
     const std::string in = write("in.csv", step_profile());
     const json left = answer({"feature", in, "--kind", "contour-end", "--side", "left"}, 0);
-    const json right = answer({"feature", in, "--kind", "contour-end", "--side", "right"}, 0);
+    const json right =
+        answer({"feature", in, "--kind", "contour-end", "--side", "right", "--segment", "outermost"}, 0);
+    // Both sheets end to the right: nothing is chosen unasked, and the lower one's left end lies under the
+    // upper one.
+    const json two = answer({"feature", in, "--kind", "contour-end", "--side", "right"}, 1);
+    EXPECT_EQ(two["status"], "ambiguous");
+    ASSERT_EQ(two["rivals_mm"].size(), 2u);
     EXPECT_EQ(left["status"], "ok");
     EXPECT_NEAR(left["point"][0].get<double>(), 0.0, 0.1);
     EXPECT_NEAR(right["point"][0].get<double>(), 29.9, 0.1);
@@ -363,8 +369,9 @@ TEST_F(Cli, ProfilesInAnotherUnitAreSuspectedUnlessTheUnitIsSaid) {
             expect_refused(command, word);
             expect_refused(command, "--unit");
         }
-        const json left =
-            answer({"feature", in, "--unit", unit, "--kind", "contour-end", "--side", "right"}, 0);
+        const json left = answer({"feature", in, "--unit", unit, "--kind", "contour-end", "--side", "right",
+                                  "--segment", "outermost"},
+                                 0);
         EXPECT_NEAR(left["point"][0].get<double>(), 29.9, 0.1) << unit;
         EXPECT_EQ(answer({"filter", in, "--unit", unit, "--out", out}, 0)["segments"], 2) << unit;
     }

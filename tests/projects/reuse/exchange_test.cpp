@@ -8,6 +8,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/profile_csv.h"
 #include "projects/proof/replay.h"
+#include "projects/station/check.h"
 #include "projects/station/station.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"

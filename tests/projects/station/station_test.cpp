@@ -5,6 +5,7 @@
 
 #include "projects/gate/safety_gate.h"
 #include "projects/proof/replay.h"
+#include "projects/station/check.h"
 #include "projects/station/measure.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/file/other_program.h"

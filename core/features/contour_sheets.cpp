@@ -12,16 +12,14 @@ constexpr int kHoleLines = 6;
 constexpr double kByChance = 1e-5;
 constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
 constexpr double kStepSigma = 6;
-constexpr double kGoesOn = 5;     // sigma
+constexpr double kGoesOn = 5;   // sigma
 constexpr double kCloseUp = 4;  // sigma
 constexpr double kRisen = 0.75;
 constexpr double kStepRms = 1.6;  // sigma: a side that is no line
 constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow
-constexpr double kShadow = 0.6;   // of a step's height: so far a higher sheet may hide the lower one
-constexpr double kCoverSigma = 4;
-constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
-constexpr int kFewestLines = 256;      // of a sensor: fewer that lie evenly about x = 0 do so by chance
-constexpr int kRimLines = 5;           // an end nearer to the field's rim is none
+constexpr int kFewestEmpty = 3;
+constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
+constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
 
 }  // namespace
 
@@ -197,10 +195,14 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
     const int lines = static_cast<int>(std::min(profile.x_mm.size(), profile.z_mm.size()));
     const int n = static_cast<int>(all_x_.size());
     if (n == 0) return;
-    // Does the profile say where the field ends?
-    bool told = false;
-    for (int k = 0; k < lines && !told; ++k)
-        told = !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
+    // Does the profile say where the field ends? One that lists lines without return does; a few holes in it
+    // may be anything.
+    int empty = 0;
+    const auto is_empty = [&](int k) {
+        return !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
+    };
+    for (int k = 0; k < lines; ++k) empty += is_empty(k);
+    bool told = empty >= kFewestEmpty || is_empty(0) || is_empty(lines - 1);
     if (!told) {
         const double a = profile.x_mm.front(), b = profile.x_mm.back();
         told = std::abs(a + b) <= 1.5 * pitch_.along_x + 3 * noise_ && lines >= kFewestLines;
@@ -215,17 +217,6 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
         const int first = sheet.first, last = first + sheet.count - 1;
         if (at_rim(first)) sheet.before = SheetEnd::field;
         if (at_rim(last)) sheet.after = SheetEnd::field;
-        // Fragments may lie between a sheet and what hides it.
-        const auto hides = [&](int end, int place) {
-            const double rise = all_z_[end] - all_z_[place];
-            return rise > kCoverSigma * noise_ + pitch_.along_x &&
-                   std::abs(all_x_[end] - all_x_[place]) <= kShadow * rise + kRimLines * pitch_.along_x;
-        };
-        for (std::size_t t = s; t-- > 0 && s - t <= kFragments && sheet.before == SheetEnd::open;)
-            if (hides(whole_[t].first + whole_[t].count - 1, first)) sheet.before = SheetEnd::covered;
-        for (std::size_t t = s + 1; t < whole_.size() && t - s <= kFragments && sheet.after == SheetEnd::open;
-             ++t)
-            if (hides(whole_[t].first, last)) sheet.after = SheetEnd::covered;
     }
 }
 

@@ -28,10 +28,9 @@ namespace seamwright {
 
 // How a sheet ends.
 enum class SheetEnd {
-    open,     // the surface stops there, as far as a profile can tell
-    window,   // it runs on beyond the search window
-    field,    // it leaves the sensor's field: its end is not seen
-    covered,  // it runs under a higher one
+    open,    // the surface stops there, as far as a profile can tell, or another sheet hides it
+    window,  // it runs on beyond the search window
+    field,   // it leaves the sensor's field: its end is not seen
 };
 
 struct Sheet {
@@ -39,8 +38,8 @@ struct Sheet {
     SheetEnd before, after;
 };
 
-// The sensor's field along x, where it is known beside what the profile tells. A profile that delivers lines
-// without return tells it by its first and last line; one without any only when it lies evenly about x = 0,
+// The sensor's field along x, where it is known beside what the profile tells. A profile that lists lines
+// without return (at its rim, or some at least) tells it by its first and last line; one without any only when it lies evenly about x = 0,
 // as a full field does.
 struct SensorField {
     double x_min, x_max;

@@ -182,11 +182,6 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
                 "the contour leaves the sensor's field on that side at x = {:.2f} mm: its end is not seen",
                 ends.place(*chosen).x());
             return std::nullopt;
-        case SheetEnd::covered:
-            feature.message = fmt::format(
-                "the contour runs under a higher one at x = {:.2f} mm: its end on that side is not seen",
-                ends.place(*chosen).x());
-            return std::nullopt;
         case SheetEnd::open:
             break;
     }

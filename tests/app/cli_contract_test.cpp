@@ -305,6 +305,18 @@ std::string step_profile() {
     return csv;
 }
 
+// The same in a field that is wider than the sheets.
+std::string step_in_a_wide_field() {
+    std::string csv = step_profile();
+    std::string before, after;
+    for (int i = 1; i <= 20; ++i) {
+        before = std::to_string(-0.1 * i) + ",\n" + before;
+        after += std::to_string(29.9 + 0.1 * i) + ",\n";
+    }
+    csv.insert(csv.find('\n') + 1, before);
+    return csv + after;
+}
+
 TEST_F(Cli, FilterMarksEveryPointAndLosesNone) {
     const std::string out = (folder / "out.csv").string();
     const json a = answer({"filter", write("in.csv", step_profile()), "--out", out}, 0);
@@ -319,15 +331,20 @@ TEST_F(Cli, FilterMarksEveryPointAndLosesNone) {
 }
 
 TEST_F(Cli, FeatureFindsTheContourEndOnEitherSide) {
-    const std::string in = write("in.csv", step_profile());
-    const json left = answer({"feature", in, "--kind", "contour-end", "--side", "left"}, 0);
+    const std::string in = write("in.csv", step_in_a_wide_field());
+    const json left =
+        answer({"feature", in, "--kind", "contour-end", "--side", "left", "--segment", "outermost"}, 0);
     const json right =
         answer({"feature", in, "--kind", "contour-end", "--side", "right", "--segment", "outermost"}, 0);
-    // Both sheets end to the right: nothing is chosen unasked, and the lower one's left end lies under the
-    // upper one.
+    // Both sheets end to the right: nothing is chosen unasked.
     const json two = answer({"feature", in, "--kind", "contour-end", "--side", "right"}, 1);
     EXPECT_EQ(two["status"], "ambiguous");
     ASSERT_EQ(two["rivals_mm"].size(), 2u);
+    // Seen to the rim of the field, no end is seen.
+    const json cut = answer({"feature", write("cut.csv", "x_mm,z_mm\n-2.1,\n" + step_profile().substr(10)),
+                             "--kind", "contour-end", "--side", "left", "--segment", "outermost"},
+                            1);
+    EXPECT_EQ(cut["status"], "not_found");
     EXPECT_EQ(left["status"], "ok");
     EXPECT_NEAR(left["point"][0].get<double>(), 0.0, 0.1);
     EXPECT_NEAR(right["point"][0].get<double>(), 29.9, 0.1);
@@ -362,7 +379,7 @@ TEST_F(Cli, ProfilesInAnotherUnitAreSuspectedUnlessTheUnitIsSaid) {
     const std::string out = (folder / "out.csv").string(), mm = write("mm.csv", step_profile());
     for (const auto& [unit, mm_each, word] :
          {std::tuple{"m", 1000.0, "looks like metres"}, std::tuple{"um", 1e-3, "looks like micrometres"}}) {
-        const std::string in = write("in.csv", in_unit(mm_each, step_profile()));
+        const std::string in = write("in.csv", in_unit(mm_each, step_in_a_wide_field()));
         for (const std::vector<std::string>& command : {std::vector<std::string>{"filter", in, "--out", out},
                                                         {"feature", in, "--kind", "contour-end"},
                                                         {"match", "--template", in, "--scene", in}}) {

@@ -393,7 +393,9 @@ TEST(Features, FindAllocatesNothingAfterTheFirstCalls) {
         profiles.push_back(p);
     }
     for (const FeatureKind& kind : feature_kinds()) {
-        const auto f = finder(std::string(kind.name));
+        const bool ends = kind.name == "contour-end";  // of the hem, whose wall may count as a step
+        const auto f =
+            finder(std::string(kind.name), ends ? ParameterValues{{"segment", 1}} : ParameterValues{});
         for (int round = 0; round < 2; ++round)
             for (const Profile& p : profiles) f->find(p);
         const long before = allocations_so_far();

@@ -118,7 +118,11 @@ TEST_F(AbbRapid, AFrameCountsOnlyAfterTheVerdict) {
     EXPECT_FALSE(controller->released());
     ASSERT_TRUE(link->confirm(PartVerdict::refused, "over limit"));
     EXPECT_EQ(controller->verdict(), PartVerdict::refused);
-    EXPECT_LT(distance_mm(*cell()->read_frame("wobjDoor"), far_pose()), 1e-3);  // the staged one went
+    // The staged one went, and what was set for a permission that nobody took does not stand either.
+    EXPECT_LT(distance_mm(*cell()->read_frame("wobjDoor"), before), 1e-3);
+    ASSERT_TRUE(link->write_frame("wobjDoor", far_pose()));
+    ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
+    EXPECT_LT(distance_mm(*cell()->read_frame("wobjDoor"), far_pose()), 1e-3);
     ASSERT_TRUE(link->write_frame("wobjDoor", before));
     ASSERT_TRUE(link->confirm(PartVerdict::corrected, ""));
     link.reset();

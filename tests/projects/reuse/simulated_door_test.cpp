@@ -49,7 +49,7 @@ TEST(SimulatedDoor, MeasuredRecordedImportedMeasured) {
         project.spots[i].enabled = taught.spots[i].status == SpotStatus::measured;
         project.spots[i].reference_mm = taught.spots[i].measured_mm;
     }
-    ASSERT_GE(measured, 9) << "of " << taught.spots.size();
+    ASSERT_GE(measured, 9) << "of " << taught.spots.size() << ": " << taught.spots[0].message;
 
     project.sensors[0].settings = project.robots[0].settings = displaced;
     const RunRecord run = run_project(folder / "car.seam", project);

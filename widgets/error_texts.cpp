@@ -116,6 +116,8 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors",
                       "the contour leaves the sensor's field on that side at x = %1 mm: its end is not seen"),
     QT_TRANSLATE_NOOP("Errors",
+                      "the contour runs under a higher one at x = %1 mm: its end on that side is not seen"),
+    QT_TRANSLATE_NOOP("Errors",
                       "%1 corners lie in the window: %2; say which by the window or by the setting which"),
     QT_TRANSLATE_NOOP("Errors", "a field from x = %1 to %2 mm is empty"),
     QT_TRANSLATE_NOOP("Errors", "the contour runs on without a gap"),

@@ -36,7 +36,7 @@
 // covariance. An arc of fewer than about eight points is not seen as one.
 //
 // Which end is meant: choose_end() (end_choice.h). Degenerate: a contour that runs on beyond the window,
-// leaves the sensor's field has no end there (not_found); a sheet shorter than
+// leaves the sensor's field or runs under a higher one has no end there (not_found); a sheet shorter than
 // minimum_points is passed over; fewer than 6 points within fit_length_mm, or all of them in one place, know
 // no curvature.
 

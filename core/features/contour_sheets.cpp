@@ -17,6 +17,9 @@ constexpr double kCloseUp = 4;  // sigma
 constexpr double kRisen = 0.75;
 constexpr double kStepRms = 1.6;  // sigma: a side that is no line
 constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow
+constexpr double kShadow = 0.6;   // of a step's height: so far a higher sheet may hide the lower one
+constexpr double kCoverSigma = 4;
+constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
 constexpr int kFewestEmpty = 3;
 constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
 constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
@@ -217,6 +220,17 @@ void ContourSheets::judge_ends(const Profile& profile, const SensorField& field)
         const int first = sheet.first, last = first + sheet.count - 1;
         if (at_rim(first)) sheet.before = SheetEnd::field;
         if (at_rim(last)) sheet.after = SheetEnd::field;
+        // Fragments may lie between a sheet and what hides it.
+        const auto hides = [&](int end, int place) {
+            const double rise = all_z_[end] - all_z_[place];
+            return rise > kCoverSigma * noise_ + pitch_.along_x &&
+                   std::abs(all_x_[end] - all_x_[place]) <= kShadow * rise + kRimLines * pitch_.along_x;
+        };
+        for (std::size_t t = s; t-- > 0 && s - t <= kFragments && sheet.before == SheetEnd::open;)
+            if (hides(whole_[t].first + whole_[t].count - 1, first)) sheet.before = SheetEnd::covered;
+        for (std::size_t t = s + 1; t < whole_.size() && t - s <= kFragments && sheet.after == SheetEnd::open;
+             ++t)
+            if (hides(whole_[t].first, last)) sheet.after = SheetEnd::covered;
     }
 }
 

@@ -28,9 +28,10 @@ namespace seamwright {
 
 // How a sheet ends.
 enum class SheetEnd {
-    open,    // the surface stops there, as far as a profile can tell, or another sheet hides it
-    window,  // it runs on beyond the search window
-    field,   // it leaves the sensor's field: its end is not seen
+    open,     // the surface stops there, as far as a profile can tell
+    window,   // it runs on beyond the search window
+    field,    // it leaves the sensor's field: its end is not seen
+    covered,  // it runs under a higher one
 };
 
 struct Sheet {

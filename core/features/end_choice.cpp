@@ -182,6 +182,13 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
                 "the contour leaves the sensor's field on that side at x = {:.2f} mm: its end is not seen",
                 ends.place(*chosen).x());
             return std::nullopt;
+        case SheetEnd::covered:
+            // Who says which sheet is meant takes its end as it is seen.
+            if (rule.of != EndOf::only) break;
+            feature.message = fmt::format(
+                "the contour runs under a higher one at x = {:.2f} mm: its end on that side is not seen",
+                ends.place(*chosen).x());
+            return std::nullopt;
         case SheetEnd::open:
             break;
     }

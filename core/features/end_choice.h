@@ -1,7 +1,7 @@
 #pragma once
 // Which of the ends in a search window is meant. A sheet has one end on the asked side: of its first and last
 // point the outer one. An end counts when the surface stops there: not where it runs on beyond the window,
-// leaves the sensor's field (contour_sheets.h).
+// leaves the sensor's field or runs under a higher sheet (contour_sheets.h).
 
 #include <optional>
 
@@ -30,7 +30,7 @@ struct ChosenEnd {
 
 // nullopt with status, message and rivals set in `feature`:
 //     no_points   no sheet with minimum_points in the window
-//     not_found   the meant sheet ends at the window's or the field's rim
+//     not_found   the meant sheet ends at the window's or the field's rim, or (`only`) under a higher one
 //     ambiguous   `only`: more than one end, or one besides a sheet that leaves the field farther out;
 //                 longest: the next is nearly as long (a tenth); highest, lowest: the next is as high within
 //                 three sigma of the noise

@@ -2694,6 +2694,10 @@
         <translation>die Kontur verlässt auf dieser Seite bei x = %1 mm das Feld des Sensors: ihr Ende ist nicht zu sehen</translation>
     </message>
     <message>
+        <source>the contour runs under a higher one at x = %1 mm: its end on that side is not seen</source>
+        <translation>die Kontur läuft bei x = %1 mm unter eine höhere: ihr Ende auf dieser Seite ist nicht zu sehen</translation>
+    </message>
+    <message>
         <source>%1 corners lie in the window: %2; say which by the window or by the setting which</source>
         <translation>%1 Ecken liegen im Fenster: %2; welche gemeint ist, sagt das Fenster oder die Einstellung „Welches“</translation>
     </message>

@@ -149,7 +149,11 @@ MODULE SeamwrightServer
 
     ! The permission goes, unless the application has it already.
     LOCAL PROC Take_back()
-        IF TestAndSet(swGone) swGivenFor:=0;
+        IF TestAndSet(swGone) THEN
+            swGivenFor:=0;
+            ! What was set for a permission that nobody has taken is not left standing.
+            Undo_applied;
+        ENDIF
     ENDPROC
 
     ! In the order in which it happened: triggers, the end, and only then the call for the next part.
@@ -331,8 +335,6 @@ MODULE SeamwrightServer
                 Say number+" VERDICT "+word,"","";
             ENDIF
         CASE "REFUSED","FAILED":
-            ! What was set for a permission that nobody has taken is not left standing.
-            IF swGivenFor=0 Undo_applied;
             staged_count:=0;
             IF word="REFUSED" THEN
                 swVerdict:=2;

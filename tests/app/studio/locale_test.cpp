@@ -101,8 +101,11 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     EXPECT_LT(angle_rad(*before, frame), 1e-4);
     ASSERT_TRUE(run->regions.at(0).push.read_back);
     EXPECT_LT(distance_mm(*run->regions[0].push.read_back, run->regions[0].base_from_frame), 0.01);
-    EXPECT_NEAR(run->regions[0].correction->displacement.workobject_from_movedworkobject.translation().x(),
-                3.5, 0.5);
+    // A comma taken for a point would be millimetres off; the rest is what the cell scatters.
+    const RegionCorrection& c = *run->regions[0].correction;
+    EXPECT_NEAR(c.displacement.workobject_from_movedworkobject.translation().x(), 3.5, 4 * c.sigma_xyz_mm.x())
+        << c.message;
+    EXPECT_LT(c.sigma_xyz_mm.x(), 0.5);
     EXPECT_EQ(std::string(std::localeconv()->decimal_point), ",") << "to the end";
 }
 

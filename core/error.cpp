@@ -2,12 +2,12 @@
 
 namespace seamwright {
 
+Text Error::text() const {
+    return joined(joined(where, ": ", what), "; ", mend);
+}
+
 std::string Error::sentence() const {
-    std::string s;
-    if (!where.empty()) s += where + ": ";
-    s += what;
-    if (!mend.empty()) s += "; " + mend;
-    return s;
+    return text().english();
 }
 
 }  // namespace seamwright

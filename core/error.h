@@ -7,6 +7,8 @@
 #include <string>
 #include <tl/expected.hpp>
 
+#include "core/text.h"
+
 namespace seamwright {
 
 // Decides the exit code of the command line: usage and input end with 2, device and file with 3.
@@ -27,30 +29,32 @@ enum class ErrorCode {
 // One clear sentence: what is wrong, where, and how to mend it. `where` and `mend` may be empty.
 struct Error {
     ErrorKind kind = ErrorKind::input;
-    std::string what;   // "the rotation is not orthonormal (off by 0.02)"
-    std::string where;  // "spots[3].workobject_from_sensor"
-    std::string mend;   // "give a rotation matrix whose rows have length 1"
+    Text what;   // "the rotation is not orthonormal (off by 0.02)"
+    Text where;  // "spots[3].workobject_from_sensor"
+    Text mend;   // "give a rotation matrix whose rows have length 1"
     ErrorCode code = ErrorCode::none;
-    std::string sentence() const;
+    Text text() const;             // "door.seam: the file does not exist; choose a .seam file"
+    std::string sentence() const;  // in English
+    // The same, seen from further out: "spot T1: feature: ..."
+    void within(const Text& place) { where = joined(place, ": ", where); }
 };
 
 template <class T>
 using Expected = tl::expected<T, Error>;
 
-inline tl::unexpected<Error> input_error(std::string what, std::string where = {}, std::string mend = {}) {
+inline tl::unexpected<Error> input_error(Text what, Text where = {}, Text mend = {}) {
     return tl::unexpected(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
 }
-inline tl::unexpected<Error> usage_error(std::string what, std::string where = {}, std::string mend = {}) {
+inline tl::unexpected<Error> usage_error(Text what, Text where = {}, Text mend = {}) {
     return tl::unexpected(Error{ErrorKind::usage, std::move(what), std::move(where), std::move(mend)});
 }
-inline tl::unexpected<Error> device_error(std::string what, std::string where = {}, std::string mend = {}) {
+inline tl::unexpected<Error> device_error(Text what, Text where = {}, Text mend = {}) {
     return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend)});
 }
-inline tl::unexpected<Error> device_error(ErrorCode code, std::string what, std::string where = {},
-                                          std::string mend = {}) {
+inline tl::unexpected<Error> device_error(ErrorCode code, Text what, Text where = {}, Text mend = {}) {
     return tl::unexpected(Error{ErrorKind::device, std::move(what), std::move(where), std::move(mend), code});
 }
-inline tl::unexpected<Error> file_error(std::string what, std::string where = {}, std::string mend = {}) {
+inline tl::unexpected<Error> file_error(Text what, Text where = {}, Text mend = {}) {
     return tl::unexpected(Error{ErrorKind::file, std::move(what), std::move(where), std::move(mend)});
 }
 

@@ -32,11 +32,11 @@ Expected<void> validate(const ParameterValues& values, const std::vector<Paramet
         if (!info) {
             std::string known;
             for (const auto& p : infos) known += (known.empty() ? "" : ", ") + p.name;
-            return input_error(fmt::format("unknown parameter \"{}\"", name), where, "known are: " + known);
+            return input_error(Text("unknown parameter \"{}\"", name), where, Text("known are: {}", known));
         }
         if (!std::isfinite(value) || value < info->minimum || value > info->maximum)
-            return input_error(fmt::format("{} = {} is out of range", name, value), where,
-                               fmt::format("give {} to {} {}", info->minimum, info->maximum, info->unit));
+            return input_error(Text("{} = {} is out of range", name, value), where,
+                               Text("give {} to {} {}", info->minimum, info->maximum, info->unit));
     }
     return {};
 }

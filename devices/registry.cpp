@@ -95,7 +95,7 @@ auto call(const std::vector<Driver>& drivers, const char* what, const std::strin
         if (driver.name == name) return (driver.*open)(std::forward<Arguments>(arguments)...);
         known += (known.empty() ? "" : ", ") + std::string(driver.name);
     }
-    return input_error("there is no " + std::string(what) + " \"" + name + "\"", {}, "known are " + known);
+    return input_error(Text("there is no {} \"{}\"", what, name), {}, Text("known are {}", known));
 }
 }  // namespace
 

@@ -149,16 +149,16 @@ Expected<void> check_program_name(const std::string& name, const std::string& wh
     if (name.empty() || name.size() > 20 || !letter(name.front()) ||
         !std::all_of(name.begin(), name.end(),
                      [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; }))
-        return input_error("\"" + name + "\" is no name of a program", where,
+        return input_error(Text("\"{}\" is no name of a program", name), where,
                            "use a letter, then letters, digits and _, at most 20");
     for (const RobotLanguage language : {RobotLanguage::krl, RobotLanguage::rapid, RobotLanguage::urscript})
         if (is_robot_word(language, name))
             return input_error(
-                "\"" + name + "\" is a word of " + std::string(to_string(language)) + " itself", where,
+                Text("\"{}\" is a word of {} itself", name, to_string(language)), where,
                 "choose another name");
     static const std::set<std::string> modules = words_of(kModules);
     if (modules.count(upper(name)) > 0 || upper(name).starts_with("SW_") || upper(name).starts_with("XSW_"))
-        return input_error("\"" + name + "\" is a name of Seamwright's own modules", where,
+        return input_error(Text("\"{}\" is a name of Seamwright's own modules", name), where,
                            "choose another name");
     return {};
 }

@@ -21,7 +21,7 @@ inline bool is_silence(const Error& e) {
 // For a call that waits for an event, whose own silence only says that the event has not come.
 inline Error fell_silent(Error e) {
     if (is_silence(e)) {
-        e.what = "the controller is silent: " + e.what;
+        e.what = Text("the controller is silent: {}", e.what);
         e.code = ErrorCode::none;
     }
     return e;

@@ -14,8 +14,8 @@ Expected<double> feature_setting(const FeatureKind& kind, const std::string& nam
     if (info == kind.parameters.end()) {
         std::vector<std::string> known;
         for (const ParameterInfo& p : kind.parameters) known.push_back(p.name);
-        return usage_error(fmt::format("the kind \"{}\" has no setting \"{}\"", kind.name, name), "",
-                           fmt::format("known are: {}", fmt::join(known, ", ")));
+        return usage_error(Text("the kind \"{}\" has no setting \"{}\"", kind.name, name), "",
+                           Text("known are: {}", fmt::join(known, ", ")));
     }
     for (std::size_t i = 0; i < info->choices.size(); ++i)
         if (info->choices[i] == text) return static_cast<double>(i);
@@ -24,7 +24,7 @@ Expected<double> feature_setting(const FeatureKind& kind, const std::string& nam
     auto [stop, failure] = std::from_chars(text.data(), end, value);
     if (failure != std::errc() || stop != end || text.empty())
         return usage_error(
-            fmt::format("\"{}\" is not {}", text,
+            Text("\"{}\" is not {}", text,
                         info->choices.empty() ? "a number"
                                               : fmt::format("one of {}", fmt::join(info->choices, ", "))),
             name);
@@ -35,7 +35,7 @@ Expected<std::pair<std::string, double>> feature_setting(const FeatureKind& kind
                                                          const std::string& assignment) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string::npos)
-        return usage_error(fmt::format("\"{}\" is not NAME=VALUE", assignment), "--set");
+        return usage_error(Text("\"{}\" is not NAME=VALUE", assignment), "--set");
     const std::string name = assignment.substr(0, equals);
     auto value = feature_setting(kind, name, assignment.substr(equals + 1));
     if (!value) return tl::unexpected(value.error());
@@ -46,8 +46,8 @@ Expected<const FeatureKind*> find_feature_kind(const std::string& name) {
     if (const FeatureKind* kind = feature_kind(name)) return kind;
     std::vector<std::string_view> known;
     for (const FeatureKind& k : feature_kinds()) known.push_back(k.name);
-    return usage_error(fmt::format("unknown feature kind \"{}\"", name), "--kind",
-                       fmt::format("known are: {}", fmt::join(known, ", ")));
+    return usage_error(Text("unknown feature kind \"{}\"", name), "--kind",
+                       Text("known are: {}", fmt::join(known, ", ")));
 }
 
 }  // namespace seamwright::cli

@@ -88,14 +88,14 @@ Expected<Project> demo_project() {
         frame.sequence = ++number;
         cell->render(s.base_from_flange, number, frame);
         if (capture_frame(frame, a.peaks, &*c.model, peaks, capture, reason) != SpotStatus::measured)
-            return device_error("the simulated sensor sees no stripe: " + reason, "spot " + s.id);
+            return device_error(Text("the simulated sensor sees no stripe: {}", reason), Text("spot {}", s.id));
         if (auto tracked = track_capture(capture, a.filter, s.reference_profile); !tracked)
             return tl::unexpected(tracked.error());
         auto finder = make_feature_finder(s.feature);
         if (!finder) return tl::unexpected(finder.error());
         const Feature edge = (*finder)->find(s.reference_profile);
         if (edge.status != FeatureStatus::ok)
-            return input_error("the edge is not found: " + edge.message, "spot " + s.id);
+            return input_error(Text("the edge is not found: {}", edge.message), Text("spot {}", s.id));
         // Around the hem as template, the edge as its landmark.
         s.reference_mm = {edge.point_mm.x(), 0, edge.point_mm.y()};
         s.feature.kind = "template";

@@ -265,10 +265,6 @@ double rise(const PolynomialFit& f, double y, double from, double to) {
     return s * (c[1] + s * (c[2] + s * c[3])) + slope * (y - s);
 }
 
-std::string degrees(double v) {
-    return fmt::format("{:+.2f} degrees", v);
-}
-
 }  // namespace
 
 std::string_view to_string(AlignmentStatus status) {
@@ -302,7 +298,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
     for (std::size_t i = 0; i < pass.size(); ++i) {
         if (pass[i].profile.x_mm.size() != pass[i].profile.z_mm.size())
             return input_error("x and z have different numbers of points",
-                               fmt::format("profile {} of the pass", i), "give one x and one z a point");
+                               Text("profile {} of the pass", i), "give one x and one z a point");
     }
     AlignmentResult result;
     result.offsets.resize(pass.size());
@@ -318,7 +314,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
     std::optional<Reference> best = choose_reference(pass, order, options.reference_mm);
     const auto too_few = [&](std::size_t enough) {
         result.status = AlignmentStatus::not_enough_profiles;
-        result.cure = fmt::format(
+        result.cure = Text(
             "only {} of {} profiles within {:g} mm of travel are usable: record at least {} over "
             "more than {:g} mm before and after the trigger position",
             enough, pass.size(), options.window_mm, kFewestProfiles + 1, kShortestTravel_mm);
@@ -439,9 +435,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
                     : unsure      ? AlignmentStatus::undetermined
                     : changes     ? AlignmentStatus::shape_changes
                                   : AlignmentStatus::frozen;
-    const auto say = [&](const std::string& sentence) {
-        result.cure += (result.cure.empty() ? "" : "; ") + sentence;
-    };
+    const auto say = [&](const Text& sentence) { result.cure = joined(result.cure, "; ", sentence); };
     if (result.status == AlignmentStatus::drifting) {
         // What the bend alone costs cannot be turned away.
         double rest = 0;
@@ -450,27 +444,31 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
             rest = std::max(rest,
                             std::hypot(rise(fx, at, from, to) - sx * at, rise(fz, at, from, to) - sz * at));
         }
-        std::string turn;
-        if (std::abs(result.cure_about_z_deg) > kLeastTurn_deg)
-            turn = "about the sensor's own Z axis by " + degrees(result.cure_about_z_deg);
-        if (std::abs(result.cure_about_x_deg) > kLeastTurn_deg)
-            turn +=
-                (turn.empty() ? "about the sensor's own X axis by " : ", then about its turned X axis by ") +
-                degrees(result.cure_about_x_deg);
-        if (!turn.empty())
-            say("rotate the sensor at the trigger position, about the reference point and together with its "
-                "travel, " +
-                turn);
+        const double z = result.cure_about_z_deg, x = result.cure_about_x_deg;
+        const bool about_z = std::abs(z) > kLeastTurn_deg, about_x = std::abs(x) > kLeastTurn_deg;
+        const auto turn = [&](const Text& how) {
+            say(Text("rotate the sensor at the trigger position, about the reference point and together with "
+                     "its travel, {}",
+                     how));
+        };
+        if (about_z && about_x)
+            turn(Text("about the sensor's own Z axis by {:+.2f} degrees, then about its turned X axis by "
+                      "{:+.2f} degrees",
+                      z, x));
+        else if (about_z)
+            turn(Text("about the sensor's own Z axis by {:+.2f} degrees", z));
+        else if (about_x)
+            turn(Text("about the sensor's own X axis by {:+.2f} degrees", x));
         if (rest > options.tolerance_mm)
             say(
-                fmt::format("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
+                Text("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
                             "within the jitter: let "
                             "the correction use the contour curve, or trigger more exactly",
                             result.radius_mm, rest));
     }
     if (result.status == AlignmentStatus::undetermined && !result.sliding)
         say(
-            fmt::format("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
+            Text("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
                         "record the pass "
                         "again with more profiles or less noise",
                         result.expected_error_mm, result.expected_error_sigma_mm));
@@ -478,7 +476,7 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         say("the profile changes its shape along the travel: teach the spot where the contour stays the "
             "same");
     if (result.sliding)
-        say(fmt::format(
+        say(Text(
             "the profile is a straight line along ({:.2f}, {:.2f}) in x, z: drift along it cannot be seen",
             along.x(), along.y()));
     return result;

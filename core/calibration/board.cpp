@@ -12,13 +12,12 @@ namespace seamwright {
 
 Expected<void> validate(const BoardSpec& spec) {
     if (spec.columns < 3 || spec.rows < 3 || spec.columns > 200 || spec.rows > 200)
-        return input_error("a board of " + std::to_string(spec.columns) + "x" + std::to_string(spec.rows) +
-                               " points is not possible",
+        return input_error(Text("a board of {}x{} points is not possible", std::to_string(spec.columns), std::to_string(spec.rows)),
                            "board", "give columns x rows between 3 and 200, e.g. 7x6");
     if (!std::isfinite(spec.pitch_mm) || spec.pitch_mm <= 0)
         return input_error("the pitch must be a positive number of millimetres", "pitch_mm", "give e.g. 10");
     if (spec.pitch_mm < 0.2)
-        return input_error("a pitch of " + std::to_string(spec.pitch_mm) + " mm looks like metres",
+        return input_error(Text("a pitch of {} mm looks like metres", std::to_string(spec.pitch_mm)),
                            "pitch_mm", "give the pitch in millimetres (0.01 m = 10 mm)");
     if (spec.pitch_mm > 1000)
         return input_error("a pitch beyond one metre looks like micrometres", "pitch_mm",

@@ -29,7 +29,7 @@ Expected<BundlePose> bundle_object(const std::vector<PlacedCamera>& cameras,
         const std::string where = "sights[" + std::to_string(i) + "]";
         const auto& s = sights[i];
         if (s.camera < 0 || static_cast<std::size_t>(s.camera) >= cameras.size())
-            return input_error("there is no camera " + std::to_string(s.camera), where,
+            return input_error(Text("there is no camera {}", std::to_string(s.camera)), where,
                                "cameras count from 0");
         if (!std::isfinite(s.weight) || s.weight < 0)
             return input_error("the weight must be 0 or positive", where,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/calibration/verdict.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -17,8 +18,8 @@ namespace seamwright {
 // good.
 struct Judgement {
     Verdict verdict = Verdict::undetermined;
-    std::string reason;
-    std::string cure;
+    Text reason;
+    Text cure;
 };
 
 // One solved number. Value and sigma in `unit`, which is one of "mm", "deg", "px", "px/mm", "1" ...
@@ -46,7 +47,7 @@ struct PoseResidual {
     bool used = true;
     bool excluded = false;     // by the user; then not used
     bool contradicts = false;  // used, but for a part that was found wrong (the note says which)
-    std::string note;          // why it is not used, or what is odd about it; empty when nothing is
+    Text note;          // why it is not used, or what is odd about it; empty when nothing is
 };
 
 // Leave-k-out verification: the data are split into folds, each fold is predicted by the solution of the

@@ -35,7 +35,7 @@ Eigen::Vector3d extents(const std::vector<Eigen::Vector3d>& points) {
 
 Expected<void> check(const CameraData& data, const CameraOptions& options) {
     if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
-        return input_error(fmt::format("an image of {}x{} pixels is not possible", data.width, data.height),
+        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height),
                            "size", "give width and height of the images in pixels");
     std::vector<std::string> ids;
     for (const auto& v : data.views) ids.push_back(v.id);
@@ -45,20 +45,20 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
     for (const auto& v : data.views) {
         const std::string where = "views[" + v.id + "]";
         if (v.pixel.size() != v.object_mm.size())
-            return input_error(fmt::format("{} points but {} pixels", v.object_mm.size(), v.pixel.size()),
+            return input_error(Text("{} points but {} pixels", v.object_mm.size(), v.pixel.size()),
                                where, "give one pixel per point");
         if (v.pixel.size() < 4)
-            return input_error(fmt::format("{} points are too few for a pose, 4 are needed", v.pixel.size()),
+            return input_error(Text("{} points are too few for a pose, 4 are needed", v.pixel.size()),
                                where, "leave the view out or give more points");
         for (std::size_t i = 0; i < v.pixel.size(); ++i) {
             if (!v.pixel[i].allFinite() || !v.object_mm[i].allFinite() ||
                 v.object_mm[i].cwiseAbs().maxCoeff() > 1e6)
                 return input_error(
-                    fmt::format("point {} is not a finite number of millimetres and pixels", i), where,
+                    Text("point {} is not a finite number of millimetres and pixels", i), where,
                     "leave it out");
             if (v.pixel[i].x() < -1 || v.pixel[i].y() < -1 || v.pixel[i].x() > data.width ||
                 v.pixel[i].y() > data.height)
-                return input_error(fmt::format("pixel {} ({:.1f}, {:.1f}) lies outside the image of {}x{}", i,
+                return input_error(Text("pixel {} ({:.1f}, {:.1f}) lies outside the image of {}x{}", i,
                                                v.pixel[i].x(), v.pixel[i].y(), data.width, data.height),
                                    where, "check the image size; all views must have the same");
         }
@@ -69,7 +69,7 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
     }
     if (size_mm < 0.5)
         return input_error(
-            fmt::format("the target is {:.3f} mm across, which looks like metres", 2 * size_mm), "views",
+            Text("the target is {:.3f} mm across, which looks like metres", 2 * size_mm), "views",
             "give its points in millimetres");
     return {};
 }
@@ -260,7 +260,7 @@ std::string plate_hint(const CameraData& data, const std::vector<std::vector<cha
     s.shape.half_mm = 0.5 * (high - low).maxCoeff();
     const auto fit = solve_plate_bundle(p, s);
     if (!fit.covariance.size() || fit.corner_cost > 0.7 * solution.cost) return {};
-    return fmt::format(
+    return Text(
         "the plate is not as stated: stretched {:.2f} %, sheared {:.2f} %, bowed {:.2f} mm would halve the "
         "residuals",
         100 * fit.state.shape.stretch, 100 * fit.state.shape.shear,
@@ -275,29 +275,29 @@ Judgement judge(const CameraResult& r, std::size_t views, const std::string& hin
     if (!(sigma < 0.05 * f) || !std::isfinite(f))
         return {
             Verdict::undetermined,
-            fmt::format(
+            Text(
                 "the views do not determine the focal length (their plates differ by {:.1f} degrees of tilt)",
                 r.tilt_spread_deg),
             tilt};
     if (r.rms_px > 1.5)
-        return {Verdict::poor, fmt::format("the points fit to {:.2f} px only", r.rms_px),
+        return {Verdict::poor, Text("the points fit to {:.2f} px only", r.rms_px),
                 "check focus, the pattern's size and that the plate is flat"};
     if (sigma > 0.01 * f)
-        return {Verdict::poor, fmt::format("the focal length is known to {:.1f} % only", 100 * sigma / f),
+        return {Verdict::poor, Text("the focal length is known to {:.1f} % only", 100 * sigma / f),
                 tilt};
     if (!hint.empty()) return {Verdict::usable, hint, "measure the plate or take a flat one"};
     if (sigma > 0.002 * f)
-        return {Verdict::usable, fmt::format("the focal length is known to {:.2f} %", 100 * sigma / f), tilt};
+        return {Verdict::usable, Text("the focal length is known to {:.2f} %", 100 * sigma / f), tilt};
     if (r.rms_px > 0.5)
-        return {Verdict::usable, fmt::format("the points fit to {:.2f} px", r.rms_px),
+        return {Verdict::usable, Text("the points fit to {:.2f} px", r.rms_px),
                 "check focus and that the plate is flat"};
     if (r.covered_share < 1.0 / 3)
         return {Verdict::usable,
-                fmt::format("the views cover {:.0f} % of the image: the distortion outside is extrapolated",
+                Text("the views cover {:.0f} % of the image: the distortion outside is extrapolated",
                             100 * r.covered_share),
                 "add views with the plate in the corners of the image"};
     return {Verdict::good,
-            fmt::format(
+            Text(
                 "{} views, points fit to {:.2f} px, focal length to {:.2f} %, {:.0f} % of the image covered",
                 views, r.rms_px, 100 * sigma / f, 100 * r.covered_share),
             ""};
@@ -320,7 +320,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
         if (std::count(options.exclude.begin(), options.exclude.end(), p.id))
             p.note = "excluded";
         else if (twin >= 0)
-            p.note = "the same view as " + input.views[static_cast<std::size_t>(twin)].id;
+            p.note = Text("the same view as {}", input.views[static_cast<std::size_t>(twin)].id);
         p.used = p.note.empty();
         drop[i] = !p.used;
         if (p.used) {
@@ -332,7 +332,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
     }
     const CameraData data = without(input, drop);
     if (data.views.empty() || (flat == data.views.size() && flat < 2))
-        return input_error(fmt::format("{} different view(s) of a plate are too few", data.views.size()),
+        return input_error(Text("{} different view(s) of a plate are too few", data.views.size()),
                            "views",
                            "give at least 3, better 10, views with the plate tilted in different directions");
     const auto start = start_camera(data);
@@ -397,7 +397,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
             std::string list;
             for (std::size_t q = 0; q < used[k].size(); ++q)
                 if (!used[k][q]) list += (list.empty() ? "" : ", ") + std::to_string(q);
-            p.note = "points left out as wrong: " + list;
+            p.note = Text("points left out as wrong: {}", list);
         }
         normals.push_back(solution.camera_from_target[k].linear().col(2));
         ++k;

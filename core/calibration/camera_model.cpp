@@ -435,7 +435,7 @@ Expected<TargetPose> locate_target(const CameraModel& camera, const CameraPoints
         return input_error("a pose needs at least 4 points, each with a pixel", view.id, "give more points");
     for (std::size_t i = 0; i < view.pixel.size(); ++i)
         if (!view.pixel[i].allFinite() || !view.object_mm[i].allFinite())
-            return input_error("point " + std::to_string(i) + " is not a finite number", view.id,
+            return input_error(Text("point {} is not a finite number", std::to_string(i)), view.id,
                                "leave it out");
     const PointFrame f = frame_of(view.object_mm);
     if (!(f.extent(1) > 1e-3 * f.extent(0)))

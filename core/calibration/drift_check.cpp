@@ -59,7 +59,7 @@ Fit fit_change(const std::vector<DriftMeasurement>& list, const std::vector<Eige
             if (value < 1 / (coarsest_mm * coarsest_mm)) {
                 const bool turn = direction.tail<3>().norm() > direction.head<3>().norm();
                 fit.not_determined.push_back(
-                    fmt::format("{} {} of the flange", turn ? "turn about" : "shift along",
+                    Text("{} {} of the flange", turn ? "turn about" : "shift along",
                                 axis_name(turn ? Eigen::Vector3d(direction.tail<3>())
                                                : Eigen::Vector3d(direction.head<3>()))));
                 continue;
@@ -117,7 +117,7 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
     const auto circle = find_circle_section(observation.profile, limits);
     if (!circle)
         return input_error(
-            fmt::format("the profile shows no circle of a sphere with radius {:.3f} mm", radius_mm), where,
+            Text("the profile shows no circle of a sphere with radius {:.3f} mm", radius_mm), where,
             "let the laser cut the sphere");
     const Eigen::Vector3d expected =
         stored_flange_from_sensor.inverse() * (observation.base_from_flange.inverse() * known_centre_base_mm);
@@ -234,13 +234,13 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     const bool turn_unknown = fit.determined < 6 || 2 * result.sigma_deg > limits.rotation_deg;
     const bool outside = result.change_mm > limits.translation_mm || result.change_deg > limits.rotation_deg;
     const std::string change =
-        fmt::format("change {:.3f} mm (sigma {:.3f}) and {:.3f} degrees (sigma {:.3f})", result.change_mm,
+        Text("change {:.3f} mm (sigma {:.3f}) and {:.3f} degrees (sigma {:.3f})", result.change_mm,
                     result.sigma_mm, result.change_deg, result.sigma_deg);
     if (significant && !explained) {
         result.status = DriftStatus::drifted;
         report.judgement = {
             Verdict::poor,
-            fmt::format("the measurements contradict the stored places and no rigid change of the sensor "
+            Text("the measurements contradict the stored places and no rigid change of the sensor "
                         "explains them ({:.3f} mm remain)",
                         result.rms_after_mm),
             "check that no target has moved, then calibrate again"};
@@ -251,16 +251,16 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
         result.status = DriftStatus::undetermined;
         report.judgement = {
             Verdict::undetermined,
-            fmt::format("the measurements are too few or too rough to see {:.3f} mm", limits.translation_mm),
+            Text("the measurements are too few or too rough to see {:.3f} mm", limits.translation_mm),
             "measure two or three spheres, cut off their middle, from several poses"};
     } else if (turn_unknown) {
         result.status = DriftStatus::undetermined;
         std::string open;
         for (const auto& word : fit.not_determined) open += (open.empty() ? "" : ", ") + word;
         report.judgement = {Verdict::undetermined,
-                            open.empty() ? fmt::format("a turn of {:.3f} degrees cannot be seen: {}",
+                            open.empty() ? Text("a turn of {:.3f} degrees cannot be seen: {}",
                                                        limits.rotation_deg, change)
-                                         : fmt::format("not seen: {}; {}", open, change),
+                                         : Text("not seen: {}; {}", open, change),
                             "measure further spheres near the rims of the view, left, right, near and far"};
     } else if (outside) {
         result.status = DriftStatus::undetermined;

@@ -273,7 +273,7 @@ std::vector<std::string> degenerate_words(const std::vector<Pose>& base_from_fla
         return {
             "all poses share one orientation: rotate the flange about two of its axes by 20 degrees or more"};
     if (spread.spread_rad[1] < rad_from_deg(5))
-        return {fmt::format(
+        return {Text(
             "the poses turn about the flange's {} axis only: rotate about another axis by 20 degrees or more",
             axis_name(spread.axes.col(0)))};
     return {};
@@ -306,10 +306,10 @@ Expected<void> check_input(const std::vector<HandEyePair>& pairs, const std::vec
     if (distinct < kHandEyeFewestPairs)
         return input_error(
             kept.size() < static_cast<size_t>(kHandEyeFewestPairs)
-                ? fmt::format("{} pairs are too few", kept.size())
-                : fmt::format("only {} of the {} robot poses differ from one another", distinct, kept.size()),
+                ? Text("{} pairs are too few", kept.size())
+                : Text("only {} of the {} robot poses differ from one another", distinct, kept.size()),
             "pairs",
-            fmt::format("give at least {} different poses, better eight or more", kHandEyeFewestPairs));
+            Text("give at least {} different poses, better eight or more", kHandEyeFewestPairs));
     return {};
 }
 
@@ -390,7 +390,7 @@ std::string likely_mistake(Mount mount, const std::vector<HandEyePair>& pairs, c
     for (size_t i = 0; i < chain.size(); ++i)
         if (used[i]) squares += residual_mm(chain, i, start.x, start.y).squaredNorm();
     if (!(std::sqrt(squares / static_cast<double>(chain.used_count())) < 0.2 * rms_mm)) return {};
-    return fmt::format(
+    return Text(
         "the pairs fit as {}, or with camera_from_target inverted: the mount or the direction of one list "
         "seems wrong",
         name_of(other));
@@ -479,7 +479,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             return result;
         }
         report.judgement.reason =
-            fmt::format("the pairs leave the camera open to {:.3g} mm and {:.3g} degrees", known.worst_mm,
+            Text("the pairs leave the camera open to {:.3g} mm and {:.3g} degrees", known.worst_mm,
                         deg_from_rad(known.worst_rad));
         double squares = 0;
         for (size_t i = 0; i < pairs.size(); ++i)
@@ -530,7 +530,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     const double check_deg = std::isnan(report.hold_out.rms_deg) ? result.rms_deg : report.hold_out.rms_deg;
     const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
     const std::string fit =
-        fmt::format("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
+        Text("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
     if (check_mm > kUsableHand_mm || check_deg > kUsableHand_deg || 3 * sigma_mm > 2 * kUsableHand_mm) {
         const std::string mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
         report.judgement = {
@@ -538,7 +538,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             mistake.empty() ? "check robot poses, the target's size and the camera's intrinsics" : mistake};
     } else if (check_mm > kGoodHand_mm || check_deg > kGoodHand_deg || 3 * sigma_mm > kGoodHand_mm || n < 6) {
         report.judgement = {Verdict::usable,
-                            n < 6 ? fmt::format("only {:.0f} poses, little to check with; {}", n, fit) : fit,
+                            n < 6 ? Text("only {:.0f} poses, little to check with; {}", n, fit) : fit,
                             "take more poses with larger rotations, still and well lit"};
     } else {
         report.judgement = {Verdict::good, fit, ""};

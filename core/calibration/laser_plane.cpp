@@ -63,7 +63,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     }
     const auto count = [&] { return static_cast<int>(std::count(used.begin(), used.end(), 1)); };
     if (count() < 4)
-        return input_error(fmt::format("{} pairs are too few, at least 4 are needed", count()), "pairs",
+        return input_error(Text("{} pairs are too few, at least 4 are needed", count()), "pairs",
                            "place the body in 10 or more positions over the whole field of view");
     if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
     static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
@@ -154,26 +154,26 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     if (!(sigma_mm < 5) || !(sigma_deg < 2)) {
         report.parameters.clear();
         report.covariance.resize(0, 0);
-        return undetermined(fmt::format("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)",
+        return undetermined(Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)",
                                         sigma_mm, sigma_deg));
     }
     if (result.rms_px > 3)
-        report.judgement = {Verdict::poor, fmt::format("the pairs fit to {:.1f} px only", result.rms_px),
+        report.judgement = {Verdict::poor, Text("the pairs fit to {:.1f} px only", result.rms_px),
                             "check the camera and that pixels and laser points belong together"};
     else if (!left_out.empty())
         report.judgement = {Verdict::usable,
                             "the pair " + left_out + " contradicts the others and was left out",
                             "measure it again"};
     else if (count() < 10)
-        report.judgement = {Verdict::usable, fmt::format("{} pairs are few", count()),
+        report.judgement = {Verdict::usable, Text("{} pairs are few", count()),
                             "take 10 or more over the whole field of view"};
     else if (sigma_mm > 1 || sigma_deg > 0.3)
         report.judgement = {
             Verdict::usable,
-            fmt::format("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg), more};
+            Text("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg), more};
     else
         report.judgement = {Verdict::good,
-                            fmt::format("{} pairs fit to {:.2f} px, sigma {:.2f} mm and {:.3f} degrees",
+                            Text("{} pairs fit to {:.2f} px, sigma {:.2f} mm and {:.3f} degrees",
                                         count(), result.rms_px, sigma_mm, sigma_deg),
                             ""};
     return result;

@@ -248,7 +248,7 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
     const auto worst = static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
     if (lines.count() > fewest && rms[worst] > bent) {
         lines.used[worst] = 0;
-        poses[worst].note = fmt::format("left out: it stays bent by {:.2f} px, the others by {:.2f} px",
+        poses[worst].note = Text("left out: it stays bent by {:.2f} px, the others by {:.2f} px",
                                         rms[worst], median(rms_used));
         return true;
     }
@@ -271,13 +271,13 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options) {
     using namespace lens_lines;
     if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
-        return input_error(fmt::format("an image of {}x{} pixels is not possible", data.width, data.height),
+        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height),
                            "size", "give [width, height] in pixels");
     LensResult result;
     std::vector<char> excluded(data.lines.size(), 0);
     for (const int e : options.exclude) {
         if (e < 0 || static_cast<std::size_t>(e) >= data.lines.size())
-            return input_error(fmt::format("there is no line {} to exclude", e), "exclude",
+            return input_error(Text("there is no line {} to exclude", e), "exclude",
                                "lines count from 0");
         excluded[static_cast<std::size_t>(e)] = 1;
     }
@@ -287,7 +287,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         const std::string where = fmt::format("lines[{}]", i);
         const auto& line = data.lines[i];
         if (line.size() < 5)
-            return input_error(fmt::format("{} points are too few for a line", line.size()), where,
+            return input_error(Text("{} points are too few for a line", line.size()), where,
                                "give at least 5");
         for (const auto& p : line)
             if (!p.allFinite() || p.x() < -1 || p.y() < -1 || p.x() > data.width || p.y() > data.height)
@@ -309,7 +309,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
             continue;
         lines.used[i] = 0;
         poses[i].note =
-            fmt::format("left out: only {} of its {} points lie on one line", on, lines.on[i].size());
+            Text("left out: only {} of its {} points lie on one line", on, lines.on[i].size());
     }
 
     const double half = 0.5 * std::hypot(data.width, data.height);
@@ -350,7 +350,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         if (on > 0) poses[i].rms_px = std::sqrt(sum / on);
         const auto left_out = static_cast<double>(data.lines[i].size()) - on;
         if (lines.used[i] && left_out > 0)
-            poses[i].note = fmt::format("{:.0f} of its {} points lie off it and took no part", left_out,
+            poses[i].note = Text("{:.0f} of its {} points lie off it and took no part", left_out,
                                         data.lines[i].size());
     }
     static constexpr const char* names[] = {"", "", "centre_u", "centre_v", "k1", "k2", "p1", "p2", "k3"};
@@ -391,9 +391,9 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         report.covariance.resize(0, 0);
         report.judgement = {
             Verdict::undetermined,
-            (lines.count() < 3   ? fmt::format("{} line(s) do not determine a lens", lines.count())
+            (lines.count() < 3   ? Text("{} line(s) do not determine a lens", lines.count())
              : !solved.converged ? std::string("no lens makes the lines straight")
-                                 : fmt::format("the lines do not span the field: the distortion in the "
+                                 : Text("the lines do not span the field: the distortion in the "
                                                "corners is known to {:.1f} px only",
                                                result.corner_sigma_px)) +
                 left_out,
@@ -404,17 +404,17 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     if (result.straightness_after_px > 2)
         report.judgement = {
             Verdict::poor,
-            fmt::format("the lines stay bent by {:.2f} px", result.straightness_after_px) + left_out,
+            Text("the lines stay bent by {:.2f} px", result.straightness_after_px) + left_out,
             "check that the lines lie on a flat plane"};
     else if (result.corner_sigma_px > 0.5)
         report.judgement = {
             Verdict::usable,
-            fmt::format("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px) +
+            Text("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px) +
                 left_out,
             cure};
     else
         report.judgement = {Verdict::good,
-                            fmt::format("{} lines, straight to {:.2f} px (before: {:.2f} px)", lines.count(),
+                            Text("{} lines, straight to {:.2f} px (before: {:.2f} px)", lines.count(),
                                         result.straightness_after_px, result.straightness_before_px) +
                                 left_out,
                             ""};

@@ -688,17 +688,17 @@ std::optional<Vector2d> pixel_in_table(const LookupTable& t, const Vector2d& xz,
 Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const std::vector<LaserPair>& pairs,
                                                    const LookupTableOptions& options) {
     if (width < 16 || height < 16 || width > 100000 || height > 100000)
-        return input_error(fmt::format("an image of {}x{} pixels is not possible", width, height), "size",
+        return input_error(Text("an image of {}x{} pixels is not possible", width, height), "size",
                            "give [width, height] in pixels");
     const double fine = options.step_px;
     if (fine != 0 &&
         (!(fine > 0) || !std::isfinite(fine) || fine > std::max(width, height) ||
          (std::ceil((width - 1) / fine) + 1) * (std::ceil((height - 1) / fine) + 1) > kMostNodes))
         return input_error(
-            fmt::format("a step of {} px is not possible for {}x{} pixels", fine, width, height), "step_px",
+            Text("a step of {} px is not possible for {}x{} pixels", fine, width, height), "step_px",
             "give e.g. 8");
     if (pairs.size() > kMostPairs)
-        return input_error(fmt::format("{} pairs are too many", pairs.size()), "pairs",
+        return input_error(Text("{} pairs are too many", pairs.size()), "pairs",
                            "thin them out to 100000 or fewer");
     std::vector<std::string> ids;
     for (const auto& p : pairs) ids.push_back(p.id);
@@ -715,7 +715,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
         if (!p.pixel.allFinite() || !p.laser_mm.allFinite() || p.laser_mm.norm() > 1e6)
             return input_error("the pair is not made of finite numbers", where, "leave it out");
         if (p.pixel.x() < -1 || p.pixel.y() < -1 || p.pixel.x() > width || p.pixel.y() > height)
-            return input_error(fmt::format("the pixel ({:.1f}, {:.1f}) lies outside the image of {}x{}",
+            return input_error(Text("the pixel ({:.1f}, {:.1f}) lies outside the image of {}x{}",
                                            p.pixel.x(), p.pixel.y(), width, height),
                                where, "check the size and the order [u, v]");
         allowed[i] = !std::binary_search(excluded.begin(), excluded.end(), p.id);
@@ -727,7 +727,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     }
     const auto count = std::count(allowed.begin(), allowed.end(), 1);
     if (count < 6)
-        return input_error(fmt::format("{} pairs are too few, at least 6 are needed", count), "pairs",
+        return input_error(Text("{} pairs are too few, at least 6 are needed", count), "pairs",
                            "measure 25 or more positions over the whole field of view");
     if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
 
@@ -744,7 +744,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     if (!(flatness(all.pixel) > 0.01)) return undetermined("the pixels lie on one line of the image");
     if (!(flatness(all.laser) > 0.01)) return undetermined("the targets lie on one line of the laser plane");
     if (count < 9)
-        return undetermined(fmt::format("{} pairs cannot tell a wrong one from the others", count));
+        return undetermined(Text("{} pairs cannot tell a wrong one from the others", count));
     SmoothMap map;
     std::vector<char> used;
     if (!fit_without_wrong(pairs, allowed, used, map))
@@ -753,7 +753,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     const auto n = static_cast<double>(s.pixel.size());
     if (3 * n < 2 * static_cast<double>(count))
         return undetermined(
-            fmt::format("the largest set of pairs that agree has {} of {}", s.pixel.size(), count));
+            Text("the largest set of pairs that agree has {} of {}", s.pixel.size(), count));
     if (!(flatness(s.pixel) > 0.01) || !(flatness(s.laser) > 0.01))
         return undetermined("the pairs that agree lie on one line");
     const Support support(s.pixel);
@@ -862,16 +862,16 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     int wrong_count = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (allowed[i] && !used[i] && ++wrong_count <= 8) wrong += (wrong.empty() ? "" : ", ") + pairs[i].id;
-    if (wrong_count > 8) wrong += fmt::format(" and {} more", wrong_count - 8);
+    if (wrong_count > 8) wrong += Text(" and {} more", wrong_count - 8);
     const double hold_px = report.hold_out.rms_px / std::sqrt(2.0);  // per coordinate, as noise_px
     if (result.noise_px > 3 || hold_px > 3)
         report.judgement = {
             Verdict::poor,
-            fmt::format("the pairs fit to {:.1f} px only",
+            Text("the pairs fit to {:.1f} px only",
                         std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
             "check that pixels and laser points belong together"};
     else if (folded > 0)
-        report.judgement = {Verdict::poor, fmt::format("the map folds over in {} cells", folded),
+        report.judgement = {Verdict::poor, Text("the map folds over in {} cells", folded),
                             "measure more positions there, or check the pairs nearby"};
     else if (wrong_count > 0)
         report.judgement = {Verdict::usable,
@@ -880,19 +880,19 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
                                 : "the pairs " + wrong + " contradict the others and were left out",
                             "measure again there"};
     else if (n < 25)
-        report.judgement = {Verdict::usable, fmt::format("{:.0f} pairs are few", n), spread};
+        report.judgement = {Verdict::usable, Text("{:.0f} pairs are few", n), spread};
     else if (result.covered_share < 0.5)
         report.judgement = {Verdict::usable,
-                            fmt::format("the table covers {:.0f} % of the image", 100 * result.covered_share),
+                            Text("the table covers {:.0f} % of the image", 100 * result.covered_share),
                             "measure positions in the rest of the image, if the sensor is to see there"};
     else if (hold_px > std::max(1.6 * result.noise_px, 0.05))
         report.judgement = {Verdict::usable,
-                            fmt::format("between the pairs the map is off by {:.2f} px, at them by {:.2f}",
+                            Text("between the pairs the map is off by {:.2f} px, at them by {:.2f}",
                                         hold_px, result.noise_px),
                             "measure positions closer together"};
     else
         report.judgement = {Verdict::good,
-                            fmt::format("{:.0f} pairs fit to {:.3f} mm ({:.2f} px), the map is known to "
+                            Text("{:.0f} pairs fit to {:.3f} mm ({:.2f} px), the map is known to "
                                         "{:.3f} mm over {:.0f} % of the image",
                                         n, result.forward_rms_mm, result.noise_px, result.map_sigma_mm,
                                         100 * result.covered_share),

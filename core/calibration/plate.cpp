@@ -93,10 +93,10 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
         plate.push_back(point.plate);
         world.push_back(point.world);
         if (!point.plate.allFinite() || !point.world.allFinite())
-            return input_error("a coordinate is not a finite number", fmt::format("point '{}'", point.id));
+            return input_error("a coordinate is not a finite number", Text("point '{}'", point.id));
         if (point.plate.cwiseAbs().maxCoeff() > 1e5 || point.world.cwiseAbs().maxCoeff() > 1e6)
             return input_error("a coordinate is beyond 100 m on the plate or 1 km in the world",
-                               fmt::format("point '{}'", point.id), "give millimetres");
+                               Text("point '{}'", point.id), "give millimetres");
     }
     if (auto ok = check_ids(ids, options.exclude, "points"); !ok) return ok;
     if (options.sigma_mm && !(std::isfinite(*options.sigma_mm) && *options.sigma_mm > 0))
@@ -108,12 +108,12 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
         count += use[i] ? 1 : 0;
     }
     if (count < 3)
-        return input_error(fmt::format("{} points are too few", count), "points",
+        return input_error(Text("{} points are too few", count), "points",
                            "give at least three, better five or more");
     const double size = extent(plate), world_size = extent(world);
     if (size > 0 && size < 2)
         return input_error(
-            fmt::format("the plate measures {:.3g} only: its points look like metres, not millimetres", size),
+            Text("the plate measures {:.3g} only: its points look like metres, not millimetres", size),
             "points", "give millimetres (times 1000)");
     const double ratio = world_size / std::max(size, 1e-12);
     if (ratio > 0.0005 && ratio < 0.002)
@@ -128,7 +128,7 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
         for (size_t k = 0; k < i; ++k)
             if (use[i] && use[k] && (plate[i] - plate[k]).norm() < 1e-6 * std::max(1.0, size))
                 return input_error(
-                    fmt::format("'{}' and '{}' are the same point of the plate", ids[k], ids[i]), "points",
+                    Text("'{}' and '{}' are the same point of the plate", ids[k], ids[i]), "points",
                     "give different points, or their mean once");
     return {};
 }
@@ -211,7 +211,7 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
         pose = without;
         squares = least;
         report.poses[suspect].used = false;
-        report.poses[suspect].note = fmt::format("contradicts the other points by {:.2f} mm", miss);
+        report.poses[suspect].note = Text("contradicts the other points by {:.2f} mm", miss);
         wrong += (wrong.empty() ? "" : ", ") + points[suspect].id;
     }
     if (!wrong.empty()) result.notices.push_back("not used, contradicting the others: " + wrong);
@@ -283,14 +283,14 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     const double stretch_sigma =
         std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(1e-12, m.spread_from));
     const std::string fit =
-        fmt::format("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst);
+        Text("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst);
     if (result.mirrored) {
         report.judgement = {Verdict::poor, "the world points fit a mirrored plate",
                             "check for an axis that is flipped or swapped"};
     } else if (stretch > 0.2 && stretch > 4 * stretch_sigma && std::abs(result.scale - 1) > 2e-4) {
         report.judgement = {
             Verdict::poor,
-            fmt::format("distances in the world are {:.5f} times those on the plate", result.scale),
+            Text("distances in the world are {:.5f} times those on the plate", result.scale),
             "check the plate's drawing, the scale of the measuring system and the order of the points"};
     } else if (3 * worst > kUsablePlate_mm || result.rms_mm > kUsablePlate_mm) {
         report.judgement = {Verdict::poor, fit,

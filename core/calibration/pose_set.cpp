@@ -22,14 +22,14 @@ Expected<void> check_ids(const std::vector<std::string>& ids, const std::vector<
     std::set<std::string> seen;
     for (size_t i = 0; i < ids.size(); ++i) {
         if (ids[i].empty())
-            return input_error(fmt::format("entry {} has an empty id", i), where, "give every entry a name");
+            return input_error(Text("entry {} has an empty id", i), where, "give every entry a name");
         if (!seen.insert(ids[i]).second)
-            return input_error(fmt::format("the id '{}' occurs twice", ids[i]), where,
+            return input_error(Text("the id '{}' occurs twice", ids[i]), where,
                                "give every entry a name of its own");
     }
     for (const auto& id : exclude)
         if (!seen.contains(id))
-            return input_error(fmt::format("there is no entry '{}' to exclude", id), where,
+            return input_error(Text("there is no entry '{}' to exclude", id), where,
                                "name ids that occur in the data");
     return {};
 }
@@ -39,7 +39,7 @@ Expected<void> check_millimetres(const std::vector<Pose>& poses, const std::stri
     for (const auto& pose : poses) largest = std::max(largest, pose.translation().norm());
     if (largest > 0 && largest < 10)
         return input_error(
-            fmt::format(
+            Text(
                 "no pose is farther than {:.3g} from its base: these look like metres, not millimetres",
                 largest),
             where, "give translations in millimetres (times 1000)");

@@ -110,17 +110,17 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
             "the laser plane in the camera"};
         const double three = 3 * one.working_sigma_mm;
         const std::string figure =
-            fmt::format("sensor {}: three sigma at the working point {:.3f} mm", one.id, three);
+            Text("sensor {}: three sigma at the working point {:.3f} mm", one.id, three);
         if (sum == 0)
             one.judgement = {
                 Verdict::usable,
-                fmt::format("sensor {}: no covariance was given, the accuracy is unknown", one.id),
+                Text("sensor {}: no covariance was given, the accuracy is unknown", one.id),
                 "give the covariance of each link"};
         else if (three > kUsableChain_mm)
             one.judgement = {Verdict::poor, figure,
-                             fmt::format("most of it is {}: calibrate that better", names[largest])};
+                             Text("most of it is {}: calibrate that better", names[largest])};
         else if (three > kGoodChain_mm)
-            one.judgement = {Verdict::usable, figure, fmt::format("most of it is {}", names[largest])};
+            one.judgement = {Verdict::usable, figure, Text("most of it is {}", names[largest])};
         else
             one.judgement = {Verdict::good, figure, ""};
         if (result.sensors.empty() || one.judgement.verdict > result.judgement.verdict)

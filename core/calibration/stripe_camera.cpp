@@ -64,16 +64,16 @@ class Solver {
         std::set<std::string> ids;
         for (const auto& o : observations_) {
             if (!ids.insert(o.id).second)
-                return input_error("the frame id '" + o.id + "' occurs twice", o.id, "name frames apart");
+                return input_error(Text("the frame id '{}' occurs twice", o.id), o.id, "name frames apart");
             if (o.width != observations_.front().width || o.height != observations_.front().height)
                 return input_error(
-                    fmt::format("the images have different sizes ({}x{} and {}x{})",
+                    Text("the images have different sizes ({}x{} and {}x{})",
                                 observations_.front().width, observations_.front().height, o.width, o.height),
                     o.id, "give frames of one camera at one resolution");
         }
         for (const auto& e : options_.exclude)
             if (!ids.count(e))
-                return input_error("there is no frame '" + e + "' to exclude", "exclude",
+                return input_error(Text("there is no frame '{}' to exclude", e), "exclude",
                                    "name a frame of the set");
         if (observations_.empty())
             return input_error("there is no frame", "images", "give at least 5 frames that show the plate");
@@ -91,7 +91,7 @@ class Solver {
             else if (!f.board_found)
                 f.note = "no board found";
             else if (const int twin = same_as_earlier(*o.board); twin >= 0)
-                f.note = "the same image as " + observations_[static_cast<std::size_t>(twin)].id;
+                f.note = Text("the same image as {}", observations_[static_cast<std::size_t>(twin)].id);
             else {
                 view_frame_.push_back(i);
                 data_.views.push_back({o.id, o.board->object_mm, o.board->pixel});
@@ -100,12 +100,12 @@ class Solver {
             result_.frames.push_back(std::move(f));
         }
         if (result_.boards_found == 0)
-            return input_error(fmt::format("no board of {}x{} points was found in any of {} images",
+            return input_error(Text("no board of {}x{} points was found in any of {} images",
                                            spec_.columns, spec_.rows, observations_.size()),
                                "board", "check the number of inner corners, the light and the focus");
         if (count() < 3)
             return input_error(
-                fmt::format("only {} different frames show the board, at least 3 are needed", count()),
+                Text("only {} different frames show the board, at least 3 are needed", count()),
                 "images", "take 8 or more frames with the plate tilted in different directions");
         return {};
     }
@@ -236,7 +236,7 @@ class Solver {
             const auto other = turned(*observations_[view_frame_[k]].board, spec_, turns[i] * step);
             data_.views[k].object_mm = other.object_mm;
             result_.frames[view_frame_[k]].note =
-                fmt::format("board read {} degrees round", 90 * turns[i] * step);
+                Text("board read {} degrees round", 90 * turns[i] * step);
             if (const auto located =
                     locate_target(camera_of(state_.intrinsics, data_.width, data_.height), data_.views[k]))
                 state_.camera_from_target[k] = located->camera_from_target;
@@ -273,12 +273,12 @@ class Solver {
         const double unit_cost = btb - 2 * atb.dot(unit) + unit.dot(ata * unit);
         if (!(s > 0) || std::abs(s - 1) < 0.06 || free_cost > 0.3 * unit_cost) return {};
         if (s > 300 || s < 1 / 300.0)
-            return input_error(fmt::format("the robot's motion is {:.0f} times the board's: metres were "
+            return input_error(Text("the robot's motion is {:.0f} times the board's: metres were "
                                            "given where millimetres were meant",
                                            s > 1 ? s : 1 / s),
                                "poses", "give both in millimetres");
         return input_error(
-            fmt::format("by the robot's motion the pitch of the board is {:.2f} mm, not {:.2f} mm",
+            Text("by the robot's motion the pitch of the board is {:.2f} mm, not {:.2f} mm",
                         s * spec_.pitch_mm, spec_.pitch_mm),
             "pitch_mm", "measure the board");
     }
@@ -534,7 +534,7 @@ class Solver {
             if (f.stripe_used)
                 rows += f.rows_on_board, on += f.rows_on_plane;
             else
-                f.note = fmt::format(
+                f.note = Text(
                     "its stripe lies {:.1f} mm off the plane of the other frames and was left out",
                     std::abs(f.median_off_plane_mm));
         }
@@ -653,7 +653,7 @@ class Solver {
             if (x.used && !x.stripe_used && !x.stripe.empty()) off += (off.empty() ? "" : ", ") + x.id;
         if (!fit_.covariance.size() || sigma_f > 0.05 * f)
             return {Verdict::undetermined,
-                    fmt::format("the frames do not determine the focal length (sigma {:.0f} of {:.0f} px)",
+                    Text("the frames do not determine the focal length (sigma {:.0f} of {:.0f} px)",
                                 sigma_f, f),
                     "tilt the plate by 20 to 40 degrees in several directions"};
         if (!result_.plane)
@@ -661,12 +661,12 @@ class Solver {
                     "place the plate so that the stripe crosses it in every frame"};
         if (stripes < 3 || result_.plane_sigma_deg > 2)
             return {Verdict::undetermined,
-                    fmt::format("the stripes of {} frames do not fix the laser plane (sigma {:.1f} degrees)",
+                    Text("the stripes of {} frames do not fix the laser plane (sigma {:.1f} degrees)",
                                 stripes, result_.plane_sigma_deg),
                     "add frames with the plate nearer, farther and tilted"};
         if (result_.on_plane_share < 0.8 || result_.rms_px > 1.5)
             return {Verdict::poor,
-                    fmt::format("only {:.0f} % of the stripe rows lie within 0.5 mm of one plane, corners "
+                    Text("only {:.0f} % of the stripe rows lie within 0.5 mm of one plane, corners "
                                 "fit to {:.2f} px",
                                 100 * result_.on_plane_share, result_.rms_px),
                     "check focus, that plate, laser and camera are held firmly, and the board's size"};
@@ -674,35 +674,35 @@ class Solver {
                                                [](const auto& x) { return x.used && !x.stripe.empty(); });
         if (2 * stripes <= with_stripe)
             return {Verdict::poor,
-                    fmt::format("the stripes of {} of {} frames contradict the plane of the others ({})",
+                    Text("the stripes of {} of {} frames contradict the plane of the others ({})",
                                 with_stripe - stripes, with_stripe, off),
                     "hold laser and camera firmly together and take all frames again"};
         if (result_.flange_from_camera && result_.target_spread_mm > 3)
             return {Verdict::poor,
-                    fmt::format("the plate's origin spreads by {:.1f} mm in the robot's base",
+                    Text("the plate's origin spreads by {:.1f} mm in the robot's base",
                                 result_.target_spread_mm),
                     "check that poses and images belong together and that the plate did not move"};
         if (!off.empty())
             return {Verdict::usable,
-                    fmt::format("the stripe of {} lies off the plane that the other {} frames share", off,
+                    Text("the stripe of {} lies off the plane that the other {} frames share", off,
                                 stripes),
                     "check that laser and camera sit firmly, and take these frames again"};
         if (sigma_f > 0.01 * f)
             return {Verdict::usable,
-                    fmt::format("the focal length is known to {:.1f} % only", 100 * sigma_f / f),
+                    Text("the focal length is known to {:.1f} % only", 100 * sigma_f / f),
                     "add frames with the plate tilted by 20 to 40 degrees"};
         if (result_.on_plane_share < 0.95)
             return {Verdict::usable,
-                    fmt::format("{:.0f} % of the stripe rows lie within 0.5 mm of one plane",
+                    Text("{:.0f} % of the stripe rows lie within 0.5 mm of one plane",
                                 100 * result_.on_plane_share),
                     "use a flatter plate or less exposure"};
         if (!result_.flange_from_camera && !robot_note_.empty())
             return {Verdict::usable, "no hand-eye: " + robot_note_,
                     "turn the robot about two axes by 20 degrees or more"};
-        std::string reason = fmt::format("{} frames, corners {:.2f} px, {:.1f} % of the stripe on one plane",
+        std::string reason = Text("{} frames, corners {:.2f} px, {:.1f} % of the stripe on one plane",
                                          count(), result_.rms_px, 100 * result_.on_plane_share);
         if (model_.shape != ShapeFreedom::rigid)
-            reason += fmt::format(
+            reason += Text(
                 "; the plate is stretched by {:.2f} % and sheared by {:.2f} %, which was solved for",
                 100 * state_.shape.stretch, 100 * state_.shape.shear);
         return {Verdict::good, reason, ""};

@@ -57,7 +57,7 @@ struct StripeCameraOptions {
 struct StripeFrameResult {
     std::string id;
     bool board_found = false, used = false, stripe_used = false, robot_used = false;
-    std::string note;
+    Text note;
     double corner_rms_px = 0;
     Pose camera_from_target = Pose::Identity();
     std::vector<Eigen::Vector2d> stripe;  // the rows on the plate

@@ -35,7 +35,7 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
         poses.push_back(observation.base_from_flange);
         if (observation.profile.x_mm.size() != observation.profile.z_mm.size())
             return input_error("the profile has different numbers of x and z",
-                               "observation '" + observation.id + "'");
+                               Text("observation '{}'", observation.id));
     }
     if (auto ok = check_ids(ids, options.exclude, "observations"); !ok) return ok;
     if (options.radius_mm && !(std::isfinite(*options.radius_mm) && *options.radius_mm > 0))
@@ -53,16 +53,16 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
     for (size_t i = 0; i < poses.size(); ++i)
         if (!excluded.contains(ids[i])) kept.push_back(poses[i]);
     if (static_cast<int>(kept.size()) < kTcpSphereFewestPoses)
-        return input_error(fmt::format("{} poses are too few", kept.size()), "observations",
-                           fmt::format("give at least {}, better nine or more", kTcpSphereFewestPoses));
+        return input_error(Text("{} poses are too few", kept.size()), "observations",
+                           Text("give at least {}, better nine or more", kTcpSphereFewestPoses));
     const auto first = first_equal_pose(kept);
     int distinct = 0;
     for (size_t i = 0; i < first.size(); ++i) distinct += first[i] == static_cast<int>(i) ? 1 : 0;
     if (distinct < kTcpSphereFewestPoses)
         return input_error(
-            fmt::format("only {} of the {} poses differ from one another", distinct, kept.size()),
+            Text("only {} of the {} poses differ from one another", distinct, kept.size()),
             "observations",
-            fmt::format("give at least {} different poses, better nine or more", kTcpSphereFewestPoses));
+            Text("give at least {} different poses, better nine or more", kTcpSphereFewestPoses));
 
     // Extents of the points, for units: a sensor's field is centimetres, a sphere's radius is millimetres.
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -79,11 +79,11 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
     if (finite == 0) return input_error("no profile holds a single point", "observations");
     if (high - low < 0.5)
         return input_error(
-            fmt::format("all profile points lie within {:.3g} in x: these look like metres, not millimetres",
+            Text("all profile points lie within {:.3g} in x: these look like metres, not millimetres",
                         high - low),
             "observations", "give profile points in millimetres (times 1000)");
     if (options.radius_mm && *options.radius_mm < 0.5)
-        return input_error(fmt::format("a radius of {:.3g} mm looks like metres", *options.radius_mm),
+        return input_error(Text("a radius of {:.3g} mm looks like metres", *options.radius_mm),
                            "radius_mm", "give it in millimetres (times 1000)");
     return {};
 }
@@ -437,7 +437,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
         result.status = TcpSphereStatus::not_converged;
         write_poses(observations, sections, excluded, nullptr, result.report);
         judgement = {Verdict::undetermined,
-                     fmt::format("the sphere was found in {} profiles only", radii.size()),
+                     Text("the sphere was found in {} profiles only", radii.size()),
                      radius_free ? "let the laser cut the sphere in every pose"
                                  : "let the laser cut the sphere in every pose, and check its radius"};
         return result;
@@ -505,9 +505,9 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
         if (weak) {
             judgement.reason =
                 result.degenerate.empty()
-                    ? fmt::format("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
+                    ? Text("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
                     : result.degenerate.front();
-            judgement.cure = "take more poses, first: " + result.proposals.front().words;
+            judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
         } else {
             judgement.reason = "two different sensor positions explain these profiles about equally well";
             judgement.cure =
@@ -545,7 +545,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     if (!rejected.empty()) result.notices.push_back("not used: " + rejected);
     if (noise.poses_disagree)
         result.notices.push_back(
-            fmt::format("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
+            Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
                         "less exact than the "
                         "profiles, and the stated sigma counts that in",
                         std::sqrt(noise.ratio)));
@@ -563,7 +563,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     if (std::isfinite(free_radius)) {
         judgement = {
             Verdict::poor,
-            fmt::format("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
+            Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
                         free_radius, model.radius),
             "check the radius (was the diameter given?)"};
     } else if (used < 0.5 * static_cast<double>(candidates)) {
@@ -572,26 +572,26 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     } else if (result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit) {
         judgement = {
             Verdict::poor,
-            fmt::format("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
+            Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
                         result.rms_mm, hold_out),
             "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
     } else if (three_sigma > kUsableTcp_mm) {
         judgement = {Verdict::poor,
-                     fmt::format("three sigma at the working distance are {:.2f} mm", three_sigma),
+                     Text("three sigma at the working distance are {:.2f} mm", three_sigma),
                      result.proposals.empty() ? "take more poses"
                                               : "take more poses, first: " + result.proposals.front().words};
     } else if (three_sigma > kGoodTcp_mm) {
         judgement = {Verdict::usable,
-                     fmt::format("three sigma at the working distance are {:.2f} mm, good is {:.1f}",
+                     Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}",
                                  three_sigma, kGoodTcp_mm),
                      result.proposals.empty() ? "take more poses"
                                               : "take more poses, first: " + result.proposals.front().words};
     } else if (used < kTcpSphereFewestPoses) {
-        judgement = {Verdict::usable, fmt::format("only {:.0f} of the poses could be used", used),
+        judgement = {Verdict::usable, Text("only {:.0f} of the poses could be used", used),
                      "take more poses that show the sphere"};
     } else {
         judgement = {Verdict::good,
-                     fmt::format("three sigma at the working distance are {:.3f} mm", three_sigma), ""};
+                     Text("three sigma at the working distance are {:.3f} mm", three_sigma), ""};
     }
     return result;
 }

@@ -94,7 +94,7 @@ std::vector<std::string> degenerate_pose_words(const std::vector<Section>& secti
         for (size_t at = choice.find(" and "); at != std::string::npos; at = choice.find(" and ", at))
             choice.replace(at, 5, " or ");
         words.push_back(
-            fmt::format("the poses turn about the flange's {} axis only, all poses share one orientation "
+            Text("the poses turn about the flange's {} axis only, all poses share one orientation "
                         "about {}: rotate about {} by "
                         "20 degrees or more",
                         axis_name(axis), missing, choice));
@@ -117,7 +117,7 @@ std::vector<std::string> degenerate_pose_words(const std::vector<Section>& secti
                 "it before and behind its middle");
         else if (second < 0.5)
             words.push_back(
-                fmt::format("the sphere's places in the sensor frame lie on one line along {}: shift it "
+                Text("the sphere's places in the sensor frame lie on one line along {}: shift it "
                             "across that line by "
                             "half the field of view",
                             axis_name(eigen.eigenvectors().col(2))));
@@ -206,7 +206,7 @@ std::vector<PoseProposal> propose_poses(const std::vector<Section>& sections, co
     for (const auto& turn : turns)
         for (const double angle_deg : {25.0, -25.0})
             add(base_from_sensor * rotation_exp(turn.axis * rad_from_deg(angle_deg)),
-                fmt::format("turn the sensor about its own {} axis by {:+.0f} degrees", turn.name,
+                Text("turn the sensor about its own {} axis by {:+.0f} degrees", turn.name,
                             angle_deg));
 
     Matrix10 known = information;

@@ -21,7 +21,7 @@ std::string where(std::size_t n, const SpotObservation& spot, const char* field)
 }
 
 tl::unexpected<Error> twice(const std::string& id) {
-    return input_error(fmt::format("the spot id \"{}\" occurs twice", id), "spots",
+    return input_error(Text("the spot id \"{}\" occurs twice", id), "spots",
                        "give every spot its own id");
 }
 
@@ -31,16 +31,16 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
     };
     const char* far = "is not finite or lies beyond 10 km";
     if (!s.workobject_from_sensor.matrix().allFinite() || bad_point(s.workobject_from_sensor.translation()))
-        return input_error(std::string("the pose ") + far, where(n, s, "workobject_from_sensor"),
+        return input_error(Text("the pose {}", far), where(n, s, "workobject_from_sensor"),
                            "give finite numbers in millimetres");
     if (!is_pose(s.workobject_from_sensor))
         return input_error("the rotation is not orthonormal", where(n, s, "workobject_from_sensor"),
                            "give a rotation without scale, shear or mirroring");
     if (bad_point(s.reference_mm))
-        return input_error(std::string("the reference point ") + far, where(n, s, "reference"),
+        return input_error(Text("the reference point {}", far), where(n, s, "reference"),
                            "give finite numbers in millimetres");
     if (measured && bad_point(s.measured_mm))
-        return input_error(std::string("the measured point ") + far, where(n, s, "measured"),
+        return input_error(Text("the measured point {}", far), where(n, s, "measured"),
                            "leave spots that were not measured out of the list");
     if (!s.weights.allFinite() || s.weights.minCoeff() < 0 || s.weights.maxCoeff() > 1e6)
         return input_error("a weight is negative, not finite or above 1e6", where(n, s, "weights"),

@@ -129,11 +129,11 @@ Expected<ContourCurve> fit_contour_curve(std::span<const TravelPoint> points) {
         z.push_back(p.z_mm);
     }
     if (y.size() < 5)
-        return input_error(fmt::format("only {} reference points of the pass are usable", y.size()),
+        return input_error(Text("only {} reference points of the pass are usable", y.size()),
                            "contour curve", "record at least 5 profiles between entry and exit");
     const auto [from, to] = std::minmax_element(y.begin(), y.end());
     if (*to - *from < 1.0)
-        return input_error(fmt::format("the pass covers only {:.3f} mm of travel", *to - *from),
+        return input_error(Text("the pass covers only {:.3f} mm of travel", *to - *from),
                            "contour curve",
                            "record profiles over about 20 mm before and after the trigger position");
     const PolynomialFit fx = fit_lowest_order(y, x, 1, 3), fz = fit_lowest_order(y, z, 1, 3);

@@ -13,15 +13,6 @@ namespace {
 
 using namespace correction;
 
-std::string join(const std::vector<std::string>& words) {
-    std::string out;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (i > 0) out += i + 1 == words.size() ? " and " : ", ";
-        out += words[i];
-    }
-    return out;
-}
-
 }  // namespace
 
 std::string_view to_string(CorrectionStatus status) {
@@ -79,8 +70,8 @@ struct RegionSolver::Impl {
         r.sigma_at_spots_mm = seen.weakest_sigma_mm;
         report_spread(system, spread, seen, state, r.covariance, r.sigma_xyz_mm, r.sigma_abc_deg);
         r.message =
-            fmt::format("the spots do not determine the {}: add a spot whose edge runs in another direction",
-                        join(r.unobservable));
+            Text("the spots do not determine the {}: add a spot whose edge runs in another direction",
+                        listed(r.unobservable));
     }
 
     void fill_spots(std::span<const SpotObservation> spots, RegionCorrection& r) {
@@ -106,32 +97,29 @@ struct RegionSolver::Impl {
     }
 
     void remarks(std::span<const SpotObservation> spots, Verdict verdict, RegionCorrection& r) {
-        std::vector<std::string> out;
+        std::vector<Text> out;
         for (const SpotResidual& s : r.spots) {
-            if (!s.used) out.push_back(fmt::format("{} (off by {:.2f} mm)", s.id, s.residual_mm.norm()));
+            if (!s.used) out.push_back(Text("{} (off by {:.2f} mm)", s.id, s.residual_mm.norm()));
         }
-        const auto add = [&](const std::string& sentence) {
-            if (!r.message.empty()) r.message += "; ";
-            r.message += sentence;
-        };
+        const auto add = [&](const Text& sentence) { r.message = joined(r.message, "; ", sentence); };
         if (!out.empty())
-            add(fmt::format("left out as wrong: {}: look there for a foreign particle or a wrong feature",
-                            join(out)));
+            add(Text("left out as wrong: {}: look there for a foreign particle or a wrong feature",
+                            listed(out)));
         const double scatter = std::sqrt(r.variance_factor);
         if (verdict == Verdict::contradictory)
-            add(fmt::format(
+            add(Text(
                 "the spots contradict each other ({:.1f} times their stated sigma) and too few are left to "
                 "tell which is wrong: check every spot, or add spots",
                 scatter));
         else if (!r.consistent)
-            add(fmt::format(
+            add(Text(
                 "the residuals are {:.1f} times the stated sigma: the part is deformed or sigma is stated "
                 "too small",
                 scatter));
         for (std::size_t n = 0; n < spots.size(); ++n) {
             const double beyond = system.beyond_curve_mm(n, fit.state);
             if (beyond > 0.5)
-                add(fmt::format("{} slid {:.1f} mm beyond the taught range of its contour curve", spots[n].id,
+                add(Text("{} slid {:.1f} mm beyond the taught range of its contour curve", spots[n].id,
                                 beyond));
         }
     }
@@ -195,7 +183,7 @@ struct RegionSolver::Impl {
         r.iterations = fit.iterations;
         fill_spots(spots, r);
         if (!fit.converged) {
-            r.message = fmt::format(
+            r.message = Text(
                 "no displacement explains the measures within {} iterations, the spots contradict each "
                 "other: check that "
                 "measures and poses belong together",
@@ -227,11 +215,11 @@ struct RegionSolver::Impl {
         const double turned = deg_from_rad(rotation_log(fit.state.rotation).norm());
         if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {
             r.status = CorrectionStatus::over_limit;
-            const std::string sentence = fmt::format(
+            const Text sentence(
                 "the part has moved by {:.3f} mm and {:.3f} degrees, beyond the limits of {:g} mm and {:g} "
                 "degrees: check its seat",
                 moved, turned, options.limits.translation_mm, options.limits.rotation_deg);
-            r.message = r.message.empty() ? sentence : sentence + "; " + r.message;
+            r.message = joined(sentence, "; ", r.message);
         }
         return {};
     }

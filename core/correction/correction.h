@@ -39,6 +39,7 @@
 #include <vector>
 
 #include "core/geometry/pose.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -144,9 +145,9 @@ struct RegionCorrection {
     double variance_factor = 1;
     bool consistent = true;           // false: the variance factor is beyond chance (chi-square, 1e-4)
     std::vector<SpotResidual> spots;  // in the order given
-    std::vector<std::string>
+    std::vector<Text>
         unobservable;     // plain words: "translation along X", "rotation about the axis ..."
-    std::string message;  // one sentence: the verdict and how to cure it
+    Text message;  // one sentence: the verdict and how to cure it
     int iterations = 0;
 };
 
@@ -190,12 +191,12 @@ struct RegionPlan {
     double sigma_at_spots_mm = 0;                 // of the weakest direction; infinity when singular
     Vector6 weakest_direction = Vector6::Zero();  // (translation of the spots' centroid, rotation vector
                                                   // times the spots' spread), unit length
-    std::string weakest;                          // in plain words
-    std::vector<std::string> unobservable;
+    Text weakest;                          // in plain words
+    std::vector<Text> unobservable;
     int redundancy = 0;
     // Spots whose single wrong measure of kFindableErrorMm could not be found and named.
     std::vector<std::string> uncontrolled;
-    std::string advice;  // which spot to add, where, in which orientation
+    Text advice;  // which spot to add, where, in which orientation
 };
 inline constexpr double kFindableErrorMm = 3.0;
 Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const CorrectionOptions& options);

@@ -70,9 +70,9 @@ double no_minus(double v) {
 
 }  // namespace
 
-std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
+std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
                                          const Eigen::Vector3d& centroid, double spread) {
-    std::vector<std::string> words;
+    std::vector<Text> words;
     if (xi.cols() == 0) return words;
     const Eigen::MatrixXd u = singular_values(xi).u;
     // Combinations ordered by how much rotation they hold; the last ones are translations.
@@ -90,7 +90,7 @@ std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<do
         pure = svd.u.leftCols(rank);
         const Columns named = nice_basis(pure);
         for (Eigen::Index k = 0; k < named.cols(); ++k)
-            words.push_back("translation along " + axis_words(named.col(k)));
+            words.push_back(Text("translation along {}", axis_words(named.col(k))));
     }
     if (turning == 0) return words;
 
@@ -111,18 +111,16 @@ std::vector<std::string> name_directions(const Eigen::Ref<const Eigen::Matrix<do
         Eigen::Vector3d at_origin = move - turn.cross(centroid);
         at_origin -= turn * (at_origin.dot(turn) / turn.squaredNorm());
         at_origin -= pure * (pure.transpose() * at_origin);
-        std::string place;
-        if (at_origin.norm() > 0.05 * spread)
-            place = fmt::format(" through ({:.1f}, {:.1f}, {:.1f})", no_minus(point.x()), no_minus(point.y()),
-                                no_minus(point.z()));
         const std::string direction = axis_words(axis);
-        std::string about = direction[0] == '(' ? "the axis " : "";
-        about.append(direction).append(place);
+        Text about = direction[0] == '(' ? Text("the axis {}", direction) : Text(direction);
+        if (at_origin.norm() > 0.05 * spread)
+            about = Text("{} through ({:.1f}, {:.1f}, {:.1f})", about, no_minus(point.x()),
+                         no_minus(point.y()), no_minus(point.z()));
         if (std::abs(pitch) > kTranslationShare * spread)
-            words.push_back(fmt::format("rotation about {} with {:.1f} mm along it per degree", about,
-                                        rad_from_deg(pitch)));
+            words.push_back(
+                Text("rotation about {} with {:.1f} mm along it per degree", about, rad_from_deg(pitch)));
         else
-            words.push_back("rotation about " + about);
+            words.push_back(Text("rotation about {}", about));
     }
     return words;
 }

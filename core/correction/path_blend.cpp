@@ -24,10 +24,10 @@ double sigma_at(const PathRegion& region, const Eigen::Vector3d& p) {
 Expected<void> check(std::span<const PathPoint> points, std::span<const PathRegion> regions,
                      std::span<const std::string> names, const PathBlendOptions& options) {
     if (points.size() < 2)
-        return input_error(fmt::format("a path of {} points is none", points.size()), "path",
+        return input_error(Text("a path of {} points is none", points.size()), "path",
                            "give at least two points");
     if (!(std::isfinite(options.blend_mm) && options.blend_mm > 0))
-        return input_error(fmt::format("{} mm is no length of a transition", options.blend_mm), "blend_mm",
+        return input_error(Text("{} mm is no length of a transition", options.blend_mm), "blend_mm",
                            "give a positive length");
     if (names.size() != regions.size()) return input_error("every region needs its name", "regions");
     for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -191,7 +191,7 @@ Expected<CorrectedPath> correct_path(std::span<const PathPoint> points, std::spa
                                    regions[t.b].displacement.workobject_from_movedworkobject));
         if (turn > kMostBetweenRegions_deg)
             return input_error(
-                fmt::format("regions {} and {} are turned by {:.1f} degrees against each other", names[t.a],
+                Text("regions {} and {} are turned by {:.1f} degrees against each other", names[t.a],
                             names[t.b], turn),
                 "path");
     }

@@ -118,7 +118,8 @@ SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector
 
 struct Candidate {
     SpotObservation spot;
-    std::string words, near, edge;
+    Text words;
+    std::string near, edge;
     Eigen::Index weak = 6;  // directions still unobservable
     std::size_t uncontrolled = 0;
     double sigma_mm = kInfinity, penalty = 1;
@@ -146,7 +147,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
         if (!known && edges.size() < 10) edges.push_back(edge);
     }
     std::vector<Candidate> out;
-    const auto add = [&](const Eigen::Vector3d& p, const std::string& near, const std::string& place,
+    const auto add = [&](const Eigen::Vector3d& p, const std::string& near, const Text& place,
                          double penalty) {
         for (const Eigen::Vector3d& edge : edges) {
             Candidate c;
@@ -155,7 +156,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
             c.near = near;
             c.edge = axis_name(edge);
             c.words =
-                fmt::format("{} at ({:.0f}, {:.0f}, {:.0f}) mm of the work object with its edge along {}",
+                Text("{} at ({:.0f}, {:.0f}, {:.0f}) mm of the work object with its edge along {}",
                             place, p.x() + 0.0, p.y() + 0.0, p.z() + 0.0, c.edge);
             out.push_back(std::move(c));
         }
@@ -166,7 +167,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
         const Eigen::Vector3d p = spots[n].workobject_from_sensor * spots[n].reference_mm;
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
-        if (n % every == 0) add(p, spots[n].id, "near " + spots[n].id, 1.0);
+        if (n % every == 0) add(p, spots[n].id, Text("near {}", spots[n].id), 1.0);
     }
     // Corners of the box around the spots; around a single spot or a tight cluster the box is taken 500 mm
     // wide.
@@ -183,15 +184,15 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
             flat = flat || high[i] - low[i] < 1;  // the same corner once more
             p[i] = high[i];
         }
-        if (!flat) add(p, "", tight ? "on the part" : "towards the corner", kCornerPenalty);
+        if (!flat) add(p, "", tight ? Text("on the part") : Text("towards the corner"), kCornerPenalty);
     }
     return out;
 }
 
-std::string advise(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+Text advise(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                    const RegionPlan& plan) {
     Spots extended(spots.begin(), spots.end());
-    std::vector<std::string> added;
+    std::vector<Text> added;
     RegionSystem system;
     Candidate best;
     const bool weak_before = plan.status != CorrectionStatus::ok;
@@ -227,20 +228,20 @@ std::string advise(std::span<const SpotObservation> spots, const CorrectionOptio
         return "add spots whose edges run in other directions and which lie far apart: no few further spots "
                "near the "
                "taught ones would do";
-    std::string where;
-    for (std::size_t i = 0; i < added.size(); ++i) where += (i > 0 ? "; and " : "") + added[i];
-    const std::string count = added.size() == 1 ? "a spot" : fmt::format("{} spots", added.size());
+    Text where;
+    for (const Text& place : added) where = where.empty() ? place : Text("{}; and {}", where, place);
+    const Text count = added.size() == 1 ? Text("a spot") : Text("{} spots", added.size());
     const auto sigma = [](double mm) {
-        return std::isfinite(mm) ? fmt::format("{:.3g} mm", mm) : std::string("undetermined");
+        return std::isfinite(mm) ? Text("{:.3g} mm", mm) : Text("undetermined");
     };
-    const std::string gain = fmt::format("the weakest direction goes from {} to {} (1 sigma at the spots)",
+    const Text gain("the weakest direction goes from {} to {} (1 sigma at the spots)",
                                          sigma(plan.sigma_at_spots_mm), sigma(best.sigma_mm));
-    if (weak_before) return fmt::format("add {} {}: {}", count, where, gain);
+    if (weak_before) return Text("add {} {}: {}", count, where, gain);
     if (!plan.uncontrolled.empty() && best.uncontrolled < plan.uncontrolled.size())
-        return fmt::format(
+        return Text(
             "add {} {}: {}, and the number of spots whose wrong measure would go unnoticed from {} to {}",
             count, where, gain, plan.uncontrolled.size(), best.uncontrolled);
-    return fmt::format("no further spot is needed; the best one would be {}: {}", where, gain);
+    return Text("no further spot is needed; the best one would be {}: {}", where, gain);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ class CircleFinder final : public FeatureFinder {
         const int n = static_cast<int>(points_.x.size());
         if (n < kFewestOnArc) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("{} points in the window, a circle needs {}", n, kFewestOnArc);
+            feature.message = Text("{} points in the window, a circle needs {}", n, kFewestOnArc);
             return feature;
         }
         Circle circle;
@@ -258,7 +258,7 @@ class CircleFinder final : public FeatureFinder {
         feature.covariance_mm2 = covariance.topLeftCorner<2, 2>();
         if (known_ <= 0 && (circle.radius < smallest_ || circle.radius > largest_)) {
             feature.status = FeatureStatus::not_found;
-            feature.message = fmt::format("the radius of {:.3g} mm is not within the limits", circle.radius);
+            feature.message = Text("the radius of {:.3g} mm is not within the limits", circle.radius);
             return feature;
         }
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
@@ -269,7 +269,7 @@ class CircleFinder final : public FeatureFinder {
         if (arc < minimum_arc_ || !(worst < 0.1 * circle.radius)) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message =
-                fmt::format("the arc of {:.0f} degrees is too short: the centre is uncertain by {:.2g} mm",
+                Text("the arc of {:.0f} degrees is too short: the centre is uncertain by {:.2g} mm",
                             deg_from_rad(arc), worst);
             return feature;
         }

@@ -449,7 +449,7 @@ Expected<std::unique_ptr<FeatureFinder>> make_contour_end(const FeatureRecipe& r
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
     const SensorField field{value("field_x_min_mm"), value("field_x_max_mm")};
     if (!(field.x_min < field.x_max))
-        return input_error(fmt::format("a field from x = {} to {} mm is empty", field.x_min, field.x_max),
+        return input_error(Text("a field from x = {} to {} mm is empty", field.x_min, field.x_max),
                            "field_x_min_mm", "give a minimum below the maximum");
     const auto whole = [&](const char* name) { return static_cast<int>(std::lround(value(name))); };
     const EndRule rule{static_cast<EndSide>(whole("side")), static_cast<EndOf>(whole("segment")),

@@ -79,13 +79,13 @@ struct EndsInWindow {
             if (how(s) == SheetEnd::field && (!outside || reach(s) > reach(*outside))) outside = &s;
         }
         if (ends > 1) {
-            feature.message = fmt::format(
+            feature.message = Text(
                 "several contours end on that side: {}; say which by the window or by the setting segment",
                 ambiguous(feature));
             return nullptr;
         }
         if (open && outside && reach(*outside) > reach(*open)) {
-            feature.message = fmt::format(
+            feature.message = Text(
                 "a contour ends on that side, {}, and another one leaves the sensor's field there; say which "
                 "by the "
                 "window or by the setting segment",
@@ -138,7 +138,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
     for (const Sheet& s : sheets.sheets()) counted += ends.counts(s);
     if (counted == 0) {
         feature.status = FeatureStatus::no_points;
-        feature.message = fmt::format("no segment with {} points in the window", rule.minimum_points);
+        feature.message = Text("no segment with {} points in the window", rule.minimum_points);
         return std::nullopt;
     }
     const Sheet *chosen = nullptr, *rival = nullptr;
@@ -150,12 +150,12 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
             chosen = ends.outermost();
             if (!chosen)
                 feature.message =
-                    fmt::format("fewer than {} contours end on that side in the window", rule.order);
+                    Text("fewer than {} contours end on that side in the window", rule.order);
             break;
         case EndOf::longest:
             chosen = ends.most([&](const Sheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
             if (rival)
-                feature.message = fmt::format(
+                feature.message = Text(
                     "two contours are about equally long: {}; say which by the window or by the setting "
                     "segment",
                     ends.ambiguous(feature));
@@ -166,7 +166,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
             chosen = ends.most([&](const Sheet& s) { return up.dot(ends.middle(s)); },
                                kAsHigh * sheets.noise_mm(), 1, rival);
             if (rival)
-                feature.message = fmt::format(
+                feature.message = Text(
                     "two contours are equally high: {}; say which by the window or by the setting segment",
                     ends.ambiguous(feature));
             break;
@@ -178,14 +178,14 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
             feature.message = "the contour runs on beyond the window on that side";
             return std::nullopt;
         case SheetEnd::field:
-            feature.message = fmt::format(
+            feature.message = Text(
                 "the contour leaves the sensor's field on that side at x = {:.2f} mm: its end is not seen",
                 ends.place(*chosen).x());
             return std::nullopt;
         case SheetEnd::covered:
             // Who says which sheet is meant takes its end as it is seen.
             if (rule.of != EndOf::only) break;
-            feature.message = fmt::format(
+            feature.message = Text(
                 "the contour runs under a higher one at x = {:.2f} mm: its end on that side is not seen",
                 ends.place(*chosen).x());
             return std::nullopt;

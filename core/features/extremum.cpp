@@ -52,7 +52,7 @@ class Extremum final : public FeatureFinder {
         const std::size_t n = points_.x.size();
         if (n < kFewestForApex) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("{} points in the window, an extremum needs {}", n, kFewestForApex);
+            feature.message = Text("{} points in the window, an extremum needs {}", n, kFewestForApex);
             return feature;
         }
         const bool upright = which_ == Which::highest || which_ == Which::lowest;
@@ -81,7 +81,7 @@ class Extremum final : public FeatureFinder {
         }
         if (!piece) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("no unbroken piece of {} points in the window", kFewestForApex);
+            feature.message = Text("no unbroken piece of {} points in the window", kFewestForApex);
             return feature;
         }
         const int first = piece->first, last = first + piece->count - 1;
@@ -130,7 +130,7 @@ class Extremum final : public FeatureFinder {
         feature.points_used = used;
         if (used < kFewestForApex) {
             feature.status = FeatureStatus::no_points;
-            feature.message = fmt::format("{} points within {} mm of the extremum, the parabola needs {}",
+            feature.message = Text("{} points within {} mm of the extremum, the parabola needs {}",
                                           used, fit_length_, kFewestForApex);
             return feature;
         }

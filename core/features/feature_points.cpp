@@ -25,10 +25,10 @@ Expected<FeatureWindow> FeatureWindow::from(const ParameterValues& values,
     FeatureWindow w{parameter(values, infos, "window_x_min_mm"), parameter(values, infos, "window_x_max_mm"),
                     parameter(values, infos, "window_z_min_mm"), parameter(values, infos, "window_z_max_mm")};
     if (!(w.x_min < w.x_max))
-        return input_error(fmt::format("the window from x = {} to {} mm is empty", w.x_min, w.x_max),
+        return input_error(Text("the window from x = {} to {} mm is empty", w.x_min, w.x_max),
                            "window_x_min_mm", "give a minimum below the maximum");
     if (!(w.z_min < w.z_max))
-        return input_error(fmt::format("the window from z = {} to {} mm is empty", w.z_min, w.z_max),
+        return input_error(Text("the window from z = {} to {} mm is empty", w.z_min, w.z_max),
                            "window_z_min_mm", "give a minimum below the maximum");
     return w;
 }

@@ -28,8 +28,8 @@ Expected<std::unique_ptr<FeatureFinder>> make_feature_finder(const FeatureRecipe
         std::string known;
         for (const FeatureKind& k : feature_kinds())
             known += (known.empty() ? "" : ", ") + std::string(k.name);
-        return input_error(fmt::format("unknown kind of feature \"{}\"", recipe.kind), "kind",
-                           "known are: " + known);
+        return input_error(Text("unknown kind of feature \"{}\"", recipe.kind), "kind",
+                           Text("known are: {}", known));
     }
     if (auto valid = validate(recipe.parameters, kind->parameters, std::string(kind->name)); !valid)
         return tl::unexpected(valid.error());

@@ -301,7 +301,7 @@ Expected<GapScan> scan_gap(std::span<const GapSection> sections, const GapScanOp
             continue;
         }
         p.verdict = GapVerdict::not_measured;
-        p.message = fmt::format("what was found lies {:.1f} mm beside the gap's course", std::abs(aside[k]));
+        p.message = Text("what was found lies {:.1f} mm beside the gap's course", std::abs(aside[k]));
     }
     measured.all.resize(kept);
     scan.measured = kept;

@@ -27,7 +27,7 @@ class SensorPoint final : public FeatureFinder {
         if (index_ >= profile.size()) {
             feature.status = FeatureStatus::no_points;
             feature.message =
-                fmt::format("the sensor delivers {} points, number {} is meant", profile.size(), index_);
+                Text("the sensor delivers {} points, number {} is meant", profile.size(), index_);
             return feature;
         }
         const Eigen::Vector2d point(profile.x_mm[index_], profile.z_mm[index_]);

@@ -134,7 +134,7 @@ Expected<Pose> pose_from_matrix(const Eigen::Matrix4d& m, const std::string& whe
     const Eigen::Matrix3d r = m.topLeftCorner<3, 3>();
     const double off = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (off > tolerance)
-        return input_error(fmt::format("the rotation is not orthonormal (off by {:.2g})", off), where,
+        return input_error(Text("the rotation is not orthonormal (off by {:.2g})", off), where,
                            "give a rotation without scale or shear");
     if (r.determinant() < 0)
         return input_error("the rotation is mirrored (determinant -1)", where, "swap the sign of one axis");

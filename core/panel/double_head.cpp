@@ -52,7 +52,7 @@ Expected<void> check_head(const Profile& profile, const Head& head, const std::s
     if (auto rigid = pose_from_matrix(head.sensor_from_head.matrix(), where); !rigid)
         return tl::unexpected(rigid.error());
     if (!(head.sigma_mm > 0) || !std::isfinite(head.sigma_mm))
-        return input_error(fmt::format("sigma of {} mm is not positive", head.sigma_mm), where,
+        return input_error(Text("sigma of {} mm is not positive", head.sigma_mm), where,
                            "state the standard deviation of a point");
     return {};
 }
@@ -271,8 +271,8 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
         return tl::unexpected(good.error());
     if (!(options.disagreement_limit_mm > 0 && options.disagreement_limit_mm < kSameSurfaceMm))
         return input_error(
-            fmt::format("a disagreement limit of {} mm is out of range", options.disagreement_limit_mm),
-            "disagreement_limit_mm", fmt::format("give more than 0 and less than {} mm", kSameSurfaceMm));
+            Text("a disagreement limit of {} mm is out of range", options.disagreement_limit_mm),
+            "disagreement_limit_mm", Text("give more than 0 and less than {} mm", kSameSurfaceMm));
     if (!(options.plane_limit_mm > 0) || !(options.minimum_overlap_mm > 0))
         return input_error("a limit of the double head is not positive",
                            "plane_limit_mm, minimum_overlap_mm");
@@ -282,12 +282,12 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     const Side a = side_of(first, first_head, 0, first_pieces);
     const Side b = side_of(second, second_head, first_pieces, second_pieces);
     if (!(a.pitch > 0) || !(b.pitch > 0)) {
-        out.message = fmt::format("the {} head saw no usable contour", a.pitch > 0 ? "second" : "first");
+        out.message = Text("the {} head saw no usable contour", a.pitch > 0 ? "second" : "first");
         return out;
     }
     if (const double off = std::max(a.off_plane, b.off_plane); off > options.plane_limit_mm) {
         out.status = DoubleHeadStatus::not_coplanar;
-        out.message = fmt::format("the laser planes of the heads lie {:.2f} mm apart, allowed are {:.2f} mm",
+        out.message = Text("the laser planes of the heads lie {:.2f} mm apart, allowed are {:.2f} mm",
                                   off, options.plane_limit_mm);
         return out;
     }
@@ -309,13 +309,13 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     if (contradicting > out.shared_cells) {
         out.status = DoubleHeadStatus::disagree;
         out.disagreement_mm = kSameSurfaceMm;
-        out.message = fmt::format("the heads show surfaces more than {:g} mm apart in most of the overlap",
+        out.message = Text("the heads show surfaces more than {:g} mm apart in most of the overlap",
                                   kSameSurfaceMm);
         return out;
     }
     if (!(out.overlap_mm >= options.minimum_overlap_mm)) {
         out.status = DoubleHeadStatus::no_overlap;
-        out.message = fmt::format("the stripes of the heads share {:.1f} mm, needed are {:.1f} mm",
+        out.message = Text("the stripes of the heads share {:.1f} mm, needed are {:.1f} mm",
                                   out.overlap_mm, options.minimum_overlap_mm);
         return out;
     }
@@ -325,7 +325,7 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     out.status = DoubleHeadStatus::ok;
     if (!(out.disagreement_mm <= options.disagreement_limit_mm)) {
         out.status = DoubleHeadStatus::disagree;
-        out.message = fmt::format(
+        out.message = Text(
             "the heads disagree by {:.3f} mm in the overlap, allowed are {:.3f} mm: calibrate their relation",
             out.disagreement_mm, options.disagreement_limit_mm);
     }

@@ -33,6 +33,7 @@
 
 #include "core/geometry/pose.h"
 #include "core/profile/profile.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -67,7 +68,7 @@ struct DoubleHeadProfile {
     double disagreement_mm = 0;
     double offset_mm = 0;  // second minus first, positive towards +z; changes its sign with their order
     double offset_sigma_mm = 0;
-    std::string message;  // empty when ok
+    Text message;  // empty when ok
 };
 
 // `first`, `second`: filtered profiles in their heads' frames. Refuses (Error) profiles that are not

@@ -86,12 +86,12 @@ void motion_jacobians(const Pose& b, const Pose& p, Matrix6& by_b, Matrix6& by_p
     by_p.bottomRightCorner<3, 3>() = -r_g;
 }
 
-std::string with_side(std::string_view side, const RegionCorrection& r) {
-    return fmt::format("{}: {}", side, r.message.empty() ? std::string(to_string(r.status)) : r.message);
+Text with_side(const char* side, const RegionCorrection& r) {
+    return Text("{}: {}", Text(side), r.message.empty() ? Text(to_string(r.status).data()) : r.message);
 }
 
-Error on_side(Error error, std::string_view side) {
-    error.what = fmt::format("{} ({})", error.what, side);
+Error on_side(Error error, const char* side) {
+    error.what = Text("{} ({})", error.what, Text(side));
     return error;
 }
 
@@ -174,7 +174,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     PanelFit fit;
     for (const PanelSpot& s : spots) {
         if (!std::isfinite(s.surface_rad))
-            return input_error("the surface's direction is not a finite number", "spot " + s.id);
+            return input_error("the surface's direction is not a finite number", Text("spot {}", s.id));
         panel.push_back(observation_of(s, s.panel));
         body.push_back(observation_of(s, s.body));
         PanelSpotResult out;
@@ -206,7 +206,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
         if (solved->status != CorrectionStatus::ok) {
             if (fit.message.empty() || solved->status == CorrectionStatus::under_determined)
                 fit.status = solved->status;
-            for (const std::string& direction : solved->unobservable)
+            for (const Text& direction : solved->unobservable)
                 if (std::find(fit.unobservable.begin(), fit.unobservable.end(), direction) ==
                     fit.unobservable.end())
                     fit.unobservable.push_back(direction);
@@ -214,7 +214,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
         } else if (solved->message.empty()) {
             continue;
         }
-        fit.message += (fit.message.empty() ? "" : "; ") + with_side(side, *solved);
+        fit.message = joined(fit.message, "; ", with_side(side, *solved));
     }
     if (fit.panel.status != CorrectionStatus::ok || fit.body.status != CorrectionStatus::ok) {
         fill_spots(spots, panel, body, p_alone, b, fit);
@@ -289,7 +289,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     if (!observable) {
         fit.status = CorrectionStatus::under_determined;
         fit.gripper_motion = fit.single_step = Pose::Identity();
-        fit.message = fmt::format(
+        fit.message = Text(
             "panel and body together do not determine the gripper's {} well enough: add a spot whose edge "
             "runs "
             "in another direction",
@@ -302,11 +302,11 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     const double turned = deg_from_rad(rotation_log(fit.gripper_motion.linear()).norm());
     if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {
         fit.status = CorrectionStatus::over_limit;
-        const std::string sentence = fmt::format(
+        const Text sentence(
             "the gripper would move by {:.3f} mm and {:.3f} degrees, beyond the limits of {:g} mm and {:g} "
             "degrees: check the seat of panel and body",
             moved, turned, options.limits.translation_mm, options.limits.rotation_deg);
-        fit.message = fit.message.empty() ? sentence : sentence + "; " + fit.message;
+        fit.message = joined(sentence, "; ", fit.message);
     }
     return fit;
 }

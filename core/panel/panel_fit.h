@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "core/correction/correction.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -85,8 +86,8 @@ struct PanelFit {
     double rms_mm = 0;                   // of the residuals' observed axes, used spots
     RegionCorrection panel, body;        // P and B each by itself, gripper frame
     std::vector<PanelSpotResult> spots;  // in the order given
-    std::vector<std::string> unobservable;
-    std::string message;
+    std::vector<Text> unobservable;
+    Text message;
 };
 
 // Which of the two the weights observe, with the surface turned by that.

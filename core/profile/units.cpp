@@ -23,11 +23,11 @@ constexpr const char* kMend = "give x and z in millimetres";
 
 Expected<void> check_span_millimetres(double span_mm, const std::string& where) {
     if (span_mm > 0 && span_mm < kLeastSpan)
-        return input_error(fmt::format("the laser points span {:.3g} mm, which looks like metres", span_mm),
+        return input_error(Text("the laser points span {:.3g} mm, which looks like metres", span_mm),
                            where, kMend);
     if (span_mm > kMostSpan)
         return input_error(
-            fmt::format("the laser points span {:.4g} mm, which looks like micrometres", span_mm), where,
+            Text("the laser points span {:.4g} mm, which looks like micrometres", span_mm), where,
             kMend);
     return {};
 }
@@ -67,16 +67,16 @@ bool inch_grid(const std::vector<double>& x_steps) {
 }
 
 void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
-    const auto say = [&](const char* unit, std::string why) {
+    const auto say = [&](const char* unit, Text why) {
         s.suspected = unit;
         s.why = std::move(why);
     };
-    const std::string apart =
-        fmt::format("the points stand {:.2g} mm apart and span {:.3g} mm", s.pitch, s.span);
+    const Text apart =
+        Text("the points stand {:.2g} mm apart and span {:.3g} mm", s.pitch, s.span);
     if (s.span > 0 && s.span < kLeastSpan)
-        say("metres or inches", fmt::format("the laser points span {:.3g} mm", s.span));
+        say("metres or inches", Text("the laser points span {:.3g} mm", s.span));
     else if (s.span > kMostSpan)
-        say("micrometres", fmt::format("the laser points span {:.4g} mm", s.span));
+        say("micrometres", Text("the laser points span {:.4g} mm", s.span));
     else if (s.span < kWideInMetres && s.pitch < kCloseInMetres)
         say("metres or inches", apart);
     else if (s.span < kWideInInches && s.pitch < kCloseInInches)
@@ -84,9 +84,9 @@ void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
     else if (s.span > kNarrowInMicrometres && s.pitch > kFarInMicrometres)
         say("micrometres", apart);
     else if (s.span > kNarrowInMicrometres && s.noise > kNoisyInMicrometres)
-        say("micrometres", fmt::format("the points scatter by {:.2g} mm", s.noise));
+        say("micrometres", Text("the points scatter by {:.2g} mm", s.noise));
     else if (inch_grid(x_steps))
-        say("inches", fmt::format("the pitch is {:.6g}, which is {:.3g} mm if it is inches", s.pitch,
+        say("inches", Text("the pitch is {:.6g}, which is {:.3g} mm if it is inches", s.pitch,
                                   std::abs(x_steps.front()) * 25.4));
 }
 
@@ -127,7 +127,7 @@ ProfileScale profile_scale(const Profile& profile) {
 Expected<void> check_profile_millimetres(const Profile& profile, const std::string& where) {
     const ProfileScale s = profile_scale(profile);
     if (s.suspected.empty()) return {};
-    return input_error(fmt::format("{}, which looks like {}", s.why, s.suspected), where, kMend);
+    return input_error(Text("{}, which looks like {}", s.why, s.suspected), where, kMend);
 }
 
 }  // namespace seamwright

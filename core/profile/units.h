@@ -30,7 +30,7 @@ struct ProfileScale {
     // What the numbers look like where they do not look like millimetres: "metres or inches",
     // "micrometres", "inches". Empty: like millimetres. It is a reason to ask, never an answer.
     std::string suspected;
-    std::string why;  // "the points stand 0.0025 mm apart and span 1.6 mm"
+    Text why;  // "the points stand 0.0025 mm apart and span 1.6 mm"
 };
 ProfileScale profile_scale(const Profile& profile);
 

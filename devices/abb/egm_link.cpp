@@ -18,7 +18,7 @@ Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings
     auto frame = json_string_or(settings, "frame", "path", "");
     if (!frame) return tl::unexpected(frame.error());
     if (*frame != "path" && *frame != "sensor")
-        return input_error("\"" + *frame + "\" is not known", "frame", "known are path, sensor");
+        return input_error(Text("\"{}\" is not known", *frame), "frame", "known are path, sensor");
     Pose tcp_from_sensor = Pose::Identity();
     if (settings.contains("tcp_from_sensor")) {
         auto pose = parse_pose(settings["tcp_from_sensor"], "tcp_from_sensor");

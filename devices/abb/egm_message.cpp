@@ -12,7 +12,7 @@ namespace {
 namespace egm = ::abb::egm;
 
 tl::unexpected<Error> refused(const char* wrong) {
-    return device_error(std::string("an EGM message is refused: ") + wrong);
+    return device_error(Text("an EGM message is refused: {}", wrong));
 }
 
 template <class Message>

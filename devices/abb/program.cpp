@@ -52,10 +52,10 @@ bool is_taken_name(const std::string& name) {
 
 Expected<void> check_name(const std::string& name, const std::string& what, const std::string& where) {
     if (!abb::is_rapid_identifier(name))
-        return input_error("\"" + name + "\" is no name of a " + what, where,
+        return input_error(Text("\"{}\" is no name of a {}", name, what), where,
                            "use a letter, then letters, digits and _, at most 32 characters");
     if (is_taken_name(name))
-        return input_error("\"" + name + "\" is a word of RAPID itself or of Seamwright's modules", where,
+        return input_error(Text("\"{}\" is a word of RAPID itself or of Seamwright's modules", name), where,
                            "choose another name");
     return {};
 }
@@ -129,11 +129,11 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 
 Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request) {
     if (request.moves.size() > kMostSpots)
-        return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
-                           request.project, fmt::format("measure at most {} in one program", kMostSpots));
+        return input_error(Text("{} spots are more than the module holds", request.moves.size()),
+                           request.project, Text("measure at most {} in one program", kMostSpots));
     if (request.frames.size() > kMostFrames)
-        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
-                           request.project, fmt::format("give at most {}", kMostFrames));
+        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
+                           request.project, Text("give at most {}", kMostFrames));
     std::string address = "192.168.125.1";
     int port = 1025;
     SettingsReader f(request.settings, "settings");
@@ -143,7 +143,7 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     const auto load = load_from(request.settings);
     if (!load) return tl::unexpected(load.error());
     if (address.empty() || address.find_first_not_of("0123456789.") != std::string::npos)
-        return input_error("\"" + address + "\" is no address", "settings.address",
+        return input_error(Text("\"{}\" is no address", address), "settings.address",
                            "give it as four numbers");
 
     std::string targets, names, passes;
@@ -151,10 +151,10 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     for (const MeasuringMove& move : request.moves) {
         const std::string where = "spot " + move.spot_id;
         if (!abb::is_spot_name(move.spot_id))
-            return input_error("\"" + move.spot_id + "\" cannot be written in RAPID", where,
+            return input_error(Text("\"{}\" cannot be written in RAPID", move.spot_id), where,
                                "use at most 32 characters without blanks, quotes and backslashes");
         if (!(move.speed_mm_s > 0 && move.speed_mm_s <= kFastest_mm_s))
-            return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s), where,
+            return input_error(Text("{} mm/s is no speed for measuring", move.speed_mm_s), where,
                                "give up to 2000 mm/s");
         std::vector<const Pose*> poses = {&move.entry, &move.trigger, &move.exit};
         for (const Pose& pose : move.via) poses.push_back(&pose);
@@ -183,7 +183,7 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
         if (auto named = check_name(frame.name, "work object", where); !named)
             return tl::unexpected(named.error());
         if (!known.insert(folded(frame.name)).second)
-            return input_error("two regions have the work object \"" + frame.name + "\"", where,
+            return input_error(Text("two regions have the work object \"{}\"", frame.name), where,
                                "name one of them otherwise");
         if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
         objects += fmt::format(
@@ -213,7 +213,7 @@ Expected<std::vector<ProgramFile>> write_abb_path(const PathProgramRequest& requ
     static const std::set<std::string> own = {"frame", "speed", "rounding",
                                               "point", "tool",  "i"};  // of the module
     if (own.count(folded(request.name)) > 0)
-        return input_error("\"" + request.name + "\" is a word of RAPID itself or of Seamwright's modules",
+        return input_error(Text("\"{}\" is a word of RAPID itself or of Seamwright's modules", request.name),
                            "name", "choose another name");
     const std::size_t count = request.frame_from_tool.size();
     std::string points;

@@ -124,7 +124,7 @@ class AbbRapidLink final : public RobotLink {
         for (const MeasuringMove& move : moves) {
             if (!abb::is_spot_name(move.spot_id))
                 return input_error(
-                    fmt::format("\"{}\" is no name for a spot on an ABB controller", move.spot_id), where_,
+                    Text("\"{}\" is no name for a spot on an ABB controller", move.spot_id), where_,
                     "use at most 32 characters without blanks, quotes and backslashes");
             names.push_back(move.spot_id);
         }
@@ -221,7 +221,7 @@ class AbbRapidLink final : public RobotLink {
     }
     Expected<void> check_frame_name(const std::string& name) const {
         if (abb::is_rapid_identifier(name)) return {};
-        return input_error(fmt::format("\"{}\" is no name of a work object", name), where_,
+        return input_error(Text("\"{}\" is no name of a work object", name), where_,
                            "use a letter, then letters, digits and _, at most 32 characters");
     }
     Expected<void> put_pose(Message& request, const Pose& pose) const {
@@ -265,7 +265,7 @@ class AbbRapidLink final : public RobotLink {
         const auto turn = not_before_ - Clock::now();
         if (turn > settings_.timeout)
             return device_error(ErrorCode::silence,
-                                fmt::format("{}: the next attempt to connect is in {} ms", kNoAnswer,
+                                Text("{}: the next attempt to connect is in {} ms", kNoAnswer,
                                             std::chrono::duration_cast<Milliseconds>(turn).count()),
                                 where_);
         if (turn.count() > 0) std::this_thread::sleep_for(turn);
@@ -305,7 +305,7 @@ class AbbRapidLink final : public RobotLink {
             received_.append(buffer, *got);
             if (received_.size() >= abb::kMessageBytes) continue;
             if (Clock::now() >= until)
-                return device_error(ErrorCode::silence, fmt::format("{}: half a message came", kNoAnswer),
+                return device_error(ErrorCode::silence, Text("{}: half a message came", kNoAnswer),
                                     where_);
         }
     }
@@ -315,10 +315,10 @@ class AbbRapidLink final : public RobotLink {
             return device_error("the controller floods with events", where_);
         const auto count = event.fields.empty() ? std::nullopt : abb::parse_count(event.fields.front());
         if (!count)
-            return device_error(fmt::format("an event \"{}\" without its number came", event.word), where_);
+            return device_error(Text("an event \"{}\" without its number came", event.word), where_);
         if (event.word == "START") {
             if (start_count_ && *count != *start_count_ + 1)
-                return device_error(fmt::format("start signal {} came after {}", *count, *start_count_),
+                return device_error(Text("start signal {} came after {}", *count, *start_count_),
                                     where_, "a start signal was lost; the part has to be started again");
             start_count_ = *count;
             starts_.clear();  // the robot calls for one part at a time: an older call is over
@@ -329,18 +329,18 @@ class AbbRapidLink final : public RobotLink {
         if (event.word == "END") {
             if (next_trigger_ == 0) return {};
             if (*count + 1 != next_trigger_)
-                return device_error(fmt::format("the program ended after {} triggers, of which {} came",
+                return device_error(Text("the program ended after {} triggers, of which {} came",
                                                 *count, next_trigger_ - 1),
                                     where_, "a trigger was lost; the part has to be measured again");
             ended_ = true;
             return {};
         }
         if (event.word != "TRIGGER" || event.fields.size() != 3)
-            return device_error(fmt::format("the controller sent an unknown event \"{}\"", event.word),
+            return device_error(Text("the controller sent an unknown event \"{}\"", event.word),
                                 where_);
         if (next_trigger_ == 0) return {};  // of a measuring that another connection started
         if (*count != next_trigger_)
-            return device_error(fmt::format("trigger {} came instead of {}", *count, next_trigger_), where_,
+            return device_error(Text("trigger {} came instead of {}", *count, next_trigger_), where_,
                                 "a trigger was lost; the part has to be measured again");
         auto pose = abb::parse_pose_lines(event, where_);
         if (!pose) return tl::unexpected(pose.error());
@@ -400,7 +400,7 @@ class AbbRapidLink final : public RobotLink {
             quiet_ns_ = now_ns();
             if (message->word == "NO")
                 return device_error(
-                    fmt::format("the controller refuses {}: {}", request.word, message->line2), where_);
+                    Text("the controller refuses {}: {}", request.word, message->line2), where_);
             if (message->word != request.word)
                 return broken(fmt::format("the answer to {} is one to {}", request.word, message->word));
             if ((request.word == "READ" || request.word == "WRITE" || request.word == "VERDICT") &&

@@ -83,7 +83,7 @@ std::array<double, 12> pose_numbers(const Pose& pose) {
 }
 
 tl::unexpected<Error> damaged(const fs::path& path, const std::string& finding) {
-    return file_error(fmt::format("the capture is damaged ({})", finding), path.string(),
+    return file_error(Text("the capture is damaged ({})", finding), path.string(),
                       "record it again, or take a copy from the backup");
 }
 
@@ -144,7 +144,7 @@ Expected<std::int64_t> CaptureWriter::add_source(const CaptureSource& s) {
     auto found = twice->step();
     if (!found) return tl::unexpected(found.error());
     if (s.name.empty() || twice->integer(0) != 0)
-        return input_error("every source of a capture needs a name of its own", "source \"" + s.name + "\"");
+        return input_error("every source of a capture needs a name of its own", Text("source \"{}\"", s.name));
     twice->reset();
     row->bind(1, s.kind == SourceKind::sensor ? "sensor" : "robot");
     row->bind(2, s.name);
@@ -259,7 +259,7 @@ Expected<CaptureReader> CaptureReader::open(const fs::path& path) {
     if (!version) return tl::unexpected(version.error());
     if (*version > kCaptureVersion)
         return file_error(
-            fmt::format("the capture has version {}, this program knows up to {}", *version, kCaptureVersion),
+            Text("the capture has version {}, this program knows up to {}", *version, kCaptureVersion),
             path.string(), "open it with a newer Seamwright");
     if (*version < 1) return file_error("the capture has no valid version", path.string());
     if (auto whole = reader.db_.check_length(); !whole) return tl::unexpected(whole.error());
@@ -408,7 +408,7 @@ Expected<void> CaptureReader::decode(const BlockRow& row, std::vector<Capture>& 
 
 Expected<const Capture*> CaptureReader::frame(std::int64_t source, std::uint64_t number) {
     if (number >= frames(source))
-        return input_error(fmt::format("there is no frame {}", number), path_.string());
+        return input_error(Text("there is no frame {}", number), path_.string());
     const std::vector<BlockRow>& rows = blocks_[source];
     const BlockRow& row = *std::prev(std::upper_bound(
         rows.begin(), rows.end(), number, [](std::uint64_t n, const BlockRow& b) { return n < b.first; }));

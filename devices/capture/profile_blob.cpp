@@ -281,7 +281,7 @@ Expected<std::pair<std::span<const std::byte>, std::uint32_t>> checked(std::span
     const auto crc = r.value<std::uint32_t>();
     if (!r.ok() || magic != kMagic) return file_error("this is no block of profiles", where);
     if (version > kVersion)
-        return file_error(fmt::format("the block of profiles has version {}, known is {}", version, kVersion),
+        return file_error(Text("the block of profiles has version {}, known is {}", version, kVersion),
                           where, "open it with a newer Seamwright");
     if (version != kVersion || found != kind) return file_error("this is another kind of block", where);
     const auto payload = blob.subspan(kHeaderBytes);
@@ -320,7 +320,7 @@ Expected<std::vector<CaptureBlob>> pack_captures(std::span<const Capture> captur
             capture.sensor_id.size() > 0xffff)
             return input_error(
                 "the capture does not fit the file's format (columns of different length, or too long)",
-                "capture of spot " + capture.spot_id.substr(0, 40));
+                Text("capture of spot {}", capture.spot_id.substr(0, 40)));
         if (blobs.empty() || blobs.back().bytes.size() >= target_bytes) {
             if (!blobs.empty())
                 close_blob(blobs.back().bytes, static_cast<std::uint32_t>(blobs.back().captures));
@@ -368,7 +368,7 @@ Expected<void> FrameBlock::append(const Frame& frame, const ProfileCandidates* c
                   static_cast<std::size_t>(image.height) > kMaxImageSide)))
         return input_error(
             "the frame does not fit the file's format (columns of different length, or too long)",
-            fmt::format("frame {}", frame.sequence));
+            Text("frame {}", frame.sequence));
     Writer w(blob_);
     write_head(w, frame.spot_id, {}, frame.status, frame.sequence, frame.device_time_ns, frame.host_time_ns,
                frame.base_from_flange);

@@ -191,7 +191,7 @@ void RecordingSession::stop() {
 void RecordingSession::pump(Sensor s) {
     constexpr std::chrono::seconds kPatience{2};
     ProfileCandidates candidates;
-    std::string told;
+    Text told;
     auto due = Clock::now(), fired_or_seen = due;
     while (!stop_) {
         std::optional<Error> failure;
@@ -246,7 +246,7 @@ void RecordingSession::listen(Robot r) {
         std::chrono::duration<double>(1 / std::clamp(r.pose_hz, 0.1, 1000.0)));
     auto pose_due = Clock::now(), mode_due = pose_due;
     std::optional<RobotMode> mode;
-    std::string told;
+    Text told;
     while (!stop_) {
         std::optional<Error> failure;
         if (Clock::now() >= mode_due) {

@@ -21,29 +21,29 @@ constexpr int kMaxValueBytes =
 tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& path, std::string_view kind) {
     switch (code & 0xff) {
         case SQLITE_NOTADB:
-            return file_error(fmt::format("this is no {}", kind), path, "choose a .seam file");
+            return file_error(Text("this is no {}", kind), path, "choose a .seam file");
         case SQLITE_CORRUPT:
-            return file_error(fmt::format("the {} is damaged", kind), path,
+            return file_error(Text("the {} is damaged", kind), path,
                               "take the last good copy from the backup");
         case SQLITE_BUSY:
         case SQLITE_LOCKED:
-            return file_error(fmt::format("another program is writing to the {}", kind), path,
+            return file_error(Text("another program is writing to the {}", kind), path,
                               "close it there and try again");
         case SQLITE_READONLY:
         case SQLITE_PERM:
-            return file_error(fmt::format("the {} cannot be written", kind), path, "check its permissions");
+            return file_error(Text("the {} cannot be written", kind), path, "check its permissions");
         case SQLITE_CANTOPEN:
-            return file_error(fmt::format("the {} cannot be opened", kind), path,
+            return file_error(Text("the {} cannot be opened", kind), path,
                               "check name and permissions");
         case SQLITE_FULL:
             return file_error("the disk is full", path, "make room and try again");
         case SQLITE_NOMEM:
-            return file_error(fmt::format("the {} needs more memory than there is", kind), path);
+            return file_error(Text("the {} needs more memory than there is", kind), path);
         case SQLITE_TOOBIG:
-            return file_error(fmt::format("a value is larger than a {} holds (512 MiB)", kind), path);
+            return file_error(Text("a value is larger than a {} holds (512 MiB)", kind), path);
         default:
             return file_error(
-                fmt::format("the {} failed ({})", kind, db ? sqlite3_errmsg(db) : sqlite3_errstr(code)),
+                Text("the {} failed ({})", kind, db ? sqlite3_errmsg(db) : sqlite3_errstr(code)),
                 path);
     }
 }
@@ -170,7 +170,7 @@ bool Statement::is_null(int column) const {
 
 Expected<void> Statement::row_ok() const {
     if (type_error_)
-        return file_error(fmt::format("a column of the {} holds a value of the wrong type", kind_), where_);
+        return file_error(Text("a column of the {} holds a value of the wrong type", kind_), where_);
     return {};
 }
 
@@ -228,7 +228,7 @@ Expected<std::int64_t> Database::integer(const std::string& sql) {
     if (!s) return tl::unexpected(s.error());
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return file_error(fmt::format("a value is missing in the {}", kind_), path_);
+    if (!*row) return file_error(Text("a value is missing in the {}", kind_), path_);
     const std::int64_t value = s->integer(0);
     if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
     return value;
@@ -273,7 +273,7 @@ Expected<void> Database::check_length() {
     const auto bytes = std::filesystem::file_size(path_, code);
     if (code || bytes % static_cast<std::uintmax_t>(*page_bytes) != 0 ||
         bytes / static_cast<std::uintmax_t>(*page_bytes) < static_cast<std::uintmax_t>(*pages))
-        return file_error(fmt::format("the {} is cut short", kind_), path_,
+        return file_error(Text("the {} is cut short", kind_), path_,
                           "take the last good copy from the backup");
     return {};
 }
@@ -286,7 +286,7 @@ std::optional<Database::FileNumber> Database::number_of(const std::string& path)
 
 Expected<void> Database::check_place() const {
     if (!number_ || number_of(path_) == number_) return {};
-    return file_error(fmt::format("the {} was replaced or deleted while it was in use", kind_), path_,
+    return file_error(Text("the {} was replaced or deleted while it was in use", kind_), path_,
                       "close it and open what stands there now");
 }
 

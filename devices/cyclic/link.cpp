@@ -28,7 +28,7 @@ Expected<double> number_within(const nlohmann::json& json, const char* key, doub
     auto value = json_number_or(json, key, otherwise, "");
     if (!value) return value;
     if (!(*value >= low && *value <= high))
-        return input_error(fmt::format("{} is not within {} and {}", *value, low, high), key);
+        return input_error(Text("{} is not within {} and {}", *value, low, high), key);
     return value;
 }
 }  // namespace
@@ -201,7 +201,7 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
         if (Clock::now() >= deadline)
             return device_error(
                 ErrorCode::silence,
-                fmt::format("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
+                Text("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
                 settings_.driver, "check that the robot's program has switched the correction on");
         std::this_thread::sleep_for(milliseconds(2));
     }
@@ -232,7 +232,7 @@ Expected<void> CyclicLink::same_robot() {
         return {};
     identified_ = before;
     return device_error(
-        fmt::format("the robot at {} is another one than at {}", server_->robot(), before.address),
+        Text("the robot at {} is another one than at {}", server_->robot(), before.address),
         settings_.driver, "open the project's robot again");
 }
 
@@ -314,12 +314,12 @@ Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base
     const CyclicSettings& s = settings_.server;
     if (offset > s.max_translation_mm)
         return device_error(
-            fmt::format("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm", offset,
+            Text("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm", offset,
                         s.max_translation_mm),
             name);
     if (turn > s.max_rotation_deg)
         return device_error(
-            fmt::format("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}", turn,
+            Text("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}", turn,
                         s.max_rotation_deg),
             name);
     written_[name] = base_from_frame;
@@ -335,7 +335,7 @@ Expected<void> CyclicLink::apply() {
         // Compared at the frame, where it matters; far from it a rounded rotation has a long lever.
         if (b && ((*b * taught.translation() - frame.translation()).norm() > kSameMm ||
                   rotation_log(b->linear().transpose() * of_this.linear()).norm() > kSameRad))
-            return device_error(fmt::format("frames {} and {} want different corrections", first, name),
+            return device_error(Text("frames {} and {} want different corrections", first, name),
                                 settings_.driver, "the controller holds one at a time");
         if (!b) {
             b = of_this;
@@ -345,7 +345,7 @@ Expected<void> CyclicLink::apply() {
     auto state = fresh_state();
     if (!state) return tl::unexpected(state.error());
     if (state->packet.missing)
-        return device_error(fmt::format("the robot's packets carry no {}", state->packet.missing),
+        return device_error(Text("the robot's packets carry no {}", state->packet.missing),
                             settings_.driver, "without it nobody knows what the robot does; send it too");
     if (!state->packet.running)
         return device_error("the controller does not take corrections: it is not running", settings_.driver,
@@ -364,9 +364,9 @@ Expected<void> CyclicLink::apply() {
         }
         if (Clock::now() >= deadline) {
             if (const char* why = server_->why_not_told())
-                return device_error(fmt::format("the correction is not in force: {}", why), settings_.driver);
+                return device_error(Text("the correction is not in force: {}", why), settings_.driver);
             return device_error(ErrorCode::silence,
-                                std::string(kNoAnswer) + ": the correction is not in force",
+                                Text("{}: the correction is not in force", std::string(kNoAnswer)),
                                 settings_.driver);
         }
         std::this_thread::sleep_for(milliseconds(2));
@@ -383,7 +383,7 @@ Expected<void> CyclicLink::back_to_zero() {
         if (auto ok = no_alarm(); !ok) return ok;
         if (Clock::now() >= deadline)
             return device_error(ErrorCode::silence,
-                                std::string(kNoAnswer) + ": the correction could not be led back to zero",
+                                Text("{}: the correction could not be led back to zero", std::string(kNoAnswer)),
                                 settings_.driver, "stop the robot's program");
         std::this_thread::sleep_for(milliseconds(2));
     }
@@ -398,7 +398,7 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
     auto done = verdict == PartVerdict::corrected ? apply() : back_to_zero();
     if (!done) {
         server_->withdraw();
-        if (measuring_) (void)measuring_->confirm(PartVerdict::failed, done.error().what);
+        if (measuring_) (void)measuring_->confirm(PartVerdict::failed, done.error().what.english());
         return done;
     }
     if (!measuring_) return {};

@@ -85,12 +85,12 @@ class CsvTable {
         std::string_view line;
         if (lines_.only_blanks_left() || !lines_.next(line)) {
             return input_error("the file is empty", where_,
-                               "the first line must be " + example(wanted, required));
+                               Text("the first line must be {}", example(wanted, required)));
         }
         if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
         for (const auto& [sign, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}}) {
             if (line.find(sign) != std::string_view::npos && line.find(',') == std::string_view::npos) {
-                return input_error(fmt::format("the columns are separated by {}", name), at(),
+                return input_error(Text("the columns are separated by {}", name), at(),
                                    "separate them by commas and write decimal points, not decimal commas");
             }
         }
@@ -101,14 +101,14 @@ class CsvTable {
             for (std::size_t w = 0; w < wanted.size(); ++w) {
                 if (csv::trimmed(fields_[c]) != wanted[w]) continue;
                 if (columns_[w] >= 0)
-                    return input_error(fmt::format("the column {} is named twice", wanted[w]), at());
+                    return input_error(Text("the column {} is named twice", wanted[w]), at());
                 columns_[w] = static_cast<int>(c);
             }
         }
         for (std::size_t w = 0; w < required; ++w) {
             if (columns_[w] >= 0) continue;
-            return input_error(fmt::format("the header \"{}\" has no column {}", csv::shown(line), wanted[w]),
-                               at(), "the first line must be " + example(wanted, required));
+            return input_error(Text("the header \"{}\" has no column {}", csv::shown(line), wanted[w]),
+                               at(), Text("the first line must be {}", example(wanted, required)));
         }
         return {};
     }
@@ -129,7 +129,7 @@ class CsvTable {
         } else if (fields_.size() == 2 * width_) {
             mend = "these look like decimal commas: write decimal points";
         }
-        return input_error(fmt::format("has {} fields where the header names {}", fields_.size(), width_),
+        return input_error(Text("has {} fields where the header names {}", fields_.size(), width_),
                            at(), mend);
     }
 
@@ -152,22 +152,22 @@ class CsvTable {
         double value = 0;
         const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
         if (problem == std::errc::result_out_of_range) {
-            return input_error(fmt::format("{} = \"{}\" does not fit a number", name, csv::shown(field)),
+            return input_error(Text("{} = \"{}\" does not fit a number", name, csv::shown(field)),
                                at());
         }
         if (problem != std::errc() || end != digits.data() + digits.size()) {
             const bool comma = field.find(';') != std::string_view::npos;
-            return input_error(fmt::format("{} = \"{}\" is no number", name, csv::shown(field)), at(),
+            return input_error(Text("{} = \"{}\" is no number", name, csv::shown(field)), at(),
                                comma ? "separate the columns by commas and write decimal points" : "");
         }
-        if (std::isinf(value)) return input_error(fmt::format("{} is infinite", name), at());
+        if (std::isinf(value)) return input_error(Text("{} is infinite", name), at());
         return value;
     }
 
     Expected<double> millimetres(std::size_t wanted, std::string_view name) const {
         auto value = number(wanted, name);
         if (value && std::abs(*value) > 1e6) {
-            return input_error(fmt::format("{} = {} mm is beyond 1 km", name, *value), at(),
+            return input_error(Text("{} = {} mm is beyond 1 km", name, *value), at(),
                                "give millimetres");
         }
         return value;

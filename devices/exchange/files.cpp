@@ -59,13 +59,13 @@ std::optional<int> own_descriptor(const std::filesystem::path& path) {
 
 Expected<std::string> read_text_file(const std::filesystem::path& path, std::size_t limit_bytes) {
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (file.fd < 0) return file_error("cannot be opened (" + system_message() + ")", path.string());
+    if (file.fd < 0) return file_error(Text("cannot be opened ({})", system_message()), path.string());
     struct stat info {};
     if (::fstat(file.fd, &info) != 0)
-        return file_error("cannot be read (" + system_message() + ")", path.string());
+        return file_error(Text("cannot be read ({})", system_message()), path.string());
     if (S_ISDIR(info.st_mode)) return file_error("is a folder, not a file", path.string());
     const auto too_long = [&] {
-        return file_error(fmt::format("is longer than {} MiB", limit_bytes >> 20), path.string());
+        return file_error(Text("is longer than {} MiB", limit_bytes >> 20), path.string());
     };
     if (info.st_size > 0 && static_cast<std::size_t>(info.st_size) > limit_bytes) return too_long();
     std::string text;
@@ -75,7 +75,7 @@ Expected<std::string> read_text_file(const std::filesystem::path& path, std::siz
         if (used == text.size()) text.resize(text.size() * 2);
         const ssize_t got = ::read(file.fd, text.data() + used, text.size() - used);
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return file_error("cannot be read (" + system_message() + ")", path.string());
+        if (got < 0) return file_error(Text("cannot be read ({})", system_message()), path.string());
         if (got == 0) break;
         used += static_cast<std::size_t>(got);
         if (used > limit_bytes) return too_long();
@@ -99,7 +99,7 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
     if (path.filename().empty()) return file_error("names no file", path.string(), "give the path of a file");
     const auto failed = [&](const std::string& message) {
-        return file_error("cannot be written (" + message + ")", path.string());
+        return file_error(Text("cannot be written ({})", message), path.string());
     };
     struct stat old {};
     const bool exists = ::stat(path.c_str(), &old) == 0;
@@ -119,7 +119,7 @@ Expected<void> write_text_file(const std::filesystem::path& path, std::string_vi
     std::string temporary = target.string() + ".XXXXXX";
     Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
     if (file.fd < 0) {
-        return file_error("cannot be written (" + system_message() + ")", path.string(),
+        return file_error(Text("cannot be written ({})", system_message()), path.string(),
                           "check that the folder exists and is writable");
     }
     const auto fail = [&] {

@@ -153,7 +153,7 @@ Expected<void> subtract_image(Frame& on, const Frame& off) {
     const StripeImage& a = on.image;
     const StripeImage& b = off.image;
     if (a.width != b.width || a.height != b.height || a.bit_depth != b.bit_depth || a.empty())
-        return input_error(fmt::format("{} x {} of {} bit and {} x {} of {} bit are no pair", a.width,
+        return input_error(Text("{} x {} of {} bit and {} x {} of {} bit are no pair", a.width,
                                        a.height, a.bit_depth, b.width, b.height, b.bit_depth));
     const int type = a.bit_depth > 8 ? CV_16U : CV_8U;
     cv::Mat lit(a.height, a.width, type, on.pixels.data(), a.row_bytes);
@@ -166,7 +166,7 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
                                ImageChannel channel) {
     frame.image = {};
     if (bit_depth != 0 && bit_depth != 8 && bit_depth != 10 && bit_depth != 12 && bit_depth != 16) {
-        return input_error(fmt::format("a bit depth of {} is not supported", bit_depth), path.string(),
+        return input_error(Text("a bit depth of {} is not supported", bit_depth), path.string(),
                            "give 8, 10, 12 or 16");
     }
     const auto bytes = read_text_file(path, std::size_t{1} << 30);
@@ -195,13 +195,13 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
         const bool wide = image.depth() == CV_16U;
         const int depth = bit_depth == 0 ? (wide ? 16 : 8) : bit_depth;
         if ((depth > 8) != wide) {
-            return file_error(fmt::format("the image does not have {} bit", depth), path.string());
+            return file_error(Text("the image does not have {} bit", depth), path.string());
         }
         if (depth == 10 || depth == 12) {
             double largest = 0;
             cv::minMaxLoc(image, nullptr, &largest);
             if (largest >= (1 << depth)) {
-                return file_error(fmt::format("the value {} does not fit {} bit", largest, depth),
+                return file_error(Text("the value {} does not fit {} bit", largest, depth),
                                   path.string());
             }
         }

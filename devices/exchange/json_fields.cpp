@@ -89,16 +89,16 @@ class DocumentBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
 Expected<nlohmann::json> parse_json(std::string_view text, const std::string& where) {
     if (text.size() > kTextFileLimit)
-        return input_error(fmt::format("the JSON is longer than {} MiB", kTextFileLimit >> 20), where);
+        return input_error(Text("the JSON is longer than {} MiB", kTextFileLimit >> 20), where);
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     DocumentBuilder builder;
     const bool whole = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
     if (builder.too_deep)
-        return input_error(fmt::format("the JSON is nested deeper than {}", kDeepestJson), where);
+        return input_error(Text("the JSON is nested deeper than {}", kDeepestJson), where);
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) builder.syntax = "the text is empty";
-    if (!whole) return input_error("is no JSON (" + builder.syntax + ")", where);
+    if (!whole) return input_error(Text("is no JSON ({})", builder.syntax), where);
     if (!builder.twice.empty())
-        return input_error("the key \"" + builder.twice + "\" is given twice in one object", where);
+        return input_error(Text("the key \"{}\" is given twice in one object", builder.twice), where);
     return std::move(builder.document);
 }
 
@@ -128,20 +128,20 @@ std::string json_path(const std::string& where, std::size_t index) {
 Expected<void> only_fields(const nlohmann::json& json, std::initializer_list<std::string_view> known,
                            const std::string& where) {
     if (!json.is_object())
-        return input_error(std::string("must be an object, not ") + type_name(json), where);
+        return input_error(Text("must be an object, not {}", type_name(json)), where);
     if (known.size() == 0) return {};
     for (const auto& [key, value] : json.items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string list;
         for (std::string_view k : known) list += (list.empty() ? "" : ", ") + std::string(k);
-        return input_error("is not a known field", json_path(where, key), "known are " + list);
+        return input_error("is not a known field", json_path(where, key), Text("known are {}", list));
     }
     return {};
 }
 
 Expected<double> as_number(const nlohmann::json& value, const std::string& where) {
     if (!value.is_number())
-        return input_error(std::string("must be a number, not ") + type_name(value), where);
+        return input_error(Text("must be a number, not {}", type_name(value)), where);
     const double number = value.get<double>();
     if (!std::isfinite(number)) return input_error("must be finite", where);
     return number;
@@ -150,7 +150,7 @@ Expected<double> as_number(const nlohmann::json& value, const std::string& where
 Expected<const nlohmann::json*> json_field(const nlohmann::json& json, const std::string& key,
                                            const std::string& where) {
     if (!json.is_object())
-        return input_error(std::string("must be an object, not ") + type_name(json), where);
+        return input_error(Text("must be an object, not {}", type_name(json)), where);
     const auto it = json.find(key);
     if (it == json.end()) return input_error("is missing", json_path(where, key));
     return &*it;
@@ -160,7 +160,7 @@ Expected<const nlohmann::json*> json_array(const nlohmann::json& json, const std
                                            const std::string& where) {
     const auto field = json_field(json, key, where);
     if (!field || (*field)->is_array()) return field;
-    return input_error(std::string("must be an array, not ") + type_name(**field), json_path(where, key));
+    return input_error(Text("must be an array, not {}", type_name(**field)), json_path(where, key));
 }
 
 Expected<double> json_number(const nlohmann::json& json, const std::string& key, const std::string& where) {
@@ -174,7 +174,7 @@ Expected<std::string> json_string(const nlohmann::json& json, const std::string&
     const auto field = json_field(json, key, where);
     if (!field) return tl::unexpected(field.error());
     if (!(*field)->is_string()) {
-        return input_error(std::string("must be a text, not ") + type_name(**field), json_path(where, key));
+        return input_error(Text("must be a text, not {}", type_name(**field)), json_path(where, key));
     }
     return (*field)->get<std::string>();
 }
@@ -191,7 +191,7 @@ Expected<bool> json_bool_or(const nlohmann::json& json, const std::string& key, 
     const auto field = json_field(json, key, where);
     if (!field) return tl::unexpected(field.error());
     if (!(*field)->is_boolean()) {
-        return input_error(std::string("must be true or false, not ") + type_name(**field),
+        return input_error(Text("must be true or false, not {}", type_name(**field)),
                            json_path(where, key));
     }
     return (*field)->get<bool>();
@@ -206,9 +206,9 @@ Expected<std::string> json_string_or(const nlohmann::json& json, const std::stri
 Expected<std::vector<double>> as_numbers(const nlohmann::json& json, std::size_t size,
                                          const std::string& where) {
     if (!json.is_array())
-        return input_error(std::string("must be an array of numbers, not ") + type_name(json), where);
+        return input_error(Text("must be an array of numbers, not {}", type_name(json)), where);
     if (size != 0 && json.size() != size) {
-        return input_error(fmt::format("has {} entries instead of {}", json.size(), size), where);
+        return input_error(Text("has {} entries instead of {}", json.size(), size), where);
     }
     std::vector<double> numbers;
     numbers.reserve(json.size());

@@ -36,21 +36,21 @@ std::uint32_t crc_of(std::string_view bytes) {
 Expected<void> check(const LookupTable& t, const std::string& where) {
     if (t.columns < 2 || t.rows < 2 ||
         static_cast<std::int64_t>(t.columns) * static_cast<std::int64_t>(t.rows) > kLookupTableNodes)
-        return input_error(fmt::format("a table of {}x{} nodes is not possible", t.columns, t.rows), where,
+        return input_error(Text("a table of {}x{} nodes is not possible", t.columns, t.rows), where,
                            "2x2 to 16 million nodes in all");
     if (!std::isfinite(t.u0) || !std::isfinite(t.v0) || !std::isfinite(t.step_u) ||
         !std::isfinite(t.step_v) || !(t.step_u > 0) || !(t.step_v > 0))
         return input_error("the table's grid is not made of finite numbers with steps above 0", where);
     const auto nodes = static_cast<std::size_t>(t.columns) * static_cast<std::size_t>(t.rows);
     if (t.x_mm.size() != nodes || t.z_mm.size() != nodes)
-        return input_error(fmt::format("the table holds {} and {} numbers for {} nodes", t.x_mm.size(),
+        return input_error(Text("the table holds {} and {} numbers for {} nodes", t.x_mm.size(),
                                        t.z_mm.size(), nodes),
                            where);
     for (std::size_t i = 0; i < nodes; ++i) {
         if (std::isinf(t.x_mm[i]) || std::isinf(t.z_mm[i]))
-            return input_error(fmt::format("node {} is infinite", i), where);
+            return input_error(Text("node {} is infinite", i), where);
         if (std::isnan(t.x_mm[i]) != std::isnan(t.z_mm[i]))
-            return input_error(fmt::format("node {} is half a hole: only one of x and z is a number", i),
+            return input_error(Text("node {} is half a hole: only one of x and z is a number", i),
                                where);
     }
     return {};
@@ -90,11 +90,11 @@ Expected<LookupTable> parse_lookup_table(std::string_view bytes, const std::stri
     auto format = json_string(*header, "format", where);
     if (!format) return tl::unexpected(format.error());
     if (*format != kFormat)
-        return input_error("this is no look-up table but '" + format->substr(0, 60) + "'", where);
+        return input_error(Text("this is no look-up table but '{}'", format->substr(0, 60)), where);
     auto version = json_number(*header, "version", where);
     if (!version) return tl::unexpected(version.error());
     if (*version != 1)
-        return input_error(fmt::format("version {} of the look-up table is not known", *version), where,
+        return input_error(Text("version {} of the look-up table is not known", *version), where,
                            "version 1 can be read");
     if (auto ok = only_fields(
             *header, {"format", "version", "u0", "v0", "step_u", "step_v", "columns", "rows"}, where);
@@ -112,14 +112,14 @@ Expected<LookupTable> parse_lookup_table(std::string_view bytes, const std::stri
     }
     for (const double n : {columns, rows})
         if (!(n >= 2 && n <= kLookupTableNodes / 2) || n != std::floor(n))
-            return input_error(fmt::format("a table of {}x{} nodes is not possible", columns, rows), where);
+            return input_error(Text("a table of {}x{} nodes is not possible", columns, rows), where);
     if (columns * rows > kLookupTableNodes)
         return input_error("the table has more than 16 million nodes", where);
     t.columns = static_cast<int>(columns), t.rows = static_cast<int>(rows);
     const auto nodes = static_cast<std::size_t>(t.columns) * static_cast<std::size_t>(t.rows);
     const std::size_t expected = end + 1 + 16 * nodes + 4;
     if (bytes.size() != expected)
-        return input_error(fmt::format("the file has {} bytes instead of {}", bytes.size(), expected), where,
+        return input_error(Text("the file has {} bytes instead of {}", bytes.size(), expected), where,
                            "it was cut off or added to: take the original");
     if (get(bytes, expected - 4, 4) != crc_of(bytes.substr(0, expected - 4)))
         return input_error("the check sum does not fit: the file is damaged", where, "take the original");

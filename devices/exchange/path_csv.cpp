@@ -53,7 +53,7 @@ Expected<Pose> pose_of(const std::array<double, 7>& v, PathNotation notation, do
 Expected<PathNotation> path_notation_from(std::string_view brand) {
     for (std::size_t i = 0; i < std::size(kPathNotations); ++i)
         if (kPathNotations[i] == brand) return static_cast<PathNotation>(i);
-    return usage_error("no robot writes poses as \"" + std::string(brand) + "\"", "", "give kuka, abb or ur");
+    return usage_error(Text("no robot writes poses as \"{}\"", brand), "", "give kuka, abb or ur");
 }
 
 std::string_view to_string(PathNotation notation) {
@@ -73,13 +73,13 @@ Expected<ApplicationPath> parse_path_csv(std::string_view text, PathNotation not
         if (!more) return tl::unexpected(more.error());
         if (!*more) break;
         if (path.points.size() >= kPathPointLimit)
-            return input_error(fmt::format("there are more than {} points", kPathPointLimit), table.at());
+            return input_error(Text("there are more than {} points", kPathPointLimit), table.at());
         std::array<double, 7> v{};
         for (std::size_t c = 0; c < columns.numbers; ++c) {
             const auto number = table.number(c, columns.names[c]);
             if (!number) return tl::unexpected(number.error());
             if (!std::isfinite(*number))
-                return input_error(fmt::format("{} is missing", columns.names[c]), table.at());
+                return input_error(Text("{} is missing", columns.names[c]), table.at());
             v[c] = *number;
         }
         const auto pose = pose_of(v, notation, columns.mm, table.at());

@@ -83,19 +83,19 @@ Expected<void> read_ascii(std::string_view text, std::size_t line_number, std::s
         const auto fields = text_fields(line, ' ');
         if (fields.size() != table.columns.size())
             return input_error(
-                fmt::format("has {} numbers where the header names {}", fields.size(), table.columns.size()),
+                Text("has {} numbers where the header names {}", fields.size(), table.columns.size()),
                 at);
         for (std::size_t c = 0; c < fields.size(); ++c) {
             double value = 0;
             if (!text_number(fields[c], false, value))
-                return input_error(fmt::format("\"{}\" is no number", csv::shown(fields[c])), at);
+                return input_error(Text("\"{}\" is no number", csv::shown(fields[c])), at);
             table.columns[c].push_back(value);
         }
         table.lines.push_back(static_cast<std::uint32_t>(line_number + lines.number()));
     }
     if (table.lines.size() < count)
         return input_error(
-            fmt::format("holds {} points where its header names {}", table.lines.size(), count), where,
+            Text("holds {} points where its header names {}", table.lines.size(), count), where,
             "the file is cut short");
     return {};
 }
@@ -104,7 +104,7 @@ Expected<void> read_binary(std::string_view bytes, std::size_t count, std::size_
                            const std::vector<Property>& properties, PointTable& table,
                            const std::string& where) {
     if (stride == 0 || bytes.size() / stride < count)
-        return input_error(fmt::format("holds {} bytes of points where its header names {} of {}",
+        return input_error(Text("holds {} bytes of points where its header names {} of {}",
                                        bytes.size(), count, stride),
                            where, "the file is cut short");
     for (std::size_t c = 0; c < properties.size(); ++c) {
@@ -121,7 +121,7 @@ Expected<PointTable> read_points(std::string_view bytes, std::size_t line_number
                                  const std::vector<Property>& properties, const char* kind,
                                  const std::string& where, std::size_t limit) {
     if (count == 0 || properties.empty()) return input_error("holds no points", where);
-    if (count > limit) return input_error(fmt::format("there are more than {} points", limit), where);
+    if (count > limit) return input_error(Text("there are more than {} points", limit), where);
     PointTable table;
     table.columns.resize(properties.size());
     table.blocks = {0};
@@ -155,7 +155,7 @@ Expected<PointTable> parse_npy(std::string_view bytes, const std::string& where,
     const auto size = whole(descr.substr(3, descr.size() - 4));
     const Scalar scalar{descr[2], size.value_or(0)};
     if (!scalar.known())
-        return input_error(fmt::format("holds {}, no plain numbers", csv::shown(descr)), where,
+        return input_error(Text("holds {}, no plain numbers", csv::shown(descr)), where,
                            "save it with astype('<f8')");
     const bool fortran = npy_value(header, "'fortran_order'") == "True";
     std::vector<std::size_t> shape;
@@ -172,7 +172,7 @@ Expected<PointTable> parse_npy(std::string_view bytes, const std::string& where,
         return input_error("its shape does not fit its size", where, "the file is cut short");
     const bool stack = shape.size() == 3;
     if (shape.size() == 1 || shape.size() > 3)
-        return input_error(fmt::format("is an array of {} dimensions", shape.size()), where,
+        return input_error(Text("is an array of {} dimensions", shape.size()), where,
                            "give (n, 2) with x and z, (n, 3) with x, y and z, or (profiles, n, 2)");
     std::size_t profiles = stack ? shape[0] : 1, points = stack ? shape[1] : shape[0];
     std::size_t columns = shape.back();
@@ -182,10 +182,10 @@ Expected<PointTable> parse_npy(std::string_view bytes, const std::string& where,
         turned = true;
     }
     if (columns != 2 && columns != 3)
-        return input_error(fmt::format("has {} columns", columns), where,
+        return input_error(Text("has {} columns", columns), where,
                            "give (n, 2) with x and z, (n, 3) with x, y and z, or (profiles, n, 2)");
     if (profiles * points > limit)
-        return input_error(fmt::format("there are more than {} points", limit), where);
+        return input_error(Text("there are more than {} points", limit), where);
     PointTable table;
     table.names = columns == 2 ? std::vector<std::string>{"x", "z"} : std::vector<std::string>{"x", "y", "z"};
     table.columns.assign(columns, {});
@@ -281,7 +281,7 @@ Expected<PointTable> parse_pcd_points(std::string_view bytes, const std::string&
         if (values.empty() || values.size() > 4096) return input_error("is no line of a PCD header", at);
         const bool per_field = fields[0] == "SIZE" || fields[0] == "TYPE" || fields[0] == "COUNT";
         if (per_field && values.size() != properties.size())
-            return input_error(fmt::format("{} has {} entries for {} fields", csv::shown(fields[0]),
+            return input_error(Text("{} has {} entries for {} fields", csv::shown(fields[0]),
                                            values.size(), properties.size()),
                                at);
         if (fields[0] == "FIELDS") {
@@ -305,7 +305,7 @@ Expected<PointTable> parse_pcd_points(std::string_view bytes, const std::string&
     }
     if (data_kind.empty() || !points) return input_error("the PCD header is cut short", where);
     if (data_kind != "ascii" && data_kind != "binary")
-        return input_error(fmt::format("its data are {}", csv::shown(data_kind)), where,
+        return input_error(Text("its data are {}", csv::shown(data_kind)), where,
                            "save it as DATA ascii or DATA binary");
     std::size_t stride = 0;
     std::vector<Property> plain;  // every field's first value; the rest only takes room

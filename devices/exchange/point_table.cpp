@@ -163,7 +163,7 @@ Expected<PointTable> parse_text_points(std::string_view text, const std::string&
         return input_error("this is no text, and no known binary form", where, "give text, NPY, PLY or PCD");
     const Sniffed seen = sniff(text);
     if (seen.rows == 0)
-        return input_error("no line holds two or more numbers", where + ", line 1",
+        return input_error("no line holds two or more numbers", Text("{}, line 1", where),
                            "a profile is a table with a column x and a column z");
     PointTable table;
     csv::Lines lines(text);
@@ -189,14 +189,14 @@ Expected<PointTable> parse_text_points(std::string_view text, const std::string&
         const auto fields = text_fields(line, seen.form.separator);
         if (fields.size() != seen.width)
             return input_error(
-                fmt::format("has {} columns where the other lines have {}", fields.size(), seen.width), at);
+                Text("has {} columns where the other lines have {}", fields.size(), seen.width), at);
         if (table.lines.size() >= limit)
-            return input_error(fmt::format("there are more than {} points", limit), at);
+            return input_error(Text("there are more than {} points", limit), at);
         table.columns.resize(seen.width);
         for (std::size_t c = 0; c < seen.width; ++c) {
             double value = 0;
             if (!text_number(fields[c], seen.form.decimal_comma, value))
-                return input_error(fmt::format("\"{}\" is no number", csv::shown(fields[c])), at);
+                return input_error(Text("\"{}\" is no number", csv::shown(fields[c])), at);
             whole_numbers = whole_numbers && (std::isnan(value) || value == std::floor(value));
             table.columns[c].push_back(value);
         }

@@ -19,7 +19,7 @@ Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where)
     Eigen::Matrix4d matrix;
     const bool rows = json.is_array() && !json.empty() && json[0].is_array();
     if (rows) {
-        if (json.size() != 4) return input_error(fmt::format("has {} rows instead of 4", json.size()), where);
+        if (json.size() != 4) return input_error(Text("has {} rows instead of 4", json.size()), where);
         for (int r = 0; r < 4; ++r) {
             const auto numbers = as_numbers(json[static_cast<std::size_t>(r)], 4,
                                             json_path(where, static_cast<std::size_t>(r)));
@@ -48,7 +48,7 @@ Expected<Pose> pose_from_metres(const Eigen::Vector3d& t, const Eigen::Vector4d&
     if (!t.allFinite() || !q_xyzw.allFinite()) return input_error("a number is not finite", where);
     if (t.norm() > kFarthest_m) {
         return input_error(
-            fmt::format("the translation is {} m long, but this format is in metres", t.norm()), where,
+            Text("the translation is {} m long, but this format is in metres", t.norm()), where,
             "convert millimetres to metres or use a .json pose file");
     }
     const auto rotation = rotation_from_abb({q_xyzw[3], q_xyzw[0], q_xyzw[1], q_xyzw[2]}, where);
@@ -64,7 +64,7 @@ Expected<double> leading_number(std::string_view text, const std::string& where)
     if (text.empty() || problem != std::errc() || end != text.data() + text.size()) {
         std::string shown;
         for (char c : text.substr(0, 24)) shown += (c >= 32 && c < 127) ? c : '?';
-        return input_error("\"" + shown + "\" is no number", where);
+        return input_error(Text("\"{}\" is no number", shown), where);
     }
     return value;
 }
@@ -153,7 +153,7 @@ Expected<Pose> parse_tuple_pose(std::string_view text, const std::string& where)
         at = end;
     }
     if (count != 7) {
-        return input_error(fmt::format("holds {} numbers instead of 7", count), where,
+        return input_error(Text("holds {} numbers instead of 7", count), where,
                            "write ((x, y, z), (qx, qy, qz, qw)) in metres");
     }
     return pose_from_metres({numbers[0], numbers[1], numbers[2]},
@@ -187,10 +187,10 @@ Expected<Pose> parse_yaml_pose(std::string_view text, const std::string& where) 
         const auto number = leading_number(trim(line.substr(colon + 1)), at);
         if (!number) return tl::unexpected(number.error());
         if (!values.emplace(key, *number).second)
-            return input_error(std::string(key) + " is given twice", at);
+            return input_error(Text("{} is given twice", std::string(key)), at);
     }
     for (std::string_view key : keys) {
-        if (!values.contains(key)) return input_error(std::string(key) + " is missing", where);
+        if (!values.contains(key)) return input_error(Text("{} is missing", std::string(key)), where);
     }
     return pose_from_metres({values["x"], values["y"], values["z"]},
                             {values["qx"], values["qy"], values["qz"], values["qw"]}, where);

@@ -90,11 +90,11 @@ Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, co
     if (form.mm == 0) {
         if (farthest > 0 && farthest < kNearForMillimetres)
             return input_error(
-                fmt::format("no position is farther than {:.4g}, which looks like metres or inches",
+                Text("no position is farther than {:.4g}, which looks like metres or inches",
                             farthest),
                 where, "say the unit with --pose-unit mm, m or in");
         if (farthest > kFarthestPose_mm)
-            return input_error(fmt::format("positions reach {:.4g}, which looks like micrometres", farthest),
+            return input_error(Text("positions reach {:.4g}, which looks like micrometres", farthest),
                                where, "say the unit with --pose-unit mm or um");
         form.mm = 1;
     }
@@ -102,7 +102,7 @@ Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, co
     if (angles && form.rad == 0) {
         const bool radian = form.convention == "ur-rotvec";
         if (radian ? widest > 2 * kPi + 1e-6 : widest > 0 && widest <= 2 * kPi)
-            return input_error(fmt::format("no angle exceeds {:.4g}, which looks like {}", widest,
+            return input_error(Text("no angle exceeds {:.4g}, which looks like {}", widest,
                                            radian ? "degrees" : "radian"),
                                where, "say the unit with --pose-angle deg or rad");
         form.rad = radian ? 1 : kPi / 180;
@@ -126,7 +126,7 @@ Expected<void> check_width(PoseForm& form, std::size_t width, const std::string&
                       : form.convention.starts_with("quat") ? width == 7
                                                             : width == 6;
     if (!fits)
-        return input_error(fmt::format("{} numbers are no pose{}", width,
+        return input_error(Text("{} numbers are no pose{}", width,
                                        form.convention.empty() ? "" : " of the form " + form.convention),
                            where, "give x, y, z and a rotation, or a 4x4 matrix");
     return {};
@@ -174,7 +174,7 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
         const bool same = convention == std::string("fanuc-wpr") && form.convention == "rpy";
         if (!form.convention.empty() && *convention && form.convention != convention && !same)
             return input_error(
-                fmt::format("the header names {}, --pose-convention {}", convention, form.convention), at);
+                Text("the header names {}, --pose-convention {}", convention, form.convention), at);
         if (form.convention.empty()) form.convention = convention;
         break;
     }
@@ -266,14 +266,14 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
             const auto value = after(keys[i], '=');
             double number = 0;
             if (!value || !text_number(*value, false, number) || std::isnan(number))
-                return input_error(fmt::format("{} is {}", keys[i], value ? "no number" : "missing"),
+                return input_error(Text("{} is {}", keys[i], value ? "no number" : "missing"),
                                    pose.at);
             values[i] = number;
         }
         const std::string here = fmt::format("UF {}, UT {}", csv::shown(after("UF", ':').value_or("?")),
                                              csv::shown(after("UT", ':').value_or("?")));
         if (!frames.empty() && frames != here)
-            return input_error(fmt::format("is in {}, those before in {}", here, frames), pose.at,
+            return input_error(Text("is in {}, those before in {}", here, frames), pose.at,
                                "give poses of one user frame and one tool");
         frames = here;
         PoseForm form{"fanuc-wpr", 1, kPi / 180};
@@ -303,17 +303,17 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     PoseForm form{layout.convention, 0, 0};
     if (!layout.convention.empty() && std::find(std::begin(kPoseConventions), std::end(kPoseConventions),
                                                 layout.convention) == std::end(kPoseConventions))
-        return usage_error("\"" + csv::shown(layout.convention) + "\" is no convention of poses",
+        return usage_error(Text("\"{}\" is no convention of poses", csv::shown(layout.convention)),
                            "--pose-convention");
     if (!layout.unit.empty()) {
         const auto mm = mm_of_unit(layout.unit);
         if (!mm)
-            return usage_error("\"" + csv::shown(layout.unit) + "\" is no unit of length", "--pose-unit");
+            return usage_error(Text("\"{}\" is no unit of length", csv::shown(layout.unit)), "--pose-unit");
         form.mm = *mm;
     }
     if (!layout.angle.empty()) {
         if (layout.angle != "deg" && layout.angle != "rad")
-            return usage_error("\"" + csv::shown(layout.angle) + "\" is no unit of angle", "--pose-angle");
+            return usage_error(Text("\"{}\" is no unit of angle", csv::shown(layout.angle)), "--pose-angle");
         form.rad = layout.angle == "deg" ? kPi / 180 : 1;
     }
     const auto start = text.find_first_not_of(" \t\r\n");
@@ -356,7 +356,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         if (width == 0) width = fields.size();
         if (fields.size() != width)
             return input_error(
-                fmt::format("has {} fields where the other lines have {}", fields.size(), width), at);
+                Text("has {} fields where the other lines have {}", fields.size(), width), at);
         PoseRow row;
         row.at = at;
         std::vector<std::size_t> order;
@@ -375,7 +375,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         for (const std::size_t i : order) {
             double value = 0;
             if (!text_number(fields[i], decimal_comma, value) || std::isnan(value))
-                return input_error(fmt::format("\"{}\" is no number", csv::shown(fields[i])), at);
+                return input_error(Text("\"{}\" is no number", csv::shown(fields[i])), at);
             row.numbers.push_back(value);
         }
         rows.push_back(std::move(row));
@@ -384,7 +384,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     if (rows.empty()) return input_error("there are no poses", where);
     if (width == 4 && !header) {  // stacked 4x4
         if (rows.size() % 4 != 0)
-            return input_error(fmt::format("{} rows of four numbers are no 4x4 matrices", rows.size()),
+            return input_error(Text("{} rows of four numbers are no 4x4 matrices", rows.size()),
                                where);
         std::vector<PoseRow> stacked;
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -404,7 +404,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         auto pose = pose_of(form, row);
         if (!pose) return tl::unexpected(pose.error());
         if (!row.name.empty() && !names.insert(row.name).second)
-            return input_error("the pose \"" + csv::shown(row.name) + "\" is given twice", row.at);
+            return input_error(Text("the pose \"{}\" is given twice", csv::shown(row.name)), row.at);
         table.poses.push_back({row.name, *pose, row.at});
     }
     table.understood = fmt::format("{} poses by {}, {}, {} mm a unit", table.poses.size(),
@@ -437,7 +437,7 @@ Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayo
     auto table = parse_pose_table(*text, path.string(), layout);
     if (!table) return tl::unexpected(table.error());
     if (table->poses.size() != 1)
-        return input_error(fmt::format("holds {} poses beside one frame", table->poses.size()),
+        return input_error(Text("holds {} poses beside one frame", table->poses.size()),
                            path.string());
     return table->poses.front().pose;
 }
@@ -471,10 +471,10 @@ Expected<std::vector<Pose>> poses_of_frames(const PoseTable& table, std::span<co
     }
     if (named && missing.empty()) return poses;
     if (named && table.names_bind)
-        return input_error("names no pose of " + missing, where,
+        return input_error(Text("names no pose of {}", missing), where,
                            "name the poses as the frames' files, or leave the names out");
     if (table.poses.size() != frames.size())
-        return input_error(fmt::format("holds {} poses for {} frames", table.poses.size(), frames.size()),
+        return input_error(Text("holds {} poses for {} frames", table.poses.size(), frames.size()),
                            where, "give one pose a frame in the frames' order, or name them as the files");
     poses.clear();
     for (const NamedPose& pose : table.poses) poses.push_back(pose.pose);

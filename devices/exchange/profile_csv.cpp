@@ -21,7 +21,7 @@ struct PointColumns {
 
 Expected<void> append_point(const CsvTable& table, const PointColumns& c, Profile& profile) {
     if (profile.size() >= kProfilePointLimit) {
-        return input_error(fmt::format("there are more than {} points", kProfilePointLimit), table.at());
+        return input_error(Text("there are more than {} points", kProfilePointLimit), table.at());
     }
     const auto x = table.millimetres(c.x, "x_mm");
     if (!x) return tl::unexpected(x.error());
@@ -50,7 +50,7 @@ Expected<void> append_point(const CsvTable& table, const PointColumns& c, Profil
         }
         const auto segment = static_cast<std::int32_t>(*value);
         if (valid && *valid != (segment != kOutlier)) {
-            return input_error(fmt::format("valid = {} contradicts segment = {}", *valid ? 1 : 0, segment),
+            return input_error(Text("valid = {} contradicts segment = {}", *valid ? 1 : 0, segment),
                                table.at());
         }
         if (segment != kOutlier && !returned) {
@@ -142,13 +142,13 @@ Expected<std::vector<TravelProfile>> parse_align_csv(std::string_view text, cons
         const long number = static_cast<long>(*index);
         if (pass.empty() || number != current) {
             if (!seen.insert(number).second) {
-                return input_error(fmt::format("profile {} comes back after another one", number), table.at(),
+                return input_error(Text("profile {} comes back after another one", number), table.at(),
                                    "keep the rows of a profile together");
             }
             current = number;
             pass.push_back({*travel, {}});
         } else if (pass.back().travel_mm != *travel) {
-            return input_error(fmt::format("travel_mm changes within profile {}", number), table.at());
+            return input_error(Text("travel_mm changes within profile {}", number), table.at());
         }
         if (auto ok = append_point(table, {2, 3, 4, 5, 6}, pass.back().profile); !ok)
             return tl::unexpected(ok.error());

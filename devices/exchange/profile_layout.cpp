@@ -72,7 +72,7 @@ Expected<std::size_t> column_called(const PointTable& table, std::string_view wo
         if (table.names[c] == word || column_name(table.names[c]).name == column_name(word).name) return c;
     std::string there;
     for (const std::string& name : table.names) there += (there.empty() ? "" : ", ") + csv::shown(name);
-    return input_error(fmt::format("there is no column \"{}\"", csv::shown(word)), where,
+    return input_error(Text("there is no column \"{}\"", csv::shown(word)), where,
                        there.empty() ? fmt::format("the columns are 1 to {}", table.columns.size())
                                      : "the columns are " + there);
 }
@@ -119,7 +119,7 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
             std::swap(found.y, found.z);  // drawn in the plane: y is the height
         if (found.x && found.z) return found;
         return input_error(
-            fmt::format("the header \"{}\" names no column {}", named_columns(table), found.x ? "z" : "x"),
+            Text("the header \"{}\" names no column {}", named_columns(table), found.x ? "z" : "x"),
             where, "say which with --columns-xz X,Z (names, or numbers from 1)");
     }
     const std::size_t width = table.columns.size();
@@ -131,7 +131,7 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
         found.profile = 0, found.x = 1, found.z = 2;
     } else {
         return input_error(
-            fmt::format("{} columns without names", width), table.at(where, 0),
+            Text("{} columns without names", width), table.at(where, 0),
             width < 2 ? "a profile needs x and z" : "say which with --columns-xz X,Z (numbers from 1)");
     }
     return found;
@@ -195,7 +195,7 @@ ColumnName column_name(std::string_view header) {
 Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string& where,
                                       const ProfileLayout& layout) {
     if (!layout.unit.empty() && !mm_of_unit(layout.unit))
-        return usage_error("\"" + csv::shown(layout.unit) + "\" is no unit of length", "--unit",
+        return usage_error(Text("\"{}\" is no unit of length", csv::shown(layout.unit)), "--unit",
                            "give mm, m, um or in");
     ReadProfiles result;
     result.unit_asked = layout.unit.empty();
@@ -236,14 +236,14 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
             return input_error("the number of the profile is missing", table->at(where, i));
         if (result.profiles.empty() || result.profiles.back().number != number) {
             if (!seen.insert(number).second)
-                return input_error(fmt::format("profile {} comes back after another one", number),
+                return input_error(Text("profile {} comes back after another one", number),
                                    table->at(where, i), "keep the rows of a profile together");
             result.profiles.push_back({number, {}, {}});
         }
         ReadProfile& into = result.profiles.back();
         const double x = table->columns[*c.x][i] * x_mm, z = table->columns[*c.z][i] * z_mm;
         if (std::abs(x) > kFarthestPoint_mm || std::abs(z) > kFarthestPoint_mm)
-            return input_error(fmt::format("{} mm is beyond 1 km", std::abs(x) > kFarthestPoint_mm ? x : z),
+            return input_error(Text("{} mm is beyond 1 km", std::abs(x) > kFarthestPoint_mm ? x : z),
                                table->at(where, i), "say what the numbers are in with --unit");
         const bool returned = !std::isnan(x) && !std::isnan(z);
         returns += returned ? 1 : 0;

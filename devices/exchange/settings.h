@@ -27,7 +27,7 @@ class SettingsReader {
         const auto read = json_number(json_, key, where_);
         if (!read) return keep(tl::make_unexpected(read.error()));
         if (!(*read >= low && *read <= high)) {
-            return keep(input_error(fmt::format("{} is out of range {} to {}", *read, low, high),
+            return keep(input_error(Text("{} is out of range {} to {}", *read, low, high),
                                     json_path(where_, key)));
         }
         value = *read;

@@ -19,7 +19,7 @@ tl::unexpected<Error> failure(ArvCamera* camera, const std::string& what, const 
     GFailure ignored;
     const char* serial = arv_camera_get_device_serial_number(camera, ignored.out());
     return device_error(what + (g ? " (" + g.text() + ")" : ""),
-                        fmt::format("camera {}", serial ? serial : "?"), mend);
+                        Text("camera {}", serial ? serial : "?"), mend);
 }
 
 bool has(ArvCamera* camera, const char* feature) {
@@ -105,19 +105,19 @@ std::string local_address_for(const std::string& address) {
 Expected<GPtr<ArvDevice>> open_address(const std::string& address, const GenicamSettings& s) {
     GPtr<GInetAddress> there(g_inet_address_new_from_string(address.c_str()));
     if (!there || g_inet_address_get_family(there.get()) != G_SOCKET_FAMILY_IPV4)
-        return input_error("\"" + address + "\" is no IPv4 address", "settings.address");
+        return input_error(Text("\"{}\" is no IPv4 address", address), "settings.address");
     const auto camera = ask_camera(address, std::min(s.timeout, std::chrono::milliseconds(1000)));
     if (!camera) return tl::unexpected(camera.error());
     if (!s.serial.empty() && camera->serial != s.serial) {
         return device_error(
-            fmt::format("the camera there has serial number {}, not {}", camera->serial, s.serial),
-            "camera " + address, "correct the serial number or the address");
+            Text("the camera there has serial number {}, not {}", camera->serial, s.serial),
+            Text("camera {}", address), "correct the serial number or the address");
     }
     GPtr<GInetAddress> here(g_inet_address_new_from_string(local_address_for(address).c_str()));
-    if (!here) return device_error("no network interface leads to it", "camera " + address);
+    if (!here) return device_error("no network interface leads to it", Text("camera {}", address));
     GFailure g;
     GPtr<ArvDevice> device(arv_gv_device_new(here.get(), there.get(), g.out()));
-    if (g || !device) return device_error("it cannot be opened (" + g.text() + ")", "camera " + address);
+    if (g || !device) return device_error(Text("it cannot be opened ({})", g.text()), Text("camera {}", address));
     return device;
 }
 
@@ -143,11 +143,11 @@ Expected<GPtr<ArvDevice>> open_device(const GenicamSettings& s) {
     }
     if (id.empty())
         return device_error(
-            fmt::format("there is no camera with serial number {}", s.serial), "genicam",
+            Text("there is no camera with serial number {}", s.serial), "genicam",
             list.empty() ? "no camera answers: check power, cable and network" : "these answer: " + list);
     GFailure g;
     GPtr<ArvDevice> device(arv_open_device(id.c_str(), g.out()));
-    if (!device) return device_error("it cannot be opened (" + g.text() + ")", "camera " + id);
+    if (!device) return device_error(Text("it cannot be opened ({})", g.text()), Text("camera {}", id));
     return device;
 }
 
@@ -217,7 +217,7 @@ Expected<GPtr<ArvCamera>> open_camera(const GenicamSettings& settings) {
     if (!device) return tl::unexpected(device.error());
     GFailure g;
     GPtr<ArvCamera> camera(arv_camera_new_with_device(device->get(), g.out()));
-    if (!camera) return device_error("it cannot be opened (" + g.text() + ")", settings.camera_name());
+    if (!camera) return device_error(Text("it cannot be opened ({})", g.text()), settings.camera_name());
     if (ARV_IS_GV_DEVICE(device->get()) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device->get()))) {
         return device_error(ErrorCode::in_use, kInUse, settings.camera_name(),
                             "close the other program, or wait until its heartbeat has run out");
@@ -228,7 +228,7 @@ Expected<GPtr<ArvCamera>> open_camera(const GenicamSettings& settings) {
     const auto offered = offered_formats(camera.get());
     if (readable(offered).empty())
         return device_error("none of its pixel formats can be read", settings.camera_name(),
-                            "it offers " + (offered.empty() ? "none" : join_names(offered)));
+                            Text("it offers {}", (offered.empty() ? "none" : join_names(offered))));
     return camera;
 }
 
@@ -366,7 +366,7 @@ Expected<ParameterInfo> described(ArvCamera* camera, const std::string& name) {
         if (info.name == name) return info;
         known += (known.empty() ? "" : ", ") + info.name;
     }
-    return input_error("\"" + name + "\" is no parameter of this camera", "camera", "it has " + known);
+    return input_error(Text("\"{}\" is no parameter of this camera", name), "camera", Text("it has {}", known));
 }
 }  // namespace
 

@@ -27,7 +27,7 @@ class Reader {
         const auto value = json_number_or(json_, key, otherwise, where_);
         if (!keep(value)) return otherwise;
         if (!(*value >= low && *value <= high)) {
-            fail(input_error(fmt::format("{} is out of range {} to {}", *value, low, high),
+            fail(input_error(Text("{} is out of range {} to {}", *value, low, high),
                              json_path(where_, key))
                      .value());
             return otherwise;
@@ -162,7 +162,7 @@ Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& json) {
     if (const auto known = image_channel(channel))
         s.channel = *known;
     else
-        r.fail(input_error("\"" + channel + "\" is no channel", "settings.channel",
+        r.fail(input_error(Text("\"{}\" is no channel", channel), "settings.channel",
                            "give grey, red, green, blue or red-difference")
                    .value());
     bool hardware = false;
@@ -170,7 +170,7 @@ Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& json) {
     if (hardware) s.trigger = "Line1";
     r.text("trigger", s.trigger);
     if (hardware && (s.trigger == "software" || s.trigger == "free"))
-        r.fail(input_error("\"" + s.trigger + "\" contradicts hardware_trigger", "settings.trigger",
+        r.fail(input_error(Text("\"{}\" contradicts hardware_trigger", s.trigger), "settings.trigger",
                            "name the camera's input, e.g. \"Line1\"")
                    .value());
     if (r.has("features")) {

@@ -319,7 +319,7 @@ void GenicamSource::bury() {
 
 Expected<void> GenicamSource::reconnect(milliseconds most) {
     if (Clock::now() < next_attempt_)
-        return device_error(ErrorCode::silence, std::string(kNoAnswer) + ": the camera is gone",
+        return device_error(ErrorCode::silence, Text("{}: the camera is gone", std::string(kNoAnswer)),
                             settings_.camera_name(),
                             "check its power and cable; it is connected again by itself");
     ++attempts_;
@@ -347,7 +347,7 @@ Expected<void> GenicamSource::start_stream() {
     const char* name = arv_camera_get_pixel_format_as_string(camera_.get(), g.out());
     const PixelFormat* format = name ? pixel_format_by_name(name) : nullptr;
     if (!format)
-        return device_error(fmt::format("its pixel format \"{}\" cannot be read", name ? name : "?"),
+        return device_error(Text("its pixel format \"{}\" cannot be read", name ? name : "?"),
                             settings_.camera_name(), "set pixel_format");
     range_ = format->is_range() || settings_.range;
     if (settings_.range) {
@@ -377,7 +377,7 @@ Expected<void> GenicamSource::start_stream() {
     }
     const guint payload = arv_camera_get_payload(camera, g.out());
     if (g || payload == 0 || payload > (1U << 30))
-        return device_error("the size of its images cannot be read (" + g.text() + ")",
+        return device_error(Text("the size of its images cannot be read ({})", g.text()),
                             settings_.camera_name());
     {
         const std::lock_guard lock(arrivals_);
@@ -391,7 +391,7 @@ Expected<void> GenicamSource::start_stream() {
     stream_.reset(arv_camera_create_stream_full(
         camera, &GenicamSource::on_stream, new std::shared_ptr<Context>(context_),
         [](gpointer c) { delete static_cast<std::shared_ptr<Context>*>(c); }, g.out()));
-    if (!stream_) return device_error("no stream can be opened (" + g.text() + ")", settings_.camera_name());
+    if (!stream_) return device_error(Text("no stream can be opened ({})", g.text()), settings_.camera_name());
     if (ARV_IS_GV_STREAM(stream_.get())) {
         const std::size_t automatic =
             std::clamp<std::size_t>(std::size_t{payload} * 8, std::size_t{1} << 20, std::size_t{32} << 20);
@@ -409,7 +409,7 @@ Expected<void> GenicamSource::start_stream() {
     if (g) {
         const std::string why = g.text();
         stop_stream();
-        return device_error("the acquisition cannot be started (" + why + ")", settings_.camera_name());
+        return device_error(Text("the acquisition cannot be started ({})", why), settings_.camera_name());
     }
     // Where the camera tells, triggers are not sent before it waits for them.
     if (arv_camera_is_feature_available(camera, "AcquisitionStatus", g.out())) {
@@ -504,7 +504,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
     std::unique_lock control(control_);
     if (!running_) return tl::unexpected(not_started());
     if (trigger_ != "software")
-        return device_error("it is not triggered by software but by \"" + trigger_ + "\"",
+        return device_error(Text("it is not triggered by software but by \"{}\"", trigger_),
                             settings_.camera_name(), "set trigger to \"software\"");
     const auto until = Clock::now() + settings_.timeout;
     for (;;) {
@@ -529,7 +529,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
         if (pairing_.ready()) break;
         if (Clock::now() >= until)
             return device_error(ErrorCode::silence,
-                                std::string(kNoAnswer) + ": the trigger before this one has no frame yet",
+                                Text("{}: the trigger before this one has no frame yet", std::string(kNoAnswer)),
                                 settings_.camera_name());
         control.unlock();  // frames are delivered meanwhile
         something_.wait_for(arrivals, milliseconds(20));
@@ -546,7 +546,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
     const std::lock_guard arrivals(arrivals_);
     if (g) {
         pairing_.cancel();
-        return device_error("the trigger was refused (" + g.text() + ")", settings_.camera_name());
+        return device_error(Text("the trigger was refused ({})", g.text()), settings_.camera_name());
     }
     pairing_.sent(now_ns());
     return {};
@@ -594,7 +594,7 @@ Expected<FramePtr> GenicamSource::wait_next(milliseconds timeout) {
         if (Clock::now() >= until) {
             pairing_.expire(now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
             return device_error(ErrorCode::silence,
-                                fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                 settings_.camera_name(), "let the robot measure or trigger the sensor");
         }
         // Without a camera nothing arrives: look again when the next attempt is due.

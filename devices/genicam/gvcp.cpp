@@ -45,7 +45,7 @@ Expected<DiscoveredCamera> parse_discovery_ack(std::span<const std::byte> datagr
     if (big16(datagram, 2) != 0x0003) return device_error("the answer is no DISCOVERY_ACK", where);
     if (big16(datagram, 6) != request_id) return device_error("the answer is to another question", where);
     if (const unsigned status = big16(datagram, 0); status != 0)
-        return device_error(fmt::format("the camera answers with error 0x{:04X}", status), where);
+        return device_error(Text("the camera answers with error 0x{:04X}", status), where);
     if (datagram.size() < kHeader + kRegisters || big16(datagram, 4) < kRegisters)
         return device_error("the answer is cut short", where);
     const auto registers = datagram.subspan(kHeader, kRegisters);
@@ -84,7 +84,7 @@ Expected<DiscoveredCamera> ask_camera(const std::string& address, std::chrono::m
         if (from.address != address) continue;
         if (auto camera = parse_discovery_ack(std::span(datagram).first(*size), request)) return camera;
     }
-    return device_error(ErrorCode::silence, kNoAnswer, "camera " + address, "check its power and cable");
+    return device_error(ErrorCode::silence, kNoAnswer, Text("camera {}", address), "check its power and cable");
 }
 
 }  // namespace seamwright

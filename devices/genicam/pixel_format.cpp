@@ -84,13 +84,13 @@ Expected<StripeImage> unpack_image(const PixelFormat& format, std::span<const st
     const std::string where(format.name);
     if (format.is_range()) return device_error("holds coordinates, no grey values", where);
     if (width <= 0 || height <= 0 || width > 65536 || height > 65536) {
-        return device_error(fmt::format("an image of {} x {} pixels cannot be", width, height), where);
+        return device_error(Text("an image of {} x {} pixels cannot be", width, height), where);
     }
     const std::size_t need = image_bytes(format, width, height, row_padding);
     // The last row may come without its padding.
     if (payload.size() + row_padding < need) {
         return device_error(
-            fmt::format("{} x {} pixels need {} bytes, only {} came", width, height, need, payload.size()),
+            Text("{} x {} pixels need {} bytes, only {} came", width, height, need, payload.size()),
             where);
     }
     if (!format.colour.empty())

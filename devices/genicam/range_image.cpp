@@ -43,7 +43,7 @@ Expected<void> range_row(const PixelFormat& format, std::span<const std::byte> p
         return device_error("packed values are not read as a range image", where,
                             "set a pixel format of 8, 16 or 32 bit");
     if (width <= 0 || height <= 0 || width > 65536 || height > 65536 || row < 0 || row >= height)
-        return device_error(fmt::format("there is no row {} in {} x {} points", row, width, height), where);
+        return device_error(Text("there is no row {} in {} x {} points", row, width, height), where);
     const std::size_t unit = format.packing == Packing::bytes ? 1 : format.packing == Packing::words ? 2 : 4;
     const std::size_t axes = format.is_range() ? format.coordinates.size() : 1;
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height),
@@ -53,7 +53,7 @@ Expected<void> range_row(const PixelFormat& format, std::span<const std::byte> p
     const std::size_t need = (format.planar ? plane * axes : plane) - row_padding;
     if (payload.size() < need) {
         return device_error(
-            fmt::format("{} x {} points need {} bytes, only {} came", width, height, need, payload.size()),
+            Text("{} x {} points need {} bytes, only {} came", width, height, need, payload.size()),
             where);
     }
     const auto at = [&](std::size_t axis) {

@@ -60,7 +60,7 @@ Expected<std::filesystem::path> write_description(const WireCameraSettings& sett
     for (const std::string& name : settings.pixel_formats) {
         const PixelFormat* format = pixel_format_by_name(name);
         if (!format)
-            return input_error("\"" + name + "\" is no pixel format that can be served", "pixel_formats");
+            return input_error(Text("\"{}\" is no pixel format that can be served", name), "pixel_formats");
         entries +=
             fmt::format("<EnumEntry Name=\"{}\" NameSpace=\"Standard\"><Value>{}</Value></EnumEntry>\n",
                         format->name, format->code);

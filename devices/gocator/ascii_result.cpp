@@ -27,7 +27,7 @@ std::string printable(std::string_view text) {
 }
 
 tl::unexpected<Error> no_result(std::string_view line) {
-    return device_error(fmt::format("\"{}\" is no result of this format", printable(line)), kWhere,
+    return device_error(Text("\"{}\" is no result of this format", printable(line)), kWhere,
                         "give the driver the format that is set on the sensor's Output page");
 }
 
@@ -147,7 +147,7 @@ Expected<void> check_format(const AsciiFormat& format) {
 Expected<std::optional<std::string>> take_line(std::string& stream, const AsciiFormat& format) {
     const auto end = stream.find(format.terminator);
     if (end == std::string::npos ? stream.size() > kLongestLine : end > kLongestLine)
-        return device_error(fmt::format("a line of more than {} bytes", kLongestLine), kWhere,
+        return device_error(Text("a line of more than {} bytes", kLongestLine), kWhere,
                             "check the terminator set on the sensor's Output page");
     if (end == std::string::npos) return std::optional<std::string>();
     std::string line = stream.substr(0, end);

@@ -31,7 +31,7 @@ T at(std::string_view bytes, std::size_t offset) {  // precondition: long enough
 }
 
 tl::unexpected<Error> too_short(std::string_view what, std::size_t got) {
-    return device_error(fmt::format("a {} message of {} bytes is too short for what it says", what, got),
+    return device_error(Text("a {} message of {} bytes is too short for what it says", what, got),
                         kWhere);
 }
 
@@ -40,7 +40,7 @@ Expected<std::optional<std::string>> take(std::string& stream, std::size_t least
     if (stream.size() < 4) return std::optional<std::string>();
     const std::size_t size = at<std::uint32_t>(stream, 0);
     if (size < least || size > kLongestMessage)
-        return device_error(fmt::format("a message says it has {} bytes", size), kWhere,
+        return device_error(Text("a message says it has {} bytes", size), kWhere,
                             "check that address and ports are those of a Gocator");
     if (stream.size() < size) return std::optional<std::string>();
     std::string message = stream.substr(4, size - 4);
@@ -68,7 +68,7 @@ Expected<Head> head_of(std::string_view content, std::size_t least_attributes, s
     head.count = at<std::uint32_t>(content, 2);
     head.width = at<std::uint32_t>(content, 6);
     if (head.count > kMostProfiles)
-        return device_error(fmt::format("a {} message says it has {} profiles", what, head.count), kWhere);
+        return device_error(Text("a {} message says it has {} profiles", what, head.count), kWhere);
     const std::size_t bytes = content.size() - head.data;
     // No product of two numbers from outside before both are known to be small.
     if (head.count > bytes || head.width > bytes || head.count * head.width * bytes_per_point > bytes)

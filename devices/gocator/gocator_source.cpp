@@ -81,7 +81,7 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
         return input_error("the address of the sensor is missing", "settings.address",
                            "as in \"192.168.1.10\"");
     if (s.output != "profiles" && s.output != "ascii")
-        return input_error("\"" + s.output + "\" is no output", "settings.output", "profiles or ascii");
+        return input_error(Text("\"{}\" is no output", s.output), "settings.output", "profiles or ascii");
     if (json.contains("points")) {
         auto points = points_from(json.at("points"), "settings.points");
         if (!points) return tl::unexpected(points.error());
@@ -121,7 +121,7 @@ class GocatorSource final : public ProfileSource {
         const std::string& wanted = identity_.serial.empty() ? s_.serial : identity_.serial;
         if (!wanted.empty() && wanted != info->serial)
             return device_error(
-                fmt::format("the sensor with the serial number {} answers, not {}", info->serial, wanted),
+                Text("the sensor with the serial number {} answers, not {}", info->serial, wanted),
                 where(), "check address and cabling");
         const std::lock_guard lock(mutex_);
         identity_ = {"gocator", "LMI Technologies", info->model, info->serial};
@@ -199,12 +199,12 @@ class GocatorSource final : public ProfileSource {
             if (!ask(gdp::Command::ping, std::string(8, '\0'))) {
                 lost();
                 return device_error(ErrorCode::disconnected,
-                                    fmt::format("{}: it does not answer", kDisconnected), where(),
+                                    Text("{}: it does not answer", kDisconnected), where(),
                                     kLookAtSensor);
             }
         }
         return device_error(
-            ErrorCode::silence, fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()), where(),
+            ErrorCode::silence, Text("{}: no frame within {} ms", kNoAnswer, timeout.count()), where(),
             passed_over_ ? "its job sends no profile of this source: tick it on its Output page"
                          : "let the robot measure or trigger the sensor");
     }
@@ -235,11 +235,11 @@ class GocatorSource final : public ProfileSource {
 
     std::string where() const { return fmt::format("Gocator {}:{}", s_.address, s_.control_port); }
     tl::unexpected<Error> no_parameter(const std::string& name) const {
-        return usage_error("there is no parameter \"" + name + "\"", where(),
+        return usage_error(Text("there is no parameter \"{}\"", name), where(),
                            "set it on the sensor's own page");
     }
     tl::unexpected<Error> refused(const std::string& what, std::int32_t status) const {
-        return device_error(fmt::format("the sensor refuses to {} (status {})", what, status), where());
+        return device_error(Text("the sensor refuses to {} (status {})", what, status), where());
     }
 
     bool connected() {
@@ -295,7 +295,7 @@ class GocatorSource final : public ProfileSource {
         auto answer = ask(command, {}, s_.start_timeout, true);
         if (!answer && is_silence(answer.error()))
             return device_error(ErrorCode::silence,
-                                fmt::format("{}: the sensor did not {} its job within {:g} s", kNoAnswer,
+                                Text("{}: the sensor did not {} its job within {:g} s", kNoAnswer,
                                             command == gdp::Command::start ? "start" : "stop",
                                             static_cast<double>(s_.start_timeout.count()) / 1000),
                                 where(),

@@ -56,7 +56,7 @@ class EkiLink final : public RobotLink {
         auto state = ask({.kind = "state"});
         if (!state) return tl::unexpected(state.error());
         if (!state->text.empty())
-            return device_error("the controller does not know the flange: " + state->text, where_,
+            return device_error(Text("the controller does not know the flange: {}", state->text), where_,
                                 "select and start a program on the controller");
         return state->pose;
     }
@@ -99,7 +99,7 @@ class EkiLink final : public RobotLink {
 
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
         if (name.empty() || name.size() > kEkiLongestText)
-            return input_error("\"" + name + "\" is no name of a frame", where_);
+            return input_error(Text("\"{}\" is no name of a frame", name), where_);
         if (!base_from_frame.matrix().allFinite() ||
             base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
             return input_error("the frame is not finite or beyond 100 m", name);
@@ -163,7 +163,7 @@ class EkiLink final : public RobotLink {
     }
     tl::unexpected<Error> fail(Error error) {
         drop();
-        if (error.where.empty() || error.where.find(':') == std::string::npos) error.where = where_;
+        if (error.where.english().find(':') == std::string::npos) error.where = where_;
         return tl::unexpected(std::move(error));
     }
     static Timeout left(Clock::time_point until) {
@@ -260,7 +260,7 @@ class EkiLink final : public RobotLink {
             meet();
             if (connection_ && connection_->is_open()) return {};
             if (Clock::now() >= until)
-                return device_error(ErrorCode::silence, std::string(kNoAnswer) + ": no robot has connected",
+                return device_error(ErrorCode::silence, Text("{}: no robot has connected", std::string(kNoAnswer)),
                                     where_, "start SEAMWRIGHT_SUB in the controller's submit interpreter");
         }
     }
@@ -306,7 +306,7 @@ class EkiLink final : public RobotLink {
             if (!telegram)
                 return tl::unexpected(connection_ ? telegram.error() : fell_silent(telegram.error()));
             if (telegram->kind == "error")
-                return device_error("the controller reports: " + telegram->text, where_);
+                return device_error(Text("the controller reports: {}", telegram->text), where_);
             if (telegram->kind == "done" && &events == &triggers_)
                 return device_error("the measuring program has ended", where_);
             if (auto kept = keep_event(*telegram); !kept) return tl::unexpected(kept.error());
@@ -357,7 +357,7 @@ class EkiLink final : public RobotLink {
             if (telegram->kind == "error" && telegram->id == command.id)
                 return device_error(
                     telegram->text.starts_with(kEkiNotReady) ? ErrorCode::not_ready : ErrorCode::none,
-                    fmt::format("the controller refuses \"{}\": {}",
+                    Text("the controller refuses \"{}\": {}",
                                 command.kind == "read" || command.kind == "write"
                                     ? command.kind + " " + command.name
                                     : command.kind,

@@ -26,10 +26,10 @@ Expected<EkiTelegram> parse(std::string_view document, std::string_view root_nam
     pugi::xml_document xml;
     const auto parsed =
         xml.load_buffer(document.data(), document.size(), pugi::parse_default, pugi::encoding_utf8);
-    if (!parsed) return device_error(fmt::format("is no XML: {}", parsed.description()), kEkiWhere);
+    if (!parsed) return device_error(Text("is no XML: {}", parsed.description()), kEkiWhere);
     const pugi::xml_node root = xml.document_element();
     if (std::string_view(root.name()) != root_name)
-        return device_error(fmt::format("the root is not {}", root_name), kEkiWhere,
+        return device_error(Text("the root is not {}", root_name), kEkiWhere,
                             "load Seamwright.xml of this version on the controller");
     EkiTelegram t;
     const auto text = [&](const char* name, std::string& value) {
@@ -53,10 +53,10 @@ Expected<EkiTelegram> parse(std::string_view document, std::string_view root_nam
         const auto attribute = pos.attribute(kPos[i]);
         const std::string value = attribute.value();
         const auto number = number_from<double>(value);
-        if (!number) return device_error(fmt::format("has no number Pos/{}", kPos[i]), kEkiWhere);
+        if (!number) return device_error(Text("has no number Pos/{}", kPos[i]), kEkiWhere);
         v[i] = *number;
         if (!(std::abs(v[i]) <= (i < 3 ? 1e5 : 360.0)))
-            return device_error(fmt::format("Pos/{} = {} is no position of a robot", kPos[i], value),
+            return device_error(Text("Pos/{} = {} is no position of a robot", kPos[i], value),
                                 kEkiWhere);
     }
     t.pose = make_pose(rotation_from_kuka({v[3], v[4], v[5]}), {v[0], v[1], v[2]});
@@ -111,7 +111,7 @@ Expected<void> EkiSplitter::add(std::string_view bytes) {
         buffer_.erase(0, end);
     }
     if (buffer_.size() > kEkiLongestTelegram)
-        return device_error(fmt::format("is longer than {} bytes", kEkiLongestTelegram), kEkiWhere,
+        return device_error(Text("is longer than {} bytes", kEkiLongestTelegram), kEkiWhere,
                             "check that Seamwright's module talks on this port");
     return {};
 }
@@ -135,7 +135,7 @@ void EkiSplitter::clear() {
 Expected<RobotMode> mode_from_eki(std::string_view mode) {
     for (const auto& [known, name] : kEkiModes)
         if (mode == name) return known;
-    return device_error(fmt::format("\"{}\" is no operating mode", mode.substr(0, 20)), kEkiWhere);
+    return device_error(Text("\"{}\" is no operating mode", mode.substr(0, 20)), kEkiWhere);
 }
 
 }  // namespace seamwright

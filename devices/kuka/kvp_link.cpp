@@ -74,7 +74,7 @@ class KvpLink final : public RobotLink {
                 static const std::array<const char*, 5> names = {"$BASE", "$TOOL", "$POS_ACT", "$BASE",
                                                                  "$TOOL"};
                 if (!a.done)
-                    return device_error(std::string("the controller refuses to read ") + names[k - 1], where_,
+                    return device_error(Text("the controller refuses to read {}", names[k - 1]), where_,
                                         "select and start a program, so that tool and base are active");
                 auto pose = frame_from_krl(a.value);
                 if (!pose) return fail(pose.error());
@@ -305,7 +305,7 @@ class KvpLink final : public RobotLink {
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
             return device_error(ErrorCode::disconnected,
-                                std::string(kDisconnected) + ", the next attempt is due soon", where_,
+                                Text("{}, the next attempt is due soon", std::string(kDisconnected)), where_,
                                 "check that KUKAVARPROXY runs on the controller");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
@@ -362,7 +362,7 @@ class KvpLink final : public RobotLink {
         std::vector<std::string> values;
         for (std::size_t i = 0; i < names.size(); ++i) {
             if (!(*answers)[i].done)
-                return device_error("the controller refuses to read " + names[i], where_,
+                return device_error(Text("the controller refuses to read {}", names[i]), where_,
                                     "load seamwright.dat on the controller");
             values.push_back(std::move((*answers)[i].value));
         }
@@ -384,7 +384,7 @@ class KvpLink final : public RobotLink {
     }
     Expected<bool> truth(const char* name, const KvpAnswer& answer) {
         if (!answer.done)
-            return device_error(std::string("the controller refuses to read ") + name, where_,
+            return device_error(Text("the controller refuses to read {}", name), where_,
                                 "load seamwright.dat on the controller");
         auto value = bool_from_krl(answer.value);
         if (!value) return fail(value.error());
@@ -433,7 +433,7 @@ class KvpLink final : public RobotLink {
         if (!answers) return tl::unexpected(answers.error());
         for (std::size_t i = 0; i < values.size(); ++i)
             if (!(*answers)[i].done)
-                return device_error("the controller refuses to write " + values[i].first, where_,
+                return device_error(Text("the controller refuses to write {}", values[i].first), where_,
                                     "check the operating mode and that the variable is global");
         return {};
     }
@@ -463,7 +463,7 @@ class KvpLink final : public RobotLink {
     // The module's table, read once a connection; any other name is a variable's own.
     Expected<std::string> frame_variable(const std::string& name) {
         if (name.empty() || name.size() > 79)
-            return input_error("\"" + name + "\" is no name of a frame", where_);
+            return input_error(Text("\"{}\" is no name of a frame", name), where_);
         // None yet: the application writes them when it begins.
         if (names_ && names_->empty()) names_.reset();
         if (!names_) {

@@ -111,7 +111,7 @@ Expected<std::optional<KvpAnswer>> take_kvp_answer(std::string& stream) {
 Expected<Pose> frame_from_krl(std::string_view text) {
     std::string_view rest = trimmed(text);
     if (rest.size() < 2 || rest.front() != '{' || rest.back() != '}')
-        return device_error(fmt::format("\"{}\" is no frame", text.substr(0, 60)), kKvpWhere);
+        return device_error(Text("\"{}\" is no frame", text.substr(0, 60)), kKvpWhere);
     rest = rest.substr(1, rest.size() - 2);
     if (const auto colon = rest.find(':'); colon != std::string_view::npos) rest.remove_prefix(colon + 1);
     constexpr std::string_view kNames = "XYZABC";
@@ -126,14 +126,14 @@ Expected<Pose> frame_from_krl(std::string_view text) {
         double number = 0;
         const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), number);
         if (read.ec != std::errc() || read.ptr != digits.data() + digits.size() || v[which])
-            return device_error(fmt::format("\"{}\" is no number of a frame", part.substr(0, 40)), kKvpWhere);
+            return device_error(Text("\"{}\" is no number of a frame", part.substr(0, 40)), kKvpWhere);
         if (!(std::abs(number) <= (which < 3 ? 1e5 : 360.0)))
-            return device_error(fmt::format("\"{}\" is no position of a robot", part.substr(0, 40)),
+            return device_error(Text("\"{}\" is no position of a robot", part.substr(0, 40)),
                                 kKvpWhere);
         v[which] = number;
     }
     for (std::size_t i = 0; i < 6; ++i)
-        if (!v[i]) return device_error(fmt::format("the frame has no {}", kNames[i]), kKvpWhere);
+        if (!v[i]) return device_error(Text("the frame has no {}", kNames[i]), kKvpWhere);
     return make_pose(rotation_from_kuka({*v[3], *v[4], *v[5]}), {*v[0], *v[1], *v[2]});
 }
 
@@ -148,7 +148,7 @@ Expected<bool> bool_from_krl(std::string_view text) {
     const std::string_view t = trimmed(text);
     if (t == "TRUE" || t == "true") return true;
     if (t == "FALSE" || t == "false") return false;
-    return device_error(fmt::format("\"{}\" is neither TRUE nor FALSE", t.substr(0, 40)), kKvpWhere);
+    return device_error(Text("\"{}\" is neither TRUE nor FALSE", t.substr(0, 40)), kKvpWhere);
 }
 
 Expected<std::int64_t> int_from_krl(std::string_view text) {
@@ -156,7 +156,7 @@ Expected<std::int64_t> int_from_krl(std::string_view text) {
     std::int64_t value = 0;
     const auto read = std::from_chars(t.data(), t.data() + t.size(), value);
     if (t.empty() || read.ec != std::errc() || read.ptr != t.data() + t.size())
-        return device_error(fmt::format("\"{}\" is no whole number", t.substr(0, 40)), kKvpWhere);
+        return device_error(Text("\"{}\" is no whole number", t.substr(0, 40)), kKvpWhere);
     return value;
 }
 

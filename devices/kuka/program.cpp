@@ -20,7 +20,7 @@ Expected<void> krl_text(const std::string& text, const std::string& where) {
     const bool plain = std::all_of(text.begin(), text.end(),
                                    [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; });
     if (text.empty() || text.size() > kLongestName || !plain)
-        return input_error("\"" + text + "\" cannot be written in KRL", where,
+        return input_error(Text("\"{}\" cannot be written in KRL", text), where,
                            "use 1 to 79 plain letters, digits and signs without quotes");
     return {};
 }
@@ -52,11 +52,11 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request) {
     if (request.driver == "kuka-rsi") return write_rsi_program(request);
     if (request.moves.size() > kMostSpots)
-        return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
-                           request.project, fmt::format("measure at most {} in one program", kMostSpots));
+        return input_error(Text("{} spots are more than the module holds", request.moves.size()),
+                           request.project, Text("measure at most {} in one program", kMostSpots));
     if (request.frames.size() > kMostFrames)
-        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
-                           request.project, fmt::format("give at most {}", kMostFrames));
+        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
+                           request.project, Text("give at most {}", kMostFrames));
     std::string listen = "127.0.0.1";
     int port = 54600, output = 1, alive = 1, command = 2;
     SettingsReader f(request.settings, "settings");
@@ -68,7 +68,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
     if (f.failed()) return tl::unexpected(f.error());
 
     if (listen == "0.0.0.0" || listen.empty() || listen.find_first_not_of("0123456789.") != std::string::npos)
-        return input_error("\"" + listen + "\" is no address that a controller connects to",
+        return input_error(Text("\"{}\" is no address that a controller connects to", listen),
                            "settings.listen", "give this computer's address in the robot's network");
     if (alive == command)
         return input_error("flag_alive and flag_command are one flag", "settings", "give two");
@@ -80,13 +80,13 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         if (auto ok = krl_text(move.spot_id, "spot"); !ok) return tl::unexpected(ok.error());
         const double cp = move.speed_mm_s / 1000;
         if (!(cp > 0 && cp <= kFastestCp))
-            return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s),
-                               "spot " + move.spot_id, "give up to 2000 mm/s");
+            return input_error(Text("{} mm/s is no speed for measuring", move.speed_mm_s),
+                               Text("spot {}", move.spot_id), "give up to 2000 mm/s");
         std::vector<const Pose*> poses = {&move.entry, &move.trigger, &move.exit};
         for (const Pose& via : move.via) poses.push_back(&via);
         for (const Pose* pose : poses)
             if (!pose->matrix().allFinite() || pose->translation().cwiseAbs().maxCoeff() > 1e5)
-                return input_error("a pose is not finite or beyond 100 m", "spot " + move.spot_id);
+                return input_error("a pose is not finite or beyond 100 m", Text("spot {}", move.spot_id));
         const std::string point = fmt::format("XSW_{:03}", n);
         data += fmt::format(
             "; spot {}\nDECL FRAME {}_ENTRY={}\nDECL FRAME {}_SPOT={}\nDECL FRAME {}_EXIT={}\n", move.spot_id,

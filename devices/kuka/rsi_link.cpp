@@ -18,7 +18,7 @@ Expected<std::string> one_of(const nlohmann::json& settings, const char* key,
         if (*value == name) return value;
         all += (all.empty() ? "" : ", ") + std::string(name);
     }
-    return input_error("\"" + *value + "\" is not known", key, "known are " + all);
+    return input_error(Text("\"{}\" is not known", *value), key, Text("known are {}", all));
 }
 
 }  // namespace

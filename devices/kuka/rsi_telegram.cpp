@@ -207,7 +207,7 @@ std::string_view text_of(std::span<const std::byte> datagram) {
 }
 
 tl::unexpected<Error> refused(const char* wrong) {
-    return device_error(std::string("an RSI telegram is refused: ") + wrong);
+    return device_error(Text("an RSI telegram is refused: {}", wrong));
 }
 
 }  // namespace

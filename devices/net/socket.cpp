@@ -106,7 +106,7 @@ Expected<TcpConnection> TcpConnection::connect(const std::string& host, std::uin
     error_code e;
     const asio::ip::address address = asio::ip::make_address(host, e);
     if (e)
-        return input_error(fmt::format("\"{}\" is not an IP address", host), "",
+        return input_error(Text("\"{}\" is not an IP address", host), "",
                            "give it as four numbers, 192.168.1.10");
     auto connected = impl->wait(timeout, [&](auto done) {
         impl->socket.async_connect({address, port},
@@ -153,7 +153,7 @@ bool is_loopback(const std::string& address) {
 
 Expected<void> check_robot_address(const std::string& listen, const std::string& robot_address) {
     if (!robot_address.empty() || is_loopback(listen)) return {};
-    return input_error("it would be open to every computer of the network", "settings.listen " + listen,
+    return input_error("it would be open to every computer of the network", Text("settings.listen {}", listen),
                        "name the controller's address in \"robot_address\"");
 }
 
@@ -178,13 +178,13 @@ Expected<TcpListener> TcpListener::listen(const std::string& address, std::uint1
     impl->where = fmt::format("{}:{}", address, port);
     error_code e;
     const tcp::endpoint endpoint(asio::ip::make_address(address, e), port);
-    if (e) return input_error(fmt::format("\"{}\" is not an IP address", address), "listen");
+    if (e) return input_error(Text("\"{}\" is not an IP address", address), "listen");
     impl->acceptor.open(endpoint.protocol(), e);
     if (!e) impl->acceptor.set_option(tcp::acceptor::reuse_address(true), e);
     if (!e) impl->acceptor.bind(endpoint, e);
     if (!e) impl->acceptor.listen(4, e);
     if (e)
-        return device_error("cannot listen: " + e.message(), impl->where,
+        return device_error(Text("cannot listen: {}", e.message()), impl->where,
                             "another program may use this port");
     impl->where = text(impl->acceptor.local_endpoint());
     return TcpListener(std::move(impl));
@@ -243,12 +243,12 @@ Expected<UdpSocket> UdpSocket::bind(const std::string& address, std::uint16_t po
     impl->where = fmt::format("{}:{}", address, port);
     error_code e;
     const udp::endpoint endpoint(asio::ip::make_address(address, e), port);
-    if (e) return input_error(fmt::format("\"{}\" is not an IP address", address), "bind");
+    if (e) return input_error(Text("\"{}\" is not an IP address", address), "bind");
     impl->socket.open(endpoint.protocol(), e);
     if (!e && shared == Shared::yes) impl->socket.set_option(udp::socket::reuse_address(true), e);
     if (!e) impl->socket.bind(endpoint, e);
     if (e)
-        return device_error("cannot bind: " + e.message(), impl->where, "another program may use this port");
+        return device_error(Text("cannot bind: {}", e.message()), impl->where, "another program may use this port");
     impl->where = text(impl->socket.local_endpoint());
     return UdpSocket(std::move(impl));
 }
@@ -260,7 +260,7 @@ std::uint16_t UdpSocket::port() const {
 Expected<void> UdpSocket::send_to(std::span<const std::byte> datagram, const Endpoint& to) {
     error_code e;
     const auto address = asio::ip::make_address(to.address, e);
-    if (e) return input_error(fmt::format("\"{}\" is not an IP address", to.address), impl_->where);
+    if (e) return input_error(Text("\"{}\" is not an IP address", to.address), impl_->where);
     impl_->socket.send_to(asio::buffer(datagram.data(), datagram.size()), {address, to.port}, 0, e);
     if (e) return failure(e, impl_->where);
     return {};
@@ -287,7 +287,7 @@ Expected<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Endpoint& 
     if (!in_time && (!done || result)) return device_error(ErrorCode::silence, kNoAnswer, impl_->where);
     if (result) return failure(result, impl_->where);
     if (size > buffer.size())
-        return device_error(fmt::format("a datagram of {} bytes is longer than {}", size, buffer.size()),
+        return device_error(Text("a datagram of {} bytes is longer than {}", size, buffer.size()),
                             text(sender));
     from = {sender.address().to_string(), sender.port()};
     return size;

@@ -46,7 +46,7 @@ class CaptureSensor final : public ProfileSource {
         if (!frame) {
             const std::lock_guard lock(mutex_);
             ++counters_.underrun;
-            return device_error(fmt::format("all {} frame buffers are in use", pool_.size()),
+            return device_error(Text("all {} frame buffers are in use", pool_.size()),
                                 replay_->where(), "let go of frames that are no longer needed");
         }
         for (;;) {
@@ -57,7 +57,7 @@ class CaptureSensor final : public ProfileSource {
             const auto now = Clock::now();
             if (now >= until)
                 return device_error(ErrorCode::silence,
-                                    fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                    Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     replay_->where());
             std::this_thread::sleep_until(std::min({**later, until, now + Clock::duration(kSlice)}));
         }
@@ -79,10 +79,10 @@ class CaptureSensor final : public ProfileSource {
     }
     std::vector<ParameterInfo> parameters() const override { return {}; }
     Expected<double> get(const std::string& parameter) const override {
-        return usage_error("a capture has no parameter \"" + parameter + "\"", replay_->where());
+        return usage_error(Text("a capture has no parameter \"{}\"", parameter), replay_->where());
     }
     Expected<void> set(const std::string& parameter, double) override {
-        return usage_error("a capture has no parameter \"" + parameter + "\"", replay_->where());
+        return usage_error(Text("a capture has no parameter \"{}\"", parameter), replay_->where());
     }
 
   private:
@@ -130,7 +130,7 @@ class CaptureRobot final : public RobotLink {
             if (!*later) return trigger;
             if (Clock::now() >= until)
                 return device_error(ErrorCode::silence,
-                                    fmt::format("{}: no trigger within {} ms", kNoAnswer, timeout.count()),
+                                    Text("{}: no trigger within {} ms", kNoAnswer, timeout.count()),
                                     replay_->where());
             std::this_thread::sleep_until(std::min(**later, until));
         }
@@ -138,13 +138,13 @@ class CaptureRobot final : public RobotLink {
     Expected<Pose> read_frame(const std::string& name) override {
         const auto it = frames_.find(name);
         if (it == frames_.end())
-            return device_error("the recording has no frame \"" + name + "\"", replay_->where(),
+            return device_error(Text("the recording has no frame \"{}\"", name), replay_->where(),
                                 "give it in the robot's settings under \"frames\"");
         return it->second;
     }
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
         if (!accept_frames_)
-            return device_error("a recording has no controller to write the frame \"" + name + "\" to",
+            return device_error(Text("a recording has no controller to write the frame \"{}\" to", name),
                                 replay_->where(), "set \"accept_frames\": true to keep frames in memory");
         frames_[name] = base_from_frame;
         return {};

@@ -42,11 +42,11 @@ Expected<CaptureSource> CaptureReplay::source(const std::string& name, SourceKin
     for (const CaptureSource& s : reader_.sources())
         if (s.kind == kind) known += (known.empty() ? "" : ", ") + s.name;
     const char* what = kind == SourceKind::sensor ? "sensor" : "robot";
-    if (known.empty()) return input_error(fmt::format("the capture has no {}", what), where_);
+    if (known.empty()) return input_error(Text("the capture has no {}", what), where_);
     if (name.empty())
-        return input_error(fmt::format("the capture has several {}s", what), where_,
-                           fmt::format("name one in settings.source: {}", known));
-    return input_error(fmt::format("the capture has no {} \"{}\"", what, name), where_, "known are " + known);
+        return input_error(Text("the capture has several {}s", what), where_,
+                           Text("name one in settings.source: {}", known));
+    return input_error(Text("the capture has no {} \"{}\"", what, name), where_, Text("known are {}", known));
 }
 
 Expected<void> CaptureReplay::open_sensor(const CaptureSource& source, std::uint64_t from, bool step) {
@@ -57,12 +57,12 @@ Expected<void> CaptureReplay::open_sensor(const CaptureSource& source, std::uint
         return {};
     }
     if (players_.contains(source.id))
-        return input_error("two sensors play the same source \"" + source.name + "\"", where_,
+        return input_error(Text("two sensors play the same source \"{}\"", source.name), where_,
                            "give each a source of its own");
     Player player;
     player.count = reader_.frames(source.id);
     if (from > 0 && from >= player.count)
-        return input_error(fmt::format("the source \"{}\" has {} frames only", source.name, player.count),
+        return input_error(Text("the source \"{}\" has {} frames only", source.name, player.count),
                            "settings.from");
     player.cursor = from;
     player.step = step;
@@ -149,7 +149,7 @@ Expected<std::uint64_t> CaptureReplay::take(Player& player, const std::string& s
     }
     const auto it = player.of_spot.find(spot_id);
     if (it == player.of_spot.end())
-        return device_error("the recording has no spot \"" + spot_id + "\"", where_);
+        return device_error(Text("the recording has no spot \"{}\"", spot_id), where_);
     std::size_t& played = player.played[spot_id];
     if (played == it->second.size()) {
         if (!loop_) return device_error(ErrorCode::end_of_recording, kEndOfRecording, where_);
@@ -242,7 +242,7 @@ Expected<void> CaptureReplay::start_moves(const std::vector<std::string>& spot_i
             known = true;
             enough = enough || loop_ || player.played[id] + times <= it->second.size();
         }
-        if (!known) return device_error("the recording has no spot \"" + id + "\"", where_);
+        if (!known) return device_error(Text("the recording has no spot \"{}\"", id), where_);
         if (!enough) return device_error(ErrorCode::end_of_recording, kEndOfRecording, where_);
     }
     for (auto& [source, player] : players_) {

@@ -80,7 +80,7 @@ Expected<RecordedFrame> manifest_frame(const fs::path& folder, const std::string
     if (!path) return tl::unexpected(path.error());
     frame.file = *path;
     if (!is_profile_file(*path) && !is_image_file(*path)) {
-        return input_error("\"" + file + "\" is neither a profile (.csv) nor an image",
+        return input_error(Text("\"{}\" is neither a profile (.csv) nor an image", file),
                            json_path(where, "file"));
     }
     frame.image = is_image_file(*path);
@@ -164,7 +164,7 @@ Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const
             continue;
         }
         if (fields.size() != width) {
-            return input_error(fmt::format("has {} fields where the header names {}", fields.size(), width),
+            return input_error(Text("has {} fields where the header names {}", fields.size(), width),
                                at);
         }
         auto frame = manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at);
@@ -188,10 +188,10 @@ Expected<std::vector<RecordedFrame>> frames_of_folder(const fs::path& folder, co
             profiles.push_back({p, p.stem().string(), std::nullopt, false, {}});
         if (is_image_file(p)) images.push_back({p, p.stem().string(), std::nullopt, true, {}});
         if (profiles.size() + images.size() > kFrameLimit) {
-            return input_error(fmt::format("holds more than {} frames", kFrameLimit), folder.string());
+            return input_error(Text("holds more than {} frames", kFrameLimit), folder.string());
         }
     }
-    if (problem) return file_error("cannot be listed (" + problem.message() + ")", folder.string());
+    if (problem) return file_error(Text("cannot be listed ({})", problem.message()), folder.string());
     // Of several kinds the first counts; text beside images is their poses.
     for (const std::string_view extension : kProfileExtensions) {
         const auto is = [&](const RecordedFrame& f) {
@@ -358,7 +358,7 @@ Expected<std::size_t> Recording::take(const std::string& spot_id) {
     }
     const auto it = of_spot_.find(spot_id);
     if (it == of_spot_.end()) {
-        return device_error("the recording has no spot \"" + spot_id + "\"", folder_.string());
+        return device_error(Text("the recording has no spot \"{}\"", spot_id), folder_.string());
     }
     std::size_t& played = played_[spot_id];
     if (played == it->second.size()) {

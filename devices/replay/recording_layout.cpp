@@ -45,7 +45,7 @@ Expected<Profile> into_plane(const ReadProfile& points, const Pose& base_from_se
     }
     if (worst > kFarFromPlane_mm)
         return input_error(
-            fmt::format("its points in space lie up to {:.3g} mm beside the sensor's plane", worst), where,
+            Text("its points in space lie up to {:.3g} mm beside the sensor's plane", worst), where,
             "give points in the robot's base with the pose they were taken at, or x and z");
     return profile;
 }
@@ -73,7 +73,7 @@ Expected<RecordingLayout> parse_recording_layout(const nlohmann::json& json, con
         *value = *text;
     }
     const auto known = image_channel(channel);
-    if (!known) return input_error("\"" + channel + "\" is no channel", json_path(where, "channel"));
+    if (!known) return input_error(Text("\"{}\" is no channel", channel), json_path(where, "channel"));
     layout.channel = *known;
     if (json.contains("flange_from_sensor")) {
         auto pose = parse_pose(json["flange_from_sensor"], json_path(where, "flange_from_sensor"));
@@ -98,7 +98,7 @@ Expected<void> read_recorded(const RecordedFrame& recorded, const RecordingLayou
     auto read = read_profiles(recorded.file, layout.profile);
     if (!read) return tl::unexpected(read.error());
     if (read->profiles.size() != 1)
-        return input_error(fmt::format("holds {} profiles, one was expected", read->profiles.size()),
+        return input_error(Text("holds {} profiles, one was expected", read->profiles.size()),
                            recorded.file.string(), "give the file itself to --from");
     if (!read->profiles.front().y_mm.empty() && layout.flange_from_sensor && recorded.base_from_flange) {
         auto profile =

@@ -46,7 +46,7 @@ Expected<ReplaySettings> common_settings(const nlohmann::json& json) {
     if (!kind) return tl::unexpected(kind.error());
     s.kind = *kind;
     if (!s.kind.empty() && s.kind != "profiles" && s.kind != "images") {
-        return input_error("\"" + s.kind + "\" is no kind of frame", "settings.kind",
+        return input_error(Text("\"{}\" is no kind of frame", s.kind), "settings.kind",
                            "give \"profiles\" or \"images\"");
     }
     const auto serial = json_string_or(json, "serial", s.folder.filename().string(), "settings");
@@ -113,7 +113,7 @@ class ReplaySensor final : public ProfileSource {
             if (next == Recording::Next::frame) break;
             if (Clock::now() >= until) {
                 return device_error(
-                    ErrorCode::silence, fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                    ErrorCode::silence, Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                     recording_->folder().string(), "let the robot measure or trigger the sensor");
             }
             std::this_thread::sleep_for(
@@ -122,7 +122,7 @@ class ReplaySensor final : public ProfileSource {
         if (!pace(until)) {
             recording_->put_back(recorded);
             return device_error(ErrorCode::silence,
-                                fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                 recording_->folder().string());
         }
         FramePtr frame = pool_.acquire();
@@ -130,7 +130,7 @@ class ReplaySensor final : public ProfileSource {
             recording_->put_back(recorded);
             const std::lock_guard lock(mutex_);
             ++counters_.underrun;
-            return device_error(fmt::format("all {} frame buffers are in use", pool_.size()), "replay",
+            return device_error(Text("all {} frame buffers are in use", pool_.size()), "replay",
                                 "let go of frames that are no longer needed");
         }
         fill(*recorded, *frame);
@@ -156,7 +156,7 @@ class ReplaySensor final : public ProfileSource {
     }
     Expected<double> get(const std::string& parameter) const override {
         if (parameter != "rate_hz")
-            return usage_error("the replay has no parameter \"" + parameter + "\"", "replay");
+            return usage_error(Text("the replay has no parameter \"{}\"", parameter), "replay");
         return rate_hz_.load();
     }
     Expected<void> set(const std::string& parameter, double value) override {
@@ -245,14 +245,14 @@ class ReplayRobot final : public RobotLink {
     Expected<Pose> read_frame(const std::string& name) override {
         const auto it = frames_.find(name);
         if (it == frames_.end()) {
-            return device_error("the recording has no frame \"" + name + "\"", where(),
+            return device_error(Text("the recording has no frame \"{}\"", name), where(),
                                 "give it in the robot's settings under \"frames\"");
         }
         return it->second;
     }
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
         if (!accept_frames_) {
-            return device_error("a recording has no controller to write the frame \"" + name + "\" to",
+            return device_error(Text("a recording has no controller to write the frame \"{}\" to", name),
                                 where(), "set \"accept_frames\": true to keep frames in memory");
         }
         frames_[name] = base_from_frame;
@@ -323,7 +323,7 @@ Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& set
     if (!mode_name) return tl::unexpected(mode_name.error());
     const auto mode = robot_mode_from_string(*mode_name);
     if (!mode)
-        return input_error("\"" + *mode_name + "\" is no mode", "settings.mode", "give e.g. \"automatic\"");
+        return input_error(Text("\"{}\" is no mode", *mode_name), "settings.mode", "give e.g. \"automatic\"");
     const auto brand = json_string_or(settings, "brand", "", "settings");
     if (!brand) return tl::unexpected(brand.error());
     const auto model = json_string_or(settings, "model", "", "settings");

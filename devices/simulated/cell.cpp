@@ -275,7 +275,7 @@ Expected<Pose> SimulatedCell::read_frame(const std::string& name) const {
     const std::lock_guard lock(mutex_);
     const auto it = frames_.find(name);
     if (it == frames_.end()) {
-        return device_error("the controller has no frame \"" + name + "\"", "simulated robot",
+        return device_error(Text("the controller has no frame \"{}\"", name), "simulated robot",
                             "give it in the settings under robot.frames");
     }
     return it->second;
@@ -285,7 +285,7 @@ Expected<void> SimulatedCell::write_frame(const std::string& name, const Pose& b
     const std::lock_guard lock(mutex_);
     const auto it = frames_.find(name);
     if (it == frames_.end()) {
-        return device_error("the controller has no frame \"" + name + "\"", "simulated robot",
+        return device_error(Text("the controller has no frame \"{}\"", name), "simulated robot",
                             "give it in the settings under robot.frames");
     }
     if (!base_from_frame.matrix().allFinite())

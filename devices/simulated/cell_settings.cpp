@@ -65,7 +65,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         const auto it =
             std::find_if(kScenes.begin(), kScenes.end(), [&](Scene k) { return to_string(k) == scene; });
         if (it == kScenes.end()) {
-            return input_error("\"" + scene + "\" is no scene", "settings.scene",
+            return input_error(Text("\"{}\" is no scene", scene), "settings.scene",
                                "give part, sphere, plate or triangle");
         }
         s.scene = *it;
@@ -139,7 +139,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         if (const auto known = robot_mode_from_string(mode)) {
             s.robot.mode = *known;
         } else {
-            o.keep(input_error("\"" + mode + "\" is no mode", o.path("mode"), "give e.g. \"automatic\""));
+            o.keep(input_error(Text("\"{}\" is no mode", mode), o.path("mode"), "give e.g. \"automatic\""));
         }
         o.object("frames", [&](SettingsReader& frames) {
             for (const auto& [name, value] : frames.json().items())

@@ -164,7 +164,7 @@ Expected<GripperCellSettings> parse_gripper_settings(const nlohmann::json& json)
     f.text("head", head);
     if (f.failed()) return tl::unexpected(f.error());
     if (!head.empty() && !s.heads.count(head))
-        return input_error(fmt::format("the gripper has no head \"{}\"", head), "settings.head",
+        return input_error(Text("the gripper has no head \"{}\"", head), "settings.head",
                            "name one of settings.heads");
     return s;
 }
@@ -279,7 +279,7 @@ Expected<Pose> GripperCell::read_frame(const std::string& name) const {
     const std::lock_guard lock(mutex_);
     const auto it = frames_.find(name);
     if (it == frames_.end())
-        return device_error("the controller has no frame \"" + name + "\"", "simulated gripper",
+        return device_error(Text("the controller has no frame \"{}\"", name), "simulated gripper",
                             "give it in the settings under robot.frames");
     return it->second;
 }

@@ -52,7 +52,7 @@ class GripperSensor final : public ProfileSource {
             if (!running_) return device_error("the sensor is not started", "simulated gripper");
             if (!arrived_.wait_for(lock, timeout, [&] { return !waiting_.empty(); }))
                 return device_error(ErrorCode::silence,
-                                    fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                    Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     "simulated gripper", "trigger the sensor");
             exposed = std::move(waiting_.front());
             waiting_.pop_front();
@@ -95,7 +95,7 @@ class GripperSensor final : public ProfileSource {
     }
     Expected<double> get(const std::string& parameter) const override {
         if (parameter == "exposure_us") return cell_->exposure_us();
-        return usage_error("there is no parameter \"" + parameter + "\"", "simulated gripper",
+        return usage_error(Text("there is no parameter \"{}\"", parameter), "simulated gripper",
                            "known is exposure_us");
     }
     Expected<void> set(const std::string& parameter, double value) override {

@@ -93,7 +93,7 @@ Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
 
 Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::string& unit) {
     if (!unit.empty() && unit != "mm" && unit != "m") {
-        return input_error("\"" + unit + "\" is no unit of a mesh", path.string(), "give \"mm\" or \"m\"");
+        return input_error(Text("\"{}\" is no unit of a mesh", unit), path.string(), "give \"mm\" or \"m\"");
     }
     std::error_code problem;
     if (!std::filesystem::is_regular_file(path, problem)) return file_error("is no file", path.string());
@@ -106,14 +106,14 @@ Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::s
         if (extension == ".ply") mesh = read_with<vtkPLYReader>(path);
         if (extension == ".obj") mesh = read_with<vtkOBJReader>(path);
     } catch (const std::exception& e) {
-        return file_error(std::string("cannot be read (") + e.what() + ")", path.string());
+        return file_error(Text("cannot be read ({})", e.what()), path.string());
     }
     if (!mesh) return mesh;
     const double longest = mesh->box().sizes().maxCoeff();
     if (unit == "m") {
         for (auto& v : mesh->vertices) v *= 1000;
     } else if (unit.empty() && longest < 10) {
-        return input_error(fmt::format("the part is only {:.4g} long: metres suspected", longest),
+        return input_error(Text("the part is only {:.4g} long: metres suspected", longest),
                            path.string(), "say the unit: \"mm\" or \"m\"");
     }
     return mesh;
@@ -126,7 +126,7 @@ Expected<TriangleMesh> mesh_from_ply(std::span<const std::byte> ply, const std::
     try {
         return read_mesh(reader.Get(), where);
     } catch (const std::exception& e) {
-        return file_error(std::string("cannot be read (") + e.what() + ")", where);
+        return file_error(Text("cannot be read ({})", e.what()), where);
     }
 }
 

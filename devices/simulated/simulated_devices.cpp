@@ -52,7 +52,7 @@ class SimulatedSensor final : public ProfileSource {
             }
             if (Clock::now() >= until) {
                 return device_error(ErrorCode::silence,
-                                    fmt::format("{}: no frame within {} ms", kNoAnswer, timeout.count()),
+                                    Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     "simulated sensor", "let the robot measure or trigger the sensor");
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -102,7 +102,7 @@ class SimulatedSensor final : public ProfileSource {
         for (const auto& info : parameters()) {
             if (info.name == parameter) return cell_->parameter(parameter);
         }
-        return usage_error("there is no parameter \"" + parameter + "\"", "simulated sensor",
+        return usage_error(Text("there is no parameter \"{}\"", parameter), "simulated sensor",
                            "known are exposure_us, gain_db, laser, scene");
     }
     Expected<void> set(const std::string& parameter, double value) override {

@@ -57,11 +57,11 @@ std::string filled(std::string_view text, const std::map<std::string, std::strin
 
 Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& request) {
     if (request.moves.size() > ur::kMostSpots)
-        return input_error(fmt::format("{} spots are more than the module holds", request.moves.size()),
-                           request.project, fmt::format("measure at most {} in one program", ur::kMostSpots));
+        return input_error(Text("{} spots are more than the module holds", request.moves.size()),
+                           request.project, Text("measure at most {} in one program", ur::kMostSpots));
     if (request.frames.size() > ur::kMostFrames)
-        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
-                           request.project, fmt::format("give at most {}", ur::kMostFrames));
+        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
+                           request.project, Text("give at most {}", ur::kMostFrames));
     int first = ur::kFirstRegister, output = 0;
     SettingsReader f(request.settings, "settings");
     f.whole("first_register", first, 0, ur::kLastRegister + 1 - ur::kOutputs);
@@ -74,7 +74,7 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     for (const MeasuringMove& move : request.moves) {
         const std::string where = "spot " + move.spot_id;
         if (!(move.speed_mm_s > 0 && move.speed_mm_s <= 1000 * kFastest_m_s))
-            return input_error(fmt::format("{} mm/s is no speed for measuring", move.speed_mm_s), where,
+            return input_error(Text("{} mm/s is no speed for measuring", move.speed_mm_s), where,
                                "give up to 2000 mm/s");
         for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
             if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
@@ -106,7 +106,7 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
         const auto [at, fresh] = names.emplace(ur::frame_number(frame.name), frame.name);
         if (!fresh)
             return input_error(
-                fmt::format("\"{}\" and \"{}\" are one frame to the controller", at->second, frame.name),
+                Text("\"{}\" and \"{}\" are one frame to the controller", at->second, frame.name),
                 where, "name one of them otherwise");
         numbers.push_back(std::to_string(at->first));
         frames.push_back(script_pose(frame.base_from_frame));

@@ -310,7 +310,7 @@ class RtdeLink final : public RobotLink {
     Expected<Pose> named(const std::string& name, Expected<Pose> answer) const {
         if (!answer && answer.error().code == ErrorCode::no_such_frame) {
             Error error = answer.error();
-            error.what += ": " + name;
+            error.what = joined(error.what, ": ", name);
             return tl::unexpected(error);
         }
         return answer;
@@ -434,7 +434,7 @@ class RtdeLink final : public RobotLink {
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
             return device_error(ErrorCode::disconnected,
-                                std::string(kDisconnected) + ", the next attempt is due soon", where_,
+                                Text("{}, the next attempt is due soon", std::string(kDisconnected)), where_,
                                 "check that the controller is on");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
@@ -593,7 +593,7 @@ class RtdeLink final : public RobotLink {
                 state_->numbers[ur::kStatus] == static_cast<std::int32_t>(ur::Status::no_frame)
                     ? ErrorCode::no_such_frame
                     : ErrorCode::none,
-                fmt::format("the controller refuses: {}", why), where_);
+                Text("the controller refuses: {}", why), where_);
         if (command != Command::read && command != Command::write && command != Command::trigger)
             return Pose::Identity();
         auto answer = ur::pose_from_ur(state_->pose, where_);

@@ -35,7 +35,7 @@ T get(std::string_view& bytes) {  // precondition: long enough
 }
 
 tl::unexpected<Error> wrong_length(std::string_view what, std::size_t got) {
-    return device_error(fmt::format("{} of {} bytes is no answer of RTDE", what, got), kWhere);
+    return device_error(Text("{} of {} bytes is no answer of RTDE", what, got), kWhere);
 }
 
 std::string printable(std::string_view text) {
@@ -84,7 +84,7 @@ Expected<std::optional<Package>> take_package(std::string& stream) {
     const std::size_t size = get<std::uint16_t>(head);
     const auto type = static_cast<Type>(get<std::uint8_t>(head));
     if (size < kHeaderBytes || size > kMostBytes)
-        return device_error(fmt::format("a package of {} bytes is no answer of RTDE", size), kWhere);
+        return device_error(Text("a package of {} bytes is no answer of RTDE", size), kWhere);
     switch (type) {
         case Type::protocol_version:
         case Type::controller_version:
@@ -97,7 +97,7 @@ Expected<std::optional<Package>> take_package(std::string& stream) {
             break;
         default:
             return device_error(
-                fmt::format("a package of type {} is no answer of RTDE", static_cast<int>(type)), kWhere);
+                Text("a package of type {} is no answer of RTDE", static_cast<int>(type)), kWhere);
     }
     if (stream.size() < size) return std::nullopt;
     Package package{type, stream.substr(kHeaderBytes, size - kHeaderBytes)};
@@ -178,18 +178,18 @@ Expected<Recipe> recipe_of(std::string_view payload, const std::vector<std::stri
             recipe.kinds.push_back(*kind);
         } else {
             return device_error(
-                fmt::format("the answer names an unknown type \"{}\" for {}", printable(type), names[n]),
+                Text("the answer names an unknown type \"{}\" for {}", printable(type), names[n]),
                 kWhere);
         }
     }
     if (n != names.size())
-        return device_error(fmt::format("the answer has {} types for {} variables", n, names.size()), kWhere);
+        return device_error(Text("the answer has {} types for {} variables", n, names.size()), kWhere);
     if (!in_use.empty())
-        return device_error(fmt::format("another program already writes {}", fmt::join(in_use, ", ")), kWhere,
+        return device_error(Text("another program already writes {}", fmt::join(in_use, ", ")), kWhere,
                             "end it, disable EtherNet/IP and PROFINET on those registers, or choose others "
                             "by \"first_register\"");
     if (!missing.empty())
-        return device_error(fmt::format("the controller does not know {}", fmt::join(missing, ", ")), kWhere,
+        return device_error(Text("the controller does not know {}", fmt::join(missing, ", ")), kWhere,
                             "its software is too old for this driver (PolyScope 3.4 and later)");
     return recipe;
 }
@@ -206,7 +206,7 @@ Expected<std::vector<Value>> values_of(std::string_view payload, const Recipe& r
     std::size_t size = recipe.numbered ? 1 : 0;
     for (const Kind k : recipe.kinds) size += kind_bytes(k);
     if (payload.size() != size)
-        return device_error(fmt::format("data of {} bytes came for a recipe of {}", payload.size(), size),
+        return device_error(Text("data of {} bytes came for a recipe of {}", payload.size(), size),
                             kWhere);
     if (recipe.numbered && get<std::uint8_t>(payload) != recipe.id)
         return device_error("data of another recipe came", kWhere);
@@ -216,7 +216,7 @@ Expected<std::vector<Value>> values_of(std::string_view payload, const Recipe& r
         switch (k) {
             case Kind::boolean: {
                 const auto v = get<std::uint8_t>(payload);
-                if (v > 1) return device_error(fmt::format("{} is neither true nor false", v), kWhere);
+                if (v > 1) return device_error(Text("{} is neither true nor false", v), kWhere);
                 values.emplace_back(v == 1);
                 break;
             }

@@ -35,7 +35,7 @@ Expected<Pose> pose_at(const json& result, const char* key) {
 }
 
 tl::unexpected<Error> needs_base(const CalibrationMethod& method, const char* what) {
-    return input_error(fmt::format("{} is not known", what), method.id,
+    return input_error(Text("{} is not known", what), method.id,
                        "calibrate camera and laser plane first");
 }
 
@@ -67,7 +67,7 @@ Expected<Calibration> calibration_of_result(const CalibrationMethod& method, con
                                             const Calibration* base) {
     const Verdict verdict = verdict_of(result);
     if (verdict == Verdict::undetermined && method.use == AnswerUse::sensor)
-        return input_error("the solution is undetermined: " + result.value("reason", ""), method.id,
+        return input_error(Text("the solution is undetermined: {}", result.value("reason", "")), method.id,
                            result.value("cure", ""));
     Calibration c;
     if (base) {
@@ -155,7 +155,7 @@ Expected<std::vector<SensorAnswer>> answers_of_chains(const CalibrationSession& 
             answers.push_back(std::move(one));
         }
     if (!unknown.empty())
-        return input_error("the project does not know the sensors of these chains: " + unknown, "static",
+        return input_error(Text("the project does not know the sensors of these chains: {}", unknown), "static",
                            "take their ticks away, or name the sensors in the data as in the project");
     return answers;
 }

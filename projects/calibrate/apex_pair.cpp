@@ -55,11 +55,11 @@ Expected<Eigen::Vector2d> by_travel(json& settings, const SensorSetup& sensor, c
     const double turned_deg = deg_from_rad(rotation_log(moved.linear()).norm());
     if (turned_deg > kTurnedDeg)
         return input_error(
-            fmt::format("the sensor was turned by {:.2f} degrees since the first capture", turned_deg), where,
+            Text("the sensor was turned by {:.2f} degrees since the first capture", turned_deg), where,
             "only shift it, along its own X and Z");
     if (std::abs(moved.translation().y()) > kAsideMm)
         return input_error(
-            fmt::format("the sensor was shifted by {:.1f} mm along its Y", moved.translation().y()), where,
+            Text("the sensor was shifted by {:.1f} mm along its Y", moved.translation().y()), where,
             "only shift it along its own X and Z");
     return Eigen::Vector2d(*start - Eigen::Vector2d(moved.translation().x(), moved.translation().z()));
 }

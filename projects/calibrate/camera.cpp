@@ -124,8 +124,8 @@ Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory,
     for (const auto& path : *images) {
         Frame frame;
         if (auto read = read_image_file(path, frame); !read)
-            return input_error("the image cannot be read: " + read.error().what, path.string(),
-                               "exclude it with --exclude " + path.stem().string());
+            return input_error(Text("the image cannot be read: {}", read.error().what), path.string(),
+                               Text("exclude it with --exclude {}", path.stem().string()));
         if (data.width == 0) {
             data.width = frame.image.width;
             data.height = frame.image.height;
@@ -139,8 +139,7 @@ Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory,
             missed.push_back(path.stem().string());
     }
     if (data.views.empty())
-        return input_error("no board of " + board + " points was found in any of " +
-                               std::to_string(images->size()) + " images",
+        return input_error(Text("no board of {} points was found in any of {} images", board, std::to_string(images->size())),
                            directory, "check --board, --pattern, light and focus");
     json result{
         {"images", images->size()}, {"boards_found", data.views.size()}, {"not_found", std::move(missed)}};

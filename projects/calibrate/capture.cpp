@@ -51,13 +51,13 @@ Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, con
     if (capture_frame(frame, sensor.peaks, base && base->model ? &*base->model : nullptr, peaks, capture,
                       reason) != SpotStatus::measured)
         return input_error(
-            reason, "sensor " + sensor.id,
+            reason, Text("sensor {}", sensor.id),
             base ? "bring the stripe onto the sphere" : "calibrate camera and laser plane first");
     Profile profile;
     if (auto tracked = track_capture(capture, sensor.filter, profile); !tracked)
         return tl::unexpected(tracked.error());
     if (!find_circle_section(profile, sphere_limits(radius_of(settings))))
-        return input_error("no circle of the sphere is seen in the profile", "sensor " + sensor.id,
+        return input_error("no circle of the sphere is seen in the profile", Text("sensor {}", sensor.id),
                            "bring the stripe onto the sphere, a little off its middle, and check its radius");
     json points = json::array();
     for (std::size_t i = 0; i < profile.size(); ++i)
@@ -179,7 +179,7 @@ Expected<json> chain_entry(json& settings, const std::string& where, const Calib
 Expected<void> note_size(json& settings, const SensorSetup& sensor, const Frame& frame) {
     const json size = {frame.image.width, frame.image.height};
     if (settings.contains("size") && settings["size"] != size)
-        return input_error("the image has another size than those before", "sensor " + sensor.id,
+        return input_error("the image has another size than those before", Text("sensor {}", sensor.id),
                            "use one camera at one resolution");
     settings["size"] = size;
     return {};
@@ -192,8 +192,8 @@ Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame
     if (!points) return tl::unexpected(points.error());
     const auto line = on_the_plate(std::move(*points));
     if (line.size() < kLeastLinePoints)
-        return input_error(fmt::format("only {} points of the stripe lie on one line", line.size()),
-                           "sensor " + sensor.id, "hold the sensor over a flat plate that fills the view");
+        return input_error(Text("only {} points of the stripe lie on one line", line.size()),
+                           Text("sensor {}", sensor.id), "hold the sensor over a flat plate that fills the view");
     json entry = json::array();
     for (const auto& p : line) entry.push_back({p.x(), p.y()});
     return entry;
@@ -230,7 +230,7 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
     const std::string where = "sensor " + sensor.id;
     for (const Frame* frame : {&stripe, board})
         if (frame && frame->status != FrameStatus::ok)
-            return input_error(fmt::format("the frame is {}", to_string(frame->status)), where,
+            return input_error(Text("the frame is {}", to_string(frame->status)), where,
                                "take it again");
     const bool image = method.capture != CaptureKind::sphere_profile;
     if (image && stripe.image.empty())
@@ -323,7 +323,7 @@ Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const
         c.entry = entry;
         c.origin = path.string();
         if (chains && !sensors.insert(sensor_of_chain(c)).second)
-            return input_error(fmt::format("the id '{}' occurs twice", sensor_of_chain(c)), path.string(),
+            return input_error(Text("the id '{}' occurs twice", sensor_of_chain(c)), path.string(),
                                "give each sensor one chain");
         read.captures.push_back(std::move(c));
     }

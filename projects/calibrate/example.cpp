@@ -303,7 +303,7 @@ const Example kExamples[] = {
 Expected<json> calibration_example(std::string_view method) {
     for (const Example& e : kExamples)
         if (e.method == method) return e.make();
-    return usage_error("there is no calibration \"" + std::string(method) + "\"", "calibrate");
+    return usage_error(Text("there is no calibration \"{}\"", method), "calibrate");
 }
 
 std::string_view calibration_layout(std::string_view method) {

@@ -15,7 +15,7 @@ Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
     if (!mount_name) return tl::unexpected(mount_name.error());
     const auto mount = mount_named(*mount_name);
     if (!mount)
-        return input_error("the mount '" + *mount_name + "' is unknown", "mount",
+        return input_error(Text("the mount '{}' is unknown", *mount_name), "mount",
                            "write eye_in_hand or eye_to_hand");
     auto list = json_array(data, "pairs", "");
     if (!list) return tl::unexpected(list.error());

@@ -40,7 +40,7 @@ Expected<CalibrateOutcome> calibrate_lens_json(const json& data, const std::vect
         int number = -1;
         const auto parsed = std::from_chars(e.data(), e.data() + e.size(), number);
         if (parsed.ec != std::errc() || parsed.ptr != e.data() + e.size())
-            return input_error("'" + e + "' is no line number", "exclude", "lines count from 0");
+            return input_error(Text("'{}' is no line number", e), "exclude", "lines count from 0");
         options.exclude.push_back(number);
     }
     auto solved = calibrate_lens(lens, options);

@@ -126,7 +126,7 @@ Expected<void> set_setting(const CalibrationMethod& method, json& settings, cons
         settings[json::json_pointer(s.pointer)] = s.info.decimals == 0 ? std::round(value) : value;
         return {};
     }
-    return input_error("there is no setting \"" + name + "\"", method.id);
+    return input_error(Text("there is no setting \"{}\"", name), method.id);
 }
 
 double setting(const MethodSetting& which, const json& settings) {

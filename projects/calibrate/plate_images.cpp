@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 Expected<BoardSpec> parse_board(const std::string& counts, double pitch_mm, const std::string& pattern) {
     BoardSpec spec;
     const auto bad = [&] {
-        return usage_error("'" + counts + "' is no board", "--board", "write columns x rows, e.g. 7x6");
+        return usage_error(Text("'{}' is no board", counts), "--board", "write columns x rows, e.g. 7x6");
     };
     const auto x = counts.find('x');
     if (x == std::string::npos) return bad();
@@ -31,7 +31,7 @@ Expected<BoardSpec> parse_board(const std::string& counts, double pitch_mm, cons
     else if (pattern == "charuco")
         spec.pattern = BoardPattern::charuco;
     else
-        return usage_error("the pattern '" + pattern + "' is unknown", "--pattern",
+        return usage_error(Text("the pattern '{}' is unknown", pattern), "--pattern",
                            "write chessboard, circles or charuco");
     if (auto ok = validate(spec); !ok) return tl::unexpected(ok.error());
     return spec;
@@ -53,17 +53,17 @@ Expected<std::vector<fs::path>> plate_images(const fs::path& folder,
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         if (!kinds.count(extension)) continue;
         if (!names.insert(it->path().stem().string()).second)
-            return input_error("two images are named '" + it->path().stem().string() + "'", folder.string(),
+            return input_error(Text("two images are named '{}'", it->path().stem().string()), folder.string(),
                                "keep one of them");
         images.push_back(it->path());
     }
-    if (code) return file_error("the folder cannot be read: " + code.message(), folder.string());
+    if (code) return file_error(Text("the folder cannot be read: {}", code.message()), folder.string());
     if (images.empty())
         return input_error("there is no image in the folder", folder.string(),
                            "give a folder of PNG, TIFF, PGM, BMP or JPEG images");
     for (const auto& id : exclude)
         if (!names.count(id))
-            return input_error("there is no image '" + id + "' to exclude", folder.string(),
+            return input_error(Text("there is no image '{}' to exclude", id), folder.string(),
                                "name images without their extension");
     // Numbers in names by value: 2 before 10.
     const auto key = [](const fs::path& p) {

@@ -81,7 +81,7 @@ int number_of(const std::string& id) {
 Expected<void> make_folder(const fs::path& folder) {
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code) return file_error("the folder cannot be made: " + code.message(), folder.string());
+    if (code) return file_error(Text("the folder cannot be made: {}", code.message()), folder.string());
     return {};
 }
 
@@ -112,7 +112,7 @@ Expected<void> rename_aside(const fs::path& folder) {
     std::string time = utc_now();
     std::replace(time.begin(), time.end(), ':', '.');
     fs::rename(folder, fs::path(folder.string() + "-" + time), code);
-    if (code) return file_error("the folder cannot be moved: " + code.message(), folder.string());
+    if (code) return file_error(Text("the folder cannot be moved: {}", code.message()), folder.string());
     return {};
 }
 
@@ -128,7 +128,7 @@ Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const 
     const fs::path from = folder_of(from_project), to = folder_of(to_project);
     if (!fs::exists(from, code)) return {};
     fs::copy(from, to, fs::copy_options::recursive, code);
-    if (code) return file_error("the calibration sessions cannot be copied: " + code.message(), to.string());
+    if (code) return file_error(Text("the calibration sessions cannot be copied: {}", code.message()), to.string());
     return {};
 }
 
@@ -143,7 +143,7 @@ Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_fi
                                                       const std::string& robot_id) {
     CalibrationSession s;
     s.method_ = find_method(method);
-    if (!s.method_) return usage_error("the calibration method '" + method + "' is unknown", "method");
+    if (!s.method_) return usage_error(Text("the calibration method '{}' is unknown", method), "method");
     s.sensor_id_ = sensor_id;
     s.robot_id_ = robot_id;
     s.folder_ = session_folder(project_file, method, sensor_id);
@@ -160,7 +160,7 @@ Expected<void> CalibrationSession::read() {
     const auto mend = "move the folder away to begin anew";
     if (!data) return file_error(data.error().what, list_file.string(), mend);
     if (data->value("format", "") != kFormat || data->value("method", "") != method_->id)
-        return file_error("this is no calibration session of " + method_->id, list_file.string(), mend);
+        return file_error(Text("this is no calibration session of {}", method_->id), list_file.string(), mend);
     if (data->value("version", 0) > kVersion)
         return file_error("a newer Seamwright has written this session", list_file.string(), "use that one");
     auto settings = json_field(*data, "settings", "");
@@ -290,7 +290,7 @@ SessionCapture* find(SessionState& state, const std::string& id) {
 Expected<void> CalibrationSession::leave_out(const std::string& id, bool left_out) {
     SessionState next = state_;
     SessionCapture* c = find(next, id);
-    if (!c) return input_error("there is no capture " + id, method_->id);
+    if (!c) return input_error(Text("there is no capture {}", id), method_->id);
     c->left_out = left_out;
     return set_state(std::move(next));
 }
@@ -298,7 +298,7 @@ Expected<void> CalibrationSession::leave_out(const std::string& id, bool left_ou
 Expected<void> CalibrationSession::set_verification(const std::string& id, bool verification) {
     SessionState next = state_;
     SessionCapture* c = find(next, id);
-    if (!c) return input_error("there is no capture " + id, method_->id);
+    if (!c) return input_error(Text("there is no capture {}", id), method_->id);
     c->verification = verification;
     return set_state(std::move(next));
 }
@@ -306,7 +306,7 @@ Expected<void> CalibrationSession::set_verification(const std::string& id, bool 
 Expected<void> CalibrationSession::remove(const std::string& id) {
     SessionState next = state_;
     if (std::erase_if(next.captures, [&](const SessionCapture& c) { return c.taken->id == id; }) == 0)
-        return input_error("there is no capture " + id, method_->id);
+        return input_error(Text("there is no capture {}", id), method_->id);
     return set_state(std::move(next));
 }
 
@@ -355,7 +355,7 @@ int CalibrationSession::verification_captures() const {
 
 Expected<CalibrateOutcome> CalibrationSession::solve() const {
     if (solving_captures() < method_->fewest)
-        return input_error(fmt::format("{} captures are too few, at least {} are needed", solving_captures(),
+        return input_error(Text("{} captures are too few, at least {} are needed", solving_captures(),
                                        method_->fewest),
                            method_->id, "take more");
     return method_->solve(data(), exclude());

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "projects/calibrate/method.h"
 #include "projects/model/project.h"
 
@@ -61,7 +62,7 @@ struct PoseRow {
     double rms_mm = kNone, deg = kNone, rms_px = kNone;
     bool left_out = false, verification = false;
     bool contradicts = false;  // the solver found it wrong and left it out by itself
-    std::string note;
+    Text note;
 };
 
 // Residual of the poses that were not solved with, against what the solution promises.

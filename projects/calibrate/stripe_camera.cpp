@@ -140,7 +140,7 @@ void judge_excluded(const StripeCameraResult& solved, const StripeObservation& o
     if (off.empty()) return;
     const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
     std::nth_element(off.begin(), middle, off.end());
-    pose.note = fmt::format("excluded; stripe {:.2f} mm off the laser plane", *middle);
+    pose.note = Text("excluded; stripe {:.2f} mm off the laser plane", *middle);
     if (std::isnan(pose.rms_mm)) pose.rms_mm = *middle;
 }
 
@@ -179,7 +179,7 @@ Expected<StripeObservation> parse_stripe_frame(const json& entry, const BoardSpe
     auto scan = json_string_or(entry, "scan", "rows", where);
     if (!scan) return tl::unexpected(scan.error());
     if (*scan != "rows" && *scan != "columns")
-        return input_error("the scan '" + *scan + "' is unknown", json_path(where, "scan"),
+        return input_error(Text("the scan '{}' is unknown", *scan), json_path(where, "scan"),
                            "write rows or columns");
     o.scan = *scan == "rows" ? ScanLines::rows : ScanLines::columns;
     if (const auto it = entry.find("board"); it != entry.end() && !it->is_null()) {
@@ -252,8 +252,8 @@ Expected<std::optional<Stripe>> stripe_in_colour(const fs::path& path) {
 Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardSpec& spec) {
     Frame frame;
     if (auto read = read_image_file(path, frame); !read)
-        return input_error("the image cannot be read: " + read.error().what, path.string(),
-                           "exclude it with --exclude " + path.stem().string());
+        return input_error(Text("the image cannot be read: {}", read.error().what), path.string(),
+                           Text("exclude it with --exclude {}", path.stem().string()));
     StripeFrame f;
     f.id = path.stem().string();
     f.image = frame.image;

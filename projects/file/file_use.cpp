@@ -84,9 +84,9 @@ Expected<FileUse> FileUse::take(const std::filesystem::path& file, For what) {
         if (held) {
             const std::string who = holder.value_or("another program");
             if (what == For::desk)
-                return usage_error(fmt::format("the project is open already ({})", who), file.string(),
+                return usage_error(Text("the project is open already ({})", who), file.string(),
                                    "go on there, or close it there first");
-            return usage_error(fmt::format("the devices of the project are in use already ({})", who),
+            return usage_error(Text("the devices of the project are in use already ({})", who),
                                file.string(), "disconnect them there, or end it, first");
         }
         const std::string line = holder_line();

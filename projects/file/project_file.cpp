@@ -47,7 +47,7 @@ Expected<void> put_in_place(const fs::path& made, const fs::path& path, bool rep
         fs::remove(made, ignored);
         if (code == EEXIST)
             return file_error("the file exists already", path.string(), "choose another name");
-        return file_error(fmt::format("the file cannot be made ({})", std::strerror(code)), path.string());
+        return file_error(Text("the file cannot be made ({})", std::strerror(code)), path.string());
     }
     sync_folder(path);
     return {};

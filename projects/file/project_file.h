@@ -31,6 +31,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "projects/model/evidence.h"
 #include "projects/model/project.h"
 #include "projects/model/run.h"
@@ -49,7 +50,7 @@ struct RunSummary {
     std::string part_id, started_utc, finished_utc;
     bool push = false;
     RunStatus status = RunStatus::ok;
-    std::string message;
+    Text message;
     int spots = 0, captures = 0;
     std::int64_t setup = 0;  // runs with equal numbers were made with the same setup
 };

@@ -47,12 +47,12 @@ Expected<std::string> row_text(const T& value, const std::string& where, const R
     // limit.
     constexpr std::size_t kAroundRow = 4;
     if (json_depth(document) > kDeepestJson - (form.of_a_run ? 0 : kAroundRow))
-        return input_error(fmt::format("the JSON is nested deeper than {}", kDeepestJson - kAroundRow),
+        return input_error(Text("the JSON is nested deeper than {}", kDeepestJson - kAroundRow),
                            where);
     auto text =
         form.of_a_run ? Expected<std::string>(dump_messages(document)) : dump_document(document, where);
     if (text && text->size() > kTextFileLimit)
-        return input_error(fmt::format("the entry is longer than {} MiB", kTextFileLimit >> 20), where);
+        return input_error(Text("the entry is longer than {} MiB", kTextFileLimit >> 20), where);
     return text;
 }
 

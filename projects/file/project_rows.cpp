@@ -22,12 +22,12 @@ Expected<void> check_ids(Database& db, const char* table, const std::vector<std:
             if (!there) return tl::unexpected(there.error());
             known->reset();
             if (!*there)
-                return input_error(fmt::format("the id of a {} is longer than {} bytes", kind, kLongestId),
-                                   fmt::format("{}...", utf8_text(id.substr(0, 32))), "give a shorter name");
+                return input_error(Text("the id of a {} is longer than {} bytes", kind, kLongestId),
+                                   Text("{}...", utf8_text(id.substr(0, 32))), "give a shorter name");
         }
-        if (id.empty()) return input_error(fmt::format("a {} has no id", kind), {}, "give every one a name");
+        if (id.empty()) return input_error(Text("a {} has no id", kind), {}, "give every one a name");
         if (!seen.insert(id).second)
-            return input_error(fmt::format("two {}s are called \"{}\"", kind, id), {}, "rename one");
+            return input_error(Text("two {}s are called \"{}\"", kind, id), {}, "rename one");
     }
     return {};
 }

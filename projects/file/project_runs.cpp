@@ -86,7 +86,7 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
         const StripeImage view = raw.view();
         if (view.empty() || raw.pixels.size() != view.row_bytes * static_cast<std::size_t>(view.height))
             return input_error("the image's pixels do not fill its size",
-                               "capture of spot " + captures[i].spot_id);
+                               Text("capture of spot {}", captures[i].spot_id));
         image->bind(1, number);
         image->bind(2, static_cast<std::int64_t>(stored + i));
         image->bind(3, std::int64_t{raw.width});
@@ -299,7 +299,7 @@ Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasure
     s->bind(5, run.number);
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
+    if (!*row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
     if (auto done = s->run(); !done) return done;
     if (auto done = seal_row(impl_->db, "runs", "number", run.number); !done) return done;
     if (auto done = insert_rest(impl_->db, run, run.number, stored); !done) return done;
@@ -319,7 +319,7 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
     s->bind(4, run.number);
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return input_error(fmt::format("there is no run {}", run.number), impl_->path.string());
+    if (!*row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
     if (auto done = s->run(); !done) return done;
     if (auto done = seal_row(db, "runs", "number", run.number); !done) return done;
     for (const char* outcome :
@@ -419,7 +419,7 @@ Expected<std::vector<RunSummary>> ProjectFile::runs() const {
         const auto status = run_status_from(row.text(5));
         if (!status)
             return file_error("a run has an unknown status",
-                              fmt::format("{}: run {}", impl_->path.string(), run.number));
+                              Text("{}: run {}", impl_->path.string(), run.number));
         run.status = *status;
         run.message = row.text(6);
         run.setup = row.integer(7);
@@ -451,14 +451,14 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
         const auto status = run_status_from(row.text(4));
         if (!status)
             return file_error("the run has an unknown status",
-                              fmt::format("{}: run {}", impl_->path.string(), number));
+                              Text("{}: run {}", impl_->path.string(), number));
         run.status = *status;
         run.message = row.text(5);
         return {};
     });
     if (!read) return tl::unexpected(read.error());
     if (run.number != number || number < 1)
-        return input_error(fmt::format("there is no run {}", number), impl_->path.string());
+        return input_error(Text("there is no run {}", number), impl_->path.string());
     if (auto done = load_results(db, "SELECT spot_id, body FROM run_spots WHERE run = ? ORDER BY position",
                                  number, run.spots);
         !done)
@@ -489,7 +489,7 @@ Expected<Project> ProjectFile::load_setup(std::int64_t setup) const {
     s->bind(1, setup);
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return file_error(fmt::format("setup {} is missing", setup), impl_->path.string());
+    if (!*row) return file_error(Text("setup {} is missing", setup), impl_->path.string());
     const std::string text = s->text(0);
     s->reset();
     return row_value<Project>(text, fmt::format("setup {}", setup), impl_->path.string(), kSetup);
@@ -503,7 +503,7 @@ Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
     s->bind(1, number);
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
-    if (!*row) return input_error(fmt::format("there is no run {}", number), impl_->path.string());
+    if (!*row) return input_error(Text("there is no run {}", number), impl_->path.string());
     const std::int64_t setup = s->integer(0);
     s->reset();
     return load_setup(setup);

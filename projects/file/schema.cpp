@@ -247,7 +247,7 @@ Expected<std::int32_t> check_identity(Database& db) {
     auto version = db.integer("PRAGMA user_version");
     if (!version) return tl::unexpected(version.error());
     if (*version > current_version())
-        return file_error(fmt::format("the project file has version {}, this program knows up to {}",
+        return file_error(Text("the project file has version {}, this program knows up to {}",
                                       *version, current_version()),
                           db.path(), "open it with a newer Seamwright");
     if (*version < 1) return file_error("the project file has no valid version", db.path());
@@ -256,7 +256,7 @@ Expected<std::int32_t> check_identity(Database& db) {
 
 Expected<void> check_structure(Database& db, std::int32_t version) {
     const auto damaged = [&](const std::string& finding) {
-        return file_error(fmt::format("the project file is damaged ({})", finding), db.path(),
+        return file_error(Text("the project file is damaged ({})", finding), db.path(),
                           "take the last good copy from the backup");
     };
     const auto wanted = tables_of(version);

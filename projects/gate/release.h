@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "projects/gate/safety_gate.h"
 
 namespace seamwright {
@@ -29,7 +30,7 @@ struct HoldOptions {
 
 struct RobotRelease {
     Release release = Release::given;  // `given`: it could not be made sure of, an alarm
-    std::string text;                  // one sentence
+    Text text;                  // one sentence
 };
 
 // Tells a robot that may have its permission already that it has none. Release::withdrawn: it is told and

@@ -390,7 +390,7 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
             fmt::format("region {}: from {} to {}", pass.region_id(), text_of(*before), text_of(target)));
         !logged) {
         push.status = PushStatus::failed;
-        push.message = "the attempt cannot be recorded, so nothing was sent: " + logged.error().sentence();
+        push.message = Text("the attempt cannot be recorded, so nothing was sent: {}", logged.error().sentence());
         return push;
     }
 
@@ -407,7 +407,7 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
                 "the robot holds another frame than was written (off by {:.4f} mm, {:.5f} degrees)", off.mm,
                 off.deg);
         } else {
-            push.message = fmt::format("region {}: frame written and read back", pass.region_id());
+            push.message = Text("region {}: frame written and read back", pass.region_id());
             auto logged = record(EventKind::push, pass.frame_name(), push.message);
             if (logged) {
                 push.status = PushStatus::written;
@@ -426,7 +426,7 @@ void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record, 
     assert(push.status == PushStatus::written && push.before);
     const auto [status, outcome] = put_back(*push.before, push.frame_name, robot);
     push.status = status;
-    push.message = "withdrawn: " + outcome;
+    push.message = Text("withdrawn: {}", outcome);
     if (status == PushStatus::not_restored) kind = EventKind::alarm;
     if (auto logged = record(kind, push.frame_name, push.message); !logged)
         push.message += "; the event could not be recorded: " + logged.error().sentence();

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 #include "projects/model/project.h"
@@ -101,7 +102,7 @@ std::vector<std::string> limits_that_are_none(const Region& region);
 
 struct GateVerdict {
     std::optional<GatePass> pass;
-    std::vector<std::string> reasons;  // every reason, not the first; empty exactly when there is a pass
+    std::vector<Text> reasons;  // every reason, not the first; empty exactly when there is a pass
 };
 GateVerdict pass_gate(const GateRequest& request);
 

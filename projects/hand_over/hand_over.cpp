@@ -269,7 +269,7 @@ Expected<report::Page> hand_over_report(const ProjectFile& file, const Project& 
     if (options.now_utc.empty()) options.now_utc = utc_now();
     Facts at = facts;
     at.now_utc = options.now_utc;
-    const std::string title = Phrase("Hand-over report: {}", project.name).in(options.language);
+    const std::string title = Text("Hand-over report: {}", project.name).in(options.language);
     report::Page page(title, std::string(code_of(options.language)));
     HandOverWriter w{project, at, options, page};
     page.paragraph(w.t("File {}, {} UTC, {}.", file.path().filename().string(), w.time_of(options.now_utc),

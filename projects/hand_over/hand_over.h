@@ -9,7 +9,7 @@
 #include "projects/file/project_file.h"
 #include "projects/proof/checklist.h"
 #include "projects/report/html.h"
-#include "projects/report/phrase.h"
+#include "core/text.h"
 
 namespace seamwright {
 

@@ -15,6 +15,7 @@
 
 #include "core/alignment/alignment.h"
 #include "core/geometry/pose.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -55,7 +56,7 @@ struct ShiftOutcome {
     double mean_abs_mm = 0;  // mean length of the deviations at the region's spots
     // D_found p - D_true p of each spot's reference point p, work object, three components a spot.
     std::vector<double> deviations_mm;
-    std::string message;  // why not ok
+    Text message;  // why not ok
 };
 struct ShiftTest {
     ShiftKind kind = ShiftKind::translation;

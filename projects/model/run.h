@@ -13,6 +13,7 @@
 #include "core/features/feature.h"
 #include "core/panel/panel_fit.h"
 #include "core/profile/profile.h"
+#include "core/text.h"
 #include "devices/capture/capture.h"
 
 namespace seamwright {
@@ -31,7 +32,7 @@ std::optional<SpotStatus> spot_status_from(std::string_view name);
 struct SpotMeasurement {
     std::string spot_id;
     SpotStatus status = SpotStatus::not_measured;
-    std::string message;                                    // empty when measured, else why, in plain words
+    Text message;                                    // empty when measured, else why, in plain words
     Feature feature;                                        // sensor frame at the pose of the exposure
     Eigen::Vector3d measured_mm = Eigen::Vector3d::Zero();  // in the taught sensor frame, see measure.h
     double sigma_mm = 0;            // of an observed coordinate: spot's own and the feature's
@@ -69,7 +70,7 @@ struct PushRecord {
     std::string robot_id;  // that holds the frame
     Release release = Release::none;
     std::optional<Pose> before, read_back;
-    std::string message;
+    Text message;
 };
 
 struct RegionRecord {
@@ -78,7 +79,7 @@ struct RegionRecord {
         correction;  // absent when too little was measured to solve; `refusals` says so
     Pose base_from_frame = Pose::Identity();  // the frame that carries the path onto the displaced part
     bool gate_passed = false;
-    std::vector<std::string> refusals;  // why the gate refuses, in words; empty when passed
+    std::vector<Text> refusals;  // why the gate refuses, in words; empty when passed
     PushRecord push;
 };
 
@@ -86,7 +87,7 @@ struct RegionRecord {
 struct PanelMeasurement {
     std::string place_id;
     SpotStatus status = SpotStatus::not_measured;
-    std::string message;  // empty when measured
+    Text message;  // empty when measured
     Eigen::Vector3d panel_mm = Eigen::Vector3d::Zero(), body_mm = Eigen::Vector3d::Zero();
     double sigma_mm = 0;              // of an observed coordinate
     double gap_mm = 0, flush_mm = 0;  // by the gauge
@@ -113,7 +114,7 @@ struct PanelRecord {
     Pose base_from_gripper = Pose::Identity(), base_from_moved_gripper = Pose::Identity();
     Pose base_from_frame = Pose::Identity();
     bool gate_passed = false;
-    std::vector<std::string> refusals;
+    std::vector<Text> refusals;
     PushRecord push;
     PanelVerdict verdict = PanelVerdict::not_verified;
 };
@@ -128,7 +129,7 @@ struct EventRecord {
     std::int64_t run = 0;  // 0 = outside any run
     EventKind kind = EventKind::note;
     std::string subject;  // region, frame, sensor, robot
-    std::string text;
+    Text text;
 };
 
 enum class RunStatus {
@@ -153,7 +154,7 @@ struct RunRecord {
     std::string started_utc, finished_utc;
     bool push = false;  // false = dry run
     RunStatus status = RunStatus::ok;
-    std::string message;                 // one sentence
+    Text message;                 // one sentence
     std::vector<SpotMeasurement> spots;  // enabled spots, in the order of the project
     std::vector<RegionRecord> regions;
     std::optional<PanelRecord> panel;  // of a panel job's run, which has no spots and regions

@@ -38,10 +38,10 @@ class Sections {
   public:
     static Expected<Sections> make(const Project& project, const std::string& sensor_id) {
         const SensorSetup* sensor = find_sensor(project, sensor_id);
-        if (!sensor) return input_error("the project has no sensor \"" + sensor_id + "\"", project.name);
+        if (!sensor) return input_error(Text("the project has no sensor \"{}\"", sensor_id), project.name);
         const Calibration* calibration = calibration_of(project, sensor_id);
         if (!calibration)
-            return input_error("sensor " + sensor_id + " has no calibration", project.name,
+            return input_error(Text("sensor {} has no calibration", sensor_id), project.name,
                                "calibrate it first");
         Sections s;
         s.sensor_ = *sensor;
@@ -101,21 +101,21 @@ Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options
     if (options.spot_ids.size() < 2)
         return usage_error("a pass needs two spots or more to go along", "spots");
     if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
-        return usage_error(fmt::format("a step of {} mm", options.step_mm), "step", "give 0.05 mm or more");
+        return usage_error(Text("a step of {} mm", options.step_mm), "step", "give 0.05 mm or more");
     std::vector<const Spot*> spots;
     for (const std::string& id : options.spot_ids) {
         const Spot* spot = find_spot(project, id);
-        if (!spot) return input_error(fmt::format("there is no spot \"{}\"", id), project.name);
+        if (!spot) return input_error(Text("there is no spot \"{}\"", id), project.name);
         if (!spots.empty() &&
             (spot->sensor_id != spots[0]->sensor_id || spot->robot_id != spots[0]->robot_id))
             return input_error(
-                fmt::format("spots {} and {} have different sensors or robots", spots[0]->id, id),
+                Text("spots {} and {} have different sensors or robots", spots[0]->id, id),
                 project.name, "check one sensor's stretch at a time");
         spots.push_back(spot);
     }
     const Calibration* calibration = calibration_of(project, spots[0]->sensor_id);
     if (!calibration)
-        return input_error("sensor " + spots[0]->sensor_id + " has no calibration", project.name,
+        return input_error(Text("sensor {} has no calibration", spots[0]->sensor_id), project.name,
                            "calibrate it first");
     Drive drive{spots[0]->sensor_id, spots[0]->robot_id, {spots[0]->base_from_flange}};
     const Pose& mounting = calibration->flange_from_sensor;
@@ -125,7 +125,7 @@ Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options
                    end = spots[k]->base_from_flange * mounting;
         const double steps = std::ceil(distance_mm(start, end) / options.step_mm - 1e-9);
         if (!(steps + static_cast<double>(drive.base_from_flange.size()) <= kMostSteps))
-            return usage_error(fmt::format("more than {} profiles", kMostSteps), "step",
+            return usage_error(Text("more than {} profiles", kMostSteps), "step",
                                "give a longer step");
         for (int i = 1; i <= static_cast<int>(steps); ++i)
             drive.base_from_flange.push_back(interpolate(start, end, i / steps) * mounting.inverse());
@@ -147,7 +147,7 @@ Expected<GapPass> gap_pass(const Project& project, CaptureReader& capture, const
     std::vector<TimedPose> poses;
     const CaptureSource* robot = capture.find(options.robot_id, SourceKind::robot);
     if (!robot && !options.robot_id.empty())
-        return input_error("it holds no robot \"" + options.robot_id + "\"", capture.path().string());
+        return input_error(Text("it holds no robot \"{}\"", options.robot_id), capture.path().string());
     if (robot) {
         auto events = capture.events(robot->id);
         if (!events) return tl::unexpected(events.error());
@@ -170,7 +170,7 @@ Expected<GapPass> gap_pass(const Project& project, CaptureReader& capture, const
             ++pass.without_pose;
     }
     if (pass.damaged + pass.without_profile == pass.sections.size())
-        return input_error(fmt::format("none of its {} frames has a pose and a profile", pass.frames),
+        return input_error(Text("none of its {} frames has a pose and a profile", pass.frames),
                            capture.path().string(), "record the robot's poses beside the sensor");
     return std::move(sections->pass);
 }
@@ -183,7 +183,7 @@ Expected<GapPass> gap_pass(Station& station, const DrivenGapPass& options) {
     ProfileSource* sensor = station.sensor(drive->sensor_id);
     RobotLink* robot = station.robot(drive->robot_id);
     if (!sensor || !robot)
-        return usage_error("its sensor or robot is not connected", "spot " + options.spot_ids[0],
+        return usage_error("its sensor or robot is not connected", Text("spot {}", options.spot_ids[0]),
                            "connect first");
     auto by_software = SoftwareTriggered::begin(*sensor);
     if (!by_software) return tl::unexpected(by_software.error());
@@ -203,7 +203,7 @@ Expected<GapPass> gap_pass(Station& station, const DrivenGapPass& options) {
         auto still = robot->base_from_flange();
         if (!still) return tl::unexpected(still.error());
         if (const double moved = distance_mm(*at, *still); moved > kStillMm)
-            return device_error(fmt::format("the robot moved {:.2f} mm while the sensor exposed", moved),
+            return device_error(Text("the robot moved {:.2f} mm while the sensor exposed", moved),
                                 name, "let it stand at every step");
         ++sections->pass.frames;
         sections->add(**frame, *at);

@@ -125,12 +125,12 @@ Expected<PanelMeasurer> PanelMeasurer::make(const Project& project, const PanelJ
         if (id.empty() && !impl->heads.empty()) continue;
         const SensorSetup* sensor = find_sensor(project, id);
         if (!sensor)
-            return input_error(fmt::format("its sensor \"{}\" is not in the project", id), where,
+            return input_error(Text("its sensor \"{}\" is not in the project", id), where,
                                "choose one of the project's sensors");
         const Calibration* calibration = calibration_of(project, id);
         if (!calibration)
             return input_error(
-                fmt::format(
+                Text(
                     "its sensor \"{}\" has no calibration: where it stands on the gripper is not known", id),
                 where, "calibrate it");
         HeadSetup& head = impl->heads.emplace_back();
@@ -253,7 +253,7 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
         s.surface_rad = rad_from_deg(place->surface_deg);
         spots.push_back(std::move(s));
     }
-    if (spots.empty()) return input_error("no place of the panel job was measured", "panel job " + job.id);
+    if (spots.empty()) return input_error("no place of the panel job was measured", Text("panel job {}", job.id));
     PanelOptions options;
     options.limits = job.limits;
     options.sigma_limit_mm = std::max(options.sigma_limit_mm, job.sigma_limit_mm);

@@ -42,7 +42,7 @@ Expected<Places> prepare(Station& station, const PanelJob& job) {
     const std::string where = "panel job " + job.id;
     out.robot = station.robot(job.robot_id);
     if (!out.robot)
-        return usage_error(fmt::format("its robot \"{}\" is not connected", job.robot_id), where,
+        return usage_error(Text("its robot \"{}\" is not connected", job.robot_id), where,
                            "connect first");
     for (const PanelPlace& place : job.places) {
         if (!place.enabled) continue;
@@ -51,9 +51,9 @@ Expected<Places> prepare(Station& station, const PanelJob& job) {
         for (const std::string& id : sensors_of(place)) {
             ProfileSource* sensor = station.sensor(id);
             if (!sensor)
-                return usage_error(fmt::format("sensor \"{}\" is not connected", id), where, "connect first");
+                return usage_error(Text("sensor \"{}\" is not connected", id), where, "connect first");
             if (!out.sensors.emplace(id, sensor).second)
-                return input_error(fmt::format("sensor \"{}\" is used at two places", id), where,
+                return input_error(Text("sensor \"{}\" is used at two places", id), where,
                                    "a sensor sees one place");
         }
         out.measurers.push_back(std::move(*measurer));
@@ -151,14 +151,14 @@ class Run {
         auto trigger = next_trigger(*places_.robot, options_.limits.trigger_timeout, cancel_);
         if (!trigger) return tl::unexpected(trigger.error());
         if (trigger->spot_id != job_.id)
-            return device_error(fmt::format("the robot fired for \"{}\"", trigger->spot_id),
-                                "panel job " + job_.id,
+            return device_error(Text("the robot fired for \"{}\"", trigger->spot_id),
+                                Text("panel job {}", job_.id),
                                 "compare the program on the controller with the project");
         stands_at = trigger->base_from_flange.value_or(base_from_gripper);
         if (auto rigid = pose_from_matrix(stands_at.matrix(), "pose reported at the trigger"); !rigid)
             return tl::unexpected(rigid.error());
         for (std::size_t i = 0; i < places_.measurers.size(); ++i) {
-            if (cancelled()) return device_error(kCancelled, "panel job " + job_.id);
+            if (cancelled()) return device_error(kCancelled, Text("panel job {}", job_.id));
             PanelMeasurer& measurer = places_.measurers[i];
             std::vector<FramePtr> got;
             for (const std::string& id : sensors_of(measurer.place())) {
@@ -381,7 +381,7 @@ class Run {
         if (stored) return true;
         panel().push.release = Release::none;
         run_.status = RunStatus::alarm;
-        run_.message = "alarm: the push cannot be recorded: " + stored.error().sentence();
+        run_.message = Text("alarm: the push cannot be recorded: {}", stored.error().sentence());
         return false;
     }
 
@@ -394,7 +394,7 @@ class Run {
         progress(0, fmt::format("{}: {}", job_.frame_name, to_string(panel().push.status)));
         if (panel().push.status != PushStatus::written) {
             run_.status = RunStatus::alarm;
-            run_.message = "alarm: " + panel().push.message;
+            run_.message = Text("alarm: {}", panel().push.message);
             tell(PartVerdict::failed);
             return;
         }
@@ -412,9 +412,9 @@ class Run {
         if (measured && (distance_mm(stands_at, target) > kArrivedMm ||
                          deg_from_rad(angle_rad(stands_at, target)) > kArrivedDeg))
             measured = device_error(
-                fmt::format("the robot fired {:.2f} mm and {:.3f} degrees off the corrected position",
+                Text("the robot fired {:.2f} mm and {:.3f} degrees off the corrected position",
                             distance_mm(stands_at, target), deg_from_rad(angle_rad(stands_at, target))),
-                "robot " + job_.robot_id, "let its program run in frame " + job_.frame_name);
+                Text("robot {}", job_.robot_id), Text("let its program run in frame {}", job_.frame_name));
         panel().verdict = judge_panel(job_, panel().after);
         if (!measured)
             return take_back_motion(RunStatus::device,
@@ -451,7 +451,7 @@ class Run {
 Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const TeachOptions& options) {
     const std::string where = "panel job " + draft.id;
     if (options.repeats < 1 || options.repeats > 1000)
-        return usage_error(fmt::format("{} repeats", options.repeats), where, "give 1 to 1000");
+        return usage_error(Text("{} repeats", options.repeats), where, "give 1 to 1000");
     auto places = prepare(station, draft);
     if (!places) return tl::unexpected(places.error());
     std::vector<SoftwareTriggered> by_software;
@@ -509,9 +509,9 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
         const Sum& sum = sums[i];
         const std::string& id = places->measurers[i].place().id;
         if (2 * sum.count < options.repeats || sum.count == 0)
-            return input_error(fmt::format("panel and body were measured in {} of {} repeats ({})", sum.count,
+            return input_error(Text("panel and body were measured in {} of {} repeats ({})", sum.count,
                                            options.repeats, sum.reason),
-                               where + ", place " + id, "choose another window or move the sensor");
+                               Text("{}, place {}", where, id), "choose another window or move the sensor");
         auto& place = *std::find_if(taught.places.begin(), taught.places.end(),
                                     [&](const PanelPlace& p) { return p.id == id; });
         place.panel_reference_mm = sum.panel / sum.count;
@@ -529,7 +529,7 @@ Expected<RunRecord> run_panel(Station& station, const std::string& job_id, const
     if (!station.connected())
         return usage_error("the station is not connected to its devices", path, "connect first");
     const PanelJob* found = find_panel_job(station.project(), job_id);
-    if (!found) return input_error(fmt::format("there is no panel job \"{}\"", job_id), path);
+    if (!found) return input_error(Text("there is no panel job \"{}\"", job_id), path);
     const PanelJob job = *found;
     if (auto safe = none_of_motion(motion_findings(station.project(), job, options.push)); !safe)
         return tl::unexpected(safe.error());

@@ -18,16 +18,16 @@ std::string mm(double value) {
     return fmt::format("{:.3f}", value);
 }
 
-CheckItem made(CheckStep step, CheckStatus status, Phrase why) {
+CheckItem made(CheckStep step, CheckStatus status, Text why) {
     return {step, status, std::move(why), {}};
 }
-CheckItem missing(CheckStep step, Phrase why) {
+CheckItem missing(CheckStep step, Text why) {
     return made(step, CheckStatus::missing, std::move(why));
 }
-CheckItem stale(CheckStep step, Phrase why) {
+CheckItem stale(CheckStep step, Text why) {
     return made(step, CheckStatus::stale, std::move(why));
 }
-CheckItem done(CheckStep step, Phrase why, std::vector<Phrase> evidence) {
+CheckItem done(CheckStep step, Text why, std::vector<Text> evidence) {
     return {step, CheckStatus::done, std::move(why), std::move(evidence)};
 }
 
@@ -43,203 +43,203 @@ const DeviceFact* fact_of(const std::vector<DeviceFact>& facts, const std::strin
 
 CheckItem check_sensors(const Project& p, const Facts& facts) {
     constexpr CheckStep kStep = CheckStep::sensors;
-    if (p.sensors.empty()) return missing(kStep, Phrase("add a sensor"));
-    std::vector<Phrase> evidence;
+    if (p.sensors.empty()) return missing(kStep, Text("add a sensor"));
+    std::vector<Text> evidence;
     for (const SensorSetup& s : p.sensors) {
         if (facts.sensors) {
             const DeviceFact* fact = fact_of(*facts.sensors, s.id);
-            if (!fact || !fact->answers) return missing(kStep, Phrase("connect the devices"));
+            if (!fact || !fact->answers) return missing(kStep, Text("connect the devices"));
             if (!fact->trouble.empty())
-                return missing(kStep, Phrase("sensor {} delivers no frame: {}", s.id, fact->trouble));
+                return missing(kStep, Text("sensor {} delivers no frame: {}", s.id, fact->trouble));
         } else if (s.identity.serial.empty()) {
-            return missing(kStep, Phrase("sensor {} was never connected", s.id));
+            return missing(kStep, Text("sensor {} was never connected", s.id));
         }
-        evidence.push_back(Phrase("sensor {}: {} {}, serial {}", s.id, s.identity.vendor, s.identity.model,
+        evidence.push_back(Text("sensor {}: {} {}, serial {}", s.id, s.identity.vendor, s.identity.model,
                                   s.identity.serial));
     }
     return done(kStep,
-                Phrase(facts.sensors ? "all sensors answer ({})" : "all sensors answered last ({})",
+                Text(facts.sensors ? "all sensors answer ({})" : "all sensors answered last ({})",
                        p.sensors.size()),
                 std::move(evidence));
 }
 
 CheckItem check_robots(const Project& p, const Facts& facts) {
     constexpr CheckStep kStep = CheckStep::robots;
-    if (p.robots.empty()) return missing(kStep, Phrase("add a robot"));
-    std::vector<Phrase> evidence;
+    if (p.robots.empty()) return missing(kStep, Text("add a robot"));
+    std::vector<Text> evidence;
     for (const RobotSetup& r : p.robots) {
         if (facts.robots) {
             const DeviceFact* fact = fact_of(*facts.robots, r.id);
-            if (!fact || !fact->answers) return missing(kStep, Phrase("connect the devices"));
+            if (!fact || !fact->answers) return missing(kStep, Text("connect the devices"));
             if (!fact->trouble.empty())
-                return missing(kStep, Phrase("robot {} does not answer: {}", r.id, fact->trouble));
+                return missing(kStep, Text("robot {} does not answer: {}", r.id, fact->trouble));
         }
         if (r.identity.serial.empty() && r.identity.brand.empty())
-            return missing(kStep, Phrase("robot {} has not told who it is", r.id));
-        evidence.push_back(Phrase("robot {}: {} {}, serial {}", r.id, r.identity.brand, r.identity.model,
+            return missing(kStep, Text("robot {} has not told who it is", r.id));
+        evidence.push_back(Text("robot {}: {} {}, serial {}", r.id, r.identity.brand, r.identity.model,
                                   r.identity.serial));
     }
     return done(
         kStep,
-        Phrase(facts.robots ? "all robots answer ({})" : "all robots answered last ({})", p.robots.size()),
+        Text(facts.robots ? "all robots answer ({})" : "all robots answered last ({})", p.robots.size()),
         std::move(evidence));
 }
 
 CheckItem check_calibrations(const Project& p, const std::string& now_utc) {
     constexpr CheckStep kStep = CheckStep::calibrations;
-    if (p.sensors.empty()) return missing(kStep, Phrase("there is no sensor to calibrate"));
-    std::vector<Phrase> evidence;
+    if (p.sensors.empty()) return missing(kStep, Text("there is no sensor to calibrate"));
+    std::vector<Text> evidence;
     for (const SensorSetup& s : p.sensors) {
         const auto c = std::find_if(p.calibrations.begin(), p.calibrations.end(),
                                     [&](const Calibration& k) { return k.id == s.calibration_id; });
         if (s.calibration_id.empty() || c == p.calibrations.end())
-            return missing(kStep, Phrase("sensor {} has no calibration in use", s.id));
+            return missing(kStep, Text("sensor {} has no calibration in use", s.id));
         if (!serves(c->verdict))
-            return missing(kStep, Phrase("calibration {} of sensor {} is {}", c->id, s.id,
-                                         Phrase(name_of(c->verdict).data())));
+            return missing(kStep, Text("calibration {} of sensor {} is {}", c->id, s.id,
+                                         Text(name_of(c->verdict).data())));
         if (!s.identity.serial.empty() && !(s.identity == c->sensor_identity))
-            return stale(kStep, Phrase("sensor {} is another device ({}) than was calibrated ({})", s.id,
+            return stale(kStep, Text("sensor {} is another device ({}) than was calibrated ({})", s.id,
                                        s.identity.serial, c->sensor_identity.serial));
         if (const RobotSetup* r = find_robot(p, c->robot_id);
             r && !r->identity.serial.empty() && !(r->identity == c->robot_identity))
-            return stale(kStep, Phrase("robot {} is another one ({}) than sensor {} was calibrated on ({})",
+            return stale(kStep, Text("robot {} is another one ({}) than sensor {} was calibrated on ({})",
                                        r->id, r->identity.serial, s.id, c->robot_identity.serial));
         const auto age = days_between(c->created_utc, now_utc);
-        if (!age) return stale(kStep, Phrase("calibration {} of sensor {} has no date", c->id, s.id));
+        if (!age) return stale(kStep, Text("calibration {} of sensor {} has no date", c->id, s.id));
         if (*age > p.requirements.calibration_age_days)
-            return stale(kStep, Phrase("calibration {} of sensor {} is {} days old, {} are allowed", c->id,
+            return stale(kStep, Text("calibration {} of sensor {} is {} days old, {} are allowed", c->id,
                                        s.id, fmt::format("{:.0f}", *age),
                                        fmt::format("{:.0f}", p.requirements.calibration_age_days)));
-        evidence.push_back(Phrase("sensor {}: {} of {}, {}", s.id, c->method, date_of(c->created_utc),
-                                  Phrase(name_of(c->verdict).data())));
+        evidence.push_back(Text("sensor {}: {} of {}, {}", s.id, c->method, date_of(c->created_utc),
+                                  Text(name_of(c->verdict).data())));
     }
-    return done(kStep, Phrase("every sensor has a fresh calibration in use"), std::move(evidence));
+    return done(kStep, Text("every sensor has a fresh calibration in use"), std::move(evidence));
 }
 
 CheckItem check_taught(const Project& p) {
     constexpr CheckStep kStep = CheckStep::taught;
-    std::vector<Phrase> evidence;
+    std::vector<Text> evidence;
     for (const Spot& spot : p.spots) {
         if (!spot.enabled) continue;
         if (spot.reference_profile.size() == 0)
-            return missing(kStep, Phrase("measure the reference of spot {}", spot.id));
-        evidence.push_back(Phrase("spot {}: {}, reference x {} mm, z {} mm", spot.id, spot.feature.kind,
+            return missing(kStep, Text("measure the reference of spot {}", spot.id));
+        evidence.push_back(Text("spot {}: {}, reference x {} mm, z {} mm", spot.id, spot.feature.kind,
                                   mm(spot.reference_mm.x()), mm(spot.reference_mm.z())));
     }
-    if (evidence.empty()) return missing(kStep, Phrase("add a spot where the contour is to be measured"));
+    if (evidence.empty()) return missing(kStep, Text("add a spot where the contour is to be measured"));
     const std::size_t taught = evidence.size();
-    return done(kStep, Phrase("{} spots have their reference", taught), std::move(evidence));
+    return done(kStep, Text("{} spots have their reference", taught), std::move(evidence));
 }
 
-Phrase name_of_status(AlignmentStatus status) {
+Text name_of_status(AlignmentStatus status) {
     switch (status) {
         case AlignmentStatus::frozen:
-            return Phrase("frozen");
+            return Text("frozen");
         case AlignmentStatus::drifting:
-            return Phrase("drifting");
+            return Text("drifting");
         case AlignmentStatus::shape_changes:
-            return Phrase("changing its shape");
+            return Text("changing its shape");
         case AlignmentStatus::not_enough_profiles:
         case AlignmentStatus::undetermined:
             break;
     }
-    return Phrase("seen too little");
+    return Text("seen too little");
 }
 
 CheckItem check_frozen(const Project& p, const Facts& facts) {
     constexpr CheckStep kStep = CheckStep::frozen;
-    std::vector<Phrase> evidence;
+    std::vector<Text> evidence;
     for (const Spot& spot : p.spots) {
         if (!spot.enabled) continue;
-        if (!spot.curve) return missing(kStep, Phrase("record the pass of spot {} and accept it", spot.id));
+        if (!spot.curve) return missing(kStep, Text("record the pass of spot {} and accept it", spot.id));
         const Evidence* e = newest<FrozenContour>(facts, spot.id);
         if (!e)
             return missing(
                 kStep,
-                Phrase("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
+                Text("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
         const auto& f = std::get<FrozenContour>(e->what);
         if (f.status != AlignmentStatus::frozen)
-            return missing(kStep, Phrase("the contour of spot {} is {}", spot.id, name_of_status(f.status)));
+            return missing(kStep, Text("the contour of spot {} is {}", spot.id, name_of_status(f.status)));
         if (const auto then = facts.setups.find(e->setup);
             then == facts.setups.end() || pass_changed(*then->second, p, spot.id))
-            return stale(kStep, Phrase("spot {} was changed since its pass of {}", spot.id, date_of(e->utc)));
-        evidence.push_back(Phrase("spot {}: frozen, expected error {} mm at a jitter of {} mm, {}", spot.id,
+            return stale(kStep, Text("spot {} was changed since its pass of {}", spot.id, date_of(e->utc)));
+        evidence.push_back(Text("spot {}: frozen, expected error {} mm at a jitter of {} mm, {}", spot.id,
                                   mm(f.expected_error_mm), mm(f.jitter_mm), date_of(e->utc)));
     }
-    if (evidence.empty()) return missing(kStep, Phrase("there is no spot to align"));
+    if (evidence.empty()) return missing(kStep, Text("there is no spot to align"));
     const std::size_t frozen = evidence.size();
-    return done(kStep, Phrase("the contour stands still at {} spots", frozen), std::move(evidence));
+    return done(kStep, Text("the contour stands still at {} spots", frozen), std::move(evidence));
 }
 
 CheckItem check_observable(const Project& p) {
     constexpr CheckStep kStep = CheckStep::observable;
-    if (p.regions.empty()) return missing(kStep, Phrase("add a region and give it spots"));
-    std::vector<Phrase> evidence;
+    if (p.regions.empty()) return missing(kStep, Text("add a region and give it spots"));
+    std::vector<Text> evidence;
     for (const Region& region : p.regions) {
-        if (region.spot_ids.empty()) return missing(kStep, Phrase("region {} has no spots", region.id));
+        if (region.spot_ids.empty()) return missing(kStep, Text("region {} has no spots", region.id));
         if (region.frame_name.empty())
-            return missing(kStep, Phrase("name the controller's frame of region {}", region.id));
+            return missing(kStep, Text("name the controller's frame of region {}", region.id));
         const auto forecast = forecast_region(p, region);
-        if (!forecast) return missing(kStep, Phrase("region {}: {}", region.id, forecast.error().what));
+        if (!forecast) return missing(kStep, Text("region {}: {}", region.id, forecast.error().what));
         const RegionPlan& plan = forecast->plan;
         if (plan.status != CorrectionStatus::ok)
             return missing(kStep,
-                           Phrase("region {} is under-determined: {}", region.id,
+                           Text("region {} is under-determined: {}", region.id,
                                   plan.unobservable.empty() ? plan.weakest : plan.unobservable.front()));
         if (!forecast->enough()) {
-            const Phrase cure = forecast->cures.empty() ? Phrase("add spots that lie farther apart")
+            const Text cure = forecast->cures.empty() ? Text("add spots that lie farther apart")
                                                         : forecast->cures.front().what;
             if (forecast->sigma_mm > forecast->wanted_mm)
                 return missing(kStep,
-                               Phrase("region {} reaches 3 sigma {} mm, {} mm are required: {}", region.id,
+                               Text("region {} reaches 3 sigma {} mm, {} mm are required: {}", region.id,
                                       mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm), cure));
             return missing(kStep,
-                           Phrase("region {} reaches a sigma of {} deg, its limit is {} deg: {}", region.id,
+                           Text("region {} reaches a sigma of {} deg, its limit is {} deg: {}", region.id,
                                   fmt::format("{:.4f}", forecast->sigma_deg), forecast->wanted_deg, cure));
         }
-        evidence.push_back(Phrase("region {}: predicted 3 sigma {} mm, required {} mm", region.id,
+        evidence.push_back(Text("region {}: predicted 3 sigma {} mm, required {} mm", region.id,
                                   mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm)));
     }
     for (const Spot& spot : p.spots) {
         const bool used = std::any_of(p.regions.begin(), p.regions.end(), [&](const Region& r) {
             return std::find(r.spot_ids.begin(), r.spot_ids.end(), spot.id) != r.spot_ids.end();
         });
-        if (spot.enabled && !used) return missing(kStep, Phrase("spot {} belongs to no region", spot.id));
+        if (spot.enabled && !used) return missing(kStep, Text("spot {} belongs to no region", spot.id));
     }
-    return done(kStep, Phrase("{} regions are observable within the required 3 sigma", p.regions.size()),
+    return done(kStep, Text("{} regions are observable within the required 3 sigma", p.regions.size()),
                 std::move(evidence));
 }
 
 // Whether evidence still holds for the project; else the stale item.
 std::optional<CheckItem> outdated(CheckStep step, const Evidence& e, const Project& p, const Facts& facts) {
     const auto then = facts.setups.find(e.setup);
-    const Phrase changed =
-        then == facts.setups.end() ? Phrase("the project") : changed_since(*then->second, p);
+    const Text changed =
+        then == facts.setups.end() ? Text("the project") : changed_since(*then->second, p);
     if (changed.empty()) return std::nullopt;
-    return stale(step, Phrase("{} was changed since the proof of {}", changed, date_of(e.utc)));
+    return stale(step, Text("{} was changed since the proof of {}", changed, date_of(e.utc)));
 }
 
 CheckItem check_zero_shift(const Project& p, const Facts& facts) {
     constexpr CheckStep kStep = CheckStep::zero_shift;
     const int wanted = static_cast<int>(std::lround(p.requirements.zero_shift_runs));
     const Evidence* e = newest<ZeroShift>(facts);
-    if (!e) return missing(kStep, Phrase("measure the unmoved part {} times: it must read zero", wanted));
+    if (!e) return missing(kStep, Text("measure the unmoved part {} times: it must read zero", wanted));
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
     const auto& zero = std::get<ZeroShift>(e->what);
     if (zero.refused > 0)
-        return missing(kStep, Phrase("{} of {} zero-shift runs were refused; see why and repeat",
+        return missing(kStep, Text("{} of {} zero-shift runs were refused; see why and repeat",
                                      zero.refused, zero.runs.size()));
     if (static_cast<int>(zero.runs.size()) < wanted)
-        return missing(kStep, Phrase("{} of {} zero-shift runs", zero.runs.size(), wanted));
-    std::vector<Phrase> evidence;
+        return missing(kStep, Text("{} of {} zero-shift runs", zero.runs.size(), wanted));
+    std::vector<Text> evidence;
     for (const ZeroShiftRegion& r : zero.regions) {
         if (r.worst_mean_mm > p.requirements.sigma3_mm)
-            return missing(kStep, Phrase("region {} reads {} mm on the unmoved part; teach it again",
+            return missing(kStep, Text("region {} reads {} mm on the unmoved part; teach it again",
                                          r.region_id, mm(r.worst_mean_mm)));
-        evidence.push_back(Phrase("region {}: mean of {} runs within {} mm of zero, {}", r.region_id,
+        evidence.push_back(Text("region {}: mean of {} runs within {} mm of zero, {}", r.region_id,
                                   zero.runs.size(), mm(r.worst_mean_mm), date_of(e->utc)));
     }
-    return done(kStep, Phrase("{} runs of the unmoved part read zero", zero.runs.size()),
+    return done(kStep, Text("{} runs of the unmoved part read zero", zero.runs.size()),
                 std::move(evidence));
 }
 
@@ -247,48 +247,48 @@ CheckItem check_known_shift(const Project& p, const Facts& facts) {
     constexpr CheckStep kStep = CheckStep::known_shift;
     const Requirements& need = p.requirements;
     const Evidence* e = newest<KnownShift>(facts);
-    if (!e) return missing(kStep, Phrase("displace the part by known amounts and measure it"));
+    if (!e) return missing(kStep, Text("displace the part by known amounts and measure it"));
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
     const auto& proof = std::get<KnownShift>(e->what);
-    std::vector<Phrase> evidence;
+    std::vector<Text> evidence;
     for (const Region& region : p.regions) {
         const ProvenAccuracy proven = proven_accuracy(proof, region.id);
         if (proven.refused > 0 || proven.tests == 0)
-            return missing(kStep, Phrase("region {}: {} of {} known shifts were refused", region.id,
+            return missing(kStep, Text("region {}: {} of {} known shifts were refused", region.id,
                                          proven.refused, proven.tests));
         if (proven.three_sigma_mm > need.sigma3_mm)
             return missing(kStep,
-                           Phrase("region {}: known shifts come back with 3 sigma {} mm, required are {} mm",
+                           Text("region {}: known shifts come back with 3 sigma {} mm, required are {} mm",
                                   region.id, mm(proven.three_sigma_mm), mm(need.sigma3_mm)));
-        evidence.push_back(Phrase("region {}: {} displacements, 3 sigma {} mm about the truth, {}", region.id,
+        evidence.push_back(Text("region {}: {} displacements, 3 sigma {} mm about the truth, {}", region.id,
                                   proven.tests, mm(proven.three_sigma_mm), date_of(e->utc)));
     }
     // A hair of tolerance for ranges that were typed.
     if (proof.range_mm < need.known_shift_mm * (1 - 1e-9) ||
         proof.range_deg < need.known_shift_deg * (1 - 1e-9))
         return missing(kStep,
-                       Phrase("proven up to {} mm and {} deg, required are {} mm and {} deg", proof.range_mm,
+                       Text("proven up to {} mm and {} deg, required are {} mm and {} deg", proof.range_mm,
                               proof.range_deg, need.known_shift_mm, need.known_shift_deg));
-    return done(kStep, Phrase("{} known displacements were recovered", proof.tests.size()),
+    return done(kStep, Text("{} known displacements were recovered", proof.tests.size()),
                 std::move(evidence));
 }
 
 CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& known_shift) {
     constexpr CheckStep kStep = CheckStep::limits;
-    if (p.regions.empty()) return missing(kStep, Phrase("add a region and give it spots"));
+    if (p.regions.empty()) return missing(kStep, Text("add a region and give it spots"));
     if (!known_shift.done())
-        return missing(kStep, Phrase("limits are judged by the range that the known shift has proven"));
+        return missing(kStep, Text("limits are judged by the range that the known shift has proven"));
     const auto& proof = std::get<KnownShift>(newest<KnownShift>(facts)->what);
     const ProvenRange range = proven_range(proof);
     const CorrectionLimits rounded = proven_limits(proof);
     constexpr double kSlack = 1 + 1e-6;
-    std::vector<Phrase> evidence;
+    std::vector<Text> evidence;
     for (const Region& r : p.regions) {
         if (!(r.limits.translation_mm <= range.translation_mm * kSlack) ||
             !(r.limits.rotation_deg <= range.rotation_deg * kSlack))
             return missing(
                 kStep,
-                Phrase(
+                Text(
                     "region {} lets {} mm and {} deg through, proven are {} mm and {} deg: lower its limits "
                     "or prove more",
                     r.id, r.limits.translation_mm, r.limits.rotation_deg,
@@ -296,27 +296,27 @@ CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& kn
                     fmt::format("{:.3f}", rounded.rotation_deg)));
         if (!(3 * r.sigma_limit_mm <= p.requirements.sigma3_mm * kSlack))
             return missing(kStep,
-                           Phrase("region {} lets 3 sigma {} mm through, required are {} mm: lower its "
+                           Text("region {} lets 3 sigma {} mm through, required are {} mm: lower its "
                                   "sigma limit",
                                   r.id, mm(3 * r.sigma_limit_mm), mm(p.requirements.sigma3_mm)));
-        evidence.push_back(Phrase("region {}: {} mm, {} deg, 3 sigma {} mm", r.id, r.limits.translation_mm,
+        evidence.push_back(Text("region {}: {} mm, {} deg, 3 sigma {} mm", r.id, r.limits.translation_mm,
                                   r.limits.rotation_deg, mm(3 * r.sigma_limit_mm)));
     }
-    return done(kStep, Phrase("no region lets through more than was proven"), std::move(evidence));
+    return done(kStep, Text("no region lets through more than was proven"), std::move(evidence));
 }
 
 CheckItem check_headless(const Project& p, const Facts& facts) {
     constexpr CheckStep kStep = CheckStep::headless;
     const Evidence* e = newest<HeadlessRun>(facts);
     if (!e)
-        return missing(kStep, Phrase("save, close, and run it once without the screen: seamwright run {}",
+        return missing(kStep, Text("save, close, and run it once without the screen: seamwright run {}",
                                      facts.file.empty() ? std::string("FILE.seam") : facts.file));
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
     const auto& run = std::get<HeadlessRun>(e->what);
-    return done(kStep, Phrase("a run without the screen ended ok"),
-                {run.push ? Phrase("run {} of part {} on {}, pushed and read back, {}", run.run, run.part_id,
+    return done(kStep, Text("a run without the screen ended ok"),
+                {run.push ? Text("run {} of part {} on {}, pushed and read back, {}", run.run, run.part_id,
                                    run.host, date_of(e->utc))
-                          : Phrase("run {} of part {} on {}, dry run, {}", run.run, run.part_id, run.host,
+                          : Text("run {} of part {} on {}, dry run, {}", run.run, run.part_id, run.host,
                                    date_of(e->utc))});
 }
 
@@ -351,10 +351,10 @@ nlohmann::json essence(const Calibration* calibration) {
 }
 
 template <class T>
-Phrase first_change(const std::vector<T>& then, const std::vector<T>& now, const char* name) {
+Text first_change(const std::vector<T>& then, const std::vector<T>& now, const char* name) {
     for (std::size_t i = 0; i < std::max(then.size(), now.size()); ++i) {
-        if (i >= now.size()) return Phrase(name, then[i].id);
-        if (i >= then.size() || essence(then[i]) != essence(now[i])) return Phrase(name, now[i].id);
+        if (i >= now.size()) return Text(name, then[i].id);
+        if (i >= then.size() || essence(then[i]) != essence(now[i])) return Text(name, now[i].id);
     }
     return {};
 }
@@ -374,39 +374,39 @@ std::string_view to_string(CheckStep step) {
     return names[static_cast<std::size_t>(step)];
 }
 
-Phrase name_of(CheckStep step) {
+Text name_of(CheckStep step) {
     switch (step) {
         case CheckStep::sensors:
-            return Phrase("Sensors connected and healthy");
+            return Text("Sensors connected and healthy");
         case CheckStep::robots:
-            return Phrase("Robots connected and known");
+            return Text("Robots connected and known");
         case CheckStep::calibrations:
-            return Phrase("Sensors calibrated, fresh");
+            return Text("Sensors calibrated, fresh");
         case CheckStep::taught:
-            return Phrase("Spots taught");
+            return Text("Spots taught");
         case CheckStep::frozen:
-            return Phrase("Contours frozen");
+            return Text("Contours frozen");
         case CheckStep::observable:
-            return Phrase("Regions observable");
+            return Text("Regions observable");
         case CheckStep::zero_shift:
-            return Phrase("Zero shift");
+            return Text("Zero shift");
         case CheckStep::known_shift:
-            return Phrase("Known shift recovered");
+            return Text("Known shift recovered");
         case CheckStep::limits:
-            return Phrase("Limits set");
+            return Text("Limits set");
         case CheckStep::headless:
             break;
     }
-    return Phrase("Run without the screen");
+    return Text("Run without the screen");
 }
 
 std::string_view to_string(CheckStatus status) {
     return status == CheckStatus::done ? "done" : status == CheckStatus::stale ? "stale" : "missing";
 }
-Phrase name_of(CheckStatus status) {
-    return status == CheckStatus::done    ? Phrase("done")
-           : status == CheckStatus::stale ? Phrase("stale")
-                                          : Phrase("missing");
+Text name_of(CheckStatus status) {
+    return status == CheckStatus::done    ? Text("done")
+           : status == CheckStatus::stale ? Text("stale")
+                                          : Text("missing");
 }
 
 std::optional<double> days_between(const std::string& from_utc, const std::string& to_utc) {
@@ -418,14 +418,14 @@ std::optional<double> days_between(const std::string& from_utc, const std::strin
     return static_cast<double>(day(*to) - day(*from));
 }
 
-Phrase changed_since(const Project& then, const Project& now) {
+Text changed_since(const Project& then, const Project& now) {
     if (!then.part.base_from_workobject.isApprox(now.part.base_from_workobject, 1e-12))
-        return Phrase("the work object");
+        return Text("the work object");
     if (auto changed = first_change(then.sensors, now.sensors, "sensor {}"); !changed.empty()) return changed;
     if (auto changed = first_change(then.robots, now.robots, "robot {}"); !changed.empty()) return changed;
     for (std::size_t i = 0; i < now.sensors.size(); ++i)
         if (essence(in_use(then, then.sensors[i])) != essence(in_use(now, now.sensors[i])))
-            return Phrase("calibration {}", now.sensors[i].calibration_id);
+            return Text("calibration {}", now.sensors[i].calibration_id);
     if (auto changed = first_change(then.spots, now.spots, "spot {}"); !changed.empty()) return changed;
     return first_change(then.regions, now.regions, "region {}");
 }

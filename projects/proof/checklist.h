@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text.h"
 #include "projects/file/project_file.h"
 #include "projects/model/evidence.h"
 #include "projects/model/project.h"
-#include "projects/report/phrase.h"
 
 namespace seamwright {
 
@@ -35,7 +35,7 @@ inline constexpr std::array<CheckStep, 10> kCheckSteps{
     CheckStep::frozen,  CheckStep::observable, CheckStep::zero_shift,   CheckStep::known_shift,
     CheckStep::limits,  CheckStep::headless};
 std::string_view to_string(CheckStep step);  // "zero-shift"
-Phrase name_of(CheckStep step);              // "Zero shift"
+Text name_of(CheckStep step);              // "Zero shift"
 
 enum class CheckStatus {
     done,
@@ -43,13 +43,13 @@ enum class CheckStatus {
     stale  // was done, but what it rests on was changed since
 };
 std::string_view to_string(CheckStatus status);
-Phrase name_of(CheckStatus status);
+Text name_of(CheckStatus status);
 
 struct CheckItem {
     CheckStep step = CheckStep::sensors;
     CheckStatus status = CheckStatus::missing;
-    Phrase why;                    // one sentence: what there is, or what is missing
-    std::vector<Phrase> evidence;  // what it rests on, a line each
+    Text why;                    // one sentence: what there is, or what is missing
+    std::vector<Text> evidence;  // what it rests on, a line each
     bool done() const { return status == CheckStatus::done; }
 };
 
@@ -57,7 +57,7 @@ struct CheckItem {
 struct DeviceFact {
     std::string id;
     bool answers = false;
-    std::string trouble;  // why it does not deliver; empty when it does
+    Text trouble;  // why it does not deliver; empty when it does
 };
 struct Facts {
     // Absent: nobody asked the devices; then those count that answered last (their identity is in the
@@ -90,7 +90,7 @@ const Evidence* newest(const Facts& facts, const std::string& spot_id = {}) {
 
 // What differs in what a measurement rests on: "spot S3", "sensor A", ...; empty when nothing does. Limits,
 // names of frames and settings of the simulation do not count.
-Phrase changed_since(const Project& then, const Project& now);
+Text changed_since(const Project& then, const Project& now);
 // The same of one spot's pass.
 bool pass_changed(const Project& then, const Project& now, const std::string& spot_id);
 

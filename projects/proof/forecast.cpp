@@ -100,7 +100,7 @@ class Forecaster {
 
     std::vector<Cure> cures(const Sigma& now) const {
         std::vector<Cure> all;
-        const auto add = [&](const Sigma& then, Phrase what) {
+        const auto add = [&](const Sigma& then, Text what) {
             if (then.mm < kWorthIt * now.mm) all.push_back({std::move(what), then.mm});
         };
         for (std::size_t i = 0; i < spots_.size(); ++i) {
@@ -112,16 +112,16 @@ class Forecaster {
             const std::string known = fmt::format("{:.3f}", feature);
             if (spot.feature.kind == "template")
                 add(with_better_feature,
-                    Phrase(
+                    Text(
                         "spot {}: its template is known to {} mm only; take a longer piece with more shape",
                         spot.id, known));
             else
                 add(with_better_feature,
-                    Phrase("spot {}: its feature is known to {} mm only; teach it by a template", spot.id,
+                    Text("spot {}: its feature is known to {} mm only; teach it by a template", spot.id,
                            known));
             if (!spot.stop_at_trigger)
                 add(sigma({i, false, true}),
-                    Phrase("spot {}: the trigger jitters by up to {} mm along the displaced contour; stand "
+                    Text("spot {}: the trigger jitters by up to {} mm along the displaced contour; stand "
                            "still at the trigger, or drag the jitter window to what the robot keeps",
                            spot.id, spot.jitter_mm));
         }
@@ -131,9 +131,9 @@ class Forecaster {
                 fmt::format("{:.0f}, {:.0f}, {:.0f}", p.x() + 0.0, p.y() + 0.0, p.z() + 0.0);
             add(sigma({}, &further->spot),
                 further->near.empty()
-                    ? Phrase("add a spot towards ({}) mm of the work object, its edge along {}", at,
+                    ? Text("add a spot towards ({}) mm of the work object, its edge along {}", at,
                              further->edge)
-                    : Phrase("add a spot near {}, at ({}) mm of the work object, its edge along {}",
+                    : Text("add a spot near {}, at ({}) mm of the work object, its edge along {}",
                              further->near, at, further->edge));
         }
         std::stable_sort(all.begin(), all.end(),

@@ -10,13 +10,13 @@
 
 #include "core/correction/correction.h"
 #include "projects/model/project.h"
-#include "projects/report/phrase.h"
+#include "core/text.h"
 
 namespace seamwright {
 
 // What could be done, and the sigma at the spots that it leads to.
 struct Cure {
-    Phrase what;
+    Text what;
     double sigma_mm = 0;
 };
 

@@ -56,8 +56,8 @@ class Recomputer {
         for (SpotMeasurement& m : again.spots) {
             if (m.capture < 0) continue;
             if (static_cast<std::size_t>(m.capture) >= stored.captures.size())
-                return file_error(fmt::format("the capture of spot {} is missing", m.spot_id),
-                                  fmt::format("run {}", stored.number));
+                return file_error(Text("the capture of spot {} is missing", m.spot_id),
+                                  Text("run {}", stored.number));
             const Capture& raw = stored.captures[static_cast<std::size_t>(m.capture)];
             // Nothing was kept because there was nothing to measure: the verdict of then stands. Had it been
             // measured, the difference shows below.
@@ -97,13 +97,13 @@ class Recomputer {
     Expected<void> recompute_panel(const RunRecord& stored, PanelRecord& panel) {
         const std::string where = fmt::format("run {}", stored.number);
         const PanelJob* job = find_panel_job(setup_, panel.job_id);
-        if (!job) return file_error("the setup of the run has no panel job " + panel.job_id, where);
+        if (!job) return file_error(Text("the setup of the run has no panel job {}", panel.job_id), where);
         for (auto* list : {&panel.before, &panel.after})
             for (PanelMeasurement& m : *list) {
                 if (m.capture < 0) continue;
                 const auto count = static_cast<int>(stored.captures.size());
                 if (m.capture >= count || m.second_capture >= count)
-                    return file_error(fmt::format("the capture of place {} is missing", m.place_id), where);
+                    return file_error(Text("the capture of place {} is missing", m.place_id), where);
                 const Capture& first = stored.captures[static_cast<std::size_t>(m.capture)];
                 const Capture* second = m.second_capture < 0
                                             ? nullptr
@@ -114,7 +114,7 @@ class Recomputer {
                 const auto place = std::find_if(job->places.begin(), job->places.end(),
                                                 [&](const PanelPlace& p) { return p.id == m.place_id; });
                 if (place == job->places.end())
-                    return file_error(fmt::format("the setup of the run has no place {}", m.place_id), where);
+                    return file_error(Text("the setup of the run has no place {}", m.place_id), where);
                 const std::string key = job->id + "\n" + place->id;
                 auto it = panel_measurers_.find(key);
                 if (it == panel_measurers_.end()) {
@@ -242,14 +242,14 @@ std::vector<ReplayDifference> compare(const RunRecord& stored, const RunRecord& 
 
 Expected<ReplayResult> replay(const std::filesystem::path& path, const ReplayOptions& options) {
     if (options.jobs < 1 || options.jobs > 256)
-        return usage_error(fmt::format("{} jobs are not possible", options.jobs), "--jobs", "give 1 to 256");
+        return usage_error(Text("{} jobs are not possible", options.jobs), "--jobs", "give 1 to 256");
     auto file = ProjectFile::open(path, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
     auto runs = file->runs();
     if (!runs) return tl::unexpected(runs.error());
     if (options.run) {
         std::erase_if(*runs, [&](const RunSummary& run) { return run.number != options.run; });
-        if (runs->empty()) return input_error(fmt::format("there is no run {}", options.run), path.string());
+        if (runs->empty()) return input_error(Text("there is no run {}", options.run), path.string());
     }
 
     // Runs are handed out one by one; each leaves its part at its own place, so the order of work does not

@@ -63,7 +63,7 @@ ZeroShift summarise_zero_shift(const Project& setup, const std::vector<RunRecord
 
 Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions& options) {
     if (options.runs < 2 || options.runs > 1000)
-        return usage_error(fmt::format("{} runs", options.runs), "zero shift", "give 2 to 1000");
+        return usage_error(Text("{} runs", options.runs), "zero shift", "give 2 to 1000");
     const Project setup = station.project();
     std::vector<RunRecord> runs;
     for (int n = 0; n < options.runs; ++n) {
@@ -79,7 +79,7 @@ Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions&
         if (!run) return tl::unexpected(run.error());
         if (options.measured) options.measured(*run);
         if (run->status == RunStatus::cancelled)
-            return usage_error(fmt::format("cancelled after {} runs", n), "zero shift", "start it again");
+            return usage_error(Text("cancelled after {} runs", n), "zero shift", "start it again");
         if (run->status == RunStatus::device) return device_error(run->message, "zero shift");
         run->captures.clear();
         runs.push_back(std::move(*run));

@@ -117,7 +117,7 @@ Expected<Project> import_project(const nlohmann::json& document, const std::stri
     if (version == document.end() || !version->is_number_integer() || *version < 1)
         return input_error("the export has no version", where);
     if (*version > kVersion)
-        return input_error(fmt::format("the export is newer than this program (version {})", version->dump()),
+        return input_error(Text("the export is newer than this program (version {})", version->dump()),
                            where, "import it with a newer Seamwright");
     return from_json_document<Project>(*project, where.empty() ? "project" : where + ": project");
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/profile/units.h"
+#include "core/text.h"
 #include "devices/replay/recording_layout.h"
 #include "projects/file/project_file.h"
 
@@ -60,7 +61,7 @@ struct FolderImport {
 struct FolderImportResult {
     Project project;
     bool in_pixels = false;          // no calibration: one pixel counts as one unit, nothing can be pushed
-    std::vector<std::string> notes;  // spots without feature, frames without pose, ...
+    std::vector<Text> notes;  // spots without feature, frames without pose, ...
     std::vector<std::string> understood;  // how the files were read, a sentence each
 };
 

@@ -56,8 +56,8 @@ Expected<void> cut_template(const FolderImport& options, const Profile& taught, 
         sum += Eigen::Vector2d(taught.x_mm[i], taught.z_mm[i]);
     }
     if (piece.size() < 3)
-        return input_error(fmt::format("the piece holds {} points of the taught profile", piece.size()),
-                           "spot " + spot.id, "give --piece X0,X1 where the contour is");
+        return input_error(Text("the piece holds {} points of the taught profile", piece.size()),
+                           Text("spot {}", spot.id), "give --piece X0,X1 where the contour is");
     spot.feature.template_reference_mm =
         options.template_reference_mm.value_or(sum / static_cast<double>(piece.size()));
     spot.feature.template_profile = std::move(piece);
@@ -77,7 +77,7 @@ Expected<void> check_calibration(const FolderImport& options, bool images, const
     if (!c.model) return input_error("it holds no model that turns pixels into millimetres", where);
     const CameraModel& camera = c.model->camera;
     if (camera.width > 0 && (camera.width != first.image.width || camera.height != first.image.height))
-        return input_error(fmt::format("it was made with images of {} x {}, these have {} x {}", camera.width,
+        return input_error(Text("it was made with images of {} x {}, these have {} x {}", camera.width,
                                        camera.height, first.image.width, first.image.height),
                            where, "choose the calibration of this camera at this resolution");
     return {};

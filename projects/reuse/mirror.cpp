@@ -143,7 +143,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
         return input_error("the mirror plane has no unit normal", "plane", "give x, y, z or a normal");
     if (!project.panel_jobs.empty())
         return input_error("a gripper with its sensors has no mirror image that is only taught differently",
-                           "panel job " + project.panel_jobs.front().id,
+                           Text("panel job {}", project.panel_jobs.front().id),
                            "teach the panel job of the other side; mirror the project without it");
     Project out = project;
     const Eigen::Matrix3d sensor_mirror = Eigen::Vector3d(-1, 1, 1).asDiagonal();
@@ -155,7 +155,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
         const Calibration* calibration = calibration_of(project, spot);
         if (!calibration)
             return input_error("the sensor has no calibration in use, its pose on the part is unknown",
-                               "spot " + spot.id, "calibrate the sensor first");
+                               Text("spot {}", spot.id), "calibrate the sensor first");
         const auto mirror_flange = [&](Pose& base_from_flange) {
             const Pose workobject_from_sensor = project.part.base_from_workobject.inverse() *
                                                 base_from_flange * calibration->flange_from_sensor;
@@ -180,7 +180,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
     for (Region& region : out.regions) {
         if (!along_axis(plane.normal) && !(alike(region.free, 0) && alike(region.free, 3)))
             return input_error("an oblique plane mixes its free and fixed degrees of freedom",
-                               "region " + region.id,
+                               Text("region {}", region.id),
                                "mirror about x, y or z, or free all translations and rotations");
         const Pose workobject_from_frame =
             project.part.base_from_workobject.inverse() * region.base_from_frame;

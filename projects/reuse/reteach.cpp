@@ -22,20 +22,20 @@ Expected<Retaught> after_exchange(const Project& project, const Exchange& exchan
         return input_error("its spots were taught in pixels, so that their references are no millimetres",
                            where, "import the recording again with --calibration");
     if (after == project.calibrations.end())
-        return input_error("there is no calibration \"" + exchange.calibration_id + "\"", where,
+        return input_error(Text("there is no calibration \"{}\"", exchange.calibration_id), where,
                            "calibrate the new sensor first");
     if (after->sensor_id != exchange.sensor_id)
-        return input_error("calibration " + after->id + " belongs to sensor " + after->sensor_id, where,
+        return input_error(Text("calibration {} belongs to sensor {}", after->id, after->sensor_id), where,
                            "choose one of this sensor");
     if (!serves(after->verdict))
-        return input_error(fmt::format("calibration {} is {}", after->id, name_of(after->verdict)), where,
+        return input_error(Text("calibration {} is {}", after->id, name_of(after->verdict)), where,
                            "calibrate again");
     const Pose old_base = project.part.base_from_workobject;
     const Pose new_base = exchange.base_from_workobject.value_or(old_base);
     if (exchange.base_from_workobject)
         for (const Spot& spot : project.spots)
             if (spot.sensor_id != exchange.sensor_id)
-                return input_error("spot " + spot.id + " is measured by another sensor and would stay behind",
+                return input_error(Text("spot {} is measured by another sensor and would stay behind", spot.id),
                                    "work object", "exchange one robot of a project with a single sensor");
     Retaught result;
     result.project = project;

@@ -14,7 +14,7 @@ namespace seamwright {
 
 Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetup& robot) {
     if (sensor.driver != "simulated" || robot.driver != "simulated")
-        return input_error("only a simulated cell knows its own calibration", "sensor " + sensor.id,
+        return input_error("only a simulated cell knows its own calibration", Text("sensor {}", sensor.id),
                            "calibrate the sensor");
     auto cell = SimulatedCell::open(sensor.settings);
     if (!cell) return tl::unexpected(cell.error());

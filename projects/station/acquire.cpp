@@ -86,7 +86,7 @@ Expected<FramePtr> TriggeredFrames::at(const TriggerEvent& trigger, std::chrono:
         if (!frame) return frame;
         const Frame& f = **frame;
         if (f.spot_id.empty() || f.spot_id == trigger.spot_id) return frame;
-        return device_error(fmt::format("the frame is of spot {}", f.spot_id), "sensor " + setup_.id);
+        return device_error(Text("the frame is of spot {}", f.spot_id), Text("sensor {}", setup_.id));
     }
     if (auto fired = sensor_.trigger(trigger.spot_id); !fired) return tl::unexpected(fired.error());
     auto frame = next_frame(sensor_, timeout, cancel);
@@ -108,8 +108,8 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
     if (!expected_) expected_ = frame->sequence;
     const std::uint64_t expected = (*expected_)++;
     if (frame->sequence < expected)
-        return device_error(fmt::format("frame {} came where frame {} was due", frame->sequence, expected),
-                            "sensor " + setup_.id,
+        return device_error(Text("frame {} came where frame {} was due", frame->sequence, expected),
+                            Text("sensor {}", setup_.id),
                             "the sensor restarted in the middle of the run; measure again");
     if (frame->sequence > expected) {  // the one that is due was lost
         early_ = std::move(frame);
@@ -122,10 +122,10 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
     }
     const auto apart = std::chrono::nanoseconds(frame->host_time_ns - trigger.host_time_ns);
     if (std::chrono::abs(apart) > kPairingWindow)
-        return device_error(fmt::format("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
+        return device_error(Text("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
                                         std::abs(std::chrono::duration<double>(apart).count()),
                                         apart.count() < 0 ? "before" : "after", trigger.spot_id),
-                            "sensor " + setup_.id, "check the trigger line between robot and sensor");
+                            Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
     return frame;
 }
 
@@ -138,7 +138,7 @@ Expected<void> TriggeredFrames::finish() {
         more = !is_over(**left);
     }
     if (more)
-        return device_error("the sensor exposed more often than the robot fired", "sensor " + setup_.id,
+        return device_error("the sensor exposed more often than the robot fired", Text("sensor {}", setup_.id),
                             "check the trigger line between robot and sensor");
     return {};
 }
@@ -151,9 +151,9 @@ Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose
     const double off_mm = distance_mm(*at, base_from_flange);
     const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
     if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
-    return device_error(fmt::format("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
+    return device_error(Text("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
                                     off_mm, off_deg, moved.error().what),
-                        "spot " + spot_id, "jog it there");
+                        Text("spot {}", spot_id), "jog it there");
 }
 
 Expected<SoftwareTriggered> SoftwareTriggered::begin(ProfileSource& sensor) {

@@ -152,7 +152,7 @@ Expected<void> validate_fields(const Spot& spot) {
     const std::string where = "spot " + spot.id;
     if (auto valid = validate_in(spot_fields(), spot, where); !valid) return valid;
     const FeatureKind* kind = feature_kind(spot.feature.kind);
-    if (!kind) return input_error("the feature kind \"" + spot.feature.kind + "\" is not known", where);
+    if (!kind) return input_error(Text("the feature kind \"{}\" is not known", spot.feature.kind), where);
     return validate(spot.feature.parameters, kind->parameters, where);
 }
 Expected<void> validate_fields(const Region& region) {

@@ -237,11 +237,11 @@ SpotMeasurer::~SpotMeasurer() = default;
 
 Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::string& spot_id) {
     const Spot* spot = find_spot(project, spot_id);
-    if (!spot) return input_error(fmt::format("there is no spot \"{}\"", spot_id), "spots");
+    if (!spot) return input_error(Text("there is no spot \"{}\"", spot_id), "spots");
     const std::string where = fmt::format("spot {}", spot_id);
     const SensorSetup* sensor = find_sensor(project, spot->sensor_id);
     if (!sensor)
-        return input_error(fmt::format("its sensor \"{}\" is not in the project", spot->sensor_id), where,
+        return input_error(Text("its sensor \"{}\" is not in the project", spot->sensor_id), where,
                            "choose one of the project's sensors");
     auto finder = make_feature_finder(spot->feature);
     if (!finder) {

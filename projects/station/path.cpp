@@ -48,8 +48,8 @@ Expected<std::vector<int>> regions_of(const Project& setup, const ApplicationPat
             if (id.empty()) continue;
             const auto at = known.find(id);
             if (at == known.end())
-                return input_error("the project has no region \"" + id + "\"",
-                                   fmt::format("path point {}", i + 1));
+                return input_error(Text("the project has no region \"{}\"", id),
+                                   Text("path point {}", i + 1));
             out[i] = at->second;
         }
         return out;
@@ -62,8 +62,7 @@ Expected<std::vector<int>> regions_of(const Project& setup, const ApplicationPat
     for (std::size_t r = 0; r < setup.regions.size(); ++r)
         if (std::none_of(spots.begin(), spots.end(),
                          [&](const OwnSpot& s) { return s.region == static_cast<int>(r); }))
-            return input_error("the path does not name its regions, and region " + setup.regions[r].id +
-                                   " has no spot of its own to go by",
+            return input_error(Text("the path does not name its regions, and region {} has no spot of its own to go by", setup.regions[r].id),
                                "path", "add a column region");
     for (std::size_t i = 0; i < out.size(); ++i) {
         double nearest = std::numeric_limits<double>::infinity();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/correction/path_blend.h"
+#include "core/text.h"
 #include "devices/exchange/path_csv.h"
 #include "projects/model/project.h"
 #include "projects/model/run.h"
@@ -22,7 +23,7 @@ struct PathRefusal {
     std::string region_id;
     std::size_t point = 0;   // the first one, from 0
     std::size_t points = 0;  // how many; 0 = the region altogether
-    std::string reason;
+    Text reason;
 };
 
 struct PathAnswer {

@@ -15,15 +15,15 @@ Expected<ProgramRequest> program_request(const Project& project, const std::stri
                                         : std::find_if(robots.begin(), robots.end(),
                                                        [&](const RobotSetup& r) { return r.id == robot_id; });
     if (robot == robots.end())
-        return input_error("the project has no robot \"" + robot_id + "\"", project.name,
-                           "its first is \"" + robots.front().id + "\"");
+        return input_error(Text("the project has no robot \"{}\"", robot_id), project.name,
+                           Text("its first is \"{}\"", robots.front().id));
     ProgramRequest request;
     request.project = project.name;
     request.settings = robot->settings;
     request.driver = robot->driver;
     request.moves = measuring_program(project, robot->id);
     if (request.moves.empty())
-        return input_error("no spot of it is enabled", "robot " + robot->id, "teach a spot first");
+        return input_error("no spot of it is enabled", Text("robot {}", robot->id), "teach a spot first");
     for (const Region& region : project.regions) {
         const bool its =
             std::any_of(region.spot_ids.begin(), region.spot_ids.end(), [&](const std::string& id) {
@@ -32,12 +32,12 @@ Expected<ProgramRequest> program_request(const Project& project, const std::stri
             });
         if (!its) continue;
         if (region.frame_name.empty())
-            return input_error("it names no frame on the controller", "region " + region.id, "name one");
+            return input_error("it names no frame on the controller", Text("region {}", region.id), "name one");
         for (const ApplicationFrame& other : request.frames)
             if (other.name == region.frame_name)
                 return input_error(
-                    "its frame \"" + region.frame_name + "\" is that of region " + other.region_id + " too",
-                    "region " + region.id, "give each region a frame of its own");
+                    Text("its frame \"{}\" is that of region {} too", region.frame_name, other.region_id),
+                    Text("region {}", region.id), "give each region a frame of its own");
         request.frames.push_back({region.id, region.frame_name, region.base_from_frame});
     }
     return request;

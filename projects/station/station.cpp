@@ -138,9 +138,9 @@ struct Station::Impl {
                                            [&](const Spot* s) { return s->id == trigger->spot_id; });
             if (spot == spots.end() || !open.count(trigger->spot_id))
                 return device_error(
-                    fmt::format("the robot fired for spot \"{}\", which is {}", trigger->spot_id,
+                    Text("the robot fired for spot \"{}\", which is {}", trigger->spot_id,
                                 spot == spots.end() ? "not in the measuring program" : "measured already"),
-                    "robot " + robot_id, "compare the program on the controller with the project");
+                    Text("robot {}", robot_id), "compare the program on the controller with the project");
             if (auto measured = measure_spot(job, **spot, *trigger); !measured) return measured;
             open.erase(trigger->spot_id);
             ++job.done;
@@ -355,7 +355,7 @@ struct Station::Impl {
             region.push.robot_id = find_spot(project, project.regions[i].spot_ids.front())->robot_id;
             alarm = region.push.status != PushStatus::written;
             if (alarm)
-                job.run.message = fmt::format("alarm: region {}: {}", region.region_id, region.push.message);
+                job.run.message = Text("alarm: region {}: {}", region.region_id, region.push.message);
             job.progress(fmt::format("region {}: {}", region.region_id, to_string(region.push.status)));
         }
         if (alarm) job.run.status = RunStatus::alarm;
@@ -388,7 +388,7 @@ struct Station::Impl {
         for (RegionRecord& region : job.run.regions) region.push.release = Release::given;
         if (auto stored = store_outcome(job); !stored) {
             job.run.status = RunStatus::alarm;
-            job.run.message = "alarm: the push cannot be recorded: " + stored.error().sentence();
+            job.run.message = Text("alarm: the push cannot be recorded: {}", stored.error().sentence());
             return take_frames_back(job);
         }
         const HoldOptions hold{job.options.hold, job.options.cancel, job.options.part_over,
@@ -560,7 +560,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
         auto measurer = SpotMeasurer::make(i.project, spot.id);
         if (!measurer) return tl::unexpected(measurer.error());
         if (!i.sensors.count(spot.sensor_id) || !i.robots.count(spot.robot_id))
-            return input_error("its sensor or robot is not connected", "spot " + spot.id);
+            return input_error("its sensor or robot is not connected", Text("spot {}", spot.id));
         job.measurers.insert_or_assign(spot.id, std::move(*measurer));
         SpotMeasurement m;
         m.spot_id = spot.id;

@@ -20,6 +20,7 @@
 #include <stop_token>
 #include <string>
 
+#include "core/text.h"
 #include "devices/capture/recorder.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
@@ -30,7 +31,7 @@ namespace seamwright {
 
 struct RunProgress {
     int done = 0, total = 0;  // spots
-    std::string text;         // "S3 measured", "region left: pushed"
+    Text text;         // "S3 measured", "region left: pushed"
 };
 
 struct RunOptions {

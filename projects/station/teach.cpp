@@ -24,7 +24,7 @@ Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<
     ProfileSource* sensor = station.sensor(spot.sensor_id);
     RobotLink* robot = station.robot(spot.robot_id);
     if (!sensor || !robot)
-        return usage_error("its sensor or robot is not connected", "spot " + spot.id, "connect first");
+        return usage_error("its sensor or robot is not connected", Text("spot {}", spot.id), "connect first");
     Project project = station.project();
     auto known = std::find_if(project.spots.begin(), project.spots.end(),
                               [&](const Spot& s) { return s.id == spot.id; });
@@ -42,7 +42,7 @@ Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<
     const AcquireLimits limits;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         if (cancel.stop_requested())
-            return device_error(ErrorCode::cancelled, "cancelled", "spot " + spot.id);
+            return device_error(ErrorCode::cancelled, "cancelled", Text("spot {}", spot.id));
         auto at = stand_at(*robot, spot.id, poses[i]);
         if (!at) return tl::unexpected(at.error());
         if (auto fired = sensor->trigger(spot.id); !fired) return fired;
@@ -71,7 +71,7 @@ Pose flange_from_sensor(const Station& station, const Spot& spot) {
 
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options) {
     if (options.repeats < 1 || options.repeats > 1000)
-        return usage_error(fmt::format("{} repeats", options.repeats), "spot " + draft.id, "give 1 to 1000");
+        return usage_error(Text("{} repeats", options.repeats), Text("spot {}", draft.id), "give 1 to 1000");
     TaughtSpot taught;
     taught.spot = draft;
     std::vector<Profile> profiles;
@@ -94,9 +94,9 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
             reason = taught.measurements[i].message;
     }
     if (2 * found.size() < taught.measurements.size())
-        return input_error(fmt::format("the feature was found in {} of {} measurements ({})", found.size(),
+        return input_error(Text("the feature was found in {} of {} measurements ({})", found.size(),
                                        options.repeats, reason),
-                           "spot " + draft.id, "choose another feature or move the sensor");
+                           Text("spot {}", draft.id), "choose another feature or move the sensor");
 
     // A reflection that took the feature once must not pull the reference: what lies far from the median is
     // left out.
@@ -116,8 +116,8 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
         if (((point(i) - middle).cwiseAbs().array() <= limit.array()).all()) kept.push_back(i);
     taught.left_out = static_cast<int>(taught.measurements.size() - kept.size());
     if (2 * kept.size() < taught.measurements.size())
-        return input_error(fmt::format("only {} of {} measurements agree", kept.size(), options.repeats),
-                           "spot " + draft.id,
+        return input_error(Text("only {} of {} measurements agree", kept.size(), options.repeats),
+                           Text("spot {}", draft.id),
                            "choose another feature, shield reflections or move the sensor");
     Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
     for (std::size_t i : kept) sum += point(i);
@@ -151,7 +151,7 @@ Spot with_reference_of(const Spot& before, Spot after) {
 
 Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const PassOptions& options) {
     if (!(options.step_mm >= 0.05) || !std::isfinite(options.step_mm))
-        return usage_error(fmt::format("a step of {} mm", options.step_mm), "spot " + spot.id,
+        return usage_error(Text("a step of {} mm", options.step_mm), Text("spot {}", spot.id),
                            "give 0.05 mm or more");
     const MeasuringMove through = measuring_move(spot, flange_from_sensor(station, spot));
     const Eigen::Vector3d before = through.entry.translation() - through.trigger.translation();

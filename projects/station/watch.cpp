@@ -117,7 +117,7 @@ class Watch {
         const auto slice = kCancelSlice / static_cast<int>(robots.size());
         for (const RobotSetup& setup : robots) {
             RobotLink* robot = station_.robot(setup.id);
-            if (!robot) return usage_error("it is not connected", "robot " + setup.id, "connect it");
+            if (!robot) return usage_error("it is not connected", Text("robot {}", setup.id), "connect it");
             auto start = called_ && called_->first == setup.id
                              ? Expected<StartSignal>(std::exchange(called_, std::nullopt)->second)
                              : robot->wait_start(slice);

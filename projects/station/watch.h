@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <string>
 
+#include "core/text.h"
 #include "projects/station/station.h"
 
 namespace seamwright {
@@ -30,7 +31,7 @@ struct WatchEvent {
     std::string utc;    // ISO 8601
     std::string level;  // info | warning | alarm
     std::string event;  // connected | lost | back | robot | start | missed | spot | run | stopped
-    std::string text;   // one sentence
+    Text text;   // one sentence
     nlohmann::json data = nlohmann::json::object();
     WatchState state = WatchState::connecting;
     WatchCounts counts;

@@ -27,10 +27,10 @@ Expected<void> valid(const Project&, const T&) {
 }
 Expected<void> known_devices(const Project& project, const Spot& spot) {
     if (!find_sensor(project, spot.sensor_id))
-        return input_error("the sensor \"" + spot.sensor_id + "\" is not in the project", "spot " + spot.id,
+        return input_error(Text("the sensor \"{}\" is not in the project", spot.sensor_id), Text("spot {}", spot.id),
                            "choose one of the project's");
     if (!find_robot(project, spot.robot_id))
-        return input_error("the robot \"" + spot.robot_id + "\" is not in the project", "spot " + spot.id,
+        return input_error(Text("the robot \"{}\" is not in the project", spot.robot_id), Text("spot {}", spot.id),
                            "choose one of the project's");
     return {};
 }
@@ -45,9 +45,9 @@ template <>
 Expected<void> valid<Region>(const Project& project, const Region& region) {
     for (const std::string& id : region.spot_ids)
         if (!find_spot(project, id))
-            return input_error("there is no spot \"" + id + "\"", "region " + region.id);
+            return input_error(Text("there is no spot \"{}\"", id), Text("region {}", region.id));
     if (std::none_of(region.free.begin(), region.free.end(), [](bool f) { return f; }))
-        return input_error("no degree of freedom is free", "region " + region.id, "leave at least one free");
+        return input_error("no degree of freedom is free", Text("region {}", region.id), "leave at least one free");
     if (auto rigid = pose_from_matrix(region.base_from_frame.matrix(), "region " + region.id); !rigid)
         return tl::unexpected(rigid.error());
     return validate_fields(region);
@@ -56,14 +56,14 @@ template <>
 Expected<void> valid<SensorSetup>(const Project&, const SensorSetup& sensor) {
     const auto& drivers = sensor_drivers();
     if (std::none_of(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == sensor.driver; }))
-        return input_error("the driver \"" + sensor.driver + "\" is not known", "sensor " + sensor.id);
+        return input_error(Text("the driver \"{}\" is not known", sensor.driver), Text("sensor {}", sensor.id));
     return check(sensor.filter);
 }
 template <>
 Expected<void> valid<RobotSetup>(const Project&, const RobotSetup& robot) {
     const auto& drivers = robot_drivers();
     if (std::none_of(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == robot.driver; }))
-        return input_error("the driver \"" + robot.driver + "\" is not known", "robot " + robot.id);
+        return input_error(Text("the driver \"{}\" is not known", robot.driver), Text("robot {}", robot.id));
     return {};
 }
 
@@ -73,11 +73,11 @@ Expected<void> removable(const Project& project, const std::string& id) {
     for (const Spot& spot : project.spots) {
         if constexpr (std::is_same_v<T, SensorSetup>)
             if (spot.sensor_id == id)
-                return input_error("spot " + spot.id + " uses it", "sensor " + id,
+                return input_error(Text("spot {} uses it", spot.id), Text("sensor {}", id),
                                    "give the spot another sensor first");
         if constexpr (std::is_same_v<T, RobotSetup>)
             if (spot.robot_id == id)
-                return input_error("spot " + spot.id + " uses it", "robot " + id,
+                return input_error(Text("spot {} uses it", spot.id), Text("robot {}", id),
                                    "give the spot another robot first");
     }
     return {};
@@ -313,7 +313,7 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     }
     discard_recovery(path);  // of a file that is replaced; must not meet the one that takes its name
     std::filesystem::rename(part, target, failed);
-    if (failed) return file_error("the file cannot be replaced: " + failed.message(), path.string());
+    if (failed) return file_error(Text("the file cannot be replaced: {}", failed.message()), path.string());
     drop_kept();
     recovery_writer_.flush();
     if (auto copied = CalibrationSession::copy_all(file_->path(), path); !copied)
@@ -369,7 +369,7 @@ template <class T>
 Expected<void> Desk::add(T thing, int at) {
     if (auto ok = check_id(thing.id); !ok) return ok;
     if (index_of<T>(project_, thing.id) >= 0)
-        return input_error("the name \"" + thing.id + "\" is used already", {}, "choose another");
+        return input_error(Text("the name \"{}\" is used already", thing.id), {}, "choose another");
     if (auto ok = valid<T>(project_, thing); !ok) return ok;
     const std::size_t size = list_of<T>(project_).size();
     const std::size_t where = at < 0 ? size : std::min(size, static_cast<std::size_t>(at));
@@ -380,7 +380,7 @@ Expected<void> Desk::add(T thing, int at) {
 template <class T>
 Expected<void> Desk::remove(const std::string& id) {
     const int at = index_of<T>(project_, id);
-    if (at < 0) return input_error("there is no \"" + id + "\"");
+    if (at < 0) return input_error(Text("there is no \"{}\"", id));
     if (auto ok = removable<T>(project_, id); !ok) return ok;
     push(std::make_unique<CmdRemove<T>>(editor(), project_, static_cast<std::size_t>(at)));
     return {};
@@ -389,11 +389,11 @@ Expected<void> Desk::remove(const std::string& id) {
 template <class T>
 Expected<void> Desk::rename(const std::string& from, const std::string& to) {
     const int at = index_of<T>(project_, from);
-    if (at < 0) return input_error("there is no \"" + from + "\"");
+    if (at < 0) return input_error(Text("there is no \"{}\"", from));
     if (from == to) return {};
     if (auto ok = check_id(to); !ok) return ok;
     if (index_of<T>(project_, to) >= 0)
-        return input_error("the name \"" + to + "\" is used already", {}, "choose another");
+        return input_error(Text("the name \"{}\" is used already", to), {}, "choose another");
     const bool spot = std::is_same_v<T, Spot> && selection_.spot() == from;
     const bool region = std::is_same_v<T, Region> && selection_.region() == from;
     const bool sensor = std::is_same_v<T, SensorSetup> && selection_.sensor() == from;
@@ -407,7 +407,7 @@ Expected<void> Desk::rename(const std::string& from, const std::string& to) {
 template <class T>
 Expected<void> Desk::move(const std::string& id, int to) {
     const int at = index_of<T>(project_, id);
-    if (at < 0) return input_error("there is no \"" + id + "\"");
+    if (at < 0) return input_error(Text("there is no \"{}\"", id));
     const int last = static_cast<int>(list_of<T>(project_).size()) - 1;
     to = std::clamp(to, 0, last);
     if (to == at) return {};
@@ -419,7 +419,7 @@ Expected<void> Desk::move(const std::string& id, int to) {
 template <class T>
 Expected<void> Desk::edit(const T& after, const QString& what) {
     const int at = index_of<T>(project_, after.id);
-    if (at < 0) return input_error("there is no \"" + after.id + "\"");
+    if (at < 0) return input_error(Text("there is no \"{}\"", after.id));
     const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
     if (to_json_document(before) == to_json_document(after)) return {};
     if (auto ok = valid<T>(project_, after); !ok) return ok;
@@ -452,7 +452,7 @@ template std::string Desk::free_id<Calibration>(const std::string&) const;
 
 Expected<void> Desk::set_spot_enabled(const std::string& id, bool enabled) {
     const int at = index_of<Spot>(project_, id);
-    if (at < 0) return input_error("there is no spot \"" + id + "\"");
+    if (at < 0) return input_error(Text("there is no spot \"{}\"", id));
     if (project_.spots[static_cast<std::size_t>(at)].enabled == enabled) return {};
     push(std::make_unique<CmdSpotEnable>(editor(), id, static_cast<std::size_t>(at), enabled));
     return {};
@@ -460,7 +460,7 @@ Expected<void> Desk::set_spot_enabled(const std::string& id, bool enabled) {
 
 Expected<void> Desk::set_spot_field(const std::string& id, const std::string& field, double value) {
     const Spot* spot = find_spot(project_, id);
-    if (!spot) return input_error("there is no spot \"" + id + "\"");
+    if (!spot) return input_error(Text("there is no spot \"{}\"", id));
     Spot after = *spot;
     if (auto set = set_field(after, field, value); !set) return set;
     return edit(after, QString::fromStdString(field));
@@ -468,7 +468,7 @@ Expected<void> Desk::set_spot_field(const std::string& id, const std::string& fi
 
 Expected<void> Desk::set_region_field(const std::string& id, const std::string& field, double value) {
     const int at = index_of<Region>(project_, id);
-    if (at < 0) return input_error("there is no region \"" + id + "\"");
+    if (at < 0) return input_error(Text("there is no region \"{}\"", id));
     Region after = project_.regions[static_cast<std::size_t>(at)];
     if (auto set = set_field(after, field, value); !set) return set;
     return edit(after, QString::fromStdString(field));
@@ -476,15 +476,15 @@ Expected<void> Desk::set_region_field(const std::string& id, const std::string& 
 
 Expected<void> Desk::use_calibration(const std::string& sensor_id, const std::string& calibration_id) {
     const int at = index_of<SensorSetup>(project_, sensor_id);
-    if (at < 0) return input_error("there is no sensor \"" + sensor_id + "\"");
+    if (at < 0) return input_error(Text("there is no sensor \"{}\"", sensor_id));
     const SensorSetup& sensor = project_.sensors[static_cast<std::size_t>(at)];
     if (sensor.calibration_id == calibration_id) return {};
     const int c = index_of<Calibration>(project_, calibration_id);
     if (!calibration_id.empty() && c < 0)
-        return input_error("there is no calibration \"" + calibration_id + "\"");
+        return input_error(Text("there is no calibration \"{}\"", calibration_id));
     if (c >= 0 && project_.calibrations[static_cast<std::size_t>(c)].sensor_id != sensor_id)
-        return input_error("calibration " + calibration_id + " belongs to another sensor",
-                           "sensor " + sensor_id);
+        return input_error(Text("calibration {} belongs to another sensor", calibration_id),
+                           Text("sensor {}", sensor_id));
     push(std::make_unique<CmdCalibrationUse>(editor(), sensor, static_cast<std::size_t>(at), calibration_id));
     return {};
 }

@@ -87,7 +87,7 @@ Expected<std::filesystem::path> set_aside_recovery(const std::filesystem::path& 
         aside = fmt::format("{}-{}", name, n);
     std::filesystem::rename(path, aside, failed);
     if (failed)
-        return file_error("the file cannot be renamed: " + failed.message(), path.string(), "move it away");
+        return file_error(Text("the file cannot be renamed: {}", failed.message()), path.string(), "move it away");
     std::error_code none;  // a journal belongs to its file
     std::filesystem::rename(path.string() + "-journal", aside.string() + "-journal", none);
     return aside;

@@ -325,10 +325,10 @@ Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, 
     shot.sensor_id = sensor_id;
     shot.robot_id = robot_id;
     ProfileSource* sensor = station.sensor(sensor_id);
-    if (!sensor) return device_error("the sensor is not connected", "sensor " + sensor_id, "connect it");
+    if (!sensor) return device_error("the sensor is not connected", Text("sensor {}", sensor_id), "connect it");
     RobotLink* robot = robot_id.empty() ? nullptr : station.robot(robot_id);
     if (!robot_id.empty() && !robot)
-        return device_error("the robot is not connected", "robot " + robot_id, "connect it");
+        return device_error("the robot is not connected", Text("robot {}", robot_id), "connect it");
     if (robot) {
         auto at = robot->base_from_flange();
         if (!at) return tl::unexpected(at.error());
@@ -351,7 +351,7 @@ Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, 
         if (!after) return tl::unexpected(after.error());
         if (distance_mm(*after, *shot.base_from_flange) > kSameShotMm ||
             angle_rad(*after, *shot.base_from_flange) > rad_from_deg(kSameShotDeg))
-            return device_error("the robot moved while the picture was taken", "robot " + robot_id,
+            return device_error("the robot moved while the picture was taken", Text("robot {}", robot_id),
                                 "let it stand still and capture again");
     }
     return shot;

@@ -353,7 +353,7 @@ void ProvePage::show_item() {
     if (row < 0 || row >= static_cast<int>(desk_.checks().size())) return finding_->setText({});
     const CheckItem& item = desk_.checks()[static_cast<std::size_t>(row)];
     QStringList lines;
-    for (const Phrase& line : item.evidence) lines << q(line.in(desk_.language()));
+    for (const Text& line : item.evidence) lines << q(line.in(desk_.language()));
     set_verdict(*finding_,
                 q(item.why.in(desk_.language())) + (lines.isEmpty() ? QString() : "\n" + lines.join('\n')),
                 Tone::plain);

@@ -245,7 +245,7 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
             const Spot* s = find_spot(desk_.project(), taught->spot.id);
             if (!s) return;
             if (!measured_alike(*s, taught->spot)) {
-                done(input_error("it was changed while its reference was measured", "spot " + s->id,
+                done(input_error("it was changed while its reference was measured", Text("spot {}", s->id),
                                  "measure the reference again"));
                 return;
             }
@@ -406,7 +406,7 @@ std::optional<Pose> TeachPage::present_pose() {
     for (const RobotState& r : desk_.station().robots)
         if (r.id == spot()->robot_id && r.base_from_flange) return r.base_from_flange;
     done(
-        device_error("the robot tells no pose", "robot " + spot()->robot_id, "connect it, or type the pose"));
+        device_error("the robot tells no pose", Text("robot {}", spot()->robot_id), "connect it, or type the pose"));
     return std::nullopt;
 }
 
@@ -471,7 +471,7 @@ void TeachPage::take_template(const QRectF& window) {
     const auto snapshot = desk_.live().latest(s->sensor_id);
     const Profile piece = snapshot ? cut_out(snapshot->profile, window) : Profile();
     if (piece.size() < 20) {
-        done(input_error("the window holds fewer than 20 points of the contour", "spot " + s->id,
+        done(input_error("the window holds fewer than 20 points of the contour", Text("spot {}", s->id),
                          "drag a larger one"));
         return;
     }

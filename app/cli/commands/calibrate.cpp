@@ -62,7 +62,7 @@ Expected<CalibrateOutcome> solve(const Method& method, const CalibrateArguments&
     if (method.images && (std::filesystem::is_directory(a.data) || (stripe && !a.data.ends_with(".json")))) {
         if (a.board.empty() || !(a.pitch_mm > 0))
             return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm",
-                               "calibrate " + std::string(method.name));
+                               Text("calibrate {}", method.name));
         data = {{"folder", std::filesystem::absolute(a.data).string()},
                 {"board", a.board},
                 {"pitch_mm", a.pitch_mm},
@@ -88,7 +88,7 @@ Expected<std::string> store(const CalibrateArguments& a, const Method& method, c
     const auto sensor = std::find_if(project->sensors.begin(), project->sensors.end(),
                                      [&](const SensorSetup& s) { return s.id == a.sensor; });
     if (sensor == project->sensors.end())
-        return usage_error(fmt::format("the project has no sensor \"{}\"", a.sensor), "--sensor");
+        return usage_error(Text("the project has no sensor \"{}\"", a.sensor), "--sensor");
     const Calibration* base = nullptr;
     for (const Calibration& other : project->calibrations)
         if (other.id == sensor->calibration_id) base = &other;
@@ -161,7 +161,7 @@ Expected<Answer> calibrate(const Method& method, const CalibrateArguments& a) {
         return answer;
     }
     if (a.data.empty())
-        return usage_error("the data are missing", "calibrate " + std::string(method.name),
+        return usage_error("the data are missing", Text("calibrate {}", method.name),
                            "give them, or see their layout with --help and --example FILE.json");
     if (a.project.empty() != a.sensor.empty())
         return usage_error("--store and --sensor belong together", "calibrate");

@@ -160,7 +160,7 @@ Expected<std::pair<std::uint64_t, std::uint64_t>> seed_range(const std::string& 
         if (ok) read = std::from_chars(read.ptr + 2, end, last);
     }
     if (!ok || read.ec != std::errc() || read.ptr != end || last < first || last - first >= 1000000)
-        return usage_error(fmt::format("\"{}\" is no range of seeds", text), "--seeds",
+        return usage_error(Text("\"{}\" is no range of seeds", text), "--seeds",
                            "write 1..300: first and last");
     return std::pair(first, last);
 }

@@ -79,7 +79,7 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
     return input_error(id.empty()
                            ? fmt::format("the project holds {} calibrations that could be meant", fit.size())
                            : fmt::format("the project has no calibration \"{}\"", id),
-                       path, "say which with --calibration-id: " + there);
+                       path, Text("say which with --calibration-id: {}", there));
 }
 
 // What images need and do not say: the channel that shows the stripe, and how it runs.

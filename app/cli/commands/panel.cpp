@@ -161,7 +161,7 @@ Expected<std::string> job_of(const Project& project, const PanelArguments& a) {
     for (const PanelJob& job : project.panel_jobs) names += (names.empty() ? "" : ", ") + job.id;
     if (names.empty())
         return input_error("the project has no panel job", a.file, "make one, or see --simulated");
-    return usage_error("the project has several panel jobs", a.file, "name one with --job: " + names);
+    return usage_error("the project has several panel jobs", a.file, Text("name one with --job: {}", names));
 }
 
 Expected<void> teach(Station& station, const std::string& id, const PanelArguments& a) {
@@ -169,7 +169,7 @@ Expected<void> teach(Station& station, const std::string& id, const PanelArgumen
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
     if (job == project.panel_jobs.end())
-        return input_error(fmt::format("there is no panel job \"{}\"", id), a.file);
+        return input_error(Text("there is no panel job \"{}\"", id), a.file);
     TeachOptions options;
     options.repeats = a.teach;
     options.cancel = stop_on_signal();
@@ -186,7 +186,7 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
     if (job == project.panel_jobs.end())
-        return input_error(fmt::format("there is no panel job \"{}\"", id), a.file);
+        return input_error(Text("there is no panel job \"{}\"", id), a.file);
     for (const auto& [name, value] : a.settings) {
         std::string known;
         bool described = false;
@@ -195,7 +195,7 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
             described = described || f.info.name == name;
         }
         if (!described)
-            return usage_error("a panel job has no setting \"" + name + "\"", "--set", "known are " + known);
+            return usage_error(Text("a panel job has no setting \"{}\"", name), "--set", Text("known are {}", known));
         if (auto good = set_field(*job, name, value); !good) return tl::unexpected(good.error());
     }
     if (auto kept = station.edit(project); !kept) return tl::unexpected(kept.error());

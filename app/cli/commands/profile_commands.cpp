@@ -213,7 +213,7 @@ Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
         const auto spot = std::find_if(project->spots.begin(), project->spots.end(),
                                        [&](const Spot& s) { return s.id == a.spot; });
         if (spot == project->spots.end())
-            return input_error(fmt::format("the project has no spot \"{}\"", a.spot), "--spot");
+            return input_error(Text("the project has no spot \"{}\"", a.spot), "--spot");
         options.jitter_mm = spot->jitter_mm;
         options.window_mm = std::max(spot->entry_mm, spot->exit_mm);
         options.reference_mm = Eigen::Vector2d(spot->reference_mm.x(), spot->reference_mm.z());

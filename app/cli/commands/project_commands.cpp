@@ -119,7 +119,7 @@ json checklist_json(const std::vector<CheckItem>& items) {
     json list = json::array();
     for (const CheckItem& item : items) {
         json evidence = json::array();
-        for (const Phrase& line : item.evidence) evidence.push_back(line.in(Language::english));
+        for (const Text& line : item.evidence) evidence.push_back(line.in(Language::english));
         list.push_back({{"step", to_string(item.step)},
                         {"status", to_string(item.status)},
                         {"finding", item.why.in(Language::english)},
@@ -161,12 +161,12 @@ Expected<Answer> check_project(const CheckArguments& a) {
     answer.text += plausibility.empty() ? "plausible\n" : "findings\n";
     for (const auto& s : plausibility) answer.text += "  " + s.get<std::string>() + "\n";
     const Language language = *language_from(a.language);
-    answer.text += Phrase("Commissioning").in(language) + "\n";
+    answer.text += Text("Commissioning").in(language) + "\n";
     for (const CheckItem& item : items) {
         answer.text +=
             fmt::format("  {} {}: {}. {}\n", item.done() ? "[x]" : "[ ]", name_of(item.step).in(language),
                         name_of(item.status).in(language), item.why.in(language));
-        for (const Phrase& line : item.evidence) answer.text += "        " + line.in(language) + "\n";
+        for (const Text& line : item.evidence) answer.text += "        " + line.in(language) + "\n";
     }
     return answer;
 }

@@ -35,7 +35,7 @@ Expected<std::vector<Setup>> chosen(const std::vector<Setup>& all, const std::ve
     for (const std::string& name : names) {
         const auto it = std::find_if(all.begin(), all.end(), [&](const Setup& s) { return s.id == name; });
         if (it == all.end())
-            return input_error(fmt::format("the project has no {} \"{}\"", what, name),
+            return input_error(Text("the project has no {} \"{}\"", what, name),
                                std::string("--") + what);
         some.push_back(*it);
     }

@@ -31,7 +31,7 @@ Expected<Answer> write_program(const ProgramArguments& a) {
     if (!files) return tl::unexpected(files.error());
     std::error_code failed;
     std::filesystem::create_directories(a.folder, failed);
-    if (failed) return file_error("the folder cannot be made: " + failed.message(), a.folder.string());
+    if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), a.folder.string());
     Answer answer;
     answer.json = {{"status", "ok"}, {"brand", a.brand}, {"files", nlohmann::json::array()}};
     for (const ProgramFile& f : *files) {

@@ -76,7 +76,7 @@ Expected<std::shared_ptr<spdlog::logger>> open_log(const std::string& file) {
         logger->flush_on(spdlog::level::info);
         return logger;
     } catch (const spdlog::spdlog_ex& e) {
-        return file_error(std::string("the log cannot be written: ") + e.what(), file);
+        return file_error(Text("the log cannot be written: {}", e.what()), file);
     }
 }
 

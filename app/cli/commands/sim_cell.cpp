@@ -42,7 +42,7 @@ Expected<ServedController> controller_from(const std::string& text) {
     if (!digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos)
         port = number_from<int>(digits).value_or(-1);
     if (port < 0 || port > 65535)
-        return usage_error("\"" + digits + "\" is no port", "--controller " + text, "give NAME or NAME:PORT");
+        return usage_error(Text("\"{}\" is no port", digits), Text("--controller {}", text), "give NAME or NAME:PORT");
     c.settings["port"] = port;
     return c;
 }
@@ -166,7 +166,7 @@ Expected<Answer> sim_cell(const SimCellArguments& a) {
     if (!server) return tl::unexpected(server.error());
     if (!a.fault.empty()) {
         const auto fault = controller_fault_from(a.fault);
-        if (!fault) return usage_error("there is no fault \"" + a.fault + "\"", "--fault");
+        if (!fault) return usage_error(Text("there is no fault \"{}\"", a.fault), "--fault");
         for (const auto& [name, controller] : server->controllers()) controller->set_fault(*fault);
     }
     std::cout << state_json(*server).dump() << std::endl;

@@ -142,7 +142,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     if (!camera) return tl::unexpected(camera.error());
     if (!camera->plane || !camera->flange_from_camera)
         return device_error(
-            "the plate frames do not determine the laser plane: " + camera->report.judgement.reason,
+            Text("the plate frames do not determine the laser plane: {}", camera->report.judgement.reason),
             "stripe-camera");
     Calibration& c = demo.calibration;
     c.model = SensorModel{camera->camera, camera->camera_from_laser, std::nullopt};
@@ -213,7 +213,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     if (!tcp) return tl::unexpected(tcp.error());
     if (tcp->status != TcpSphereStatus::ok)
         return device_error(
-            "the sphere does not determine the sensor's place: " + tcp->report.judgement.reason,
+            Text("the sphere does not determine the sensor's place: {}", tcp->report.judgement.reason),
             "tcp-sphere");
     c.flange_from_sensor = tcp->flange_from_sensor;
     c.covariance = tcp->covariance;

@@ -113,8 +113,8 @@ Expected<FeatureRecipe> template_recipe(const Cell& cell, const Pose& pose, std:
     const Profile profile = averaged(profiles);
     const Feature edge = (*end)->find(profile);
     if (edge.status != FeatureStatus::ok)
-        return input_error("the contour's end is not found when teaching: " + edge.message,
-                           "spot " + cell.spots[n].id, "evaluate with less noise");
+        return input_error(Text("the contour's end is not found when teaching: {}", edge.message),
+                           Text("spot {}", cell.spots[n].id), "evaluate with less noise");
     FeatureRecipe recipe;
     recipe.kind = "template";
     recipe.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
@@ -160,7 +160,7 @@ Expected<TaughtSpot> teach(const Cell& cell, const Method& method, std::size_t n
     }
     const Summary in_x = summarise(x), in_z = summarise(z);
     if (in_x.count < kRepeats / 2)
-        return input_error("the feature is not found when teaching", "spot " + cell.spots[n].id,
+        return input_error("the feature is not found when teaching", Text("spot {}", cell.spots[n].id),
                            "evaluate with less noise");
     spot.observation.reference_mm = {in_x.mean, 0, in_z.mean};
     const double count = static_cast<double>(in_x.count);

@@ -91,7 +91,7 @@ Expected<std::vector<ProgramFile>> files_of_folder(const std::string& folder) {
         if (!text) return tl::unexpected(text.error());
         files.push_back({entry.path().filename().string(), std::move(*text)});
     }
-    if (failed) return file_error("the folder cannot be read: " + failed.message(), folder);
+    if (failed) return file_error(Text("the folder cannot be read: {}", failed.message()), folder);
     std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     return files;
 }
@@ -138,7 +138,7 @@ class Controller final : public AbbRapidController {
         }
         if (robot_.listening()) return {};
         const auto said = messages();
-        return device_error("the server task does not listen" + (said.empty() ? "" : ": " + said.back()),
+        return device_error(Text("the server task does not listen{}", (said.empty() ? "" : ": " + said.back())),
                             "simulated abb-rapid controller");
     }
 

@@ -345,7 +345,7 @@ std::map<std::string, Native> RapidRobot::natives() {
             listener_.reset();
         } else {
             auto listener = TcpListener::listen(s.address, static_cast<std::uint16_t>(s.port));
-            if (!listener) Task::raise(kErrSockAddrInuse, listener.error().what);
+            if (!listener) Task::raise(kErrSockAddrInuse, listener.error().what.english());
             s.listener = std::move(*listener);
         }
         listening_ = true;

@@ -88,7 +88,7 @@ Expected<void> sleep(BuiltinCall& c) {
     Arguments a(c);
     const double t = a.real(0);
     if (auto ok = a.done(); !ok) return ok;
-    if (!(t >= 0 && t < 1e6)) return input_error(fmt::format("sleep({})", t));
+    if (!(t >= 0 && t < 1e6)) return input_error(Text("sleep({})", t));
     c.wait = {Wait::For::time, c.robot.time_s() + t, 0, 0};
     return {};
 }
@@ -155,7 +155,7 @@ Expected<void> sqrt(BuiltinCall& c) {
     Arguments a(c);
     const double v = a.real(0);
     if (auto ok = a.done(); !ok) return ok;
-    if (!(v >= 0)) return input_error(fmt::format("sqrt({})", v));
+    if (!(v >= 0)) return input_error(Text("sqrt({})", v));
     c.result = {std::sqrt(v)};
     return {};
 }
@@ -165,7 +165,7 @@ Expected<void> length(BuiltinCall& c) {
     else if (std::holds_alternative<PoseValue>(c.arguments[0].is))
         c.result = {std::int32_t{6}};
     else
-        return input_error(fmt::format("length() of {}", type_name(c.arguments[0])));
+        return input_error(Text("length() of {}", type_name(c.arguments[0])));
     return {};
 }
 
@@ -192,7 +192,7 @@ Expected<void> str_sub(BuiltinCall& c) {
     const std::int32_t at = a.whole(1), count = a.whole(2, static_cast<std::int32_t>(text.size()));
     if (auto ok = a.done(); !ok) return ok;
     if (at < 0 || at >= static_cast<std::int32_t>(text.size()) || count < 0)
-        return input_error(fmt::format("str_sub() at {} of {} signs", at, text.size()));
+        return input_error(Text("str_sub() at {} of {} signs", at, text.size()));
     c.result = {text.substr(static_cast<std::size_t>(at), static_cast<std::size_t>(count))};
     return {};
 }
@@ -202,7 +202,7 @@ Expected<void> str_at(BuiltinCall& c) {
     const std::int32_t at = a.whole(1);
     if (auto ok = a.done(); !ok) return ok;
     if (at < 0 || at >= static_cast<std::int32_t>(text.size()))
-        return input_error(fmt::format("str_at() at {} of {} signs", at, text.size()));
+        return input_error(Text("str_at() at {} of {} signs", at, text.size()));
     c.result = {text.substr(static_cast<std::size_t>(at), 1)};
     return {};
 }
@@ -211,7 +211,7 @@ Expected<void> str_find(BuiltinCall& c) {
     const std::string text = a.text(0), wanted = a.text(1);
     const std::int32_t from = a.whole(2, 0);
     if (auto ok = a.done(); !ok) return ok;
-    if (from < 0) return input_error(fmt::format("str_find() from {}", from));
+    if (from < 0) return input_error(Text("str_find() from {}", from));
     const auto at = text.find(wanted, static_cast<std::size_t>(from));
     c.result = {at == std::string::npos ? std::int32_t{-1} : static_cast<std::int32_t>(at)};
     return {};
@@ -227,7 +227,7 @@ Expected<void> to_num(BuiltinCall& c) {
     double v = 0;
     const auto r = std::from_chars(text.data(), text.data() + text.size(), v);
     if (r.ec != std::errc{} || r.ptr != text.data() + text.size())
-        return input_error("to_num(\"" + text + "\")");
+        return input_error(Text("to_num(\"{}\")", text));
     if (text.find_first_of(".eE") == std::string::npos && std::abs(v) < 2147483648.0) return whole_of(c, v);
     c.result = {v};
     return {};

@@ -518,7 +518,7 @@ Expected<Program> compile(const std::vector<Source>& sources) {
         auto read = tokens_of(source.text);
         if (!read) {
             Error error = read.error();
-            error.where = source.name + " " + error.where;
+            error.where = joined(source.name, " ", error.where);
             return tl::unexpected(error);
         }
         read->pop_back();  // the end

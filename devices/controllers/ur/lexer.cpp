@@ -219,7 +219,7 @@ Expected<std::vector<Token>> tokens_of(std::string_view text) {
     std::vector<Token> tokens;
     int line = 1;
     const auto fail = [&](const std::string& what) {
-        return input_error(what, fmt::format("line {}", line));
+        return input_error(what, Text("line {}", line));
     };
     const auto add = [&](Token::Kind kind, std::string word, Value value = {}) {
         tokens.push_back({kind, std::move(word), std::move(value), line});

@@ -91,7 +91,7 @@ void RtdeServer::serve(Client& client, const std::stop_token& stop) {
         for (;;) {
             const auto package = rtde::take_package(received);
             if (!package) {
-                (void)tell(client, package.error().what, 1);
+                (void)tell(client, package.error().what.english(), 1);
                 return false;
             }
             if (!*package) break;
@@ -116,7 +116,7 @@ bool RtdeServer::answer(Client& client, const Package& package) {
     switch (package.type) {
         case Type::protocol_version: {
             const auto wanted = rtde::version_of(package.payload);
-            if (!wanted) return tell(client, wanted.error().what, 1) && false;
+            if (!wanted) return tell(client, wanted.error().what.english(), 1) && false;
             const bool yes = *wanted >= 1 && *wanted <= settings_.newest_protocol;
             if (yes) client.version = *wanted;
             return reply(std::string(1, yes ? '\1' : '\0'));
@@ -223,7 +223,7 @@ bool RtdeServer::take_data(Client& client, const std::string& payload) {
     const auto recipe = client.inputs.find(payload.empty() ? 0 : static_cast<std::uint8_t>(payload[0]));
     if (recipe == client.inputs.end()) return tell(client, "Data of no input recipe came", 1) && false;
     const auto values = rtde::values_of(payload, recipe->second.first);
-    if (!values) return tell(client, values.error().what, 1) && false;
+    if (!values) return tell(client, values.error().what.english(), 1) && false;
     if (!client.streaming) return true;  // not started: not synchronised
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 0; i < values->size(); ++i)

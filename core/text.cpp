@@ -1,0 +1,83 @@
+#include "core/text.h"
+
+#include <fmt/args.h>
+
+#include <ostream>
+
+namespace seamwright {
+namespace {
+
+constexpr std::size_t kLongestKey = 2000, kMostArguments = 20;
+constexpr std::size_t kLongestMark = 12;  // "{0:+12.6f}"
+
+// A stored pattern may ask for a width that fills the memory; ours have two digits at most, and no nested marks.
+bool modest(std::string_view key) {
+    if (key.size() > kLongestKey) return false;
+    for (std::size_t i = 0; i < key.size(); ++i) {
+        if (key[i] != '{') continue;
+        if (i + 1 < key.size() && key[i + 1] == '{') {
+            ++i;
+            continue;
+        }
+        const std::size_t end = key.find('}', i);
+        if (end == std::string_view::npos || end - i > kLongestMark) return false;
+        int digits = 0;
+        for (++i; i < end; ++i) {
+            digits = key[i] >= '0' && key[i] <= '9' ? digits + 1 : 0;
+            if (digits > 2 || key[i] == '{') return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+std::string Text::in(Language language) const {
+    std::string_view pattern = key_;
+    if (language == Language::german)
+        if (const auto german = german_of(key_)) pattern = *german;
+    if (arguments_.empty()) return std::string(pattern);
+    fmt::dynamic_format_arg_store<fmt::format_context> values;
+    for (const Argument& argument : arguments_)
+        std::visit(
+            [&](const auto& value) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Text>)
+                    values.push_back(value.in(language));
+                else
+                    values.push_back(value);
+            },
+            argument);
+    return fmt::vformat(fmt::string_view(pattern.data(), pattern.size()), values);
+}
+
+std::optional<Text> Text::from(std::string key, std::vector<Argument> arguments) {
+    if (arguments.size() > kMostArguments || (!arguments.empty() && !modest(key))) return std::nullopt;
+    Text text;
+    text.key_ = std::move(key);
+    text.arguments_ = std::move(arguments);
+    try {
+        (void)text.english();
+    } catch (const fmt::format_error&) {
+        return std::nullopt;
+    }
+    return text;
+}
+
+std::ostream& Text::print(std::ostream& out) const {
+    return out << english();
+}
+
+Text joined(const Text& first, std::string_view between, const Text& second) {
+    if (first.empty()) return second;
+    if (second.empty()) return first;
+    return Text::chosen("{}" + std::string(between) + "{}", first, second);
+}
+
+Text listed(const std::vector<Text>& texts) {
+    Text list;
+    for (std::size_t i = 0; i < texts.size(); ++i)
+        list = i > 0 && i + 1 == texts.size() ? Text("{} and {}", list, texts[i]) : joined(list, ", ", texts[i]);
+    return list;
+}
+
+}  // namespace seamwright

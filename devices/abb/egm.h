@@ -25,9 +25,8 @@
 // (permission() `taken`). EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
 // fault.
 //
-// Further settings (defaults): {"frame": "path" | "sensor", "tcp_from_sensor": POSE identity}. "sensor" tells
-// the same shift along the axes of the sensor frame that EGMActMove was given, for controllers that are set
-// up so.
+// Settings: abb_egm_settings(). "frame": "sensor" tells the same shift along the axes of the sensor frame that
+// EGMActMove was given, for controllers that are set up so.
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -39,6 +38,7 @@
 
 namespace seamwright {
 
+const SettingTable& abb_egm_settings();
 Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings, DeviceSession& session,
                                                   OpenRobot open_robot);
 

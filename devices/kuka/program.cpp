@@ -6,6 +6,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/settings.h"
+#include "devices/kuka/eki.h"
 #include "devices/kuka/program.h"
 #include "devices/kuka/rsi_program.h"
 #include "kuka_resources.h"
@@ -49,6 +50,14 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 
 }  // namespace
 
+const SettingTable& kuka_program_settings() {
+    static const SettingTable table = {
+        entry::whole("trigger_output", 1, 1, 8192, "output that fires the sensor, for the program"),
+        entry::whole("flag_alive", 1, 1, 1024, "flag of EthernetKRL's connection, for the program"),
+        entry::whole("flag_command", 2, 1, 1024, "flag of EthernetKRL's commands, for the program")};
+    return table;
+}
+
 Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request) {
     if (request.driver == "kuka-rsi") return write_rsi_program(request);
     if (request.moves.size() > kMostSpots)
@@ -57,16 +66,18 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
     if (request.frames.size() > kMostFrames)
         return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
                            request.project, fmt::format("give at most {}", kMostFrames));
-    std::string listen = "127.0.0.1";
-    int port = 54600, output = 1, alive = 1, command = 2;
-    SettingsReader f(request.settings, "settings");
+    std::string listen;
+    int port = 0, output = 0, alive = 0, command = 0;
+    SettingsReader f(request.settings, "settings", kuka_eki_settings(), UnknownSettings::passed_over);
     f.text("listen", listen);
-    f.whole("port", port, 1, 65535);
-    f.whole("trigger_output", output, 1, 8192);
-    f.whole("flag_alive", alive, 1, 1024);
-    f.whole("flag_command", command, 1, 1024);
+    f.whole("port", port);
+    f.whole("trigger_output", output);
+    f.whole("flag_alive", alive);
+    f.whole("flag_command", command);
     if (f.failed()) return tl::unexpected(f.error());
 
+    if (port == 0)
+        return input_error("a controller connects to no port 0", "settings.port", "give 1 to 65535");
     if (listen == "0.0.0.0" || listen.empty() || listen.find_first_not_of("0123456789.") != std::string::npos)
         return input_error("\"" + listen + "\" is no address that a controller connects to",
                            "settings.listen", "give this computer's address in the robot's network");

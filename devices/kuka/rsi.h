@@ -32,9 +32,7 @@
 // <Path> when it runs: permission() is `given`, `running` while <Path> is 1 (where it is not sent: once RSol
 // moves) and `taken` when it is over, that is <Path> is 0 again, or the session ends with RSol standing.
 //
-// Further settings (defaults): {"mode": "absolute" | "relative", "reference": "base" | "tool",
-//   "sen_type": "ImFree" (SENTYPE of the controller's configuration), "decimals": 7,
-//   "path_output", "release_output": see rsi_program.h}
+// Settings: kuka_rsi_settings().
 // "mode" is that of RSI_ON: absolute tells the whole correction in every cycle, relative its increments,
 // which the controller adds up axis by axis. Increments are the differences of what has been told after
 // rounding, so their sum is the correction to half a unit of the last decimal at every moment. "tool" with
@@ -53,6 +51,7 @@
 
 namespace seamwright {
 
+const SettingTable& kuka_rsi_settings();
 Expected<std::unique_ptr<RobotLink>> open_kuka_rsi(const nlohmann::json& settings, DeviceSession& session,
                                                    OpenRobot open_robot);
 

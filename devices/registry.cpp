@@ -9,6 +9,7 @@
 #include "devices/abb/rapid.h"
 #include "devices/controllers/abb/controller.h"
 #include "devices/controllers/kuka/controller.h"
+#include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/controllers/ur/controller.h"
 #include "devices/genicam/genicam.h"
 #include "devices/gocator/gocator.h"

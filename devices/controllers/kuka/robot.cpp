@@ -7,19 +7,13 @@
 #include <set>
 #include <thread>
 
+#include "devices/controllers/kuka/arguments.h"
+
 namespace seamwright::krl {
 namespace {
 
 constexpr double kT1MmS = 250, kPtpMmS = 500;
 constexpr std::size_t kMostMessages = 200;
-
-int index_of(const Place& place, int most) {
-    if (place.indices.size() != 1 || place.row)
-        throw KrlError(fmt::format("{} wants one index", place.system));
-    if (place.indices[0] < 1 || place.indices[0] > most)
-        throw KrlError(fmt::format("{}[{}] is outside 1 to {}", place.system, place.indices[0], most));
-    return static_cast<int>(place.indices[0]);
-}
 
 Value structure(const std::string& component, std::optional<double> value) {
     Value v = Value::unset(Type::frame);
@@ -106,7 +100,7 @@ Value KukaRobot::flag(int number) const {
 
 std::optional<Value> KukaRobot::system_value(Task& task, const Place& place) {
     const std::string& name = place.system;
-    if (task.kind() == TaskKind::robot && belongs_to_main_run(name)) wait_main_run(task);
+    if (task.stops_advance() && belongs_to_main_run(name)) wait_main_run(task);
     if (name == "$NULLFRAME") return Value::of(Pose::Identity(), Type::frame);
     if (name == "$FLAG") return flag(index_of(place, 1024));
     if (name == "$IN") {

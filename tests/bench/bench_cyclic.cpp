@@ -36,7 +36,8 @@ void answer(benchmark::State& state, Open open, Start start) {
         bool up = false;
         while (std::chrono::steady_clock::now() < end) {
             up = !up;
-            if (!(*link)->confirm(up ? PartVerdict::corrected : PartVerdict::refused, "")) {
+            if (!(*link)->write_frame("PATH", up ? moved : taught) ||
+                !(*link)->confirm(PartVerdict::corrected, "")) {
                 state.SkipWithError("a correction was refused");
                 return;
             }

@@ -196,8 +196,14 @@ CyclicCorrector::Holds CyclicCorrector::judge(const CyclicPacket& packet,
     if (nearer_held) return Holds::on;
     if (nearer_zero && (followed_ || relation == Relation::jump || open_ > 0)) return Holds::zero;
     if (relation != Relation::jump && open_ == 0) return Holds::on;
+    if (held_.is_zero() && told_.is_zero()) return Holds::zero;
+    // Of a robot that does not show what it holds, nothing may be supposed: it is left alone until it does.
+    if (!shown) {
+        open_ = std::max(open_, 1);
+        return Holds::unknown;
+    }
     // A path that moves hides by its lag what the robot holds, until some of its points are known.
-    return shown && !(held_.is_zero() && told_.is_zero()) && ++open_ <= kOpen ? Holds::unknown : Holds::zero;
+    return ++open_ <= kOpen ? Holds::unknown : Holds::zero;
 }
 
 void CyclicCorrector::commit(bool taken) {
@@ -370,8 +376,11 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
         // After numbers that jumped it may be the one before. Both lie within a step of each other, so what
         // is told is no further one, until it is known to have been taken.
         pause_ = relation != Relation::next || (pause_ && !taken);
-        const Relation judged =
-            not_running_ && packet.running && relation == Relation::next ? Relation::gap : relation;
+        // A controller that did not take corrections has led the last one out.
+        // And one that was not answered may have stopped and begun anew while nobody heard it.
+        const bool anew =
+            (not_running_ && packet.running) || (protocol_->stops_unanswered() && (arrival.gap || silent_));
+        const Relation judged = anew ? Relation::jump : relation;
         switch (judge(packet, shown, judged)) {
             case Holds::on:
                 commit(taken);

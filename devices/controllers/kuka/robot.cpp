@@ -119,7 +119,6 @@ std::optional<Value> KukaRobot::system_value(Task& task, const Place& place) {
     if (name == "$PRO_STATE1") return Value::name(name_of(state_));
     if (name == "$KR_SERIALNO") return Value::integer(settings_.serial);
     if (name == "$TRAFONAME") return Value::string_of("#KR SIMULATED");
-    if (name == "$IPO_MODE" || name == "$IPO_MODE_C") return Value::name("BASE");
     if (name == "$AXIS_ACT") {
         Value v = Value::unset(Type::e6axis);
         v.set = true;
@@ -138,6 +137,8 @@ std::optional<Value> KukaRobot::system_value(Task& task, const Place& place) {
     }
     if (name == "$BASE") return frame_or_unset(advance_.base, name);
     if (name == "$TOOL") return frame_or_unset(advance_.tool, name);
+    if (name == "$IPO_MODE") return Value::name(advance_.fixed_tool ? "TCP" : "BASE");
+    if (name == "$IPO_MODE_C") return Value::name(main_.fixed_tool ? "TCP" : "BASE");
     if (name == "$BASE_C") return frame_or_unset(main_.base, name);
     if (name == "$TOOL_C") return frame_or_unset(main_.tool, name);
     if (name == "$VEL") return structure("CP", velocity_m_s_);
@@ -198,6 +199,12 @@ bool KukaRobot::set_system(Task& task, const Place& place, const Value& value) {
         (name == "$BASE" ? advance_.base : advance_.tool) = value.pose();
         return true;
     }
+    if (name == "$IPO_MODE") {
+        if (value.type != Type::enumeration || (value.text != "BASE" && value.text != "TCP"))
+            throw KrlError("$IPO_MODE is #BASE or #TCP");
+        advance_.fixed_tool = value.text == "TCP";
+        return true;
+    }
     if (name == "$VEL" && place.component == "CP") {
         const double v = value.as_number();
         if (!(v > 0 && v <= 3)) throw KrlError(fmt::format("$VEL.CP={} m/s is not possible", v));
@@ -232,6 +239,8 @@ void KukaRobot::move(Task& task, Motion motion, const Value& target, bool approx
         if (motion != Motion::ptp && !velocity_m_s_) throw KrlError("$VEL.CP is not initialised");
         if (!at_block_) planned_ = arm_.position();
         const Frames now = advance_;
+        if (now.fixed_tool && target.type != Type::e6axis)
+            throw KrlError("with a fixed tool ($IPO_MODE=#TCP) only axis angles are known here");
         if (target.type == Type::e6axis) {
             if (motion != Motion::ptp) throw KrlError("a LIN goes to a position, not to axis angles");
             move.base_from_flange = planned_;  // the only angles there are: $AXIS_ACT

@@ -96,6 +96,14 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
                                       ? static_cast<SimulatedRsi&>(*controller).measuring()
                                       : static_cast<SimulatedEgm&>(*controller).measuring();
     ASSERT_NE(beside, nullptr);
+    // The permission is there as long as nobody takes it back, of both controllers.
+    for (int i = 0; i < 100 && !controller->released(); ++i) std::this_thread::sleep_for(milliseconds(2));
+    EXPECT_TRUE(controller->released()) << "told with the next cycles";
+    std::this_thread::sleep_for(milliseconds(100));
+    EXPECT_TRUE(controller->released());
+    const auto permission = link->permission();
+    ASSERT_TRUE(permission) << permission.error().sentence();
+    EXPECT_TRUE(*permission == Permission::given || *permission == Permission::running);
     EXPECT_EQ(beside->verdict(), PartVerdict::corrected);
     // The next part starts without a correction.
     auto again = start_measuring();

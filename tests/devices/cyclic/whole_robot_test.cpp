@@ -21,9 +21,10 @@ using std::chrono::milliseconds;
 struct Brand {
     const char *cyclic, *measuring;
     bool robot_is_client;
+    double way_mm = 20;  // from entry to spot and on to exit
 };
 void PrintTo(const Brand& b, std::ostream* out) {
-    *out << b.cyclic << " with " << b.measuring;
+    *out << b.cyclic << " with " << b.measuring << (b.way_mm > 0 ? "" : ", standing at its spot");
 }
 
 class WholeRobot : public testing::TestWithParam<Brand> {};
@@ -35,8 +36,8 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
     move.spot_id = "S1";
     move.trigger = make_pose(rotation_exp({0.1, 0.2, -0.3}), {800, -200, 600});
     move.entry = move.exit = move.trigger;
-    move.entry.translation().y() -= 20;
-    move.exit.translation().y() += 20;
+    move.entry.translation().y() -= GetParam().way_mm;
+    move.exit.translation().y() += GetParam().way_mm;
     (*cell)->store_program({move});
     const std::uint16_t port = UdpSocket::bind("127.0.0.1", 0)->port();
     const std::uint16_t tcp = TcpListener::listen("127.0.0.1", 0)->port();
@@ -113,6 +114,7 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
 }
 INSTANTIATE_TEST_SUITE_P(Brands, WholeRobot,
                          testing::Values(Brand{"kuka-rsi", "kuka-eki", true},
+                                         Brand{"kuka-rsi", "kuka-eki", true, 0},
                                          Brand{"abb-egm", "abb-rapid", false}));
 
 }  // namespace

@@ -22,7 +22,9 @@
 //
 // Nothing is corrected unless motors are on, RAPID runs and the MCI state is RUNNING; leaving that under a
 // correction is an alarm, unless the path had come to its end and EGM is STOPPED: then the path is over
-// (permission() `taken`). EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
+// (permission() `taken`). There is no release that could fall: a permission that goes while the path runs, by
+// a verdict, an alarm or the end of the program, ends the answers, and the robot stops with CommTimeout of
+// SeamwrightEgm.mod, its last correction in force until it stands. EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
 // fault.
 //
 // Settings: abb_egm_settings(). "frame": "sensor" tells the same shift along the axes of the sensor frame that

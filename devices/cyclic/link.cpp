@@ -346,7 +346,7 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
         server_->withdraw();
         return ok;
     }
-    server_->forget_path();
+    if (verdict == PartVerdict::corrected) server_->forget_path();
     auto done = verdict == PartVerdict::corrected ? apply() : back_to_zero();
     if (!done) {
         server_->withdraw();

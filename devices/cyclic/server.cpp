@@ -109,6 +109,11 @@ void CyclicServer::set_target(const Pose& displacement) {
     corrector_.set_target(displacement);
 }
 
+void CyclicServer::withdraw() {
+    const std::lock_guard lock(mutex_);
+    corrector_.withdraw();
+}
+
 void CyclicServer::await_path() {
     const std::lock_guard lock(mutex_);
     corrector_.await_path();

@@ -38,7 +38,7 @@ class CyclicServer {
     using State = CyclicCorrector::State;
     State state() const;
     void set_target(const Pose& displacement);
-    void withdraw() { set_target(Pose::Identity()); }
+    void withdraw();
     void await_path();
     void forget_path();
     std::optional<std::string> alarm() const;

@@ -139,7 +139,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         "\nDEF SEAMWRIGHT_SPOTS()\nIF NOT StrComp(SW_SIGNATURE[],\"" + signature +
         "\",#CASE_SENS) THEN\n   SW_SETUP()\nENDIF\nSW_BEGIN_PART()\nBAS(#INITMOV,0)\n"
         "; the points are poses of the flange in the robot's base; the application sets its $TOOL again\n"
-        "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n$APO.CDIS=5\n" +
+        "$IPO_MODE=#BASE\n$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n$APO.CDIS=5\n" +
         path +
         "WAIT SEC 0\nSW_END_PART(20.0)\nEND\n\n"
         "; Taught frames and names: call it once at the start of the application program.\nGLOBAL DEF "

@@ -74,12 +74,14 @@ Expected<Linearity> linearity_study(std::span<const StudyValue> values) {
     if (r.line.s <= 1e-12)
         return input_error("the values lie on a line exactly, so they tell nothing of the scatter",
                            "linearity", "give them with more digits");
-    bool enough = static_cast<int>(levels.size()) >= kLinearityLevels;
+    std::size_t most = 0;
     for (const auto& [reference, biases] : levels) {
-        enough = enough && static_cast<int>(biases.size()) >= kLinearityRepeats;
+        most = std::max(most, biases.size());
         r.levels.push_back({reference, static_cast<int>(biases.size()), moments(biases).mean,
                             r.line.at(reference), r.line.band(reference)});
     }
+    const bool enough = levels.size() >= kLinearityLevels &&
+                        x.size() >= kLinearityLevels * kLinearityRepeats && 2 * most <= x.size();
     const double from = levels.begin()->first, to = levels.rbegin()->first;
     constexpr int kSteps = 200;
     r.zero_inside = true;

@@ -30,7 +30,8 @@ struct Line {
 // Preconditions: as many x as y, 3 or more, at least two different x.
 Line fit_line(std::span<const double> x, std::span<const double> y);
 
-inline constexpr int kLinearityLevels = 5, kLinearityRepeats = 10;
+// Asked for: 5 levels of 10 repeats, or as many values over more levels, no level holding more than half of them.
+inline constexpr std::size_t kLinearityLevels = 5, kLinearityRepeats = 10;
 
 struct LinearityLevel {
     double reference_mm = 0;

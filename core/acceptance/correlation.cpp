@@ -45,7 +45,7 @@ Expected<Correlation> correlation_study(std::span<const StudyValue> values) {
     r.offset_mm = m.mean;
     r.s_mm = m.s;
     r.offset_p = student_two_sided_p(n - 1, m.mean / by);
-    const double t = student_quantile(n - 1, 0.975);
+    const double t = t_quantile(n - 1, 0.975);
     r.offset_limits = {m.mean - t * by, m.mean + t * by};
     r.line = fit_line(x, y);
     r.r = std::copysign(std::sqrt(r.line.r2), r.line.slope);

@@ -40,7 +40,7 @@ double normal_cdf(double z) {
     return boost::math::cdf(boost::math::normal_distribution<double, Quiet>(), z);
 }
 
-double student_quantile(double degrees, double probability) {
+double t_quantile(double degrees, double probability) {
     assert(degrees > 0 && probability > 0 && probability < 1);
     return boost::math::quantile(StudentsT(degrees), probability);
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Distributions for confidence limits, by Boost.Math; compiled once.
+// Distributions for confidence limits, by Boost.Math to rounding (core/calibration/statistics.h: to about 1 %, enough
+// for verdicts, not for printed limits); compiled once.
 
 #include <span>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace seamwright {
 
 double normal_cdf(double z);
-double student_quantile(double degrees, double probability);
+double t_quantile(double degrees, double probability);
 // P(|T| > |t|).
 double student_two_sided_p(double degrees, double t);
 double chi_square_cdf(double degrees, double x);

@@ -40,7 +40,7 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
         l.p_slope = student_two_sided_p(n - 2, l.t_slope);
         l.p_intercept = student_two_sided_p(n - 2, l.t_intercept);
     }
-    const double t = student_quantile(n - 2, 0.975);
+    const double t = t_quantile(n - 2, 0.975);
     l.slope_limits = {l.slope - t * u_slope, l.slope + t * u_slope};
     l.intercept_limits = {l.intercept - t * u_intercept, l.intercept + t * u_intercept};
     return l;
@@ -48,7 +48,7 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
 
 Interval Line::band(double x) const {
     const double by =
-        student_quantile(n - 2, 0.975) * s * std::sqrt(1.0 / n + (x - mean_x) * (x - mean_x) / sum_x2);
+        t_quantile(n - 2, 0.975) * s * std::sqrt(1.0 / n + (x - mean_x) * (x - mean_x) / sum_x2);
     return {at(x) - by, at(x) + by};
 }
 

@@ -114,7 +114,7 @@ Expected<Stability> stability_study(std::span<const Subgroup> subgroups) {
         r.s_chart = {0, 3.267 * r.mean_s_mm};
     }
     r.mean_chart = {r.centre_mm - 3 * of_mean, r.centre_mm + 3 * of_mean};
-    const double by = student_quantile(count - 1, 0.975) * of_means.s / std::sqrt(count);
+    const double by = t_quantile(count - 1, 0.975) * of_means.s / std::sqrt(count);
     r.centre_limits = {r.centre_mm - by, r.centre_mm + by};
 
     r.alarms = nelson_rules(r.means_mm, r.centre_mm, of_mean);

@@ -67,7 +67,7 @@ Expected<Type1> type1_study(std::span<const double> values_mm, double reference_
     r.cg = 2 * half / (settings.width * m.s);
     r.cgk = (half - std::abs(r.bias_mm)) / (settings.width / 2 * m.s);
 
-    const double by = student_quantile(nu, 0.975) * m.s / std::sqrt(n);
+    const double by = t_quantile(nu, 0.975) * m.s / std::sqrt(n);
     r.mean_limits = {r.mean_mm - by, r.mean_mm + by};
     r.bias_limits = {r.bias_mm - by, r.bias_mm + by};
     r.s_limits = sigma_limits(m.s, nu);

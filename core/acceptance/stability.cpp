@@ -65,7 +65,7 @@ Expected<Subgroups> subgroups_of(std::span<const StudyValue> values, int size) {
         if (of_run.size() != in_run)
             return input_error(fmt::format("run {} holds {} values and run {} holds {}", runs.begin()->first,
                                            in_run, run, of_run.size()),
-                               "stability", "measure as many in every run, or name one part with --part");
+                               "stability", "measure as many in every run");
     const std::size_t wanted = in_run > 1 ? in_run : static_cast<std::size_t>(size);
     Subgroup group;
     for (const auto& [run, of_run] : runs) {

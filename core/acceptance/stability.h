@@ -48,7 +48,7 @@ struct Stability {
 // Error (input): fewer than 2 subgroups, subgroups of different sizes, values not finite or without scatter.
 Expected<Stability> stability_study(std::span<const Subgroup> subgroups);
 
-// Subgroups of a study: where a run holds several values (of parts or rehangs) each run is one; else `size`
+// Subgroups of one part: where a run holds several values (of rehangs) each run is one; else `size`
 // runs that follow each other, a rest at the end being left out (`left_out` values). Runs ascending.
 // Error (input): runs of different sizes, a size below 1.
 struct Subgroups {

@@ -112,8 +112,8 @@ void type1_chapter(AcceptanceWriter& w) {
     w.index(rows, "Cgk", r.cgk, r.cgk_limits, 2, w.number(s.required, 2));
     w.page.table(rows);
     w.page.paragraph(r.bias_p < 0.05
-                         ? w.t("The bias is no chance (t-test, p = {}).", w.number(r.bias_p, 4))
-                         : w.t("The bias may be chance (t-test, p = {}).", w.number(r.bias_p, 4)));
+                         ? w.t("The bias is no chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p))
+                         : w.t("The bias may be chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p)));
     w.page.figures({run_chart(w), histogram(w)});
 }
 
@@ -157,7 +157,8 @@ void linearity_chapter(AcceptanceWriter& w) {
     const Linearity& r = *w.a.linearity;
     w.page.heading(w.t("Linearity"));
     w.verdict(r.verdict, r.verdict == AcceptanceVerdict::too_little_data
-                             ? w.t("{} values at {} levels; 5 levels of 10 values are needed at least",
+                             ? w.t("{} values at {} levels; needed are 5 levels and 50 values, none of the "
+                                   "levels with more than half of them",
                                    r.line.n, r.levels.size())
                          : r.zero_inside ? w.t("the line of no bias lies inside the 95 % band")
                                          : w.t("the line of no bias leaves the 95 % band"));

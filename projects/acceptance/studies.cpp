@@ -26,14 +26,14 @@ Expected<std::string> reference_part(const std::vector<StudyValue>& values, cons
             return input_error("there are no values of part \"" + wanted + "\"", "--part");
         return wanted;
     }
-    if (parts.empty()) return input_error("there are no values of a reference part", "type 1");
+    if (parts.empty()) return input_error("there are no values of a reference part");
     std::vector<std::string> often;
     for (const auto& [part, n] : parts)
         if (parts.size() == 1 || n >= kType1Values) often.push_back(part);
     if (often.size() != 1)
         return input_error(fmt::format("the values are of {} parts, {} of them measured {} times or more",
                                        parts.size(), often.size(), kType1Values),
-                           "type 1", "name the reference part with --part");
+                           "reference part", "name it with --part");
     return often.front();
 }
 
@@ -99,12 +99,9 @@ class Judge {
     }
 
     Expected<void> stability() {
-        std::vector<StudyValue> values = a_.values.stability;
-        if (!a_.settings.part.empty()) {
-            auto part = reference_part(values, a_.settings.part);
-            if (!part) return tl::unexpected(part.error());
-            values = only(values, *part);
-        }
+        auto part = reference_part(a_.values.stability, a_.settings.part);
+        if (!part) return tl::unexpected(part.error());
+        const std::vector<StudyValue> values = only(a_.values.stability, *part);
         auto groups = subgroups_of(values, a_.settings.subgroup);
         if (!groups) return tl::unexpected(groups.error());
         auto made = stability_study(groups->groups);

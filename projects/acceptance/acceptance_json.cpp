@@ -168,6 +168,9 @@ json acceptance_json(const Acceptance& a) {
     if (a.stability) answer["stability"] = stability_json(*a.stability);
     if (a.correlation) answer["correlation"] = correlation_json(*a.correlation);
     if (a.vda5) answer["vda5"] = vda5_json(*a.vda5);
+    for (const Study study : kStudies)
+        if (const std::string why = what_lacks(a, study).in(Language::english); !why.empty())
+            answer[std::string(to_string(study))]["message"] = why;
     for (const auto& [study, error] : a.not_done)
         answer[std::string(to_string(study))] = {{"verdict", "not_done"}, {"message", error.sentence()}};
     return answer;

@@ -38,6 +38,10 @@ struct AcceptanceWriter {
     void verdict(AcceptanceVerdict v, const std::string& why) const {
         page.verdict(name_of(v).in(language), tone_of(v), why);
     }
+    void verdict(Study study, AcceptanceVerdict v, const std::string& why) const {
+        const Phrase lacks = what_lacks(a, study);
+        verdict(v, lacks.empty() ? why : lacks.in(language));
+    }
     double lower() const { return a.settings.nominal_mm - a.settings.tolerance_mm / 2; }
     double upper() const { return a.settings.nominal_mm + a.settings.tolerance_mm / 2; }
 };
@@ -100,8 +104,7 @@ void type1_chapter(AcceptanceWriter& w) {
     const Type1& r = *w.a.type1;
     const AcceptanceSettings& s = w.a.settings;
     w.page.heading(w.t("Type 1: capability on a reference part"));
-    w.verdict(r.verdict, r.n < kType1Values ? w.t("{} values; {} are needed at least", r.n, kType1Values)
-                                            : w.t("Cg and Cgk must reach {}", w.number(s.required, 2)));
+    w.verdict(Study::type1, r.verdict, w.t("Cg and Cgk must reach {}", w.number(s.required, 2)));
     w.page.paragraph(w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).", w.a.type1_part, r.n,
                          w.number(r.reference_mm, 4), s.share, s.width));
     Rows rows = w.head();
@@ -120,9 +123,8 @@ void type1_chapter(AcceptanceWriter& w) {
 void type3_chapter(AcceptanceWriter& w) {
     const Type3& r = *w.a.type3;
     w.page.heading(w.t("Type 3: repeatability and reproducibility"));
-    w.verdict(r.verdict, r.parts < kType3Parts
-                             ? w.t("{} parts; {} are needed at least", r.parts, kType3Parts)
-                             : w.t("up to 10 % of the tolerance with ndc of 5 is accepted, beyond 30 % not"));
+    w.verdict(Study::type3, r.verdict,
+              w.t("up to 10 % of the tolerance with ndc of 5 is accepted, beyond 30 % not"));
     w.page.paragraph(
         w.t("{} parts, each hung {} times, each time measured {} times.", r.parts, r.rehangs, r.runs));
     Rows rows = w.head();
@@ -156,12 +158,9 @@ void type3_chapter(AcceptanceWriter& w) {
 void linearity_chapter(AcceptanceWriter& w) {
     const Linearity& r = *w.a.linearity;
     w.page.heading(w.t("Linearity"));
-    w.verdict(r.verdict, r.verdict == AcceptanceVerdict::too_little_data
-                             ? w.t("{} values at {} levels; needed are 5 levels and 50 values, none of the "
-                                   "levels with more than half of them",
-                                   r.line.n, r.levels.size())
-                         : r.zero_inside ? w.t("the line of no bias lies inside the 95 % band")
-                                         : w.t("the line of no bias leaves the 95 % band"));
+    w.verdict(Study::linearity, r.verdict,
+              r.zero_inside ? w.t("the line of no bias lies inside the 95 % band")
+                            : w.t("the line of no bias leaves the 95 % band"));
     Rows rows = w.head();
     w.index(rows, w.t("slope (mm per m)"), 1000 * r.line.slope,
             {1000 * r.line.slope_limits.low, 1000 * r.line.slope_limits.high}, 3);
@@ -219,13 +218,11 @@ std::string control_chart(const AcceptanceWriter& w, const Stability& r, bool sp
 void stability_chapter(AcceptanceWriter& w) {
     const Stability& r = *w.a.stability;
     w.page.heading(w.t("Stability"));
-    w.verdict(r.verdict, r.alarms.empty()
-                             ? w.t("{} subgroups, no alarm", r.means_mm.size())
-                             : w.t("{} subgroups, {} alarms", r.means_mm.size(), r.alarms.size()));
-    w.page.paragraph(
-        w.t("Subgroups of {} values; {} values that fill none are left out. {} subgroups are needed at "
-            "least.",
-            r.size, w.a.stability_left_out, kStabilitySubgroups));
+    w.verdict(Study::stability, r.verdict,
+              r.alarms.empty() ? w.t("{} subgroups, no alarm", r.means_mm.size())
+                               : w.t("{} subgroups, {} alarms", r.means_mm.size(), r.alarms.size()));
+    w.page.paragraph(w.t("Subgroups of {} values; {} values that fill none are left out.", r.size,
+                         w.a.stability_left_out));
     Rows rows = w.head();
     w.index(rows, w.t("centre (mm)"), r.centre_mm, r.centre_limits, 4);
     w.page.table(rows);
@@ -245,9 +242,8 @@ void stability_chapter(AcceptanceWriter& w) {
 void correlation_chapter(AcceptanceWriter& w) {
     const Correlation& r = *w.a.correlation;
     w.page.heading(w.t("Correlation with the reference instrument"));
-    w.verdict(r.verdict, r.pairs.size() < kCorrelationPairs
-                             ? w.t("{} parts; {} are needed at least", r.pairs.size(), kCorrelationPairs)
-                             : w.t("0 must lie inside the offset's limits and 1 inside the slope's"));
+    w.verdict(Study::correlation, r.verdict,
+              w.t("0 must lie inside the offset's limits and 1 inside the slope's"));
     Rows rows = w.head();
     w.index(rows, w.t("offset (mm)"), r.offset_mm, r.offset_limits, 4, "0");
     w.index(rows, w.t("slope"), r.line.slope, r.line.slope_limits, 4, "1");
@@ -272,9 +268,7 @@ void correlation_chapter(AcceptanceWriter& w) {
 void vda5_chapter(AcceptanceWriter& w) {
     const ProcessUncertainty& r = *w.a.vda5;
     w.page.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
-    w.verdict(r.verdict, r.reference_values < kProcessValues
-                             ? w.t("{} values; {} are needed at least", r.reference_values, kProcessValues)
-                             : w.t("Q of the system up to 15 %, of the process up to 30 %"));
+    w.verdict(Study::vda5, r.verdict, w.t("Q of the system up to 15 %, of the process up to 30 %"));
     Rows rows = w.head();
     w.index(rows, "u_MS (mm)", r.u_ms_mm, r.u_ms_limits, 4);
     w.index(rows, "u_MP (mm)", r.u_mp_mm, r.u_mp_limits, 4);

@@ -204,6 +204,29 @@ AcceptanceVerdict Acceptance::verdict() const {
     return made.empty() ? too_little_data : ok;
 }
 
+Phrase what_lacks(const Acceptance& a, Study study) {
+    const auto lacks = [](const auto& made) {
+        return made && made->verdict == AcceptanceVerdict::too_little_data;
+    };
+    if (study == Study::type1 && lacks(a.type1))
+        return Phrase("{} values; {} are needed at least", a.type1->n, kType1Values);
+    if (study == Study::type3 && lacks(a.type3))
+        return Phrase("{} parts; {} are needed at least", a.type3->parts, kType3Parts);
+    if (study == Study::linearity && lacks(a.linearity))
+        return Phrase(
+            "{} values at {} levels; needed are 5 levels and 50 values, none of the levels with more than "
+            "half of them",
+            a.linearity->line.n, a.linearity->levels.size());
+    if (study == Study::stability && lacks(a.stability))
+        return Phrase("{} subgroups; {} are needed at least", a.stability->means_mm.size(),
+                      kStabilitySubgroups);
+    if (study == Study::correlation && lacks(a.correlation))
+        return Phrase("{} parts; {} are needed at least", a.correlation->pairs.size(), kCorrelationPairs);
+    if (study == Study::vda5 && lacks(a.vda5))
+        return Phrase("{} values; {} are needed at least", a.vda5->reference_values, kProcessValues);
+    return {};
+}
+
 Expected<Acceptance> judge_acceptance(StudyValues values, StudySource source,
                                       const AcceptanceSettings& settings, std::span<const Study> studies) {
     if (auto ok = check_positive(settings.tolerance_mm, "tolerance"); !ok) return tl::unexpected(ok.error());

@@ -75,6 +75,9 @@ struct Acceptance {
     AcceptanceVerdict verdict() const;
 };
 
+// Of a study with too little data, what it has and what it needs; empty otherwise.
+Phrase what_lacks(const Acceptance& acceptance, Study study);
+
 // Error (input, usage): the settings are none; of one study: what that study refuses; of several: the data allow
 // none of them (the first one's sentence).
 Expected<Acceptance> judge_acceptance(StudyValues values, StudySource source,

@@ -97,6 +97,7 @@ TEST(Studies, WhatIsNotKnownIsAskedFor) {
     const auto few = judge_acceptance(StudyValues::of(values), {}, settings, type1);
     ASSERT_TRUE(few);
     EXPECT_EQ(few->verdict(), AcceptanceVerdict::too_little_data);
+    EXPECT_EQ(acceptance_json(*few)["type1"]["message"], "4 values; 25 are needed at least");
     for (const double none : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
         settings.tolerance_mm = none;
         refused("tolerance");

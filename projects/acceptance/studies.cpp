@@ -85,7 +85,7 @@ class Judge {
             });
         if (a_.type1_part_left_out)
             std::erase_if(a_.type3_values, [&](const StudyValue& v) { return v.part == *part; });
-        auto made = type3_study(a_.type3_values, {a_.settings.tolerance_mm, a_.settings.width});
+        auto made = type3_study(a_.type3_values, {a_.settings.tolerance_mm});
         if (!made) return tl::unexpected(made.error());
         a_.type3 = std::move(*made);
         return {};

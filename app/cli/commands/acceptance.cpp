@@ -137,7 +137,8 @@ void add_acceptance(CommandLine& line) {
         ->type_name("FILE.csv");
     command->add_option("--part", s.part, "Reference part of type 1 and stability, where there are several");
     command->add_option("--share", s.share, "Share of the tolerance in Cg and Cgk")->capture_default_str();
-    command->add_option("--width", s.width, "Standard deviations in Cg and %GRR")->capture_default_str();
+    command->add_option("--width", s.width, "Standard deviations in Cg (%GRR always takes 6)")
+        ->capture_default_str();
     command->add_option("--required", s.required, "Limit of Cg and Cgk")->capture_default_str();
     command->add_option("--subgroup", s.subgroup, "Runs of a subgroup of the stability chart")
         ->capture_default_str();

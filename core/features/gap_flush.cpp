@@ -65,10 +65,11 @@ bool GapFlushGauge::measure_line(const GapPart& part, double edge_along_x, doubl
 void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side) {
     const auto along = [&](std::size_t i) { return u.dot(Eigen::Vector2d(part.x[i], part.z[i])); };
     const double plain = pitch * std::abs(u.x());
-    const double by_noise = 3 * std::sqrt(2.0) * part.noise_mm * std::abs(u.y());
+    // What the noise moves a point along u; the outermost of several equal ones is so by its noise.
+    const double noise = part.noise_mm * std::abs(u.y()), by_noise = 3 * std::sqrt(2.0) * noise;
     std::size_t outermost = 0;
     for (std::size_t i = 1; i < part.x.size(); ++i)
-        if (along(i) > along(outermost) + (outermost == 0 ? by_noise : 0)) outermost = i;
+        if (along(i) > along(outermost) + (outermost == 0 ? noise : 0)) outermost = i;
     double advance = 0, flank = 0, unseen = 0;
     if (outermost == 0) {
         const double lines = std::max(1.0, std::abs(part.x[1] - part.x[0]) / pitch);
@@ -84,7 +85,7 @@ void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, 
         // Noise alone is no turn of the contour.
         if (std::abs(advance - plain) < by_noise) advance = plain;
     }
-    const double spread = std::max(advance, kSeenEdge * plain), noise = part.noise_mm * u.y();
+    const double spread = std::max(advance, kSeenEdge * plain);
     side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * advance + unseen) * u;
     side.edge_variance = spread * spread / 12 + flank * flank + noise * noise;
 }

@@ -26,6 +26,7 @@ SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_en
 SEAMWRIGHT_WORDS(ShiftBy, "simulated_part", "robot_moves", "by_hand");
 SEAMWRIGHT_WORDS(GapFlushSettings::Reference, "left", "right");
 SEAMWRIGHT_WORDS(GapBy, "along_surface", "edge_distance");
+SEAMWRIGHT_WORDS(PanelDeviation, "share", "leave_out");
 SEAMWRIGHT_WORDS(PanelVerdict, "not_verified", "in_tolerance", "out_of_tolerance");
 SEAMWRIGHT_WORDS(Verdict, "good", "usable", "poor", "undetermined");
 SEAMWRIGHT_WORDS(ShiftKind, "translation", "rotation", "both");
@@ -343,6 +344,7 @@ void describe(A& a, PanelJob& v) {
     a("gap_tolerance_mm", v.gap_tolerance_mm);
     a("flush_tolerance_mm", v.flush_tolerance_mm);
     a("head_limit_mm", v.head_limit_mm);
+    a("deviation", v.deviation);
     a("frame_name", v.frame_name);
     a("base_from_frame", v.base_from_frame);
 }

@@ -258,7 +258,7 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
     options.limits = job.limits;
     options.sigma_limit_mm = std::max(options.sigma_limit_mm, job.sigma_limit_mm);
     options.sigma_limit_deg = std::max(options.sigma_limit_deg, job.sigma_limit_deg);
-    options.reject_outliers = false;
+    options.deviation = job.deviation;
     return fit_panel(spots, options);
 }
 

@@ -222,6 +222,32 @@ TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     }
 }
 
+// What a station measured, typed as a job: the motion is the same, the word for the other answer too.
+TEST_F(Cli, APanelJobHasTheStationsAnswerUnlessTheOtherIsNamed) {
+    json job = {{"spots", json::array()}};
+    for (int n = 0; n < 8; ++n) {
+        const double phi = 45.0 * n, a = phi * kPi / 180;
+        job["spots"].push_back(
+            {{"id", "P" + std::to_string(n + 1)},
+             {"gripper_from_sensor",
+              {{"xyz", {500 * std::cos(a), 350 * std::sin(a), 900}},
+               {"abc", {phi, 4 * (n % 3), 3 * (n % 2)}}}},
+             {"panel", {{"reference", {0, 0, 0}}, {"measured", {0, 0, n == 3 ? 1.2 : 0.0}}}},
+             {"body", {{"reference", {4, 0, 0}}, {"measured", {4, 0, 0}}}}});
+    }
+    const std::string file = write("job.json", job.dump());
+    const json shared = answer({"panel", file}, 0);
+    const json alone = answer({"panel", file, "--deviation", "leave_out"}, 0);
+    for (const json& s : shared["spots"]) EXPECT_TRUE(s["panel_used"].get<bool>()) << s;
+    for (const json& s : alone["spots"]) EXPECT_EQ(s["panel_used"].get<bool>(), s["id"] != "P4") << s;
+    EXPECT_GT(std::abs(shared["gripper_motion"]["xyz"][2].get<double>()), 0.02);
+    EXPECT_LT(std::abs(alone["gripper_motion"]["xyz"][2].get<double>()), 1e-6);
+    job["deviation"] = "leave_out";
+    EXPECT_EQ(answer({"panel", write("job.json", job.dump())}, 0)["gripper_motion"], alone["gripper_motion"]);
+    EXPECT_EQ(answer({"panel", file, "--deviation", "share"}, 0)["gripper_motion"], shared["gripper_motion"]);
+    expect_refused({"panel", file, "--deviation", "some"}, "share, leave_out");
+}
+
 TEST_F(Cli, PanelSettingsAreSetWithinTheirRanges) {
     const std::string project = (folder / "panel.seam").string();
     const json made = answer({"panel", project, "--simulated", "--teach", "1"}, 0);
@@ -234,6 +260,11 @@ TEST_F(Cli, PanelSettingsAreSetWithinTheirRanges) {
         answer({"panel", project, "--set", "flush_tolerance_mm", "0.2"}, 0)["settings"]["gap_tolerance_mm"],
         0.31)
         << "kept in the file";
+    EXPECT_EQ(set["settings"]["deviation"], "share");
+    EXPECT_EQ(answer({"panel", project, "--set", "deviation", "leave_out"}, 0)["settings"]["deviation"],
+              "leave_out");
+    expect_refused({"panel", project, "--set", "deviation", "perhaps"}, "share, leave_out");
+    expect_refused({"panel", project, "--deviation", "share"}, "--set deviation share");
     expect_refused({"panel", project, "--set", "gap_tolerance_mm", "0"}, "give 0.01 to 20 mm");
     expect_refused({"panel", project, "--set", "gap_tolerance_mm", "nan"}, "out of range");
     expect_refused({"panel", project, "--set", "gap", "1"}, "known are");

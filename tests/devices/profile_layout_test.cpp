@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <bit>
 #include <cstring>
 
@@ -245,6 +247,22 @@ TEST(ProfileScale, UnitsAreSuspectedFromRangePitchAndNoise) {
     for (const Sensor& s : {Sensor{25, 1280, 0.005}, Sensor{60, 320, 0.05}, Sensor{60, 1200, 0.05},
                             Sensor{120, 1200, 0.05}, Sensor{80, 800, 0.02}})
         EXPECT_NE(profile_scale(contour(s.width, s.points, 25.4, s.noise)).suspected, "") << s.width << " in";
+}
+
+TEST(ProfileLayout, HeightsThatStandForNoReturnAreNone) {
+    ProfileLayout layout;
+    layout.invalid = {12.5, -1};
+    for (const char* text : {"X;Z\n0;1\n1;12.5\n2;-1\n3;2\n", "x_mm,z_mm\n0,1\n1,12.5\n2,-1\n3,2\n"}) {
+        const auto read = parse_profiles(text, "scan.csv", layout);
+        ASSERT_TRUE(read) << read.error().sentence();
+        const auto& z = read->profiles[0].profile.z_mm;
+        ASSERT_EQ(z.size(), 4u);
+        EXPECT_EQ(z[0], 1);
+        EXPECT_TRUE(std::isnan(z[1]) && std::isnan(z[2]));
+        EXPECT_EQ(z[3], 2);
+    }
+    for (const char* text : {"X;Z\n0;-1\n1;12.5\n2;-1\n", "x_mm,z_mm\n0,-1\n1,12.5\n2,-1\n"})
+        EXPECT_FALSE(parse_profiles(text, "scan.csv", layout));
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, PanelPl
     numbers(visit, path + ".sigma_mm", sigma);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, PanelJob& v) {
-    auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, frame_name, frame] = v;
+    auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, deviation, frame_name, frame] = v;
     numbers(visit, path + ".places", places);
     numbers(visit, path + ".base_from_gripper", gripper);
     numbers(visit, path + ".limits", limits);

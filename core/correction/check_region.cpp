@@ -29,7 +29,7 @@ bool covariance_of_mm(const Eigen::Matrix2d& c) {
     return semidefinite(c) && c.diagonal().maxCoeff() <= kLargestMm * kLargestMm;
 }
 bool covariance_of_pose(const Matrix6& c) {
-    return semidefinite(c) && c.diagonal().head<3>().maxCoeff() <= kLargestMm * kLargestMm &&
+    return (definite(c) || semidefinite(c)) && c.diagonal().head<3>().maxCoeff() <= kLargestMm * kLargestMm &&
            c.diagonal().tail<3>().maxCoeff() <= kLargestRad * kLargestRad;
 }
 

@@ -21,6 +21,24 @@ constexpr double kRounding = 1e-9;
 
 }  // namespace
 
+bool definite(const Matrix6& c) {
+    Matrix6 l;  // c = l diag l^T
+    double pivot[6];
+    for (int j = 0; j < 6; ++j) {
+        pivot[j] = c.coeff(j, j);
+        for (int k = 0; k < j; ++k) pivot[j] -= l.coeff(j, k) * l.coeff(j, k) * pivot[k];
+        if (!(pivot[j] > kRounding * c.coeff(j, j))) return false;
+        const double inverse = 1 / pivot[j];
+        for (int i = j + 1; i < 6; ++i) {
+            double sum = c.coeff(i, j);
+            if (sum != c.coeff(j, i)) return false;
+            for (int k = 0; k < j; ++k) sum -= l.coeff(i, k) * l.coeff(j, k) * pivot[k];
+            l.coeffRef(i, j) = sum * inverse;
+        }
+    }
+    return true;
+}
+
 bool semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& c) {
     constexpr Eigen::Index kMost = 6;
     const Eigen::Index n = c.rows();
@@ -104,29 +122,40 @@ SharedVector shared_row(const SharedGeometry& spot, const SharedRoot& root, int 
     return u;
 }
 
-Eigen::Matrix3d arrival_covariance(const Pose& pose, const Matrix6& c, const Eigen::Vector3d& p) {
-    // dp = dt - [R p]x dw in the work object.
-    const Eigen::Matrix3d lever = skew(pose.linear() * p);
-    const Eigen::Matrix3d cross = lever.lazyProduct(c.bottomLeftCorner<3, 3>());
-    const Eigen::Matrix3d moved =
-        c.topLeftCorner<3, 3>() - cross - cross.transpose() +
-        Eigen::Matrix3d(lever.lazyProduct(c.bottomRightCorner<3, 3>())).lazyProduct(lever.transpose());
-    return Eigen::Matrix3d(pose.linear().transpose().lazyProduct(moved)).lazyProduct(pose.linear());
+Eigen::Matrix3d arrival_covariance(const Pose& pose, const Matrix6& c, const Eigen::Vector3d& p,
+                                   bool travel) {
+    // Along an axis a of the sensor: a . (dt + dw x R p) = a . dt + (R p x a) . dw.
+    const Eigen::Vector3d lever = pose.linear().lazyProduct(p);
+    Eigen::Matrix<double, 6, 3> along, image;
+    for (const int i : {0, 2, 1}) {
+        if (i == 1 && !travel) break;
+        along.col(i).head<3>() = pose.linear().col(i);
+        along.col(i).tail<3>() = lever.cross(pose.linear().col(i));
+        image.col(i) = c.lazyProduct(along.col(i));
+    }
+    Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
+    for (const int i : {0, 2, 1}) {
+        if (i == 1 && !travel) break;
+        for (const int k : {0, 2, 1}) {
+            if (k == 1 && !travel) break;
+            out(i, k) = along.col(i).dot(image.col(k));
+        }
+    }
+    return out;
 }
 
 void eliminate(SharedBlock& b) {
     auto& l = b.lower;
-    double inverse[kShared];
     for (int j = 0; j < kShared; ++j) {
         double pivot = l.coeff(j, j);
         for (int k = 0; k < j; ++k) pivot -= l.coeff(j, k) * l.coeff(j, k);
         const double root = std::sqrt(pivot);  // of a matrix whose eigenvalues are at least 1
         l.coeffRef(j, j) = root;
-        inverse[j] = 1 / root;
+        b.inverse.coeffRef(j) = 1 / root;
         for (int i = j + 1; i < kShared; ++i) {
             double sum = l.coeff(i, j);
             for (int k = 0; k < j; ++k) sum -= l.coeff(i, k) * l.coeff(j, k);
-            l.coeffRef(i, j) = sum * inverse[j];
+            l.coeffRef(i, j) = sum * b.inverse.coeff(j);
         }
     }
     b.gain = b.cross;
@@ -136,26 +165,46 @@ void eliminate(SharedBlock& b) {
             b.gain.col(i) -= l.coeff(i, k) * b.gain.col(k);
             b.value.coeffRef(i) -= l.coeff(i, k) * b.value.coeff(k);
         }
-        b.gain.col(i) *= inverse[i];
-        b.value.coeffRef(i) *= inverse[i];
+        b.gain.col(i) *= b.inverse.coeff(i);
+        b.value.coeffRef(i) *= b.inverse.coeff(i);
     }
     for (int i = kShared - 1; i >= 0; --i) {
         for (int k = i + 1; k < kShared; ++k) {
             b.gain.col(i) -= l.coeff(k, i) * b.gain.col(k);
             b.value.coeffRef(i) -= l.coeff(k, i) * b.value.coeff(k);
         }
-        b.gain.col(i) *= inverse[i];
-        b.value.coeffRef(i) *= inverse[i];
+        b.gain.col(i) *= b.inverse.coeff(i);
+        b.value.coeffRef(i) *= b.inverse.coeff(i);
     }
 }
 
-SharedVector forward(const SharedBlock& b, const SharedVector& v) {
-    SharedVector x = v;
+Eigen::Matrix3d left_uncertain(const SharedBlock& b, const SharedColumns& columns) {
+    // x and z side by side; Y only where it is observed.
+    Eigen::Array<double, 2, kShared> xz;
+    Eigen::Array2d xx = Eigen::Array2d::Zero();
+    double cross = 0;
     for (int i = 0; i < kShared; ++i) {
-        for (int k = 0; k < i; ++k) x.coeffRef(i) -= b.lower.coeff(i, k) * x.coeff(k);
-        x.coeffRef(i) /= b.lower.coeff(i, i);
+        Eigen::Array2d v(columns.coeff(i, 0), columns.coeff(i, 2));
+        for (int k = 0; k < i; ++k) v -= b.lower.coeff(i, k) * xz.col(k);
+        v *= b.inverse.coeff(i);
+        xz.col(i) = v;
+        xx += v * v;
+        cross += v.x() * v.y();
     }
-    return x;
+    Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
+    out(0, 0) = xx.x();
+    out(2, 2) = xx.y();
+    out(0, 2) = out(2, 0) = cross;
+    if (columns.col(1).isZero(0)) return out;
+    SharedVector y = columns.col(1);
+    for (int i = 0; i < kShared; ++i) {
+        for (int k = 0; k < i; ++k) y.coeffRef(i) -= b.lower.coeff(i, k) * y.coeff(k);
+        y.coeffRef(i) *= b.inverse.coeff(i);
+    }
+    out(1, 1) = y.squaredNorm();
+    out(0, 1) = out(1, 0) = xz.row(0).matrix().dot(y.transpose());
+    out(2, 1) = out(1, 2) = xz.row(1).matrix().dot(y.transpose());
+    return out;
 }
 
 }  // namespace seamwright::correction

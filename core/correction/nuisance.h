@@ -11,6 +11,7 @@
 namespace seamwright::correction {
 
 inline constexpr int kShared = 9;
+using Rows = Eigen::Matrix<double, 3, 6>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 using SharedColumns = Eigen::Matrix<double, kShared, 3>;  // d(e)/du, a column per axis of the residual
 
@@ -33,17 +34,27 @@ struct SharedRoot {
 struct SharedBlock {
     Eigen::Matrix<double, kShared, kShared> lower;
     Eigen::Matrix<double, 6, kShared> cross, gain;
-    SharedVector gradient, value;
+    SharedVector gradient, value, inverse;  // the last: 1 / diagonal of lower
+};
+
+// A spot after elimination, scaled like its residual, unobserved axes 0: columns = de/du, rows = de/dxi less
+// what the sensor's errors take, e the residual with them as estimated.
+struct SharedSpot {
+    SharedColumns columns;
+    Rows rows;
+    Eigen::Vector3d e;
 };
 
 struct Shared {
     std::vector<SharedBlock> sensors;
-    std::vector<SharedColumns> columns;  // by spot; unused for spots without sensor
-    void clear() { sensors.clear(), columns.clear(); }
+    std::vector<SharedSpot> spots;
+    void clear() { sensors.clear(), spots.clear(); }
 };
 
 // A covariance to rounding: finite, symmetric, no negative variance in any direction.
 bool semidefinite(const Eigen::Ref<const Eigen::MatrixXd>& covariance);
+// Exactly symmetric and clearly positive: quicker to tell, and then semidefinite if finite.
+bool definite(const Matrix6& covariance);
 
 SharedRoot root_of(const SensorPrior& prior);
 bool is_zero(const SensorPrior& prior);
@@ -54,14 +65,15 @@ SharedVector shared_row(const SharedGeometry& spot, const SharedRoot& root, int 
                         const Eigen::Vector3d& axis, const Eigen::Vector3d& y);
 
 // Covariance of a point p (sensor frame) from one arrival's `covariance` of workobject_from_sensor = `pose`,
-// along the sensor's axes.
-Eigen::Matrix3d arrival_covariance(const Pose& pose, const Matrix6& covariance, const Eigen::Vector3d& p);
+// along the sensor's axes. Without `travel` the row and column of Y stay 0.
+Eigen::Matrix3d arrival_covariance(const Pose& pose, const Matrix6& covariance, const Eigen::Vector3d& p,
+                                   bool travel = true);
 
 // Cholesky of block.lower (holding H_uu + I in its lower triangle) in place, gain and value from cross and
 // gradient.
 void eliminate(SharedBlock& block);
 
-// lower^-1 v.
-SharedVector forward(const SharedBlock& block, const SharedVector& v);
+// columns^T (lower lower^T)^-1 columns.
+Eigen::Matrix3d left_uncertain(const SharedBlock& block, const SharedColumns& columns);
 
 }  // namespace seamwright::correction

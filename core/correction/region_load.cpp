@@ -19,10 +19,12 @@ LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
     if (in.robot_covariance && !in.robot_covariance->isZero(0)) {
         out.any = true;
         const Pose& w = in.workobject_from_sensor;
-        out.random =
-            arrival_covariance(w, *in.robot_covariance, from_reference ? in.reference_mm : in.measured_mm);
-        out.systematic = arrival_covariance(w, *in.robot_covariance, in.reference_mm);
-        if (in.curve && in.weights.y() == 0) {
+        const bool curved = in.curve && in.weights.y() == 0;
+        const bool travel = curved || in.weights.y() > 0;
+        out.random = arrival_covariance(w, *in.robot_covariance,
+                                        from_reference ? in.reference_mm : in.measured_mm, travel);
+        out.systematic = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel);
+        if (curved) {
             // An arrival further along the contour sees it where it runs on.
             Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
             along(0, 1) = -in.curve->x_coefficients[0];
@@ -63,11 +65,22 @@ void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, E
             if (!kept) systematic(i, k) = 0, all(i, k) = i == k ? variance : 0.0;
         }
     }
-    const Eigen::Matrix3d lower = all.llt().matrixL();
-    s.shape = lower / in.sigma_mm;
-    flat = s.shape.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
+    // Cholesky, and its inverse.
+    Eigen::Matrix3d& t = s.shape;
+    t(0, 0) = std::sqrt(all(0, 0));
+    t(1, 0) = all(1, 0) / t(0, 0);
+    t(2, 0) = all(2, 0) / t(0, 0);
+    t(1, 1) = std::sqrt(all(1, 1) - t(1, 0) * t(1, 0));
+    t(2, 1) = (all(2, 1) - t(2, 0) * t(1, 0)) / t(1, 1);
+    t(2, 2) = std::sqrt(all(2, 2) - t(2, 0) * t(2, 0) - t(2, 1) * t(2, 1));
+    t /= in.sigma_mm;
+    for (int i = 0; i < 3; ++i) flat(i, i) = 1 / t(i, i);
+    flat(1, 0) = -t(1, 0) * flat(0, 0) * flat(1, 1);
+    flat(2, 1) = -t(2, 1) * flat(1, 1) * flat(2, 2);
+    flat(2, 0) = -(t(2, 0) * flat(0, 0) + t(2, 1) * flat(1, 0)) * flat(2, 2);
     s.repeats = !systematic.isZero(0);
-    s.systematic = flat * systematic * flat.transpose() / variance;
+    const Eigen::Matrix3d half = flat.lazyProduct(systematic);
+    s.systematic = half.lazyProduct(flat.transpose()) / variance;
 }
 
 }  // namespace

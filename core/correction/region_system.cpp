@@ -424,6 +424,7 @@ void RegionSystem::fit_shared(std::span<const double> factor, Fit& out) const {
         const Vector6 xi = all_free_ ? theta : Vector6(b * theta);
         step(out.state, theta, xi);
         for (SharedBlock& block : out.shared.sensors) block.value -= block.gain.transpose().lazyProduct(xi);
+        for (SharedSpot& spot : out.shared.spots) spot.e += spot.rows.lazyProduct(xi);
         const double size =
             std::max(xi.head<3>().norm() / kStepMm, xi.tail<3>().norm() / (kStepRad * spread_));
         out.converged = size < kRough;

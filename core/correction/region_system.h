@@ -20,8 +20,6 @@
 
 namespace seamwright::correction {
 
-using Rows = Eigen::Matrix<double, 3, 6>;
-
 // D and, when single rotations are fixed, the angles that it is made of.
 struct State {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();

@@ -101,7 +101,7 @@ std::vector<std::vector<SpotObservation>> with_priors(std::vector<std::vector<Sp
     }
     for (auto& spots : all)
         for (std::size_t n = 0; n < spots.size(); ++n) {
-            spots[n].sensor = n % 2 ? "A" : "B";
+            spots[n].sensor = options.sensors[n % 2].id;
             spots[n].reference_covariance_mm2 = (Eigen::Matrix2d() << 4e-4, 1e-4, 1e-4, 4e-4).finished();
             spots[n].robot_covariance = 0.04 * covariance;
         }

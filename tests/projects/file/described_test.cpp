@@ -22,7 +22,8 @@ std::size_t names_in(std::string_view list) {
         return names_in(#__VA_ARGS__);                      \
     }
 MEMBERS(SpotResidual, a, b, c)
-MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(DofSigma, a, b)
+MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Feature, a, b, c, d, e, f, g, h)
 MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
@@ -35,7 +36,7 @@ MEMBERS(PartSetup, a, b, c, d)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
 MEMBERS(FilterOptions, a, b, c, d, e, f)
-MEMBERS(RobotSetup, a, b, c, d, e)
+MEMBERS(RobotSetup, a, b, c, d, e, f)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(FeatureRecipe, a, b, c, d)
 MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
@@ -62,6 +63,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(region, r);
     whole(region.push, r["push"]);
     whole(*region.correction, r["correction"]);
+    whole(region.correction->sigma_random, r["correction"]["sigma_random"]);
     whole(region.correction->spots[0], r["correction"]["spots"][0]);
 
     SpotMeasurement spot;

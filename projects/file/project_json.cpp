@@ -215,18 +215,21 @@ void describe(A& a, RegionCorrection& v) {
     a("status", v.status);
     a("workobject_from_movedworkobject", v.displacement.workobject_from_movedworkobject);
     a("covariance", v.covariance);
-    a("covariance_random", v.covariance_random);
     a("covariance_systematic", v.covariance_systematic);
     a("sigma_xyz_mm", v.sigma_xyz_mm);
     a("sigma_abc_deg", v.sigma_abc_deg);
-    a("sigma_random", v.sigma_random);
     a("sigma_systematic", v.sigma_systematic);
     if constexpr (A::reading) {
         // A file from before the two parts were told apart knew the random one alone.
-        if (v.covariance_random.isZero(0) && v.covariance_systematic.isZero(0)) {
-            v.covariance_random = v.covariance;
-            v.sigma_random = {v.sigma_xyz_mm, v.sigma_abc_deg};
-        }
+        std::optional<Matrix6> random;
+        std::optional<DofSigma> sigma;
+        a("covariance_random", random);
+        a("sigma_random", sigma);
+        v.covariance_random = random.value_or(v.covariance);
+        v.sigma_random = sigma.value_or(DofSigma{v.sigma_xyz_mm, v.sigma_abc_deg});
+    } else {
+        a("covariance_random", v.covariance_random);
+        a("sigma_random", v.sigma_random);
     }
     a("sigma_at_spots_mm", v.sigma_at_spots_mm);
     a("rms_mm", v.rms_mm);

@@ -107,6 +107,23 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(HeadlessRun{}, to_json_document(HeadlessRun{}));
 }
 
+// A file from before random and systematic were told apart: all it knew was random.
+TEST(Described, ACorrectionWithoutPartsIsRandom) {
+    RegionRecord region;
+    region.correction.emplace();
+    region.correction->covariance.setIdentity();
+    region.correction->sigma_xyz_mm.setOnes();
+    auto document = to_json_document(region);
+    for (const char* field :
+         {"covariance_random", "covariance_systematic", "sigma_random", "sigma_systematic"})
+        ASSERT_EQ(document["correction"].erase(field), 1u) << field;
+    const auto back = from_json_document<RegionRecord>(document, "region");
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->correction->covariance_random, Matrix6::Identity());
+    EXPECT_EQ(back->correction->covariance_systematic, Matrix6::Zero());
+    EXPECT_EQ(back->correction->sigma_random.xyz_mm, Eigen::Vector3d::Ones());
+}
+
 TEST(Described, ACorrectionComesBackWhole) {
     RegionRecord region;
     region.correction.emplace();

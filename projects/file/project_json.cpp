@@ -207,12 +207,31 @@ void describe(A& a, SpotResidual& v) {
     a("used", v.used);
 }
 template <class A>
+void describe(A& a, DofSigma& v) {
+    a("xyz_mm", v.xyz_mm);
+    a("abc_deg", v.abc_deg);
+}
+template <class A>
 void describe(A& a, RegionCorrection& v) {
     a("status", v.status);
     a("workobject_from_movedworkobject", v.displacement.workobject_from_movedworkobject);
     a("covariance", v.covariance);
+    a("covariance_systematic", v.covariance_systematic);
     a("sigma_xyz_mm", v.sigma_xyz_mm);
     a("sigma_abc_deg", v.sigma_abc_deg);
+    a("sigma_systematic", v.sigma_systematic);
+    if constexpr (A::reading) {
+        // A file from before the two parts were told apart knew the random one alone.
+        std::optional<Matrix6> random;
+        std::optional<DofSigma> sigma;
+        a("covariance_random", random);
+        a("sigma_random", sigma);
+        v.covariance_random = random.value_or(v.covariance);
+        v.sigma_random = sigma.value_or(DofSigma{v.sigma_xyz_mm, v.sigma_abc_deg});
+    } else {
+        a("covariance_random", v.covariance_random);
+        a("sigma_random", v.sigma_random);
+    }
     a("sigma_at_spots_mm", v.sigma_at_spots_mm);
     a("rms_mm", v.rms_mm);
     a("redundancy", v.redundancy);
@@ -249,6 +268,7 @@ void describe(A& a, RobotSetup& v) {
     a("settings", v.settings);
     a("identity", v.identity);
     a("required_mode", v.required_mode);
+    a("arrival_covariance", v.arrival_covariance);
 }
 template <class A>
 void describe(A& a, Calibration& v) {

@@ -353,6 +353,8 @@ RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from
     const Eigen::Matrix3d to_abc = kuka_jacobian(c.displacement.workobject_from_movedworkobject.linear());
     const Eigen::Matrix3d abc = to_abc * c.covariance.bottomRightCorner<3, 3>() * to_abc.transpose();
     c.sigma_abc_deg = abc.diagonal().cwiseSqrt() * deg_from_rad(1);
+    c.covariance_random = c.covariance;
+    c.sigma_random = {c.sigma_xyz_mm, c.sigma_abc_deg};
     return c;
 }
 

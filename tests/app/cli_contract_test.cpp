@@ -141,6 +141,75 @@ TEST_F(Cli, CorrectTakesTheCovarianceOfAMeasureInPlaceOfItsSigma) {
     expect_refused({"correct", write("job.json", job.dump())}, "spots[0].covariance_mm2");
 }
 
+// Six of (mm, mm, mm, rad, rad, rad).
+json diagonal(double mm, double rad) {
+    json rows = json::array();
+    for (int i = 0; i < 6; ++i) {
+        rows.push_back({0, 0, 0, 0, 0, 0});
+        rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(i)] = i < 3 ? mm * mm : rad * rad;
+    }
+    return rows;
+}
+
+TEST_F(Cli, CorrectAndPlanStateWhatRepeats) {
+    json job = door_job(8, displacement());
+    const json before = answer({"correct", write("job.json", job.dump())}, 0);
+    EXPECT_EQ(before["covariance_random"], before["covariance"]);
+    EXPECT_EQ(before["covariance_systematic"][0][0], 0.0);
+    for (json& s : job["spots"]) {
+        s["sensor"] = "A";
+        s["reference_covariance_mm2"] = {{0.0016, 0.0004}, {0.0004, 0.0016}};
+        s["robot_covariance"] = diagonal(0.03, 1e-4);
+    }
+    job["sensors"] = {{"A",
+                       {{"hand_eye_covariance", diagonal(0.1, 2e-3)},
+                        {"scale_sigma", {0.001, 0.001}},
+                        {"shear_sigma", 0.001}}}};
+    for (const char* command : {"correct", "plan"}) {
+        const json a = answer({command, write("job.json", job.dump())}, 0);
+        for (std::size_t i = 0; i < 6; ++i)
+            for (std::size_t k = 0; k < 6; ++k)
+                EXPECT_NEAR(a["covariance"][i][k].get<double>(),
+                            a["covariance_random"][i][k].get<double>() +
+                                a["covariance_systematic"][i][k].get<double>(),
+                            1e-9 * std::sqrt(a["covariance"][i][i].get<double>() *
+                                             a["covariance"][k][k].get<double>()));
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_GT(a["sigma_systematic"]["xyz_mm"][i].get<double>(), 0);
+            EXPECT_GT(a["sigma_random"]["abc_deg"][i].get<double>(), 0);
+            EXPECT_GT(a["sigma"]["xyz_mm"][i].get<double>(), before["sigma"]["xyz_mm"][i].get<double>());
+        }
+    }
+    const auto spoilt = [&](const auto& spoil) {
+        json bad = job;
+        spoil(bad);
+        return write("bad.json", bad.dump());
+    };
+    for (const char* command : {"correct", "plan"}) {
+        const auto refused = [&](const auto& spoil, const char* part) {
+            expect_refused({command, spoilt(spoil)}, part);
+        };
+        refused([](json& j) { j["spots"][2]["sensor"] = "B"; }, "\"B\" is not among");
+        refused([](json& j) { j["spots"][2].erase("sensor"); }, "names no sensor");
+        refused([](json& j) { j["spots"][2]["sensor"] = ""; }, "spots[2].sensor");
+        refused([](json& j) { j.erase("sensors"); }, "\"A\" is not among");
+        refused([](json& j) { j["sensors"] = json::array(); }, "sensors");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye"] = 1; }, "hand_eye");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye_covariance"].erase(0); }, "six rows");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye_covariance"][0][1] = 0.001; }, "not symmetric");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye_covariance"][0][0] = -1; }, "negative");
+        refused([](json& j) { j["sensors"]["A"]["scale_sigma"] = {0.1}; }, "scale_sigma");
+        refused([](json& j) { j["sensors"]["A"]["scale_sigma"][0] = -0.1; }, "scale_sigma");
+        refused([](json& j) { j["sensors"]["A"]["shear_sigma"] = 7; }, "shear_sigma");
+        refused([](json& j) { j["spots"][1]["robot_covariance"][3][3] = nullptr; },
+                "spots[1].robot_covariance");
+        refused([](json& j) { j["spots"][1]["robot_covariance"][3][3] = 1e300; }, "robot_covariance");
+        refused([](json& j) { j["spots"][1]["reference_covariance_mm2"] = 0.1; }, "two rows");
+        refused([](json& j) { j["spots"][1]["reference_covariance_mm2"][0][1] = 1; },
+                "reference_covariance_mm2");
+    }
+}
+
 TEST_F(Cli, CorrectOverItsLimitsIsNotOk) {
     json job = door_job(8, displacement());
     job["limits"] = {{"translation_mm", 5}, {"rotation_deg", 3}};

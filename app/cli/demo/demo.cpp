@@ -405,7 +405,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     world.set_mode(RobotMode::automatic);
     for (const Region& region : project.regions) {
-        auto plan = plan_region(planned_observations(project, region), {});
+        auto plan = plan_region(planned_observations(project, region), correction_options(project, region));
         if (!plan) return tl::unexpected(plan.error());
         outcome.plans.push_back(std::move(*plan));
     }

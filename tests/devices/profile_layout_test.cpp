@@ -84,8 +84,8 @@ TEST(ProfileLayout, TextOfManyHands) {
         return text;
     }());
     expect_contour(rows(" 0.0 "));  // x y z, y holds still
-    expect_contour("a,b\n" + rows(","), {"", "1,2"});
-    expect_contour("a,b\n" + rows(","), {"", "a,b"});
+    expect_contour("a,b\n" + rows(","), {"", "1,2", {}});
+    expect_contour("a,b\n" + rows(","), {"", "a,b", {}});
 }
 
 TEST(ProfileLayout, UnitsOfTheHeaderAndOfThePerson) {
@@ -99,8 +99,8 @@ TEST(ProfileLayout, UnitsOfTheHeaderAndOfThePerson) {
     }
     expect_contour(um);
     expect_contour(mixed);
-    expect_contour(inches, {"in", ""});
-    expect_no_profile("x,z\n1,2\n", "no unit", {"furlong", ""});
+    expect_contour(inches, {"in", "", {}});
+    expect_no_profile("x,z\n1,2\n", "no unit", {"furlong", "", {}});
     expect_no_profile("x,z\n1e12,2\n1,2\n", "line 2");
 }
 
@@ -210,8 +210,8 @@ TEST(ProfileLayout, WhatCannotBeKnownIsAskedAndWhatIsBrokenNamesItsLine) {
     expect_no_profile("1.5 2.5 3.5 4.5\n1.6 2.5 3.6 4.6\n", "--columns-xz");
     expect_no_profile("time,x\n1.0,2.5\n2.0,2.5\n", "names no column z");
     expect_no_profile("a,b\n1.5,2.5\n", "names no column x");
-    expect_no_profile("a,b\n1.5,2.5\n", "no column \"c\"", {"", "a,c"});
-    expect_no_profile("a,b\n1.5,2.5\n", "two columns", {"", "a"});
+    expect_no_profile("a,b\n1.5,2.5\n", "no column \"c\"", {"", "a,c", {}});
+    expect_no_profile("a,b\n1.5,2.5\n", "two columns", {"", "a", {}});
     expect_no_profile(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
     expect_no_profile(std::string(100, '\0'), "no text");
     expect_no_profile("x;z\n1;nan\n2;\n", "no point");

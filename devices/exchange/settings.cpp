@@ -114,7 +114,7 @@ SettingsReader::SettingsReader(const nlohmann::json& json, std::string where, co
         known.push_back(s.name);
         if (s.former.empty() || !json_.contains(s.former)) continue;
         if (json_.contains(s.name)) {
-            keep(input_error(fmt::format("\"{}\" is given under its former name too", s.name), path(s.former),
+            keep(input_error(fmt::format("{} is given under its former name too", s.name), path(s.former),
                              "give one of them"));
             return;
         }

@@ -273,7 +273,10 @@ Matrix12 by_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales
     if (root.info() != Eigen::Success) return isotropic;
     const Matrix12 l = root.matrixL();
     const SymmetricEigen ratio = symmetric_eigen(l.transpose() * meat * l);
-    return l * ratio.vectors * ratio.values.cwiseMax(1).asDiagonal() * ratio.vectors.transpose() *
+    // Where the pairs scatter alike the largest ratio comes out near (1 + sqrt(12 / n))^2 by chance; its root is
+    // taken off before it counts, so that such pairs are not stated too unsure.
+    const double chance = 1 + std::sqrt(12.0 / std::max(1.0, static_cast<double>(chain.used_count())));
+    return l * ratio.vectors * (ratio.values / chance).cwiseMax(1).asDiagonal() * ratio.vectors.transpose() *
            l.transpose();
 }
 

@@ -421,7 +421,7 @@ const SettingTable& abb_rapid_settings() {
                         entry::list("centre_mm", nullptr, "centre of gravity [x, y, z] in the flange"),
                         entry::list("inertia_kgm2", nullptr, "moments of inertia [x, y, z]")},
                        "what the flange carries, for the program, in place of tool")},
-        entry::reconnect(100, 500, "backoff_ms", "backoff_max_ms"));
+        entry::reconnect(0, 100, 500, "backoff_ms", "backoff_max_ms"));
     return table;
 }
 

@@ -88,12 +88,13 @@ SettingTable joined(SettingTable first, const SettingTable& second) {
     first.insert(first.end(), second.begin(), second.end());
     return first;
 }
-SettingTable reconnect(int first_ms, int most_ms, const std::string& former, const std::string& former_most) {
-    return {formerly(former, whole("reconnect_ms", first_ms, 0, 600000,
+SettingTable reconnect(int least_ms, int first_ms, int most_ms, const std::string& former,
+                       const std::string& former_most) {
+    return {formerly(former, whole("reconnect_ms", first_ms, least_ms, 600000,
                                    "after a lost connection, until the first attempt to connect; doubled by "
                                    "every further one")),
-            formerly(former_most,
-                     whole("reconnect_most_ms", most_ms, 0, 600000, "most between two attempts to connect"))};
+            formerly(former_most, whole("reconnect_most_ms", most_ms, least_ms, 600000,
+                                        "most between two attempts to connect"))};
 }
 
 }  // namespace entry

@@ -1,7 +1,6 @@
 #pragma once
 // Settings of devices: a JSON object of optional fields, described once. The same table refuses what is wrong,
-// fills in what is left out, and is what `seamwright devices --help DRIVER`, the studio's form and
-// devices/SETTINGS.md show.
+// fills in what is left out, and is what `seamwright devices --help DRIVER` and devices/SETTINGS.md show.
 
 #include <cmath>
 #include <initializer_list>
@@ -54,8 +53,9 @@ SettingInfo list(std::string name, nlohmann::json otherwise, std::string help);
 SettingInfo object(std::string name, std::vector<SettingInfo> fields, std::string help);
 SettingInfo formerly(std::string former, SettingInfo info);
 SettingTable joined(SettingTable first, const SettingTable& second);
-// Back-off of a client that connects, doubling: reconnect_ms, reconnect_most_ms.
-SettingTable reconnect(int first_ms, int most_ms, const std::string& former, const std::string& former_most);
+// Back-off of a client that connects, doubling: reconnect_ms, reconnect_most_ms, from `least_ms` on.
+SettingTable reconnect(int least_ms, int first_ms, int most_ms, const std::string& former = {},
+                       const std::string& former_most = {});
 }  // namespace entry
 
 // The table for people: "name  default  range or choices  help", a line each, fields of objects indented.

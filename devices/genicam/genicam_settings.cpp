@@ -52,9 +52,9 @@ const SettingTable& genicam_settings() {
                 "of colour formats: what is made into the image"),
          text("trigger", "software", "software, free, or an input of the camera: Line1"),
          yes_no("hardware_trigger", false, "the robot fires the sensor: trigger is Line1 unless named"),
-         object(
-             "features", {},
-             "any GenICam feature, set in this order: number, text, true or false; null executes a command"),
+         object("features", {},
+                "any GenICam feature, set in the alphabet's order: number, text, true or false; null "
+                "executes a command"),
          list("chunks", nlohmann::json::array(),
               "chunks to switch on; ChunkTimestamp is then the frame's device time"),
          object("range",
@@ -75,7 +75,7 @@ const SettingTable& genicam_settings() {
                "for a software trigger's frame, and for a reconnection's first answer"),
          whole("heartbeat_ms", 500, 0, 60000,
                "how often the camera is asked whether it is there; 0: Aravis' own heartbeat only")},
-        reconnect(100, 1000, "", ""));
+        reconnect(1, 100, 1000));
     return table;
 }
 

@@ -519,7 +519,7 @@ const SettingTable& gocator_settings() {
          entry::whole("timeout_ms", 1000, 50, 60000, "for an answer"),
          entry::whole("start_timeout_ms", 15000, 50, 120000, "for the answers to start and stop"),
          entry::whole("buffers", 8, 2, 1000, "frames that may be handed out")},
-        entry::reconnect(100, 5000, "", ""));
+        entry::reconnect(10, 100, 5000));
     return table;
 }
 

@@ -527,7 +527,7 @@ const SettingTable& kuka_kvp_settings() {
                        entry::whole("port", 7000, 1, 65535, "of KUKAVARPROXY"),
                        entry::whole("timeout_ms", 1000, 10, 60000, "for a connection and for every answer"),
                        entry::whole("poll_ms", 10, 1, 1000, "between two looks for a start or a trigger")},
-                      entry::reconnect(100, 500, "retry_ms", "retry_most_ms")),
+                      entry::reconnect(1, 100, 500, "retry_ms", "retry_most_ms")),
         kuka_program_settings());
     return table;
 }

@@ -638,7 +638,7 @@ const SettingTable& ur_rtde_settings() {
          entry::whole("first_register", ur::kFirstRegister, 0, ur::kLastRegister + 1 - ur::kOutputs,
                       "first of the registers that the module uses, the same as in its program"),
          entry::whole("trigger_output", 0, 0, 7, "digital output that fires the sensor, for the program")},
-        entry::reconnect(100, 500, "retry_ms", "retry_most_ms"));
+        entry::reconnect(1, 100, 500, "retry_ms", "retry_most_ms"));
     return table;
 }
 

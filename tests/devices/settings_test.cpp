@@ -19,7 +19,7 @@ const SettingTable& sample() {
          entry::number("speed_mm_s", nullptr, 0.5, 10, "of it"),
          entry::choice("mode", {"slow", "fast"}, "of it"), entry::yes_no("loop", true, "or not"),
          entry::object("region", {entry::whole("x", 3, 0, 9, "first")}, "part")},
-        entry::reconnect(100, 500, "retry_ms", "retry_most_ms"));
+        entry::reconnect(1, 100, 500, "retry_ms", "retry_most_ms"));
     return table;
 }
 
@@ -68,6 +68,7 @@ TEST(Settings, FormerNamesAreStillRead) {
 TEST(Settings, WhatIsWrongIsRefusedWithItsPlace) {
     const std::pair<nlohmann::json, const char*> wrong[] = {{{{"adress", "x"}}, "settings.adress"},
                                                             {{{"port", 0}}, "settings.port"},
+                                                            {{{"reconnect_ms", 0}}, "settings.reconnect_ms"},
                                                             {{{"port", 1e99}}, "settings.port"},
                                                             {{{"port", 7.5}}, "settings.port"},
                                                             {{{"port", "7000"}}, "settings.port"},

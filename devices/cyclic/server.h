@@ -52,6 +52,7 @@ class CyclicServer {
   private:
     CyclicServer(const CyclicSettings& settings, std::unique_ptr<CyclicProtocol> protocol, UdpSocket socket);
     void run();
+    bool book_unreadable(const Error& error);
     bool book(std::span<const std::byte> datagram, const Endpoint& from);
 
     const CyclicSettings settings_;

@@ -1,5 +1,8 @@
 #include "devices/registry.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -9,8 +12,10 @@
 #include "devices/abb/rapid.h"
 #include "devices/controllers/abb/controller.h"
 #include "devices/controllers/kuka/controller.h"
+#include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/controllers/ur/controller.h"
 #include "devices/genicam/genicam.h"
+#include "devices/genicam/genicam_settings.h"
 #include "devices/gocator/gocator.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/kvp.h"
@@ -26,36 +31,77 @@ namespace seamwright {
 
 const std::vector<SensorDriver>& sensor_drivers() {
     static const std::vector<SensorDriver> drivers = {
-        {"simulated", "A car door before a stripe camera, rendered", &open_simulated_sensor},
-        {"simulated-gripper", "A panel in a gripper before a body's opening, rendered", &open_gripper_sensor},
+        {"simulated", "A car door before a stripe camera, rendered", &open_simulated_sensor,
+         &simulated_cell_settings},
+        {"simulated-gripper", "A panel in a gripper before a body's opening, rendered", &open_gripper_sensor,
+         &gripper_cell_settings},
         {"replay", "A recorded capture, or profiles (CSV) or images of a folder, with poses",
-         &open_replay_sensor},
-        {"genicam", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)",
-         &open_genicam_sensor},
-        {"gocator", "LMI Gocator, profiles or the results of its own tools over TCP", &open_gocator_sensor},
+         &open_replay_sensor, &replay_sensor_settings},
+        {"genicam", "GigE Vision and USB3 Vision cameras, images or profiles (GenICam)", &open_genicam_sensor,
+         &genicam_settings},
+        {"gocator", "LMI Gocator, profiles or the results of its own tools over TCP", &open_gocator_sensor,
+         &gocator_settings},
     };
     return drivers;
 }
 
 const std::vector<RobotDriver>& robot_drivers() {
     static const std::vector<RobotDriver> drivers = {
-        {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot},
-        {"simulated-gripper", "A robot whose gripper holds a panel", &open_gripper_robot},
-        {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki},
-        {"kuka-kvp", "KUKA, variables of the controller by KUKAVARPROXY", &open_kuka_kvp},
+        {"simulated", "A robot with repeatability and trigger jitter", &open_simulated_robot,
+         &simulated_cell_settings},
+        {"simulated-gripper", "A robot whose gripper holds a panel", &open_gripper_robot,
+         &gripper_cell_settings},
+        {"kuka-eki", "KUKA, the controller connects by EthernetKRL", &open_kuka_eki, &kuka_eki_settings},
+        {"kuka-kvp", "KUKA, variables of the controller by KUKAVARPROXY", &open_kuka_kvp, &kuka_kvp_settings},
         {"kuka-rsi", "KUKA path correction in every cycle (RSI)",
          [](const nlohmann::json& settings, DeviceSession& session) {
              return open_kuka_rsi(settings, session, &open_robot);
-         }},
-        {"replay", "The poses and spots of a recorded capture or folder", &open_replay_robot},
-        {"ur-rtde", "Universal Robots, registers and poses by RTDE", &open_ur_rtde},
-        {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid},
+         },
+         &kuka_rsi_settings},
+        {"replay", "The poses and spots of a recorded capture or folder", &open_replay_robot,
+         &replay_robot_settings},
+        {"ur-rtde", "Universal Robots, registers and poses by RTDE", &open_ur_rtde, &ur_rtde_settings},
+        {"abb-rapid", "ABB controller with our RAPID server task (TCP)", &open_abb_rapid,
+         &abb_rapid_settings},
         {"abb-egm", "ABB path correction in every cycle (EGM)",
          [](const nlohmann::json& settings, DeviceSession& session) {
              return open_abb_egm(settings, session, &open_robot);
-         }},
+         },
+         &abb_egm_settings},
     };
     return drivers;
+}
+
+std::optional<std::string> driver_text(std::string_view name) {
+    std::string text;
+    const auto add = [&](const char* kind, const auto& drivers) {
+        for (const auto& d : drivers)
+            if (d.name == name)
+                text += fmt::format("{}{} {}: {}\n\n{}", text.empty() ? "" : "\n", kind, d.name, d.help,
+                                    settings_text(d.settings()));
+    };
+    add("sensor", sensor_drivers());
+    add("robot", robot_drivers());
+    if (text.empty()) return std::nullopt;
+    return text;
+}
+
+std::string settings_document() {
+    std::string text =
+        "# Settings of the drivers\n\nWritten by `seamwright devices --help all`. Each line: name, default, "
+        "range or "
+        "kind, meaning; the unit is the end of\nthe name. A pose is written as in project files.\n";
+    std::vector<std::string_view> done;
+    const auto add = [&](const auto& drivers) {
+        for (const auto& d : drivers) {
+            if (std::find(done.begin(), done.end(), d.name) != done.end()) continue;
+            done.push_back(d.name);
+            text += fmt::format("\n## {}\n\n```\n{}```\n", d.name, *driver_text(d.name));
+        }
+    };
+    add(sensor_drivers());
+    add(robot_drivers());
+    return text;
 }
 
 const std::vector<ControllerDriver>& controller_drivers() {

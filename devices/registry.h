@@ -5,12 +5,14 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 #include "devices/robot_program.h"
@@ -22,10 +24,12 @@ struct SensorDriver {
     std::string_view name, help;
     // `settings` are the connection parameters stored in the project (address, serial, folder, seed, ...).
     Expected<std::unique_ptr<ProfileSource>> (*open)(const nlohmann::json& settings, DeviceSession& session);
+    const SettingTable& (*settings)();  // what `open` takes
 };
 struct RobotDriver {
     std::string_view name, help;
     Expected<std::unique_ptr<RobotLink>> (*open)(const nlohmann::json& settings, DeviceSession& session);
+    const SettingTable& (*settings)();
 };
 // A controller that speaks a robot driver's protocol from the other side, before a simulated cell. Same name
 // as the driver. `settings`: {"address": "127.0.0.1", "port": 0 (of the driver's server, where the robot is
@@ -46,6 +50,11 @@ const std::vector<SensorDriver>& sensor_drivers();
 const std::vector<RobotDriver>& robot_drivers();
 const std::vector<ControllerDriver>& controller_drivers();
 const std::vector<ProgramWriter>& program_writers();
+
+// The table of a driver, for people; nullopt: no such driver. A sensor's and a robot's driver may share a name.
+std::optional<std::string> driver_text(std::string_view name);
+// Those of all drivers: devices/SETTINGS.md.
+std::string settings_document();
 
 // Opens by driver name; an unknown name is an Error that lists the known ones.
 Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,

@@ -888,6 +888,7 @@ constexpr auto kCauses = std::to_array<const char*>({
     QT_TRANSLATE_NOOP("Errors", "is no JSON (%1)"),
     QT_TRANSLATE_NOOP("Errors", "must be an object, not %1"),
     QT_TRANSLATE_NOOP("Errors", "is not a known field"),
+    QT_TRANSLATE_NOOP("Errors", "%1 is given under its former name too"),
     QT_TRANSLATE_NOOP("Errors", "must be a number, not %1"),
     QT_TRANSLATE_NOOP("Errors", "must be finite"),
     QT_TRANSLATE_NOOP("Errors", "is missing"),

@@ -8,6 +8,21 @@
 
 namespace seamwright::cli {
 
+Expected<double> setting_value(const ParameterInfo& info, const std::string& text) {
+    for (std::size_t i = 0; i < info.choices.size(); ++i)
+        if (info.choices[i] == text) return static_cast<double>(i);
+    double value = 0;
+    const char* end = text.data() + text.size();
+    auto [stop, failure] = std::from_chars(text.data(), end, value);
+    if (failure != std::errc() || stop != end || text.empty())
+        return usage_error(
+            fmt::format(
+                "\"{}\" is not {}", text,
+                info.choices.empty() ? "a number" : fmt::format("one of {}", fmt::join(info.choices, ", "))),
+            info.name);
+    return value;
+}
+
 Expected<double> feature_setting(const FeatureKind& kind, const std::string& name, const std::string& text) {
     auto info = std::find_if(kind.parameters.begin(), kind.parameters.end(),
                              [&](const ParameterInfo& p) { return p.name == name; });
@@ -17,18 +32,7 @@ Expected<double> feature_setting(const FeatureKind& kind, const std::string& nam
         return usage_error(Text("the kind \"{}\" has no setting \"{}\"", kind.name, name), "",
                            Text("known are: {}", fmt::join(known, ", ")));
     }
-    for (std::size_t i = 0; i < info->choices.size(); ++i)
-        if (info->choices[i] == text) return static_cast<double>(i);
-    double value = 0;
-    const char* end = text.data() + text.size();
-    auto [stop, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc() || stop != end || text.empty())
-        return usage_error(
-            Text("\"{}\" is not {}", text,
-                        info->choices.empty() ? "a number"
-                                              : fmt::format("one of {}", fmt::join(info->choices, ", "))),
-            name);
-    return value;
+    return setting_value(*info, text);
 }
 
 Expected<std::pair<std::string, double>> feature_setting(const FeatureKind& kind,

@@ -8,6 +8,9 @@
 
 namespace seamwright::cli {
 
+// A parameter's value from text: a number or one of its choices. Error (usage): neither.
+Expected<double> setting_value(const ParameterInfo& info, const std::string& text);
+
 // The parameter's value from text ("12.5", "right"). Error (usage): not a setting of this kind, not a number
 // or choice.
 Expected<double> feature_setting(const FeatureKind& kind, const std::string& name, const std::string& text);

@@ -29,35 +29,65 @@ std::string pose_text(const Pose& pose) {
                        t.x(), t.y(), t.z(), abc.a_deg, abc.b_deg, abc.c_deg);
 }
 
+namespace {
+// "sigma", "covariance" and their two parts, of a correction or a plan.
+template <class T>
+void put_spread(const T& r, json& out) {
+    const auto sigma = [](const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
+        return json{{"xyz_mm", vector_json(xyz)}, {"abc_deg", vector_json(abc)}};
+    };
+    out["sigma"] = sigma(r.sigma_xyz_mm, r.sigma_abc_deg);
+    out["sigma_random"] = sigma(r.sigma_random.xyz_mm, r.sigma_random.abc_deg);
+    out["sigma_systematic"] = sigma(r.sigma_systematic.xyz_mm, r.sigma_systematic.abc_deg);
+    out["covariance"] = matrix_json(r.covariance);
+    out["covariance_random"] = matrix_json(r.covariance_random);
+    out["covariance_systematic"] = matrix_json(r.covariance_systematic);
+}
+}  // namespace
+
 json correction_json(const RegionCorrection& c) {
     json spots = json::array();
     for (const SpotResidual& s : c.spots)
         spots.push_back({{"id", s.id}, {"residual_mm", vector_json(s.residual_mm)}, {"used", s.used}});
-    return {{"status", to_string(c.status)},
-            {"displacement", pose_json(c.displacement.workobject_from_movedworkobject)},
-            {"sigma", {{"xyz_mm", vector_json(c.sigma_xyz_mm)}, {"abc_deg", vector_json(c.sigma_abc_deg)}}},
-            {"covariance", matrix_json(c.covariance)},
-            {"rms_mm", c.rms_mm},
-            {"redundancy", c.redundancy},
-            {"iterations", c.iterations},
-            {"spots", spots},
-            {"unobservable", c.unobservable},
-            {"message", c.message}};
+    json out = {{"status", to_string(c.status)},
+                {"displacement", pose_json(c.displacement.workobject_from_movedworkobject)},
+                {"rms_mm", c.rms_mm},
+                {"redundancy", c.redundancy},
+                {"iterations", c.iterations},
+                {"spots", spots},
+                {"unobservable", c.unobservable},
+                {"message", c.message}};
+    put_spread(c, out);
+    return out;
 }
 
 namespace {
-std::string sigma_text(const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
-    return fmt::format("sigma  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n", xyz.x(),
-                       xyz.y(), xyz.z(), abc.x(), abc.y(), abc.z());
+// The sum, and its parts where something repeats.
+template <class T>
+std::string sigma_text(const T& r) {
+    const auto line = [](const char* name, const Eigen::Vector3d& xyz, const Eigen::Vector3d& abc) {
+        return fmt::format("{}  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n", name,
+                           xyz.x(), xyz.y(), xyz.z(), abc.x(), abc.y(), abc.z());
+    };
+    std::string text = line("sigma", r.sigma_xyz_mm, r.sigma_abc_deg);
+    if (!r.covariance_systematic.isZero(0)) {
+        text += line("  random    ", r.sigma_random.xyz_mm, r.sigma_random.abc_deg);
+        text += line("  systematic", r.sigma_systematic.xyz_mm, r.sigma_systematic.abc_deg);
+    }
+    return text;
 }
 }  // namespace
+
+std::string correction_sigma_text(const RegionCorrection& c) {
+    return sigma_text(c);
+}
 
 std::string correction_text(const RegionCorrection& c) {
     std::string text = fmt::format("{}{}{}\n", to_string(c.status), c.message.empty() ? "" : ": ", c.message);
     for (const std::string& direction : c.unobservable) text += "unobservable: " + direction + "\n";
     if (c.status == CorrectionStatus::under_determined) return text;
     text += "D      " + pose_text(c.displacement.workobject_from_movedworkobject) + "\n";
-    text += sigma_text(c.sigma_xyz_mm, c.sigma_abc_deg);
+    text += sigma_text(c);
     text += fmt::format("rms {:.4f} mm, redundancy {}\n", c.rms_mm, c.redundancy);
     for (const SpotResidual& s : c.spots)
         text += fmt::format("  {:<12} residual {:8.4f} {:8.4f} {:8.4f} mm{}\n", s.id, s.residual_mm.x(),
@@ -67,20 +97,20 @@ std::string correction_text(const RegionCorrection& c) {
 }
 
 json plan_json(const RegionPlan& p) {
-    return {{"status", to_string(p.status)},
-            {"sigma", {{"xyz_mm", vector_json(p.sigma_xyz_mm)}, {"abc_deg", vector_json(p.sigma_abc_deg)}}},
-            {"covariance", matrix_json(p.covariance)},
-            {"weakest", p.weakest},
-            {"weakest_direction", vector_json(p.weakest_direction)},
-            {"unobservable", p.unobservable},
-            {"redundancy", p.redundancy},
-            {"uncontrolled", p.uncontrolled},
-            {"advice", p.advice}};
+    json out = {{"status", to_string(p.status)},
+                {"weakest", p.weakest},
+                {"weakest_direction", vector_json(p.weakest_direction)},
+                {"unobservable", p.unobservable},
+                {"redundancy", p.redundancy},
+                {"uncontrolled", p.uncontrolled},
+                {"advice", p.advice}};
+    put_spread(p, out);
+    return out;
 }
 
 std::string plan_text(const RegionPlan& p) {
     std::string text = fmt::format("{}\n", to_string(p.status));
-    if (p.status == CorrectionStatus::ok) text += sigma_text(p.sigma_xyz_mm, p.sigma_abc_deg);
+    if (p.status == CorrectionStatus::ok) text += sigma_text(p);
     text += fmt::format("weakest: {}\nredundancy: {}\n", p.weakest, p.redundancy);
     for (const std::string& direction : p.unobservable) text += "unobservable: " + direction + "\n";
     if (!p.uncontrolled.empty())

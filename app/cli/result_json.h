@@ -19,6 +19,8 @@ nlohmann::json matrix_json(const Eigen::Ref<const Eigen::MatrixXd>& m);  // rows
 std::string pose_text(const Pose& pose);
 
 nlohmann::json correction_json(const RegionCorrection& correction);
+// Sigma of the six numbers, a line; and its random and systematic part where something is systematic.
+std::string correction_sigma_text(const RegionCorrection& correction);
 std::string correction_text(const RegionCorrection& correction);
 nlohmann::json plan_json(const RegionPlan& plan);
 std::string plan_text(const RegionPlan& plan);

@@ -172,7 +172,8 @@ std::string run_text(const RunRecord& run) {
         text += fmt::format("region {}: {}\n", r.region_id,
                             r.correction ? std::string(to_string(r.correction->status)) : "no correction");
         if (r.correction && r.correction->status != CorrectionStatus::under_determined)
-            text += "  D  " + pose_text(r.correction->displacement.workobject_from_movedworkobject) + "\n";
+            text += "  D  " + pose_text(r.correction->displacement.workobject_from_movedworkobject) + "\n" +
+                    correction_sigma_text(*r.correction);
         for (const std::string& reason : r.refusals) text += "  refused: " + reason + "\n";
         if (run.push)
             text += fmt::format("  push of {}: {}{}{}\n", r.push.frame_name, to_string(r.push.status),

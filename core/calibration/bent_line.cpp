@@ -41,7 +41,7 @@ double height(const Eigen::Vector3d& parabola, double u) {
     return parabola.x() + u * (parabola.y() + u * parabola.z());
 }
 
-double median(std::vector<double>& values) {
+double median_size(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -66,7 +66,7 @@ Eigen::Vector3d least_median(const std::vector<Eigen::Vector2d>& own, std::vecto
         trial.x() = p.y() - p.x() * (trial.y() + p.x() * trial.z());
         off.clear();
         for (const auto& point : own) off.push_back(std::abs(point.y() - height(trial, point.x())));
-        if (const double middle = median(off); middle < least) {
+        if (const double middle = median_size(off); middle < least) {
             least = middle;
             best = trial;
         }
@@ -88,7 +88,7 @@ std::vector<char> on_bent_line(const std::vector<Eigen::Vector2d>& points) {
         off.clear();
         for (std::size_t i = 0; i < own.size(); ++i)
             if (round == 0 || on[i]) off.push_back(std::abs(own[i].y() - height(parabola, own[i].x())));
-        const double limit = std::max(kLeastLimitPx, 6 * median(off));
+        const double limit = std::max(kLeastLimitPx, 6 * median_size(off));
         std::vector<char> support(own.size());
         Eigen::Index count = 0;
         for (std::size_t i = 0; i < own.size(); ++i)

@@ -248,6 +248,7 @@ std::string plate_hint(const CameraData& data, const std::vector<std::vector<cha
     p.point_used = used;
     p.freedom = freedom;
     p.freedom.two_focals = false;
+    p.hold_exactly = true;
     p.shape = ShapeFreedom::bowed;
     PlateBundleState s;
     s.intrinsics = solution.intrinsics;

@@ -246,6 +246,27 @@ Eigen::MatrixXd freedom_basis(const CameraFreedom& freedom) {
     return basis;
 }
 
+HeldIntrinsics held_intrinsics(const CameraFreedom& freedom, double focal_px, int width) {
+    std::vector<std::pair<Intrinsics, double>> held;
+    if (!freedom.two_focals) held.emplace_back(Intrinsics::Unit(0) - Intrinsics::Unit(1), 0.001 * focal_px);
+    if (!freedom.centre)
+        for (const int i : {2, 3}) held.emplace_back(Intrinsics::Unit(i), 0.03 * width);
+    if (freedom.radial < 1) held.emplace_back(Intrinsics::Unit(4), 0.3);
+    if (freedom.radial < 2) held.emplace_back(Intrinsics::Unit(5), 0.2);
+    if (freedom.radial < 3) held.emplace_back(Intrinsics::Unit(8), 0.1);
+    if (!freedom.tangential)
+        for (const int i : {6, 7}) held.emplace_back(Intrinsics::Unit(i), 0.002);
+    HeldIntrinsics out;
+    const auto n = static_cast<Eigen::Index>(held.size());
+    out.directions.resize(9, n);
+    out.sigma.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        out.directions.col(i) = held[static_cast<std::size_t>(i)].first;
+        out.sigma(i) = held[static_cast<std::size_t>(i)].second;
+    }
+    return out;
+}
+
 Intrinsics conform(const Intrinsics& k, const CameraFreedom& freedom, int width, int height) {
     Intrinsics out = k;
     if (!freedom.two_focals) out(0) = out(1) = 0.5 * (k(0) + k(1));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -131,7 +132,7 @@ double refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, i
     return cost;
 }
 
-double median(std::vector<double> values) {
+double hand_eye_median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -145,8 +146,8 @@ Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
         t.push_back(residual_mm(chain, i, x, y).squaredNorm());
         r.push_back(residual_rad(chain, i, x, y).squaredNorm());
     }
-    return {std::max(kSmallest_mm, std::sqrt(median(t) / 2.366)),
-            std::max(kSmallest_rad, std::sqrt(median(r) / 2.366))};
+    return {std::max(kSmallest_mm, std::sqrt(hand_eye_median(t) / 2.366)),
+            std::max(kSmallest_rad, std::sqrt(hand_eye_median(r) / 2.366))};
 }
 
 // Variance components by the hat matrix' share of each group: s^2 = sum r^2 / (3 n - tr(H^-1 H_group)).
@@ -230,7 +231,7 @@ Began best_start(const Chain& chain) {
     for (const size_t i : used)
         each.push_back(std::hypot(residual_mm(chain, i, best.closed.x, best.closed.y).norm(),
                                   lever * residual_rad(chain, i, best.closed.x, best.closed.y).norm()));
-    const double middle = median(each);
+    const double middle = hand_eye_median(each);
     if (*std::max_element(each.begin(), each.end()) < 3 * middle + 1e-9) return best;
     std::mt19937 random(11u);
     for (int trial = 0; trial < 60; ++trial) {
@@ -246,6 +247,38 @@ struct Determination {
     Matrix12 inverse = Matrix12::Zero();
     double worst_mm = 0, worst_rad = 0;  // sigma of X with the noise floor
 };
+
+// The covariance as the pairs themselves scatter (Liang and Zeger's sandwich, each residual freed from its own
+// other pairs see it), in the directions in which it is the larger: a camera knows the target's distance and
+// tilt ten times worse than its place across, and a turn and a shift of one pair err together.
+Matrix12 by_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales& s,
+                  const Matrix12& isotropic) {
+    Matrix12 meat = Matrix12::Zero();
+    Matrix3x12 jt, jr;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        jacobians(chain, i, x, y, jt, jr);
+        Eigen::Matrix<double, 6, 12> j;
+        j << jt / s.mm, jr / s.rad;
+        Vector6 r;
+        r << residual_mm(chain, i, x, y) / s.mm, residual_rad(chain, i, x, y) / s.rad;
+        // I - J C J^T; a pair that alone knows something has no residual there.
+        const SymmetricEigen left = symmetric_eigen(Matrix6::Identity() - j * isotropic * j.transpose());
+        const Vector6 alone = left.vectors.transpose() * r;
+        const Vector6 others = left.vectors * alone.cwiseQuotient(left.values.cwiseMax(0.05).cwiseSqrt());
+        const Vector12 pull = j.transpose() * others;
+        meat.noalias() += pull * pull.transpose();
+    }
+    const Eigen::LLT<Matrix12> root(isotropic);
+    if (root.info() != Eigen::Success) return isotropic;
+    const Matrix12 l = root.matrixL();
+    const SymmetricEigen ratio = symmetric_eigen(l.transpose() * meat * l);
+    // Where the pairs scatter alike the largest ratio comes out near (1 + sqrt(12 / n))^2 by chance; its root is
+    // taken off before it counts, so that such pairs are not stated too unsure.
+    const double chance = 1 + std::sqrt(12.0 / std::max(1.0, static_cast<double>(chain.used_count())));
+    return l * ratio.vectors * (ratio.values / chance).cwiseMax(1).asDiagonal() * ratio.vectors.transpose() *
+           l.transpose();
+}
 
 Determination determination(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
     const Scales floor{std::max(scales.mm, kFloor_mm), std::max(scales.rad, kFloor_rad)};
@@ -263,7 +296,7 @@ Determination determination(const Chain& chain, const Pose& x, const Pose& y, co
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> w(Eigen::Matrix3d(floored.block<3, 3>(3, 3)));
     result.worst_mm = std::sqrt(std::max(0.0, t.eigenvalues()[2]));
     result.worst_rad = std::sqrt(std::max(0.0, w.eigenvalues()[2]));
-    result.inverse = inverse_of(scales);
+    result.inverse = by_pairs(chain, x, y, scales, inverse_of(scales));
     return result;
 }
 

@@ -20,7 +20,8 @@
 // lever is weighed by hand.
 //
 // Noise model: isotropic independent errors of the target's position and orientation, seen in the frame of Y;
-// robot and camera errors both end there. Covariances carry Student's factor: value +- 1.96 sigma holds 95 %.
+// robot and camera errors both end there. Where the pairs' own residuals (sandwich covariance, a pair a cluster)
+// scatter more in some direction of the unknowns, that counts there. Covariances carry Student's factor: value +- 1.96 sigma holds 95 %.
 // Degenerate: one orientation (X's translation is free), rotations about one axis (translation along it and
 // the turn about it are free): status undetermined, in words. A pair that the others contradict is found,
 // named and left out.

@@ -222,7 +222,7 @@ Solution solve(Lines& lines, Intrinsics k, const std::vector<int>& free, const E
     return s;
 }
 
-double median(std::vector<double> values) {
+double lens_median(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -244,15 +244,15 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
         rms_used.push_back(rms[i]);
     }
     const int fewest = std::max(3, (2 * static_cast<int>(data.lines.size()) + 2) / 3);
-    const double bent = std::max(kBentPx, kBentTimes * median(rms_used));
+    const double bent = std::max(kBentPx, kBentTimes * lens_median(rms_used));
     const auto worst = static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
     if (lines.count() > fewest && rms[worst] > bent) {
         lines.used[worst] = 0;
-        poses[worst].note = Text("left out: it stays bent by {:.2f} px, the others by {:.2f} px",
-                                        rms[worst], median(rms_used));
+        poses[worst].note = fmt::format("left out: it stays bent by {:.2f} px, the others by {:.2f} px",
+                                        rms[worst], lens_median(rms_used));
         return true;
     }
-    const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * median(std::move(all)));
+    const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * lens_median(std::move(all)));
     bool changed = false;
     for (std::size_t i = 0; i < data.lines.size(); ++i) {
         if (!lines.used[i]) continue;

@@ -66,6 +66,14 @@ PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleS
     const CameraData& data = *problem.data;
     PlateBundleFit fit;
     fit.basis = freedom_basis(problem.freedom);
+    const Eigen::Index free = fit.basis.cols();
+    const Intrinsics held_at = conform(start.intrinsics, problem.freedom, data.width, data.height);
+    HeldIntrinsics held;
+    if (!problem.hold_exactly) {
+        held = held_intrinsics(problem.freedom, 0.5 * (held_at(0) + held_at(1)), data.width);
+        fit.basis.conservativeResize(9, free + held.sigma.size());
+        fit.basis.rightCols(held.sigma.size()) = held.directions;
+    }
     Eigen::Index shared = fit.basis.cols();
     const Eigen::Index shape_count = problem.shape == ShapeFreedom::rigid      ? 0
                                      : problem.shape == ShapeFreedom::in_plane ? 2
@@ -201,6 +209,14 @@ PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleS
                 }
             }
         }
+        for (Eigen::Index j = 0; j < held.sigma.size(); ++j) {
+            const auto d = held.directions.col(j);
+            const double e = d.dot(s.intrinsics - held_at) / (d.squaredNorm() * held.sigma(j));
+            cost += e * e;
+            if (!normal) continue;
+            normal->gg(free + j, free + j) += 1 / (held.sigma(j) * held.sigma(j));
+            normal->g(free + j) += e / held.sigma(j);
+        }
         if (normal) {
             normal->cost = cost;
             fit.corners = corners;
@@ -233,7 +249,7 @@ PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleS
             if (used(i)) s.camera_from_target[i] = retract(s.camera_from_target[i], view_steps[i]);
     };
     fit.state = start;
-    fit.state.intrinsics = conform(start.intrinsics, problem.freedom, data.width, data.height);
+    if (problem.hold_exactly) fit.state.intrinsics = held_at;
     if (shape_count == 0) fit.state.shape.stretch = fit.state.shape.shear = 0;
     if (shape_count < 5) fit.state.shape.bow_mm.setZero();
     fit.converged = minimise_blocks(fit.state, fit.normal, evaluate, apply, 60, 1e-9);

@@ -37,6 +37,8 @@ struct PlateBundle {
     std::vector<std::vector<char>> point_used;  // per view and point, or empty
     CameraFreedom freedom;
     ShapeFreedom shape = ShapeFreedom::rigid;
+    // What `freedom` does not solve for is held exactly, or within held_intrinsics().
+    bool hold_exactly = false;
     double corner_sigma_px = 0.2;
 
     std::vector<std::optional<Pose>> base_from_flange;  // per view; used when the state has a hand-eye
@@ -70,7 +72,7 @@ struct PlateBundleFit {
     // Where the shared unknowns stand: intrinsics basis [0, n), then shape, hand-eye, target, plane; -1 =
     // absent.
     Eigen::Index shape_at = -1, hand_eye_at = -1, target_at = -1, plane_at = -1;
-    Eigen::MatrixXd basis;  // of the intrinsics
+    Eigen::MatrixXd basis;  // of the intrinsics: the free ones, then the held directions
     double corner_rms_px = 0, robot_rms_mm = 0, robot_rms_rad = 0, stripe_rms_mm = 0;
     double corner_cost = 0;  // px^2
     std::size_t corners = 0;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/calibration/corner_noise.h"
 #include "core/calibration/hand_eye.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/stripe_line.h"
@@ -138,6 +139,8 @@ class Solver {
         for (std::size_t k = 0; k < count(); ++k)
             bundle_.base_from_flange[k] = observations_[view_frame_[k]].base_from_flange;
         bundle_.corner_sigma_px = 0.3;
+        // A model that a person names is meant as it stands.
+        bundle_.hold_exactly = options_.freedom.has_value();
         return start_robot();
     }
 
@@ -670,6 +673,15 @@ class Solver {
                                 "fit to {:.2f} px",
                                 100 * result_.on_plane_share, result_.rms_px),
                     "check focus, that plate, laser and camera are held firmly, and the board's size"};
+        // Beyond what corners are read to, the model does not explain them.
+        const double noise = std::max(detail::corner_noise_px(data_.views), 0.02);
+        const double misfit = result_.sigma_px / noise;
+        const auto misfits = [&] {
+            return fmt::format("the corners fit to {:.2f} px, {:.0f} times as far off as they are read",
+                               result_.rms_px, misfit);
+        };
+        if (misfit > 5)
+            return {Verdict::poor, misfits(), "check that the plate is flat and firm, and the lens in focus"};
         const auto with_stripe = std::count_if(result_.frames.begin(), result_.frames.end(),
                                                [](const auto& x) { return x.used && !x.stripe.empty(); });
         if (2 * stripes <= with_stripe)
@@ -687,6 +699,9 @@ class Solver {
                     Text("the stripe of {} lies off the plane that the other {} frames share", off,
                                 stripes),
                     "check that laser and camera sit firmly, and take these frames again"};
+        if (misfit > 3)
+            return {Verdict::usable, misfits(),
+                    "check that the plate is flat and firm, and the lens in focus"};
         if (sigma_f > 0.01 * f)
             return {Verdict::usable,
                     Text("the focal length is known to {:.1f} % only", 100 * sigma_f / f),

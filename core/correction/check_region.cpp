@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/correction/nuisance.h"
 #include "core/correction/region_system.h"
 
 namespace seamwright::correction {
 namespace {
 
 constexpr double kFarthestMm = 1e7;
+// Priors wider than these are none, and the first order would not hold: standard deviations.
+constexpr double kLargestMm = 1000, kLargestRad = 0.5, kLargestScale = 0.1;
 
 bool is_pose(const Pose& pose) {
     const Eigen::Matrix3d r = pose.linear();
@@ -18,6 +21,53 @@ bool is_pose(const Pose& pose) {
 
 std::string where(std::size_t n, const SpotObservation& spot, const char* field) {
     return fmt::format("spots[{}] \"{}\" {}", n, spot.id, field);
+}
+
+constexpr const char* kNoCovariance =
+    "the covariance is not finite, not symmetric, negative in some direction or too large";
+bool covariance_of_mm(const Eigen::Matrix2d& c) {
+    return semidefinite(c) && c.diagonal().maxCoeff() <= kLargestMm * kLargestMm;
+}
+bool covariance_of_pose(const Matrix6& c) {
+    return (definite(c) || semidefinite(c)) && c.diagonal().head<3>().maxCoeff() <= kLargestMm * kLargestMm &&
+           c.diagonal().tail<3>().maxCoeff() <= kLargestRad * kLargestRad;
+}
+
+Expected<void> check_sensors(std::span<const SpotObservation> spots,
+                             const std::vector<SensorPrior>& sensors) {
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        const SensorPrior& p = sensors[i];
+        const auto at = [&](const char* field) { return fmt::format("sensors \"{}\" {}", p.id, field); };
+        if (p.id.empty())
+            return input_error("a sensor has an empty id", "sensors", "give every sensor its name");
+        for (std::size_t k = 0; k < i; ++k)
+            if (sensors[k].id == p.id)
+                return input_error(fmt::format("the sensor id \"{}\" occurs twice", p.id), "sensors",
+                                   "give every sensor its own id");
+        if (!covariance_of_pose(p.hand_eye_covariance))
+            return input_error(kNoCovariance, at("hand_eye_covariance"),
+                               "give six rows of translation (mm) and rotation vector (rad), symmetric and "
+                               "without a negative variance");
+        const auto sigma = [](double v) { return v >= 0 && v <= kLargestScale; };
+        if (!sigma(p.scale_sigma.x()) || !sigma(p.scale_sigma.y()))
+            return input_error("the sigma of a scale is negative, not finite or above 0.1", at("scale_sigma"),
+                               "give shares, e.g. [0.001, 0.001] for 0.1 %");
+        if (!sigma(p.shear_sigma))
+            return input_error("the sigma of the shear is negative, not finite or above 0.1",
+                               at("shear_sigma"), "give a share, e.g. 0.001 for 0.1 %");
+    }
+    for (std::size_t n = 0; n < spots.size(); ++n) {
+        const SpotObservation& s = spots[n];
+        if (s.sensor.empty() && sensors.empty()) continue;
+        if (s.sensor.empty())
+            return input_error("the spot names no sensor although sensors are stated", where(n, s, "sensor"),
+                               "name the sensor that measures it");
+        if (std::none_of(sensors.begin(), sensors.end(),
+                         [&](const SensorPrior& p) { return p.id == s.sensor; }))
+            return input_error(fmt::format("the sensor \"{}\" is not among the stated ones", s.sensor),
+                               where(n, s, "sensor"), "add it to \"sensors\" or mend the id");
+    }
+    return {};
 }
 
 tl::unexpected<Error> twice(const std::string& id) {
@@ -66,6 +116,13 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
             return input_error("a covariance is given, but the weights of x and z differ",
                                where(n, s, "covariance_mm2"), "give both the same weight, or sigma_mm alone");
     }
+    if (s.reference_covariance_mm2 && !covariance_of_mm(*s.reference_covariance_mm2))
+        return input_error(kNoCovariance, where(n, s, "reference_covariance_mm2"),
+                           "give [[xx, xz], [xz, zz]] in mm^2, symmetric and without a negative variance");
+    if (s.robot_covariance && !covariance_of_pose(*s.robot_covariance))
+        return input_error(kNoCovariance, where(n, s, "robot_covariance"),
+                           "give six rows of translation (mm) and rotation vector (rad), symmetric and "
+                           "without a negative variance");
     if (s.curve) {
         const ContourCurve& c = *s.curve;
         if (!c.x_coefficients.allFinite() || !c.z_coefficients.allFinite() ||
@@ -98,6 +155,7 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
     for (std::size_t n = 0; n < spots.size(); ++n) {
         if (auto good = check_spot(n, spots[n], measured); !good) return good;
     }
+    if (auto good = check_sensors(spots, o.sensors); !good) return good;
     // Few spots are compared pair by pair, which needs no memory; many are sorted.
     if (spots.size() <= 64) {
         for (std::size_t n = 0; n < spots.size(); ++n) {

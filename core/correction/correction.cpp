@@ -31,29 +31,49 @@ std::string_view to_string(CorrectionStatus status) {
 
 namespace correction {
 
+template <class T>
 void report_spread(const RegionSystem& system, const Spread& spread, const Observability& seen,
-                   const State& state, Matrix6& covariance, Eigen::Vector3d& sigma_xyz_mm,
-                   Eigen::Vector3d& sigma_abc_deg) {
+                   const State& state, const RegionSystem::Parts* parts, T& out) {
+    const auto outer = [&](const Matrix6& xi, Matrix6& covariance, Eigen::Vector3d& xyz_mm,
+                           Eigen::Vector3d& abc_deg) {
+        system.outer(xi, state, covariance, xyz_mm, abc_deg);
+        abc_deg *= deg_from_rad(1);
+    };
+    out.covariance_systematic.setZero();
+    out.sigma_systematic = {};
     if (spread.regular) {
-        system.outer(spread.covariance, state, covariance, sigma_xyz_mm, sigma_abc_deg);
-        sigma_abc_deg *= deg_from_rad(1);
-        return;
-    }
-    // Singular: infinite where a degree of freedom takes part in an undetermined direction, nothing known
-    // elsewhere.
-    covariance.setZero();
-    for (Eigen::Index k = 0; k < seen.weak.cols(); ++k) {
-        const Vector6 t = system.tangent_from_xi(seen.weak.col(k), state);
-        for (int i = 0; i < 6; ++i) {
-            const double size = i < 3 ? std::abs(t[i]) : std::abs(t[i]) * system.spread_mm();
-            if (size > 1e-6) covariance(i, i) = kInfinity;
+        outer(spread.covariance, out.covariance, out.sigma_xyz_mm, out.sigma_abc_deg);
+        if (parts) {
+            outer(parts->random, out.covariance_random, out.sigma_random.xyz_mm, out.sigma_random.abc_deg);
+            outer(parts->systematic, out.covariance_systematic, out.sigma_systematic.xyz_mm,
+                  out.sigma_systematic.abc_deg);
+        }
+    } else {
+        // Singular: infinite where a degree of freedom takes part in an undetermined direction, nothing known
+        // elsewhere.
+        out.covariance.setZero();
+        for (Eigen::Index k = 0; k < seen.weak.cols(); ++k) {
+            const Vector6 t = system.tangent_from_xi(seen.weak.col(k), state);
+            for (int i = 0; i < 6; ++i) {
+                const double size = i < 3 ? std::abs(t[i]) : std::abs(t[i]) * system.spread_mm();
+                if (size > 1e-6) out.covariance(i, i) = kInfinity;
+            }
+        }
+        for (int i = 0; i < 3; ++i) {
+            out.sigma_xyz_mm[i] = std::sqrt(out.covariance(i, i));
+            // A about Z, B about Y, C about X.
+            out.sigma_abc_deg[i] = out.covariance(5 - i, 5 - i) > 0 ? kInfinity : 0.0;
         }
     }
-    for (int i = 0; i < 3; ++i) {
-        sigma_xyz_mm[i] = std::sqrt(covariance(i, i));
-        sigma_abc_deg[i] = covariance(5 - i, 5 - i) > 0 ? kInfinity : 0.0;  // A about Z, B about Y, C about X
+    if (!parts || !spread.regular) {
+        out.covariance_random = out.covariance;
+        out.sigma_random = {out.sigma_xyz_mm, out.sigma_abc_deg};
     }
 }
+template void report_spread(const RegionSystem&, const Spread&, const Observability&, const State&,
+                            const RegionSystem::Parts*, RegionCorrection&);
+template void report_spread(const RegionSystem&, const Spread&, const Observability&, const State&,
+                            const RegionSystem::Parts*, RegionPlan&);
 
 }  // namespace correction
 
@@ -68,7 +88,7 @@ struct RegionSolver::Impl {
         r.displacement = {};
         r.unobservable = name_directions(seen.weak, system.centroid(), system.spread_mm());
         r.sigma_at_spots_mm = seen.weakest_sigma_mm;
-        report_spread(system, spread, seen, state, r.covariance, r.sigma_xyz_mm, r.sigma_abc_deg);
+        report_spread(system, spread, seen, state, nullptr, r);
         r.message =
             Text("the spots do not determine the {}: add a spot whose edge runs in another direction",
                         listed(r.unobservable));
@@ -134,7 +154,7 @@ struct RegionSolver::Impl {
         if (before.regular && taught.surely_observable(before)) return false;
         const Observability seen = taught.observability(lin, start);
         if (seen.ok) return false;
-        fit = {};
+        fit.clear();
         fill_spots(spots, r);
         refuse(seen, start, before, r);
         return true;
@@ -146,8 +166,11 @@ struct RegionSolver::Impl {
         r.status = CorrectionStatus::not_converged;
         r.displacement = {};
         r.covariance.setZero();
+        r.covariance_random.setZero();
+        r.covariance_systematic.setZero();
         r.sigma_xyz_mm.setZero();
         r.sigma_abc_deg.setZero();
+        r.sigma_random = r.sigma_systematic = {};
         r.sigma_at_spots_mm = r.rms_mm = 0;
         r.variance_factor = 1;
         r.consistent = true;
@@ -157,7 +180,7 @@ struct RegionSolver::Impl {
 
         factor.assign(spots.size(), 1.0);
         system.load(spots, options, false);
-        fit = {};
+        fit.clear();
 
         int observed = 0;
         for (std::size_t n = 0; n < spots.size(); ++n) observed += system.spot(n).observed;
@@ -206,7 +229,12 @@ struct RegionSolver::Impl {
             }
             return {};
         }
-        report_spread(system, spread, seen, fit.state, r.covariance, r.sigma_xyz_mm, r.sigma_abc_deg);
+        if (system.repeats()) {
+            const RegionSystem::Parts parts = system.parts(fit.lin, fit.shared, fit.state, factor, spread);
+            report_spread(system, spread, seen, fit.state, &parts, r);
+        } else {
+            report_spread(system, spread, seen, fit.state, nullptr, r);
+        }
         r.sigma_at_spots_mm = system.weakest_sigma_mm(spread);
         r.displacement.workobject_from_movedworkobject = fit.state.pose();
         r.status = CorrectionStatus::ok;

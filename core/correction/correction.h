@@ -21,6 +21,23 @@
 // contour is such a case: an error of the turn moves it in a direction of its own, and taking both
 // coordinates for independent gives away a sixth of the information.
 //
+// What is the same again. That covariance knows the noise of a run alone. A correction errs too by what all
+// spots of a sensor share, and by what all parts to come share. Each such term is a nuisance with a prior, to
+// first order, in the sensor frame of spot n, with A = W_n^-1 D^-1 W_n and y = A m_n:
+//     hand-eye, flange_from_sensor Exp(rho, theta), one per sensor:
+//                           de_n = (I - R_A) rho + theta x y - R_A (theta x m_n)
+//     scale and shear, K = [kappa_x 0 s; 0 0 0; 0 0 kappa_z], one per sensor:
+//                           de_n = K r_n - R_A K m_n
+//     reference, one per spot and all parts:       de_n = dr
+//     robot, W_n Exp(rho, theta), one per arrival: de_n = -(rho + theta x r_n) when taught,
+//                                                         R_A (rho + theta x m_n) in the run
+// The first two vanish where the part has not moved and grow with the displacement. They are unknowns beside
+// D in the normal equations, with their priors, and eliminated (Schur complement), so that what the spots
+// tell about them is used; the others are independent from spot to spot and join the covariance of the spot.
+// The robot's errors take R_A = I. The covariance comes in two parts that add up: `random`, anew with every
+// part (noise, travel, the arrivals of the run), and `systematic`, the same for all parts (hand-eye, scale,
+// shear, reference, the taught arrivals). With priors of 0 everything is as without them, bit for bit.
+//
 // Observability. A displacement is judged by what it does to the spots, not to the origin of the work object,
 // which may lie metres away: it is written as translation of the spots' centroid (mm) and rotation (rad), the
 // rotation counting as (rms distance of the spots from their centroid) x angle, in mm. A free direction is
@@ -85,7 +102,25 @@ struct SpotObservation {
     // Of (x, z) as measured, against the reference; takes sigma_mm's place for these two. Their weights must
     // be equal then.
     std::optional<Eigen::Matrix2d> covariance_mm2;
+    // What else errs; 0 or absent: nothing. Where the weights of the observed axes differ, the correlations
+    // of these terms between the axes are left out.
+    std::string sensor;  // id in CorrectionOptions::sensors; needed when that lists any
+    std::optional<Eigen::Matrix2d> reference_covariance_mm2;  // of the reference's (x, z)
+    // Of workobject_from_sensor as one arrival reaches it; tangent of pose.h.
+    std::optional<Matrix6> robot_covariance;
 };
+
+// What one sensor errs by, the same at all of its spots; one standard deviation.
+struct SensorPrior {
+    std::string id;
+    // (rho, theta) of flange_from_sensor Exp(rho, theta): translation (mm), then rotation vector (rad), along
+    // the sensor's axes.
+    Matrix6 hand_eye_covariance = Matrix6::Zero();
+    Eigen::Vector2d scale_sigma = Eigen::Vector2d::Zero();  // of x and z, share: 0.001 is 1 mm on a metre
+    double shear_sigma = 0;                                 // of x against z
+};
+// The same from the covariance of flange_from_sensor in the tangent of pose.h (axes of the flange).
+Matrix6 hand_eye_along_sensor(const Pose& flange_from_sensor, const Matrix6& covariance);
 
 struct CorrectionLimits {
     double translation_mm = std::numeric_limits<double>::infinity();  // length of D's translation
@@ -110,6 +145,7 @@ struct CorrectionOptions {
     bool reject_outliers = true;
     double outlier_significance = 1e-3;
     int max_iterations = 50;
+    std::vector<SensorPrior> sensors;
 };
 
 enum class CorrectionStatus {
@@ -128,14 +164,22 @@ struct SpotResidual {
     bool used = true;             // false: found to be wrong and left out
 };
 
+// Standard deviations of the printed numbers.
+struct DofSigma {
+    Eigen::Vector3d xyz_mm = Eigen::Vector3d::Zero(), abc_deg = Eigen::Vector3d::Zero();
+};
+
 struct RegionCorrection {
     CorrectionStatus status = CorrectionStatus::not_converged;
     Displacement displacement;
     // Tangent of pose.h, work object. Fixed translations have rows of 0. When the information is singular,
-    // the degrees of freedom concerned have an infinite variance (and sigma) and no correlations.
-    Matrix6 covariance = Matrix6::Zero();
+    // the degrees of freedom concerned have an infinite variance (and sigma) and no correlations, all of it
+    // counted as random.
+    Matrix6 covariance = Matrix6::Zero();  // random + systematic: what the gate judges
+    Matrix6 covariance_random = Matrix6::Zero(), covariance_systematic = Matrix6::Zero();
     Eigen::Vector3d sigma_xyz_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d sigma_abc_deg = Eigen::Vector3d::Zero();  // of KUKA A, B, C
+    DofSigma sigma_random, sigma_systematic;
     double sigma_at_spots_mm = 0;  // of the weakest free direction, as judged (see Observability)
     double rms_mm = 0;             // weighted rms of the used residuals
     int redundancy = 0;            // observed coordinates of the used spots minus free degrees of freedom
@@ -152,7 +196,8 @@ struct RegionCorrection {
 };
 
 // Refuses (Error): no spots, duplicate ids, non-finite numbers, sigma <= 0, negative weights, no free degree,
-// a pose that is none, coordinates beyond 10 km.
+// a pose that is none, coordinates beyond 10 km, a prior that is no covariance, a sensor without prior beside
+// others that have one.
 //
 // Wrong measures. Each spot's residual is studentised with its own covariance (what the other spots leave of
 // it). When one exceeds chance, the smallest set of spots is sought without which all others agree with each
@@ -185,9 +230,13 @@ class RegionSolver {
 // identity.
 struct RegionPlan {
     CorrectionStatus status = CorrectionStatus::ok;  // ok or under_determined
-    Matrix6 covariance = Matrix6::Zero();            // as in RegionCorrection
+    // As in RegionCorrection. What all spots of a sensor share is 0 here, where the part has not moved
+    // (predicted_covariance() of forecast.h takes a displacement).
+    Matrix6 covariance = Matrix6::Zero();
+    Matrix6 covariance_random = Matrix6::Zero(), covariance_systematic = Matrix6::Zero();
     Eigen::Vector3d sigma_xyz_mm = Eigen::Vector3d::Zero();
     Eigen::Vector3d sigma_abc_deg = Eigen::Vector3d::Zero();
+    DofSigma sigma_random, sigma_systematic;
     double sigma_at_spots_mm = 0;                 // of the weakest direction; infinity when singular
     Vector6 weakest_direction = Vector6::Zero();  // (translation of the spots' centroid, rotation vector
                                                   // times the spots' spread), unit length

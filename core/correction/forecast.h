@@ -9,11 +9,15 @@
 
 namespace seamwright {
 
-// Covariance of D (tangent of pose.h, work object) that follows from the spots' stated noise, at the places
-// as taught (measured_mm is ignored); infinite variances where the information is singular. Refuses what
-// plan_region refuses.
-Expected<Matrix6> predicted_covariance(std::span<const SpotObservation> spots,
-                                       const CorrectionOptions& options);
+// Covariance of D (tangent of pose.h, work object) that a measurement of the part displaced by `displacement`
+// will state, and its two parts (see correction.h); measured_mm is ignored: the spots see the displaced
+// contour. Infinite variances where the information is singular. Refuses what plan_region refuses.
+struct PredictedCovariance {
+    Matrix6 sum = Matrix6::Zero(), random = Matrix6::Zero(), systematic = Matrix6::Zero();
+};
+Expected<PredictedCovariance> predicted_covariance(std::span<const SpotObservation> spots,
+                                                   const CorrectionOptions& options,
+                                                   const Displacement& displacement = {});
 
 // The further spot that helps most, with the noise of a middling one; nullopt where none of the places tried
 // does (near the taught spots and at the corners of the box around them, edges along the axes and along the

@@ -8,6 +8,8 @@
 
 #include "core/correction/forecast.h"
 #include "core/correction/region_system.h"
+#include "core/correction/travel.h"
+#include "core/geometry/notation.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -108,9 +110,13 @@ std::string axis_name(Eigen::Vector3d v) {
     return fmt::format("({:.2f}, {:.2f}, {:.2f})", v.x(), v.y(), v.z());
 }
 
-// A spot whose sensor's Y runs along `edge`, X and Z observed.
-SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector3d& edge, double sigma) {
+// A spot whose sensor's Y runs along `edge`, X and Z observed; of the sensor of a taught one.
+SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector3d& edge, double sigma,
+                            const SpotObservation& like) {
     SpotObservation s;
+    s.sensor = like.sensor;
+    s.reference_covariance_mm2 = like.reference_covariance_mm2;
+    s.robot_covariance = like.robot_covariance;
     s.workobject_from_sensor = make_pose(rotation_between(Eigen::Vector3d::UnitY(), edge), position);
     s.sigma_mm = sigma;
     return s;
@@ -147,11 +153,11 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
         if (!known && edges.size() < 10) edges.push_back(edge);
     }
     std::vector<Candidate> out;
-    const auto add = [&](const Eigen::Vector3d& p, const std::string& near, const Text& place,
-                         double penalty) {
+    const auto add = [&](const Eigen::Vector3d& p, const std::string& near, const std::string& place,
+                         double penalty, const SpotObservation& like) {
         for (const Eigen::Vector3d& edge : edges) {
             Candidate c;
-            c.spot = spot_across(p, edge, sigma);
+            c.spot = spot_across(p, edge, sigma, like);
             c.penalty = penalty;
             c.near = near;
             c.edge = axis_name(edge);
@@ -167,7 +173,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
         const Eigen::Vector3d p = spots[n].workobject_from_sensor * spots[n].reference_mm;
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
-        if (n % every == 0) add(p, spots[n].id, Text("near {}", spots[n].id), 1.0);
+        if (n % every == 0) add(p, spots[n].id, "near " + spots[n].id, 1.0, spots[n]);
     }
     // Corners of the box around the spots; around a single spot or a tight cluster the box is taken 500 mm
     // wide.
@@ -184,7 +190,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
             flat = flat || high[i] - low[i] < 1;  // the same corner once more
             p[i] = high[i];
         }
-        if (!flat) add(p, "", tight ? Text("on the part") : Text("towards the corner"), kCornerPenalty);
+        if (!flat) add(p, "", tight ? "on the part" : "towards the corner", kCornerPenalty, spots.front());
     }
     return out;
 }
@@ -256,8 +262,10 @@ Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const C
     plan.unobservable = name_directions(now.seen.weak, system.centroid(), system.spread_mm());
     plan.weakest_direction = now.seen.weakest;
     plan.sigma_at_spots_mm = now.seen.weakest_sigma_mm;
-    report_spread(system, system.spread(now.lin, start), now.seen, start, plan.covariance, plan.sigma_xyz_mm,
-                  plan.sigma_abc_deg);
+    const Spread spread = system.spread(now.lin, start);
+    const RegionSystem::Parts parts =
+        system.parts(now.lin, {}, start, std::vector<double>(spots.size(), 1.0), spread);
+    report_spread(system, spread, now.seen, start, &parts, plan);
     // Of several equally undetermined directions any mixture is as weak: then the nicely named ones are
     // listed.
     if (now.seen.singular && !plan.unobservable.empty()) {
@@ -274,15 +282,37 @@ Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const C
     return plan;
 }
 
-Expected<Matrix6> predicted_covariance(std::span<const SpotObservation> spots,
-                                       const CorrectionOptions& options) {
+Expected<PredictedCovariance> predicted_covariance(std::span<const SpotObservation> spots,
+                                                   const CorrectionOptions& options,
+                                                   const Displacement& displacement) {
     if (auto good = check_region(spots, options, false); !good) return tl::unexpected(good.error());
+    const Pose& d = displacement.workobject_from_movedworkobject;
+    State state;
+    state.rotation = d.linear();
+    state.translation = d.translation();
+    const KukaAbc abc = kuka_from_rotation(d.linear());
+    state.abc = rad_from_deg(1) * Eigen::Vector3d(abc.a_deg, abc.b_deg, abc.c_deg);
+    const std::vector<double> all(spots.size(), 1.0);
     RegionSystem system;
-    const Judgement now = judge(system, spots, options);
-    Matrix6 covariance;
-    Eigen::Vector3d xyz, abc;
-    report_spread(system, system.spread(now.lin, State{}), now.seen, State{}, covariance, xyz, abc);
-    return covariance;
+    Linearization lin;
+    Shared shared;
+    if (d.matrix().isIdentity(0)) {  // as taught: nothing that a sensor errs by shows
+        system.load(spots, options, true);
+        system.linearize(state, all, lin);
+    } else {
+        Spots moved(spots.begin(), spots.end());
+        for (SpotObservation& s : moved) s.measured_mm = displaced_measure(s, displacement);
+        system.load(moved, options, false);
+        if (system.shares())
+            system.linearize_shared(state, all, lin, shared);
+        else
+            system.linearize(state, all, lin);
+    }
+    const Spread spread = system.spread(lin, state);
+    const RegionSystem::Parts parts = system.parts(lin, shared, state, all, spread);
+    RegionPlan out;
+    report_spread(system, spread, system.observability(lin, state), state, &parts, out);
+    return PredictedCovariance{out.covariance, out.covariance_random, out.covariance_systematic};
 }
 
 std::optional<FurtherSpot> best_further_spot(std::span<const SpotObservation> spots,

@@ -12,6 +12,7 @@ namespace {
 // Smallest ratio of eigenvalues of the information (in xi) that counts as regular.
 constexpr double kSingular = 1e-13;
 constexpr double kStepMm = 1e-9, kStepRad = 1e-12;
+constexpr double kRough = 1e8;  // in these units: 0.1 mm
 
 // Rz(A) Ry(B) Rx(C), written out: an angle of 0 leaves exact zeros, so that it is 0 when read back.
 Eigen::Matrix3d rotation_from_abc(const Eigen::Vector3d& abc) {
@@ -97,58 +98,11 @@ void follow(const Eigen::Vector3d& c, double s, double from, double to, double& 
 
 }  // namespace
 
-void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
-                        bool from_reference) {
-    options_ = options;
-    spots_.resize(spots.size());
-    binary_ = true;
-    centroid_.setZero();
-    for (std::size_t n = 0; n < spots.size(); ++n) {
-        const SpotObservation& in = spots[n];
-        PreparedSpot& s = spots_[n];
-        s.shape.setIdentity();
-        Eigen::Matrix3d flat = Eigen::Matrix3d::Identity();
-        if (in.covariance_mm2) {
-            // Lower triangle of Cholesky, over sigma.
-            const Eigen::Matrix2d& c = *in.covariance_mm2;
-            const double xx = std::sqrt(c(0, 0)), zx = c(1, 0) / xx, zz = std::sqrt(c(1, 1) - zx * zx);
-            s.shape(0, 0) = xx / in.sigma_mm;
-            s.shape(2, 0) = zx / in.sigma_mm;
-            s.shape(2, 2) = zz / in.sigma_mm;
-            flat(0, 0) = in.sigma_mm / xx;
-            flat(2, 2) = in.sigma_mm / zz;
-            flat(2, 0) = -zx / xx * flat(2, 2);
-        }
-        s.sensor_from_workobject = flat * in.workobject_from_sensor.linear().transpose();
-        s.sensor_origin = in.workobject_from_sensor.translation();
-        s.axes = s.sensor_from_workobject.transpose();
-        s.offset = flat * in.reference_mm + s.sensor_from_workobject * s.sensor_origin;
-        s.measured = in.workobject_from_sensor * (from_reference ? in.reference_mm : in.measured_mm);
-        s.reference = flat * in.reference_mm;
-        s.weights = in.weights;
-        s.sigma = in.sigma_mm;
-        s.curved = in.curve && in.weights.y() == 0;
-        if (s.curved) {
-            s.curve = *in.curve;
-            s.curve.x_coefficients *= flat(0, 0);
-            s.curve.z_coefficients =
-                flat(2, 0) * in.curve->x_coefficients + flat(2, 2) * in.curve->z_coefficients;
-        }
-        s.observed = 0;
-        for (int i = 0; i < 3; ++i) {
-            s.observed += in.weights[i] > 0;
-            binary_ = binary_ && (in.weights[i] == 0 || in.weights[i] == 1);
-        }
-        centroid_ += in.workobject_from_sensor * in.reference_mm;
-    }
-    centroid_ /= static_cast<double>(spots.size());
-    double square = 0;
-    for (const SpotObservation& in : spots)
-        square += (in.workobject_from_sensor * in.reference_mm - centroid_).squaredNorm();
-    spread_ = std::max(1.0, std::sqrt(square / static_cast<double>(spots.size())));
-    free_count_ = static_cast<int>(std::count(options.free.begin(), options.free.end(), true));
-    all_free_ = free_count_ == 6;
-    by_angles_ = !(options.free[3] && options.free[4] && options.free[5]);
+std::array<double, 2> RegionSystem::slopes(const PreparedSpot& s, double travel_mm) {
+    double value, x, z;
+    follow(s.curve.x_coefficients, travel_mm, s.curve.valid_from_mm, s.curve.valid_to_mm, value, x);
+    follow(s.curve.z_coefficients, travel_mm, s.curve.valid_from_mm, s.curve.valid_to_mm, value, z);
+    return {x, z};
 }
 
 void RegionSystem::residual(std::size_t n, const State& state, Eigen::Vector3d& e, Rows& rows) const {
@@ -441,8 +395,44 @@ void RegionSystem::step(State& state, const Vector6& theta, const Vector6& xi) c
     state.rotation = rotation_exp(t.tail<3>()) * state.rotation;
 }
 
+void RegionSystem::Fit::clear() {
+    converged = false;
+    iterations = 0;
+    state = {};
+    lin = {};
+    shared.clear();
+}
+
+// From a solution near by.
+void RegionSystem::fit_shared(std::span<const double> factor, Fit& out) const {
+    constexpr int kMostSteps = 8;
+    out.converged = false;
+    for (int k = 0; k < kMostSteps && !out.converged; ++k) {
+        ++out.iterations;
+        linearize_shared(out.state, factor, out.lin, out.shared);
+        const Matrix6 b = xi_from_parameters(out.state);
+        Matrix6 h = all_free_ ? out.lin.information : Matrix6(b.transpose() * out.lin.information * b);
+        const Vector6 g = all_free_ ? out.lin.gradient : Vector6(b.transpose() * out.lin.gradient);
+        Vector6 scale;
+        for (int i = 0; i < 6; ++i) {
+            if (!options_.free[static_cast<std::size_t>(i)]) h(i, i) = 1;
+            scale[i] = h(i, i) > 0 ? 1 / std::sqrt(h(i, i)) : 1.0;
+        }
+        Matrix6 lower;
+        if (!factorise(scale.asDiagonal() * h * scale.asDiagonal(), lower)) return;
+        const Vector6 theta = -(scale.asDiagonal() * solve_factorised(lower, scale.asDiagonal() * g));
+        const Vector6 xi = all_free_ ? theta : Vector6(b * theta);
+        step(out.state, theta, xi);
+        for (SharedBlock& block : out.shared.sensors) block.value -= block.gain.transpose().lazyProduct(xi);
+        for (SharedSpot& spot : out.shared.spots) spot.e += spot.rows.lazyProduct(xi);
+        const double size =
+            std::max(xi.head<3>().norm() / kStepMm, xi.tail<3>().norm() / (kStepRad * spread_));
+        out.converged = size < kRough;
+    }
+}
+
 void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
-    out = Fit{};
+    out.clear();
     linearize(out.state, factor, out.lin);
     double damping = 0;
     double last_gain = std::numeric_limits<double>::infinity(), last_size = 0;
@@ -474,11 +464,12 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
         // next one is known: when it would be none, this one is the last.
         const double size =
             std::max(xi.head<3>().norm() / kStepMm, xi.tail<3>().norm() / (kStepRad * spread_));
-        const bool small = size < 1 || (size < 1e4 && size * size < 0.1 * last_size);
+        // Steps with the sensors' errors follow, which leave the square of it.
+        const bool small = size < (shares() ? kRough : 1) || (size < 1e4 && size * size < 0.1 * last_size);
         if (damping == 0 && small) {
             out.state = trial;
             out.converged = true;
-            return;
+            break;
         }
         linearize(trial, factor, trial_lin);
         // Near the minimum the change of the cost drowns in its rounding, which grows with the distance of
@@ -491,7 +482,7 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
             // Rounding keeps the step from shrinking further although it no longer matters (1e-7 of a sigma).
             if (damping == 0 && gain < 1e-14 * (1 + out.lin.cost) && gain > 0.25 * last_gain) {
                 out.converged = true;
-                return;
+                break;
             }
             last_gain = gain;
             last_size = damping == 0 ? size : 0;
@@ -500,6 +491,7 @@ void RegionSystem::fit(std::span<const double> factor, Fit& out) const {
             if (damping > 1e12) return;
         }
     }
+    if (out.converged && shares()) fit_shared(factor, out);
 }
 
 }  // namespace seamwright::correction

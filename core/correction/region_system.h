@@ -16,10 +16,9 @@
 #include <vector>
 
 #include "core/correction/correction.h"
+#include "core/correction/nuisance.h"
 
 namespace seamwright::correction {
-
-using Rows = Eigen::Matrix<double, 3, 6>;
 
 // D and, when single rotations are fixed, the angles that it is made of.
 struct State {
@@ -67,6 +66,12 @@ struct PreparedSpot {
     bool curved = false;  // else straight along Y
     ContourCurve curve;
     int observed = 0;
+    // Share of the folded covariance that is systematic: 0 to 1 along each direction, observed axes alone.
+    bool repeats = false;
+    Eigen::Matrix3d systematic;
+    // Of a sensor with priors: index in RegionSystem::priors(), and the spot as it stands in the sensor frame.
+    int sensor = -1;
+    SharedGeometry geometry;
 };
 
 class RegionSystem {
@@ -80,12 +85,18 @@ class RegionSystem {
     double spread_mm() const { return spread_; }
     const Eigen::Vector3d& centroid() const { return centroid_; }
     bool weights_are_binary() const { return binary_; }
+    // A sensor has priors other than 0.
+    bool shares() const { return !priors_.empty(); }
 
     // Residual r - W^-1 D^-1 W m (all three axes, unweighted) and its derivative by xi, both divided by the
     // spot's shape.
     void residual(std::size_t n, const State& state, Eigen::Vector3d& e, Rows& rows) const;
     // Sum over spots with factor > 0, each term times its factor.
     void linearize(const State& state, std::span<const double> factor, Linearization& out) const;
+    // The same with the sensors' errors as further unknowns, eliminated: information, gradient, cost and meat
+    // are what is left for D. `shared` holds what the spots tell about them.
+    void linearize_shared(const State& state, std::span<const double> factor, Linearization& out,
+                          Shared& shared) const;
     // One spot's share of the information; for leave-one-out.
     void add_information(std::size_t n, const Rows& rows, double factor, Matrix6& information,
                          Matrix6& meat) const;
@@ -111,16 +122,36 @@ class RegionSystem {
         int iterations = 0;
         State state;
         Linearization lin;
+        Shared shared;
+        void clear();  // keeps the memory
     };
-    // Levenberg-Marquardt from identity.
+    // Levenberg-Marquardt from identity; then, where sensors have priors, Gauss-Newton steps with their errors
+    // as unknowns.
     void fit(std::span<const double> factor, Fit& out) const;
+    // Residual and rows at the fit as residual() gives them, freed of the sensors' errors as estimated, and
+    // the covariance that their uncertainty leaves in the residual.
+    void cleared(std::size_t n, const Fit& fit, Eigen::Vector3d& e, Rows& rows, Eigen::Matrix3d& left) const;
+    // The two parts of spread.covariance, in xi. `shared` may be empty where nothing is shared.
+    struct Parts {
+        Matrix6 random, systematic;
+    };
+    Parts parts(const Linearization& lin, const Shared& shared, const State& state,
+                std::span<const double> factor, const Spread& spread) const;
+    // Some term is systematic.
+    bool repeats() const { return repeats_ || shares(); }
 
   private:
     // 1 / limit for each coordinate of xi.
     Vector6 per_limit() const;
+    void fit_shared(std::span<const double> factor, Fit& out) const;
+    // dx/dy and dz/dy of the spot's curve, scaled like its residual.
+    static std::array<double, 2> slopes(const PreparedSpot& spot, double travel_mm);
     void step(State& state, const Vector6& theta, const Vector6& xi) const;
 
     std::vector<PreparedSpot> spots_;
+    std::vector<SharedRoot> priors_;
+    std::vector<int> prior_of_;  // by CorrectionOptions::sensors; -1: nothing
+    bool repeats_ = false;
     CorrectionOptions options_;
     Eigen::Vector3d centroid_ = Eigen::Vector3d::Zero();
     double spread_ = 1;
@@ -137,9 +168,10 @@ std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6
 Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                             bool measured);
 
-// Fills covariance and sigmas as RegionCorrection describes them, also for a singular region.
+// Fills covariance, its parts and sigmas as RegionCorrection describes them (T is that or RegionPlan), also
+// for a singular region. `parts` may be null: all is random.
+template <class T>
 void report_spread(const RegionSystem& system, const Spread& spread, const Observability& seen,
-                   const State& state, Matrix6& covariance, Eigen::Vector3d& sigma_xyz_mm,
-                   Eigen::Vector3d& sigma_abc_deg);
+                   const State& state, const RegionSystem::Parts* parts, T& out);
 
 }  // namespace seamwright::correction

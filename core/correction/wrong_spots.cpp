@@ -55,10 +55,11 @@ Studentised predicted(const RegionSystem& system, std::size_t n, const RegionSys
                       const Spread& spread) {
     Eigen::Vector3d e;
     Rows rows;
-    system.residual(n, fit.state, e, rows);
+    Eigen::Matrix3d left;
+    system.cleared(n, fit, e, rows, left);
     const PreparedSpot& s = system.spot(n);
     const Eigen::Matrix3d covariance =
-        s.sigma * s.sigma * Eigen::Matrix3d::Identity() + rows * spread.covariance * rows.transpose();
+        s.sigma * s.sigma * Eigen::Matrix3d::Identity() + rows * spread.covariance * rows.transpose() + left;
     return studentise(s, e, covariance);
 }
 
@@ -96,10 +97,13 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
     Agreement out;
     Eigen::Vector3d e;
     Rows rows;
+    Eigen::Matrix3d left;
     double largest = 0;  // statistic with two degrees
+    // What the sensors are found to err by counts against their priors.
+    for (const SharedBlock& b : fit.shared.sensors) out.sum_squares += b.value.squaredNorm();
     for (std::size_t n = 0; n < system.size(); ++n) {
         if (!(factor[n] > 0)) continue;
-        system.residual(n, fit.state, e, rows);
+        system.cleared(n, fit, e, rows, left);
         const PreparedSpot& s = system.spot(n);
         out.observed += s.observed;
         for (int i = 0; i < 3; ++i) {
@@ -111,7 +115,8 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
             const Vector6 jx = rows.row(0).transpose(), jz = rows.row(2).transpose();
             const Vector6 cx = spread.bread.lazyProduct(jx), cz = spread.bread.lazyProduct(jz);
             const double v = 1 / (s.sigma * s.sigma);
-            const double xx = 1 - v * jx.dot(cx), xz = -v * jx.dot(cz), zz = 1 - v * jz.dot(cz);
+            const double xx = 1 - v * (jx.dot(cx) + left(0, 0)), xz = -v * (jx.dot(cz) + left(0, 2)),
+                         zz = 1 - v * (jz.dot(cz) + left(2, 2));
             const double det = xx * zz - xz * xz;
             if (xx > 1e-3 && zz > 1e-3 && det > 1e-3 * xx * zz) {
                 const double t = v * (zz * e.x() * e.x() - 2 * xz * e.x() * e.z() + xx * e.z() * e.z()) / det;
@@ -120,9 +125,9 @@ Agreement agreement(const RegionSystem& system, const RegionSystem::Fit& fit, co
             }
         }
         // Residual = (I - J K) noise with the gain K = bread J^T Omega.
-        const Eigen::Matrix3d j = rows * spread.bread * rows.transpose();
+        const Eigen::Matrix3d j = rows * spread.bread * rows.transpose() + left;
         const Eigen::Matrix3d gain = j * Eigen::Matrix3d(s.weights.cwiseAbs2().asDiagonal());
-        const Eigen::Matrix3d c = rows * spread.covariance * rows.transpose();
+        const Eigen::Matrix3d c = rows * spread.covariance * rows.transpose() + left;
         const Eigen::Matrix3d covariance =
             s.sigma * s.sigma * Eigen::Matrix3d::Identity() - gain - gain.transpose() + c;
         const Studentised t = studentise(s, e, covariance);

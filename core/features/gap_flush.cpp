@@ -9,26 +9,9 @@ namespace seamwright {
 
 namespace {
 
-constexpr double kFoldBreak_mm = 1;
-
-// Two sheets in flush with nothing seen between them are one contour to the filter: the second goes on where
-// the first points to. The widest stretch without returns is the gap.
-bool split_at_hole(const FeaturePoints& points, const FeaturePoints::Piece& whole, int least,
-                   FeaturePoints::Piece& before, FeaturePoints::Piece& after) {
-    const int end = whole.first + whole.count;
-    int behind = 0;
-    double widest = 0;
-    for (int i = whole.first + least; i + least <= end; ++i) {
-        const double dx = points.x[i] - points.x[i - 1], dz = points.z[i] - points.z[i - 1];
-        if (!points.pitch.is_gap(dx, dz) || std::hypot(dx, dz) <= widest) continue;
-        widest = std::hypot(dx, dz);
-        behind = i;
-    }
-    if (behind == 0) return false;
-    before = {whole.first, behind - whole.first, whole.cut_before, false};
-    after = {behind, end - behind, false, whole.cut_after};
-    return true;
-}
+// The least that a point tells of an edge: a third of the pitch, though the outermost place is seen.
+constexpr double kSteepens = 1.2, kUnseenDrop = 1.2;
+constexpr double kSeenEdge = 1.0 / 3;
 
 }  // namespace
 
@@ -63,116 +46,86 @@ Expected<void> check(const GapFlushSettings& s) {
     return {};
 }
 
-// The surface line of a piece: points between edge_skip and edge_skip + surface length from its edge.
-bool GapFlushGauge::measure_line(const FeaturePoints::Piece& piece, double edge_along_x, double inward,
-                                 LineFit& line) {
+// The surface line of a part: points between edge_skip and edge_skip + surface length from its edge.
+bool GapFlushGauge::measure_line(const GapPart& part, double edge_along_x, double inward, LineFit& line) {
     x_.clear();
     z_.clear();
-    for (int i = piece.first; i < piece.first + piece.count; ++i) {
-        const double d = inward * (points_.x[i] - edge_along_x);
+    for (std::size_t i = 0; i < part.x.size(); ++i) {
+        const double d = inward * (part.x[i] - edge_along_x);
         if (d < settings_.edge_skip_mm || d > settings_.edge_skip_mm + settings_.surface_mm) continue;
-        x_.push_back(points_.x[i]);
-        z_.push_back(points_.z[i]);
+        x_.push_back(part.x[i]);
+        z_.push_back(part.z[i]);
     }
     line = fit_line(x_, z_, workspace_);
     return line.ok && line.used >= 4;
 }
 
-// A fold or flank that the filter cut off from its surface belongs to it: pieces between the two sides that
-// go on where a side ends.
-void GapFlushGauge::join_folds(FeaturePoints::Piece& left, FeaturePoints::Piece& right) const {
-    const auto near = [&](int a, int b) {
-        return std::hypot(points_.x[b] - points_.x[a], points_.z[b] - points_.z[a]) <= kFoldBreak_mm;
-    };
-    const auto end = [](const FeaturePoints::Piece& p) { return p.first + p.count; };
-    for (const auto& p : points_.pieces)
-        if (p.first >= end(left) && end(p) <= right.first && near(end(left) - 1, p.first))
-            left.count = end(p) - left.first;
-    for (auto p = points_.pieces.rbegin(); p != points_.pieces.rend(); ++p)
-        if (end(*p) <= right.first && p->first >= end(left) && near(right.first, end(*p) - 1)) {
-            right.count += right.first - p->first;
-            right.first = p->first;
-        }
-}
-
-// The outermost place along u, half a pitch beyond the outermost return where the surface tears off there.
-void GapFlushGauge::measure_edge(const FeaturePoints::Piece& piece, const Eigen::Vector2d& u, Side& side) {
-    int outermost = piece.first;
-    double most = -std::numeric_limits<double>::infinity();
-    const auto along = [&](int i) { return u.dot(Eigen::Vector2d(points_.x[i], points_.z[i])); };
-    for (int i = piece.first; i < piece.first + piece.count; ++i)
-        if (along(i) > most) {
-            most = along(i);
-            outermost = i;
-        }
-    steps_.clear();
-    const int last = piece.first + piece.count - 1;
-    for (int i = std::max(piece.first, outermost - 8); i < std::min(last, outermost + 8); ++i)
-        steps_.push_back(std::abs(along(i + 1) - along(i)));
-    const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>(steps_.size() / 2);
-    std::nth_element(steps_.begin(), middle, steps_.end());
-    side.pitch = *middle;
-    side.edge = Eigen::Vector2d(points_.x[outermost], points_.z[outermost]) + 0.5 * side.pitch * u;
+// The outermost place along u. Where it is the last return, the surface goes on by up to one more line's
+// advance; where the contour turns back behind it, the place is seen.
+void GapFlushGauge::measure_edge(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side) {
+    const auto along = [&](std::size_t i) { return u.dot(Eigen::Vector2d(part.x[i], part.z[i])); };
+    const double plain = pitch * std::abs(u.x());
+    // What the noise moves a point along u; the outermost of several equal ones is so by its noise.
+    const double noise = part.noise_mm * std::abs(u.y()), by_noise = 3 * std::sqrt(2.0) * noise;
+    std::size_t outermost = 0;
+    for (std::size_t i = 1; i < part.x.size(); ++i)
+        if (along(i) > along(outermost) + (outermost == 0 ? noise : 0)) outermost = i;
+    double advance = 0, flank = 0, unseen = 0;
+    if (outermost == 0) {
+        const double lines = std::max(1.0, std::abs(part.x[1] - part.x[0]) / pitch);
+        advance = std::clamp((along(0) - along(1)) / lines, 0.0, 3 * plain);
+        // A round rim falls on more steeply, unseen: with the drop as the root of the distance from where it
+        // stands upright, by 1.2 of the last line's drop in the mean.
+        const double drop = (part.z[0] - part.z[1]) / lines * u.y();
+        const double before =
+            (part.z[1] - part.z[2]) / std::max(1.0, std::abs(part.x[2] - part.x[1]) / pitch);
+        flank = 0.5 * std::abs(drop);
+        if (drop > by_noise && std::abs(drop) > kSteepens * std::abs(before * u.y()))
+            unseen = (kUnseenDrop - 0.5) * drop;
+        // Noise alone is no turn of the contour.
+        if (std::abs(advance - plain) < by_noise) advance = plain;
+    }
+    const double spread = std::max(advance, kSeenEdge * plain);
+    side.edge = Eigen::Vector2d(part.x[outermost], part.z[outermost]) + (0.5 * advance + unseen) * u;
+    side.edge_variance = spread * spread / 12 + flank * flank + noise * noise;
 }
 
 GapFlush GapFlushGauge::measure(const Profile& profile) {
     GapFlush result;
-    points_.gather(profile, settings_.window);
-    const FeaturePoints::Piece *first = nullptr, *second = nullptr;
-    const int least = std::max(settings_.minimum_points, 4);
-    for (const auto& piece : points_.pieces) {
-        if (piece.count < least) continue;
-        if (!first || piece.count > first->count) {
-            second = first;
-            first = &piece;
-        } else if (!second || piece.count > second->count) {
-            second = &piece;
-        }
-    }
-    if (!first) {
-        result.status = GapFlushStatus::no_points;
-        result.message = "no surface in the window";
-        return result;
-    }
-    FeaturePoints::Piece before, after;
-    if (!second) {
-        if (!split_at_hole(points_, *first, least, before, after)) {
+    switch (sides_.find(profile, settings_.window, std::max(settings_.minimum_points, 4))) {
+        case GapSides::Found::no_points:
+            result.status = GapFlushStatus::no_points;
+            result.message = "no surface in the window";
+            return result;
+        case GapSides::Found::one_surface:
+        case GapSides::Found::unbroken:
             result.message = "only one surface in the window: the contour is not broken by a gap";
             return result;
-        }
-        first = &before;
-        second = &after;
+        case GapSides::Found::both:
+            break;
     }
-    const auto mean_x = [&](const FeaturePoints::Piece& p) {
-        double sum = 0;
-        for (int i = p.first; i < p.first + p.count; ++i) sum += points_.x[i];
-        return sum / p.count;
-    };
-    const bool first_is_left = mean_x(*first) < mean_x(*second);
-    FeaturePoints::Piece left = first_is_left ? *first : *second;
-    FeaturePoints::Piece right = first_is_left ? *second : *first;
-    join_folds(left, right);
     const bool reference_left = settings_.reference == GapFlushSettings::Reference::left;
-    const FeaturePoints::Piece& reference_piece = reference_left ? left : right;
-    const FeaturePoints::Piece& other_piece = reference_left ? right : left;
+    const GapPart& reference_part = reference_left ? sides_.left() : sides_.right();
+    const GapPart& other_part = reference_left ? sides_.right() : sides_.left();
+    const double pitch = sides_.pitch_mm();
     const double inward_sign = reference_left ? 1 : -1;  // x direction from the reference into the gap
 
     // Lines first by the edges along x, then again by the edges along the surface.
     Side reference, other;
     Eigen::Vector2d u(inward_sign, 0);
     for (int round = 0; round < 2; ++round) {
-        measure_edge(reference_piece, u, reference);
-        measure_edge(other_piece, -u, other);
-        if (!measure_line(reference_piece, reference.edge.x(), -inward_sign, reference.line) ||
-            !measure_line(other_piece, other.edge.x(), inward_sign, other.line)) {
+        measure_edge(reference_part, u, pitch, reference);
+        measure_edge(other_part, -u, pitch, other);
+        if (!measure_line(reference_part, reference.edge.x(), -inward_sign, reference.line) ||
+            !measure_line(other_part, other.edge.x(), inward_sign, other.line)) {
             result.status = GapFlushStatus::ill_conditioned;
             result.message = "too little straight surface beside an edge";
             return result;
         }
         u = reference.line.direction * (reference.line.direction.x() * inward_sign > 0 ? 1.0 : -1.0);
     }
-    measure_edge(reference_piece, u, reference);
-    measure_edge(other_piece, -u, other);
+    measure_edge(reference_part, u, pitch, reference);
+    measure_edge(other_part, -u, pitch, other);
     Eigen::Vector2d n(-u.y(), u.x());
     if (n.y() < 0) n = -n;
 
@@ -200,8 +153,8 @@ GapFlush GapFlushGauge::measure(const Profile& profile) {
     const double s_reference = u.dot(surface - reference.line.centre);
     const double turn = reference.line.angle_variance();
     const double across = n.dot(between), slope = d.dot(n) / along_u;
-    const double edges = (reference.pitch * reference.pitch + other.pitch * other.pitch) / 12;
-    const double other_edge = other.pitch * other.pitch / 12;
+    const double edges = reference.edge_variance + other.edge_variance;
+    const double other_edge = other.edge_variance;
     result.covariance(0, 0) = edges + across * across * turn;
     result.covariance(1, 1) = reference.line.variance_at(s_reference) +
                               other.line.variance_at(s_other) / (along_u * along_u) +

@@ -7,8 +7,9 @@
 //                    |<- gap->|
 //
 // The line of the reference side's surface, fitted beside its edge, gives the directions: u along the surface
-// into the gap, n across it on the side of the sensor (+z). Each part's edge is its outermost place along u
-// (a fold's roundest point, or the last return plus half a pitch where the surface tears off). The other
+// into the gap, n across it on the side of the sensor (+z). Each part's edge is its outermost place along u:
+// a fold's roundest point where that is seen, else the last return and half of what the contour advances
+// along u from one line to the next. The other
 // side's surface line, fitted beside its edge, is continued to that edge.
 //     gap   = u . (other edge - reference edge)                       negative when the parts overlap
 //           or, as a feeler gauge finds it, the distance of the two edges with that sign
@@ -16,9 +17,10 @@
 //     flush = n . (other surface at its edge - reference line)        positive when the other side stands
 //     proud
 //
-// Noise model: independent noise across each surface, estimated from each line's residuals; an edge is known
-// to a pitch along u (variance pitch^2 / 12 each) and to a point's noise across. Covariance of (gap, flush)
-// in mm^2.
+// Noise model: independent noise across each surface, estimated from each line's residuals; an edge is spread
+// evenly over that advance a along u, at least over a third of the pitch (variance a^2 / 12 each; a sensor's
+// noise is in z and moves it by its part along u as well), and known to a point's noise across. Covariance of
+// (gap, flush) in mm^2.
 
 #include <Eigen/Core>
 #include <string>
@@ -26,6 +28,7 @@
 #include <vector>
 
 #include "core/features/feature_points.h"
+#include "core/features/gap_sides.h"
 #include "core/features/line_fit.h"
 #include "core/text.h"
 
@@ -65,9 +68,7 @@ struct GapFlush {
 };
 
 // Allocates nothing after the first calls; one thread per object. `profile` as for features; settings as
-// check() passes them. Sides: the two pieces with most points in the window, each with the shorter ones that
-// go on within 1 mm of its end towards the other (a fold that the filter cut off). Of a single piece (sheets
-// in flush over a dark gap) what lies before and behind its widest hole of more than six pitches.
+// check() passes them. Sides: gap_sides.h.
 class GapFlushGauge {
   public:
     explicit GapFlushGauge(const GapFlushSettings& settings) : settings_(settings) {}
@@ -77,16 +78,15 @@ class GapFlushGauge {
     struct Side {
         LineFit line;
         Eigen::Vector2d edge;
-        double pitch = 0;
+        double edge_variance = 0;  // along u
     };
-    bool measure_line(const FeaturePoints::Piece& piece, double edge_along_x, double inward, LineFit& line);
-    void join_folds(FeaturePoints::Piece& left, FeaturePoints::Piece& right) const;
-    void measure_edge(const FeaturePoints::Piece& piece, const Eigen::Vector2d& u, Side& side);
+    bool measure_line(const GapPart& part, double edge_along_x, double inward, LineFit& line);
+    void measure_edge(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side);
 
     GapFlushSettings settings_;
-    FeaturePoints points_;
+    GapSides sides_;
     LineWorkspace workspace_;
-    std::vector<double> x_, z_, steps_;
+    std::vector<double> x_, z_;
 };
 
 }  // namespace seamwright

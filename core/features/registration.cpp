@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/features/registration_kernel.h"
+#include "core/geometry/pose.h"
 
 namespace seamwright {
 namespace {

@@ -95,6 +95,16 @@ Error on_side(Error error, const char* side) {
     return error;
 }
 
+// The spots of a side that contradict the others, as the rejection would tell them.
+std::vector<std::string> contradicting(std::span<const SpotObservation> side, CorrectionOptions options) {
+    options.reject_outliers = true;
+    std::vector<std::string> names;
+    if (const auto solved = solve_region(side, options))
+        for (const SpotResidual& s : solved->spots)
+            if (!s.used) names.push_back(s.id);
+    return names;
+}
+
 // Sigma of G at the spots and the directions that exceed the limits.
 void judge(std::span<const SpotObservation> spots, const PanelOptions& options, PanelFit& fit,
            bool& observable) {
@@ -187,7 +197,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     CorrectionOptions each;
     each.sigma_limit_mm = options.sigma_limit_mm;
     each.sigma_limit_deg = options.sigma_limit_deg;
-    each.reject_outliers = options.reject_outliers;
+    each.reject_outliers = options.deviation == PanelDeviation::leave_out;
     each.outlier_significance = options.outlier_significance;
     auto solved_body = solve_region(body, each);
     if (!solved_body) return tl::unexpected(on_side(solved_body.error(), "body"));
@@ -298,6 +308,12 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
         return fit;
     }
     fit.status = CorrectionStatus::ok;
+    if (options.deviation == PanelDeviation::share)
+        for (const auto& [side, of] : {std::pair{"panel", &panel}, std::pair{"body", &body}})
+            if (const auto names = contradicting(*of, each); !names.empty())
+                fit.message +=
+                    fmt::format("{}the {} deviates from its taught shape at {}: shared out over the spots",
+                                fit.message.empty() ? "" : "; ", side, fmt::join(names, ", "));
     const double moved = fit.gripper_motion.translation().norm();
     const double turned = deg_from_rad(rotation_log(fit.gripper_motion.linear()).norm());
     if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {

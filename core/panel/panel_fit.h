@@ -47,12 +47,18 @@ struct PanelSpot {
     double surface_rad = 0;
 };
 
+// What becomes of a spot that contradicts the others: a bent panel, or a wrong measure.
+enum class PanelDeviation {
+    share,     // best fit: every spot counts, the deviation is shared out and stays as residual
+    leave_out  // the spot is left out where it can be told (correction.h), and the others fit as if undeformed
+};
+
 struct PanelOptions {
     CorrectionLimits limits;  // of G: translation of the gripper's origin, angle
     // Largest predicted sigma of G at the spots, as in correction.h.
     double sigma_limit_mm = 1.0, sigma_limit_deg = 0.5;
-    bool reject_outliers = true;
-    double outlier_significance = 1e-3;
+    PanelDeviation deviation = PanelDeviation::share;
+    double outlier_significance = 1e-3;  // of the spots that are left out, or named when shared
 };
 
 // Gap and flush, body = reference side. u = (cos, sin)(surface) along the surface, n across it, (x, z).
@@ -71,7 +77,7 @@ struct PanelSpotResult {
     GapFlushValue remaining;  // deviation from taught that is left after the motion
     Eigen::Vector3d residual_mm =
         Eigen::Vector3d::Zero();  // delta_n: panel relative to body, now - taught; unobserved axes 0
-    bool panel_used = true, body_used = true;  // false: found to be wrong and left out
+    bool panel_used = true, body_used = true;  // false: left out (PanelDeviation)
 };
 
 struct PanelFit {

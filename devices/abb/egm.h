@@ -22,12 +22,13 @@
 //
 // Nothing is corrected unless motors are on, RAPID runs and the MCI state is RUNNING; leaving that under a
 // correction is an alarm, unless the path had come to its end and EGM is STOPPED: then the path is over
-// (permission() `taken`). EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
+// (permission() `taken`). There is no release that could fall: a permission that goes while the path runs, by
+// a verdict, an alarm or the end of the program, ends the answers, and the robot stops with CommTimeout of
+// SeamwrightEgm.mod, its last correction in force until it stands. EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
 // fault.
 //
-// Further settings (defaults): {"frame": "path" | "sensor", "tcp_from_sensor": POSE identity}. "sensor" tells
-// the same shift along the axes of the sensor frame that EGMActMove was given, for controllers that are set
-// up so.
+// Settings: abb_egm_settings(). "frame": "sensor" tells the same shift along the axes of the sensor frame that
+// EGMActMove was given, for controllers that are set up so.
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,7 @@
 
 namespace seamwright {
 
+const SettingTable& abb_egm_settings();
 Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings, DeviceSession& session,
                                                   OpenRobot open_robot);
 

@@ -67,7 +67,7 @@ class Egm final : public SimulatedEgm {
         while (!stop_) {
             next += milliseconds(options_.cycle_ms);
             const bool at_end = options_.application && left_ms == 0;
-            if (!at_end) ++cycle;
+            if (!at_end && off_ms <= 0) ++cycle;  // without EGM it stands: its program has ended or raised
             ++clock_;
             const ControllerFault kind = fault();
             if (kind == ControllerFault::slow) {

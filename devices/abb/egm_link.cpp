@@ -2,30 +2,29 @@
 
 #include "devices/abb/egm.h"
 #include "devices/abb/egm_protocol.h"
-#include "devices/exchange/json_fields.h"
-#include "devices/exchange/pose_json.h"
 
 namespace seamwright {
 
+const SettingTable& abb_egm_settings() {
+    static const SettingTable table = entry::joined(
+        cyclic_settings(6510, 0.5),
+        {entry::choice("frame", {"path", "sensor"}, "along whose axes EGMActMove takes the shift"),
+         entry::pose("tcp_from_sensor", "sensor frame that EGMActMove was given")});
+    return table;
+}
+
 Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings, DeviceSession& session,
                                                   OpenRobot open_robot) {
-    nlohmann::json with_defaults = settings;
-    if (settings.is_object() && !settings.contains("max_rotation_deg"))
-        with_defaults["max_rotation_deg"] = 0.5;
-    auto common = parse_cyclic_settings(with_defaults, {"frame", "tcp_from_sensor"}, "abb-egm", 6510);
+    auto common = parse_cyclic_settings(settings, abb_egm_settings(), "abb-egm");
     if (!common) return tl::unexpected(common.error());
     common->brand = "ABB";
-    auto frame = json_string_or(settings, "frame", "path", "");
-    if (!frame) return tl::unexpected(frame.error());
-    if (*frame != "path" && *frame != "sensor")
-        return input_error(Text("\"{}\" is not known", *frame), "frame", "known are path, sensor");
+    SettingsReader f(settings, "", abb_egm_settings());
+    std::string frame;
     Pose tcp_from_sensor = Pose::Identity();
-    if (settings.contains("tcp_from_sensor")) {
-        auto pose = parse_pose(settings["tcp_from_sensor"], "tcp_from_sensor");
-        if (!pose) return tl::unexpected(pose.error());
-        tcp_from_sensor = *pose;
-    }
-    return CyclicLink::open(*common, make_egm_protocol({*frame == "sensor", tcp_from_sensor}), open_robot,
+    f.text("frame", frame);
+    f.pose("tcp_from_sensor", tcp_from_sensor);
+    if (f.failed()) return tl::unexpected(f.error());
+    return CyclicLink::open(*common, make_egm_protocol({frame == "sensor", tcp_from_sensor}), open_robot,
                             session);
 }
 

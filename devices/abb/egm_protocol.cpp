@@ -8,7 +8,8 @@
 namespace seamwright {
 namespace {
 
-constexpr double kStandsMm = 1e-3;  // between two packets
+constexpr double kStandsMm = 1e-3;            // between two packets
+constexpr std::uint64_t kForgetsTravel = 25;  // packets
 
 class EgmProtocol final : public CyclicProtocol {
   public:
@@ -61,7 +62,11 @@ class EgmProtocol final : public CyclicProtocol {
     std::optional<CyclicTold> shown(const CyclicPacket& packet) override {
         if (!packet.programmed || !packet.actual) return std::nullopt;
         const auto path = path_at(packet);
-        if (!path) return std::nullopt;
+        if (!path) {
+            // Where the robot is as planned it is not shifted, whatever way the path goes.
+            const double off = (packet.actual->translation() - packet.programmed->translation()).norm();
+            return off < kStandsMm ? std::optional<CyclicTold>(CyclicTold{}) : std::nullopt;
+        }
         return CyclicTold{
             across(packet, *path, packet.actual->translation() - packet.programmed->translation()),
             Eigen::Vector3d::Zero()};
@@ -81,6 +86,7 @@ class EgmProtocol final : public CyclicProtocol {
 
     void new_session() override { points_ = std::min(points_, 1); }
     int unproven() const override { return 3; }
+    bool stops_unanswered() const override { return true; }
     const char* why_not_told() const override {
         return has_travel_ ? nullptr : "the robot stands, and EGM corrects only a path that moves";
     }
@@ -114,7 +120,12 @@ class EgmProtocol final : public CyclicProtocol {
             p_[0] = p;
             return;
         }
-        if (points_ > 0 && number != number_ + 1) points_ = 1;
+        if (points_ > 0 && number != number_ + 1) {
+            points_ = 1;
+            // On a curve the direction of long ago is none.
+            has_travel_ = has_travel_ && number - number_ <= kForgetsTravel;
+            if (!has_travel_) points_ = 0;
+        }
         p_[2] = p_[1];
         p_[1] = p_[0];
         p_[0] = p;

@@ -10,6 +10,7 @@
 
 #include "abb_resources.h"
 #include "core/geometry/notation.h"
+#include "devices/abb/rapid.h"
 #include "devices/abb/rapid_message.h"
 #include "devices/exchange/settings.h"
 #include "devices/robot_words.h"
@@ -68,13 +69,12 @@ struct Load {
 };
 Expected<Load> load_from(const nlohmann::json& settings) {
     Load load;
-    SettingsReader f(settings, "settings");
+    SettingsReader f(settings, "settings", abb_rapid_settings(), UnknownSettings::passed_over);
     f.text("tool", load.tool);
     bool numbers = false;
     f.object("load", [&](SettingsReader& r) {
         numbers = true;
-        r.only({"mass_kg", "centre_mm", "inertia_kgm2"});
-        r.number("mass_kg", load.mass_kg, 0.001, 5000);
+        r.number("mass_kg", load.mass_kg);
         for (auto [key, value] : {std::pair<const char*, Eigen::Vector3d*>{"centre_mm", &load.centre_mm},
                                   {"inertia_kgm2", &load.inertia_kgm2}}) {
             if (r.failed() || !r.json().contains(key)) continue;
@@ -136,9 +136,9 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
                            request.project, Text("give at most {}", kMostFrames));
     std::string address = "192.168.125.1";
     int port = 1025;
-    SettingsReader f(request.settings, "settings");
+    SettingsReader f(request.settings, "settings", abb_rapid_settings(), UnknownSettings::passed_over);
     f.text("address", address);
-    f.whole("port", port, 1, 65535);
+    f.whole("port", port);
     if (f.failed()) return tl::unexpected(f.error());
     const auto load = load_from(request.settings);
     if (!load) return tl::unexpected(load.error());

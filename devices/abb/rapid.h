@@ -22,11 +22,7 @@
 // mm a coordinate up to 8 m, 0.0005 mm up to 16 m, and about 1e-5 degree. Both are below what the safety gate
 // allows. Poses travel with 4 decimals of a millimetre and 8 of a quaternion.
 //
-// Settings, defaults:
-//   {"address": "127.0.0.1", "port": 1025,
-//    "timeout_ms": 1000            for each answer and for connecting,
-//    "move_timeout_ms": 60000      for move_to() beyond what the way takes at 20 % of SW_Teach's speed,
-//    "backoff_ms": 100, "backoff_max_ms": 500}   between attempts to connect, doubling
+// Settings: abb_rapid_settings().
 //
 // Failure: a controller that is silent or answers half a message is known by is_silence(), and the connection
 // is dropped, so that a late answer is never taken for that of the next question. An answer with another
@@ -38,10 +34,12 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/robot_link.h"
 
 namespace seamwright {
 
+const SettingTable& abb_rapid_settings();
 Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settings, DeviceSession& session);
 
 }  // namespace seamwright

@@ -8,7 +8,7 @@
 
 #include "devices/abb/rapid.h"
 #include "devices/abb/rapid_message.h"
-#include "devices/exchange/json_fields.h"
+#include "devices/exchange/settings.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
 #include "devices/same_robot.h"
@@ -28,43 +28,22 @@ constexpr Milliseconds kAlive{500};         // so often a link that waits is hea
 constexpr double kTeachSpeed_mm_s = 100, kTeachTurn_deg_s = 45, kSlowest = 0.2;
 
 struct LinkSettings {
-    std::string address = "127.0.0.1";
-    std::uint16_t port = 1025;
-    Milliseconds timeout{1000}, move_timeout{60000}, backoff{100}, backoff_max{500};
+    std::string address;
+    std::uint16_t port = 0;
+    Milliseconds timeout{}, move_timeout{}, reconnect{}, reconnect_most{};
 };
 
 Expected<LinkSettings> parse_link_settings(const nlohmann::json& json) {
-    const std::string where = "settings of abb-rapid";
-    if (auto ok = only_fields(json,
-                              {"address", "port", "timeout_ms", "move_timeout_ms", "backoff_ms",
-                               "backoff_max_ms", "tool", "load"},
-                              where);
-        !ok)
-        return tl::unexpected(ok.error());
     LinkSettings s;
-    auto address = json_string_or(json, "address", s.address, where);
-    if (!address) return tl::unexpected(address.error());
-    s.address = *address;
-    std::optional<Error> error;
-    const auto number = [&](const char* key, double otherwise, double low, double high) {
-        auto value = json_number_or(json, key, otherwise, where);
-        if (value && *value >= low && *value <= high) return *value;
-        if (!error)
-            error = value ? Error{ErrorKind::input, fmt::format("{} is not in {} to {}", *value, low, high),
-                                  json_path(where, key), ""}
-                          : value.error();
-        return otherwise;
-    };
-    const auto time = [&](const char* key, Milliseconds otherwise, double low, double high) {
-        return Milliseconds(
-            static_cast<long>(number(key, static_cast<double>(otherwise.count()), low, high)));
-    };
-    s.port = static_cast<std::uint16_t>(number("port", s.port, 1, 65535));
-    s.timeout = time("timeout_ms", s.timeout, 1, 600000);
-    s.move_timeout = time("move_timeout_ms", s.move_timeout, 1, 3600000);
-    s.backoff = time("backoff_ms", s.backoff, 0, 600000);
-    s.backoff_max = time("backoff_max_ms", std::max(s.backoff_max, s.backoff), 0, 600000);
-    if (error) return tl::unexpected(*error);
+    SettingsReader f(json, "settings of abb-rapid", abb_rapid_settings());
+    f.text("address", s.address);
+    f.whole("port", s.port);
+    f.duration("timeout_ms", s.timeout);
+    f.duration("move_timeout_ms", s.move_timeout);
+    f.duration("reconnect_ms", s.reconnect);
+    f.duration("reconnect_most_ms", s.reconnect_most);
+    if (f.failed()) return tl::unexpected(f.error());
+    s.reconnect_most = std::max(s.reconnect_most, s.reconnect);
     return s;
 }
 
@@ -245,7 +224,7 @@ class AbbRapidLink final : public RobotLink {
         next_trigger_ = 0;
         // Longer and longer while nothing answers: who connects anew at once stands behind itself in the
         // queue.
-        wait_ = wait_.count() == 0 ? settings_.backoff : std::min(wait_ * 2, settings_.backoff_max);
+        wait_ = wait_.count() == 0 ? settings_.reconnect : std::min(wait_ * 2, settings_.reconnect_most);
         not_before_ = Clock::now() + wait_;
     }
     tl::unexpected<Error> broken(std::string what) {
@@ -271,7 +250,7 @@ class AbbRapidLink final : public RobotLink {
         if (turn.count() > 0) std::this_thread::sleep_for(turn);
         auto connection = TcpConnection::connect(settings_.address, settings_.port, settings_.timeout);
         if (!connection) {
-            wait_ = std::min(std::max(wait_ * 2, settings_.backoff), settings_.backoff_max);
+            wait_ = std::min(std::max(wait_ * 2, settings_.reconnect), settings_.reconnect_most);
             not_before_ = Clock::now() + wait_;
             Error error = connection.error();
             error.where = where_;
@@ -428,6 +407,23 @@ class AbbRapidLink final : public RobotLink {
 };
 
 }  // namespace
+
+const SettingTable& abb_rapid_settings() {
+    static const SettingTable table = entry::joined(
+        {entry::text("address", "127.0.0.1", "where the server task listens"),
+         entry::whole("port", 1025, 1, 65535, "of the server task"),
+         entry::whole("timeout_ms", 1000, 1, 600000, "for a connection and for every answer"),
+         entry::whole("move_timeout_ms", 60000, 1, 3600000,
+                      "for a move, beyond what its way takes at a fifth of the teaching speed"),
+         entry::text("tool", "", "tooldata of T_ROB1 whose load the moves carry, for the program"),
+         entry::object("load",
+                       {entry::number("mass_kg", nullptr, 0.001, 5000, "mass"),
+                        entry::list("centre_mm", nullptr, "centre of gravity [x, y, z] in the flange"),
+                        entry::list("inertia_kgm2", nullptr, "moments of inertia [x, y, z]")},
+                       "what the flange carries, for the program, in place of tool")},
+        entry::reconnect(0, 100, 500, "backoff_ms", "backoff_max_ms"));
+    return table;
+}
 
 Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settings, DeviceSession&) {
     auto parsed = parse_link_settings(settings);

@@ -55,10 +55,30 @@ bool CyclicCorrector::at_zero() const {
 
 void CyclicCorrector::raise(std::string reason) {
     if (!alarm_) alarm_ = std::move(reason);
+    lead_back();
+    steady_ = 0;
+    revoke();
+}
+
+void CyclicCorrector::lead_back() {
     ramp_.set_target(Pose::Identity());
     sent_ramp_.set_target(Pose::Identity());
-    steady_ = 0;
+}
+
+void CyclicCorrector::revoke() {
+    unanswered_ = unanswered_ || (permitted_ && protocol_->stops_unanswered());
+    permitted_ = false;
     phase_ = PathPhase::none;
+}
+
+void CyclicCorrector::path_is_over() {
+    phase_ = PathPhase::over;
+    permitted_ = false;
+}
+
+void CyclicCorrector::withdraw() {
+    set_target(Pose::Identity());
+    revoke();
 }
 
 std::optional<std::string> CyclicCorrector::take_alarm() {
@@ -76,6 +96,8 @@ void CyclicCorrector::set_target(const Pose& displacement) {
 
 void CyclicCorrector::await_path() {
     phase_ = PathPhase::waiting;
+    permitted_ = true;
+    run_before_ = last_.on_path.value_or(false);
     if (last_.programmed) path_begin_ = last_.programmed->translation();
     standing_ = 0;
 }
@@ -107,12 +129,12 @@ void CyclicCorrector::silence() {
         phase_ == PathPhase::over ||
         (phase_ == PathPhase::running && (last_.on_path ? !*last_.on_path : standing_ >= kStood));
     if (regular) {
-        phase_ = PathPhase::over;
-        ramp_.set_target(Pose::Identity());
-        sent_ramp_.set_target(Pose::Identity());
-    } else if (!at_zero()) {
+        path_is_over();
+        lead_back();
+    } else if (!at_zero() && !unanswered_) {
         raise("the robot fell silent under a correction");
     }
+    permitted_ = unanswered_ = false;
 }
 
 CyclicCorrector::Relation CyclicCorrector::relate(const CyclicPacket& packet, const CyclicArrival& arrival) {
@@ -164,6 +186,7 @@ CyclicCorrector::Holds CyclicCorrector::judge(const CyclicPacket& packet,
     if (relation == Relation::next && open_ == 0) {
         // Late answers may be dropped by themselves, and at once.
         if (late_rose && nearer_zero && (followed_ || !clearly_zero)) return Holds::zero;
+        if (unanswered_ && not_running_ && nearer_zero) return Holds::zero;
         if (!clearly_zero || !followed_) {
             suspicion_ = 0;
             return Holds::on;
@@ -173,8 +196,14 @@ CyclicCorrector::Holds CyclicCorrector::judge(const CyclicPacket& packet,
     if (nearer_held) return Holds::on;
     if (nearer_zero && (followed_ || relation == Relation::jump || open_ > 0)) return Holds::zero;
     if (relation != Relation::jump && open_ == 0) return Holds::on;
+    if (held_.is_zero() && told_.is_zero()) return Holds::zero;
+    // Of a robot that does not show what it holds, nothing may be supposed: it is left alone until it does.
+    if (!shown) {
+        open_ = std::max(open_, 1);
+        return Holds::unknown;
+    }
     // A path that moves hides by its lag what the robot holds, until some of its points are known.
-    return shown && !(held_.is_zero() && told_.is_zero()) && ++open_ <= kOpen ? Holds::unknown : Holds::zero;
+    return ++open_ <= kOpen ? Holds::unknown : Holds::zero;
 }
 
 void CyclicCorrector::commit(bool taken) {
@@ -189,8 +218,9 @@ void CyclicCorrector::commit(bool taken) {
 }
 
 void CyclicCorrector::drop(const char* reason, bool new_session) {
-    if (!at_zero() && phase_ != PathPhase::over) raise(reason);
+    if (!at_zero() && phase_ != PathPhase::over && !unanswered_) raise(reason);
     phase_ = phase_ == PathPhase::over ? PathPhase::over : PathPhase::none;
+    permitted_ = unanswered_ = false;
     held_ = told_ = {};
     ramp_.reset();
     sent_ramp_.reset();
@@ -292,13 +322,14 @@ void CyclicCorrector::watch_follow(const std::optional<CyclicTold>& shown) {
 void CyclicCorrector::watch_path(const CyclicPacket& packet, double moved_mm) {
     standing_ = moved_mm <= kStandsMm ? standing_ + 1 : 0;
     if (phase_ == PathPhase::waiting) {
+        run_before_ = run_before_ && packet.on_path.value_or(false);
         const bool begun =
             packet.on_path
-                ? *packet.on_path
+                ? *packet.on_path && !run_before_
                 : packet.programmed && (packet.programmed->translation() - path_begin_).norm() > kPathBegunMm;
         if (begun) phase_ = PathPhase::running;
     } else if (phase_ == PathPhase::running && packet.on_path && !*packet.on_path) {
-        phase_ = PathPhase::over;
+        path_is_over();
     }
 }
 
@@ -345,8 +376,11 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
         // After numbers that jumped it may be the one before. Both lie within a step of each other, so what
         // is told is no further one, until it is known to have been taken.
         pause_ = relation != Relation::next || (pause_ && !taken);
-        const Relation judged =
-            not_running_ && packet.running && relation == Relation::next ? Relation::gap : relation;
+        // A controller that did not take corrections has led the last one out.
+        // And one that was not answered may have stopped and begun anew while nobody heard it.
+        const bool anew =
+            (not_running_ && packet.running) || (protocol_->stops_unanswered() && (arrival.gap || silent_));
+        const Relation judged = anew ? Relation::jump : relation;
         switch (judge(packet, shown, judged)) {
             case Holds::on:
                 commit(taken);
@@ -372,16 +406,16 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
     if (packet.missing && !at_zero()) raise(fmt::format("the robot's packets carry no {}", packet.missing));
     if (!packet.running && !at_zero()) {
         if (packet.ended && phase_ == PathPhase::running && standing_ >= kStood) {
-            phase_ = PathPhase::over;
-            ramp_.set_target(Pose::Identity());
-            sent_ramp_.set_target(Pose::Identity());
-        } else if (phase_ != PathPhase::over) {
+            path_is_over();
+            lead_back();
+        } else if (phase_ != PathPhase::over && !unanswered_) {
             raise("the controller left the state in which it takes corrections");
         }
     }
     if (relation == Relation::next && !at_zero() && packet.programmed && last_.programmed &&
         moved_mm > settings_.max_path_speed_mm_s * cycle_s_ * (1 + kRounding))
         raise("the robot's position jumped further than it can move");
+    if (not_running_ && packet.running) unanswered_ = false;  // its program has begun anew
     not_running_ = !packet.running;
     // Where the path is; a position that cannot be reached, or none, leaves the one before.
     if (!packet.programmed) packet.programmed = last_.programmed;
@@ -393,6 +427,7 @@ bool CyclicCorrector::handle(std::span<const std::byte> datagram, const CyclicAr
         owed_ = owed_ && !wait;
     }
     if (!packet.problem) watch_path(packet, moved_mm);
+    if (unanswered_) owed_ = false;
     clean_ = follows_ && missed == 0 && !packet.problem && suspicion_ == 0;
     if (!owed_) {
         commit(false);

@@ -30,6 +30,10 @@
 // can mean, an element that is missing, an offset beyond the limit, a correction that the robot does not
 // show within follow_tolerance for follow_ms, a new session or silence under a correction. An alarm is kept
 // until take_alarm().
+//
+// No path runs on without its permission: one that goes before the path is over stops the robot. It does so
+// by `released`, which falls with the next answer while the correction is led back, or, where the protocol
+// has none (stops_unanswered), by no answer at all; such a robot keeps its correction until it stands.
 
 #include <memory>
 #include <optional>
@@ -65,9 +69,10 @@ class CyclicCorrector {
     std::span<const std::byte> answer();
     void silence();  // nothing came for session_gap_ms
 
-    void set_target(const Pose& displacement);  // in the reference frame
-    void await_path();                          // the correction is confirmed: the path may run
-    void forget_path() { phase_ = PathPhase::none; }
+    void set_target(const Pose& displacement);        // in the reference frame
+    void withdraw();                                  // the permission too
+    void await_path();                                // the correction is confirmed: the path may run
+    void forget_path() { phase_ = PathPhase::none; }  // another correction is about to be confirmed
 
     struct State {
         std::int64_t age_ns = -1;  // since the newest good packet; -1 before the first (server.h fills it in)
@@ -104,6 +109,9 @@ class CyclicCorrector {
     void watch_path(const CyclicPacket& packet, double speed_mm_s);
     void restart_from(const CyclicTold& found);
     void raise(std::string reason);
+    void lead_back();
+    void revoke();
+    void path_is_over();
 
     const CyclicSettings settings_;
     const double cycle_s_, step_mm_, step_rad_, tolerance_rad_;
@@ -131,6 +139,9 @@ class CyclicCorrector {
     std::uint64_t old_number_ = 0, steady_ = 0, cycles_ = 1, good_ = 0;
     std::uint64_t trouble_ = 0;
     PathPhase phase_ = PathPhase::none;
+    bool permitted_ = false;   // since await_path(), and the path is not over
+    bool unanswered_ = false;  // until the robot has stopped
+    bool run_before_ = false;  // what is under way is no path of this permission
     Eigen::Vector3d path_begin_ = Eigen::Vector3d::Zero();
     int standing_ = 0;  // packets in a row
     std::optional<std::string> alarm_;

@@ -7,8 +7,6 @@
 #include <thread>
 #include <utility>
 
-#include "devices/exchange/json_fields.h"
-#include "devices/exchange/pose_json.h"
 #include "devices/silence.h"
 
 namespace seamwright {
@@ -22,130 +20,84 @@ constexpr double kSameMm = 1e-6, kSameRad = 1e-8;
 std::string address_of(const std::string& endpoint) {
     return endpoint.substr(0, endpoint.rfind(':'));
 }
-
-Expected<double> number_within(const nlohmann::json& json, const char* key, double otherwise, double low,
-                               double high) {
-    auto value = json_number_or(json, key, otherwise, "");
-    if (!value) return value;
-    if (!(*value >= low && *value <= high))
-        return input_error(Text("{} is not within {} and {}", *value, low, high), key);
-    return value;
-}
 }  // namespace
 
-Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings,
-                                                   const std::vector<std::string>& own,
-                                                   const std::string& driver, std::uint16_t port) {
-    static const std::vector<std::string> common = {"listen",
-                                                    "port",
-                                                    "robot_address",
-                                                    "cycle_ms",
-                                                    "timeout_ms",
-                                                    "confirm_timeout_ms",
-                                                    "frames",
-                                                    "base_from_reference",
-                                                    "flange_from_tcp",
-                                                    "max_translation_mm",
-                                                    "max_rotation_deg",
-                                                    "speed_mm_s",
-                                                    "speed_deg_s",
-                                                    "acceleration_mm_s2",
-                                                    "acceleration_deg_s2",
-                                                    "max_late",
-                                                    "session_gap_ms",
-                                                    "max_path_speed_mm_s",
-                                                    "follow_tolerance_mm",
-                                                    "follow_tolerance_deg",
-                                                    "follow_ms",
-                                                    "measuring"};
-    if (!settings.is_object()) return input_error("the settings are no object", "settings");
-    for (const auto& [key, value] : settings.items()) {
-        (void)value;
-        if (std::find(common.begin(), common.end(), key) == common.end() &&
-            std::find(own.begin(), own.end(), key) == own.end())
-            return input_error("unknown field", key, "leave it out or correct its name");
-    }
+SettingTable cyclic_settings(std::uint16_t port, double max_rotation_deg) {
+    using namespace entry;
+    return {text("listen", "127.0.0.1", "this computer's address in the robot's network"),
+            whole("port", port, 0, 65535, "where the controller sends its packets"),
+            text("robot_address", "", "the controller's; must be named unless listen is a loopback address"),
+            whole("cycle_ms", 4, 1, 1000, "time between two packets"),
+            whole("timeout_ms", 1000, 1, 60000, "for a packet"),
+            whole("confirm_timeout_ms", 20000, 1, 600000, "for a whole ramp, until the robot shows it"),
+            object("frames", {}, "NAME: {\"base_from_frame\": POSE as taught}"),
+            pose("base_from_reference", "frame in which the controller tells poses: $BASE, the work object"),
+            pose("flange_from_tcp", "tool whose TCP it tells"),
+            number("max_translation_mm", 10, 0, 1000, "largest correction"),
+            number("max_rotation_deg", max_rotation_deg, 0, 45, "largest correction"),
+            number("speed_mm_s", 20, 1e-3, 1000, "of the ramp"),
+            number("speed_deg_s", 2, 1e-3, 90, "of the ramp"),
+            number("acceleration_mm_s2", 100, 1e-3, 1e5, "of the ramp"),
+            number("acceleration_deg_s2", 10, 1e-3, 1e4, "of the ramp"),
+            whole("max_late", 10, 1, 1000, "late packets until the correction is withdrawn"),
+            whole("session_gap_ms", 500, 20, 60000, "silence after which the robot's session is another one"),
+            number("max_path_speed_mm_s", 3000, 1, 1e5, "a position that jumps further is an alarm"),
+            number("follow_tolerance_mm", 0.2, 1e-3, 10, "between what was told and what the robot shows"),
+            number("follow_tolerance_deg", 0.1, 1e-4, 5, "between what was told and what the robot shows"),
+            whole("follow_ms", 500, 10, 10000, "so long it may miss the tolerance"),
+            object("measuring",
+                   {text("driver", nullptr, "a robot driver"), object("settings", {}, "of that driver")},
+                   "how the measuring program is run; without it the link only corrects")};
+}
+
+Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings, const SettingTable& table,
+                                                   const std::string& driver) {
     CyclicLinkSettings r;
     r.driver = driver;
     CyclicSettings& s = r.server;
-    const auto text = [&](const char* key, std::string& value) -> Expected<void> {
-        auto read = json_string_or(settings, key, value, "");
-        if (!read) return tl::unexpected(read.error());
-        value = *read;
-        return {};
-    };
-    if (auto ok = text("listen", s.listen); !ok) return tl::unexpected(ok.error());
-    if (auto ok = text("robot_address", s.robot_address); !ok) return tl::unexpected(ok.error());
+    SettingsReader f(settings, "", table);
+    f.text("listen", s.listen);
+    f.text("robot_address", s.robot_address);
+    if (f.failed()) return tl::unexpected(f.error());
     if (auto ok = check_robot_address(s.listen, s.robot_address); !ok) return tl::unexpected(ok.error());
-    struct Number {
-        const char* key;
-        double otherwise, low, high;
-        double* real;
-        int* whole;
-    };
-    int port_number = port;
-    const Number numbers[] = {
-        {"port", static_cast<double>(port), 0, 65535, nullptr, &port_number},
-        {"cycle_ms", 4, 1, 1000, nullptr, &s.cycle_ms},
-        {"timeout_ms", 1000, 1, 60000, nullptr, &r.timeout_ms},
-        {"confirm_timeout_ms", 20000, 1, 600000, nullptr, &r.confirm_timeout_ms},
-        {"max_translation_mm", 10, 0, 1000, &s.max_translation_mm, nullptr},
-        {"max_rotation_deg", 2, 0, 45, &s.max_rotation_deg, nullptr},
-        {"speed_mm_s", 20, 1e-3, 1000, &s.ramp.speed_mm_s, nullptr},
-        {"speed_deg_s", 2, 1e-3, 90, &s.ramp.speed_deg_s, nullptr},
-        {"acceleration_mm_s2", 100, 1e-3, 1e5, &s.ramp.acceleration_mm_s2, nullptr},
-        {"acceleration_deg_s2", 10, 1e-3, 1e4, &s.ramp.acceleration_deg_s2, nullptr},
-        {"max_late", 10, 1, 1000, nullptr, &s.max_late},
-        {"session_gap_ms", 500, 20, 60000, nullptr, &s.session_gap_ms},
-        {"max_path_speed_mm_s", 3000, 1, 1e5, &s.max_path_speed_mm_s, nullptr},
-        {"follow_tolerance_mm", 0.2, 1e-3, 10, &s.follow_tolerance_mm, nullptr},
-        {"follow_tolerance_deg", 0.1, 1e-4, 5, &s.follow_tolerance_deg, nullptr},
-        {"follow_ms", 500, 10, 10000, nullptr, &s.follow_ms},
-    };
-    for (const Number& n : numbers) {
-        const auto value = number_within(settings, n.key, n.otherwise, n.low, n.high);
-        if (!value) return tl::unexpected(value.error());
-        if (n.real) *n.real = *value;
-        if (n.whole) {
-            if (*value != std::floor(*value)) return input_error("not a whole number", n.key);
-            *n.whole = static_cast<int>(*value);
+    f.whole("port", s.port);
+    f.whole("cycle_ms", s.cycle_ms);
+    f.whole("timeout_ms", r.timeout_ms);
+    f.whole("confirm_timeout_ms", r.confirm_timeout_ms);
+    f.number("max_translation_mm", s.max_translation_mm);
+    f.number("max_rotation_deg", s.max_rotation_deg);
+    f.number("speed_mm_s", s.ramp.speed_mm_s);
+    f.number("speed_deg_s", s.ramp.speed_deg_s);
+    f.number("acceleration_mm_s2", s.ramp.acceleration_mm_s2);
+    f.number("acceleration_deg_s2", s.ramp.acceleration_deg_s2);
+    f.whole("max_late", s.max_late);
+    f.whole("session_gap_ms", s.session_gap_ms);
+    f.number("max_path_speed_mm_s", s.max_path_speed_mm_s);
+    f.number("follow_tolerance_mm", s.follow_tolerance_mm);
+    f.number("follow_tolerance_deg", s.follow_tolerance_deg);
+    f.whole("follow_ms", s.follow_ms);
+    f.pose("base_from_reference", r.base_from_reference);
+    f.pose("flange_from_tcp", r.flange_from_tcp);
+    f.object("frames", [&](SettingsReader& frames) {
+        static const SettingTable frame = {entry::pose("base_from_frame", "as taught")};
+        for (const auto& [name, value] : frames.json().items()) {
+            SettingsReader taught(value, frames.path(name), frame);
+            const auto field = json_field(value, "base_from_frame", frames.path(name));
+            if (!taught.failed() && !field) taught.keep(tl::make_unexpected(field.error()));
+            taught.pose("base_from_frame", r.taught[name]);
+            if (taught.failed()) frames.keep(tl::make_unexpected(taught.error()));
         }
-    }
-    s.port = static_cast<std::uint16_t>(port_number);
-    const auto pose = [&](const char* key, Pose& value) -> Expected<void> {
-        if (!settings.contains(key)) return {};
-        auto read = parse_pose(settings.at(key), key);
-        if (!read) return tl::unexpected(read.error());
-        value = *read;
-        return {};
-    };
-    if (auto ok = pose("base_from_reference", r.base_from_reference); !ok) return tl::unexpected(ok.error());
-    if (auto ok = pose("flange_from_tcp", r.flange_from_tcp); !ok) return tl::unexpected(ok.error());
-    if (settings.contains("frames")) {
-        if (!settings["frames"].is_object()) return input_error("not an object of frames", "frames");
-        for (const auto& [name, frame] : settings["frames"].items()) {
-            const std::string where = "frames." + name;
-            if (auto ok = only_fields(frame, {"base_from_frame"}, where); !ok)
-                return tl::unexpected(ok.error());
-            auto field = json_field(frame, "base_from_frame", where);
-            if (!field) return tl::unexpected(field.error());
-            auto taught = parse_pose(**field, where + ".base_from_frame");
-            if (!taught) return tl::unexpected(taught.error());
-            r.taught[name] = *taught;
-        }
-    }
-    if (settings.contains("measuring")) {
-        const nlohmann::json& m = settings["measuring"];
-        if (auto ok = only_fields(m, {"driver", "settings"}, "measuring"); !ok)
-            return tl::unexpected(ok.error());
-        auto name = json_string(m, "driver", "measuring");
-        if (!name) return tl::unexpected(name.error());
+    });
+    f.object("measuring", [&](SettingsReader& m) {
+        const auto name = json_string(m.json(), "driver", "measuring");
+        if (!name) return m.keep(tl::make_unexpected(name.error()));
         if (*name == "kuka-rsi" || *name == "abb-egm")
-            return input_error("a cyclic correction cannot measure", "measuring.driver",
-                               "name the driver that runs the measuring program");
+            return m.keep(input_error("a cyclic correction cannot measure", "measuring.driver",
+                                      "name the driver that runs the measuring program"));
         r.measuring_driver = *name;
-        if (m.contains("settings")) r.measuring = m["settings"];
-    }
+        if (m.has("settings")) r.measuring = m.json().at("settings");
+    });
+    if (f.failed()) return tl::unexpected(f.error());
     return r;
 }
 
@@ -394,7 +346,7 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
         server_->withdraw();
         return ok;
     }
-    server_->forget_path();
+    if (verdict == PartVerdict::corrected) server_->forget_path();
     auto done = verdict == PartVerdict::corrected ? apply() : back_to_zero();
     if (!done) {
         server_->withdraw();

@@ -7,18 +7,9 @@
 // on B. Until confirm(corrected) nothing is sent but zero; start_measuring() and every other verdict ramp
 // back to zero and return when it is reached.
 //
-// Common settings (defaults):
-//   {"listen": "127.0.0.1", "port": the brand's, "robot_address": "" (whoever comes first, until it is
-//   silent; must be named unless "listen" is loopback. Others are refused and told),
-//    "cycle_ms": 4, "timeout_ms": 1000 (for a packet), "confirm_timeout_ms": 20000 (for a whole ramp),
-//    "frames": {"NAME": {"base_from_frame": POSE as taught}},
-//    "base_from_reference": POSE identity (frame in which the controller tells poses: KUKA $BASE, ABB work
-//    object), "flange_from_tcp": POSE identity (tool whose TCP it tells), "max_translation_mm": 10,
-//    "max_rotation_deg": 2, "speed_mm_s": 20, "speed_deg_s": 2, "acceleration_mm_s2": 100,
-//    "acceleration_deg_s2": 10, "max_late": 10, "session_gap_ms": 500, "max_path_speed_mm_s": 3000,
-//    "follow_tolerance_mm": 0.2, "follow_tolerance_deg": 0.1, "follow_ms": 500 (the robot must show what it
-//    was told within the tolerance, and not fail to for so long), "measuring": {"driver": a robot driver,
-//    "settings": {...}}}
+// Settings: cyclic_settings(), and the driver's own. Others than the first peer are refused and told until it is
+// silent.
+//
 // identity, mode, start signal, measuring, triggers and moves are those of the measuring link. Without one
 // the identity is the brand's alone, the mode what the cyclic packets tell, and measuring is refused.
 //
@@ -40,6 +31,7 @@
 
 #include "devices/cyclic/server.h"
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/robot_link.h"
 
 namespace seamwright {
@@ -58,10 +50,11 @@ struct CyclicLinkSettings {
     std::string measuring_driver;
     nlohmann::json measuring = nlohmann::json::object();
 };
-// The common fields; `own` are the names of the driver's further ones.
-Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings,
-                                                   const std::vector<std::string>& own,
-                                                   const std::string& driver, std::uint16_t port);
+// Of both drivers, with what differs between them.
+SettingTable cyclic_settings(std::uint16_t port, double max_rotation_deg);
+// `table`: the whole driver's.
+Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& settings, const SettingTable& table,
+                                                   const std::string& driver);
 
 class CyclicLink : public RobotLink {
   public:

@@ -67,6 +67,9 @@ class CyclicProtocol {
     // So many answers may be lost in a row without the robot telling. Each step is so much smaller that all
     // of them together stay within the limit of one cycle.
     virtual int unproven() const { return 0; }
+    // `released` cannot be told. A robot that has to stop is not answered any more: its program notices by its
+    // own time-out, and keeps what it has until it stands.
+    virtual bool stops_unanswered() const { return false; }
     virtual const char* why_not_told() const { return nullptr; }  // when tell() answers nothing
 };
 

@@ -59,17 +59,17 @@ void CyclicServer::run() {
             const std::lock_guard lock(mutex_);
             bool of_robot = book(std::span(buffer).first(*size), from);
             for (int i = 1; i < kMostAtOnce && socket_.has_datagram(); ++i) {
-                const auto more = socket_.receive(buffer, from, Timeout(1));
-                if (!more) break;
-                of_robot = book(std::span(buffer).first(*more), from) || of_robot;
+                if (const auto more = socket_.receive(buffer, from, Timeout(1)))
+                    of_robot = book(std::span(buffer).first(*more), from) || of_robot;
+                else if (!book_unreadable(more.error()))
+                    break;
             }
             const auto answer = corrector_.answer();
             if (!answer.empty() && robot_ && socket_.send_to(answer, *robot_)) ++answers_;
             if (of_robot) latency_.record((Clock::now() - received).count());
-        } else if (!is_silence(size.error()) && !stop_) {
-            // Oversized, or refused by the system (a peer's closed port): counted, never parsed.
+        } else {
             const std::lock_guard lock(mutex_);
-            ++unreadable_;
+            (void)book_unreadable(size.error());
         }
         const std::lock_guard lock(mutex_);
         if (!silent_ && Clock::now() - last_ > std::chrono::milliseconds(settings_.session_gap_ms)) {
@@ -77,6 +77,14 @@ void CyclicServer::run() {
             corrector_.silence();
         }
     }
+}
+
+// Whether there was a datagram: oversized, or refused by the system (a peer's closed port). Counted, never
+// parsed. Precondition: locked.
+bool CyclicServer::book_unreadable(const Error& error) {
+    if (is_silence(error) || stop_) return false;
+    ++unreadable_;
+    return true;
 }
 
 // Whether it is of the robot. Precondition: locked.
@@ -107,6 +115,11 @@ bool CyclicServer::book(std::span<const std::byte> datagram, const Endpoint& fro
 void CyclicServer::set_target(const Pose& displacement) {
     const std::lock_guard lock(mutex_);
     corrector_.set_target(displacement);
+}
+
+void CyclicServer::withdraw() {
+    const std::lock_guard lock(mutex_);
+    corrector_.withdraw();
 }
 
 void CyclicServer::await_path() {

@@ -38,7 +38,7 @@ class CyclicServer {
     using State = CyclicCorrector::State;
     State state() const;
     void set_target(const Pose& displacement);
-    void withdraw() { set_target(Pose::Identity()); }
+    void withdraw();
     void await_path();
     void forget_path();
     std::optional<std::string> alarm() const;
@@ -52,6 +52,7 @@ class CyclicServer {
   private:
     CyclicServer(const CyclicSettings& settings, std::unique_ptr<CyclicProtocol> protocol, UdpSocket socket);
     void run();
+    bool book_unreadable(const Error& error);
     bool book(std::span<const std::byte> datagram, const Endpoint& from);
 
     const CyclicSettings settings_;

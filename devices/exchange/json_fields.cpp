@@ -127,6 +127,11 @@ std::string json_path(const std::string& where, std::size_t index) {
 
 Expected<void> only_fields(const nlohmann::json& json, std::initializer_list<std::string_view> known,
                            const std::string& where) {
+    return only_fields(json, std::vector<std::string_view>(known), where);
+}
+
+Expected<void> only_fields(const nlohmann::json& json, const std::vector<std::string_view>& known,
+                           const std::string& where) {
     if (!json.is_object())
         return input_error(Text("must be an object, not {}", type_name(json)), where);
     if (known.size() == 0) return {};

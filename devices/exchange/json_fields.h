@@ -33,6 +33,8 @@ Expected<nlohmann::json> read_json_file(const std::filesystem::path& path,
 // silently mean its default otherwise).
 Expected<void> only_fields(const nlohmann::json& json, std::initializer_list<std::string_view> known,
                            const std::string& where);
+Expected<void> only_fields(const nlohmann::json& json, const std::vector<std::string_view>& known,
+                           const std::string& where);
 // The field itself (never null), of any kind, or an array; valid as long as `json` is.
 Expected<const nlohmann::json*> json_field(const nlohmann::json& json, const std::string& key,
                                            const std::string& where);

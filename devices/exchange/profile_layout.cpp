@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "core/profile/no_return.h"
 #include "core/profile/units.h"
 #include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
@@ -207,6 +208,11 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
         first.find('\t') == first.npos) {
         auto profile = parse_profile_csv(bytes, where);
         if (!profile) return tl::unexpected(profile.error());
+        erase_no_returns(*profile, layout.invalid);
+        if (std::none_of(profile->z_mm.begin(), profile->z_mm.end(),
+                         [](double z) { return std::isfinite(z); }) &&
+            !layout.invalid.empty())
+            return input_error("every height stands for \"no return\"", where, "check --invalid");
         for (auto* column : {&profile->x_mm, &profile->z_mm})
             for (double& value : *column) value *= mm_of_unit(layout.unit).value_or(1);
         result.profiles.push_back({0, std::move(*profile), {}});
@@ -241,7 +247,10 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
             result.profiles.push_back({number, {}, {}});
         }
         ReadProfile& into = result.profiles.back();
-        const double x = table->columns[*c.x][i] * x_mm, z = table->columns[*c.z][i] * z_mm;
+        const double height = table->columns[*c.z][i];
+        const bool code = std::count(layout.invalid.begin(), layout.invalid.end(), height) > 0;
+        const double x = table->columns[*c.x][i] * x_mm,
+                     z = code ? std::numeric_limits<double>::quiet_NaN() : height * z_mm;
         if (std::abs(x) > kFarthestPoint_mm || std::abs(z) > kFarthestPoint_mm)
             return input_error(Text("{} mm is beyond 1 km", std::abs(x) > kFarthestPoint_mm ? x : z),
                                table->at(where, i), "say what the numbers are in with --unit");

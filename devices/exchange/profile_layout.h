@@ -22,6 +22,7 @@ namespace seamwright {
 struct ProfileLayout {
     std::string unit;     // of lengths (core/profile/units.h); empty: as the header says, else millimetres
     std::string columns;  // "X,Z" or "1,3": x and z by name or by number from 1; empty: seen from the file
+    std::vector<double> invalid;  // heights, as the file writes them, that stand for "no return"
     bool operator==(const ProfileLayout&) const = default;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of the driver "genicam", as genicam.h lists them.
+// Settings of the driver "genicam".
 
 #include <chrono>
 #include <map>
@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "devices/exchange/image_file.h"
+#include "devices/exchange/settings.h"
 #include "devices/genicam/range_image.h"
 
 namespace seamwright {
@@ -25,13 +26,14 @@ struct GenicamSettings {
     nlohmann::json features = nlohmann::json::object();
     std::vector<std::string> chunks;
     std::optional<RangeMapping> range;
-    int packet_size = 0, buffers = 8;
-    bool packet_socket = false, packet_resend = true;
+    int packet_size = 0, buffers = 0;
+    bool packet_socket = false, packet_resend = false;
     std::size_t socket_buffer = 0;
-    std::chrono::milliseconds packet_timeout{20}, frame_retention{100}, timeout{1000}, reconnect{100},
-        reconnect_most{1000}, heartbeat{500};
+    std::chrono::milliseconds packet_timeout{}, frame_retention{}, timeout{}, reconnect{}, reconnect_most{},
+        heartbeat{};
     std::string camera_name() const;  // "camera 192.168.1.20", for sentences
 };
+const SettingTable& genicam_settings();
 Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& settings);
 
 }  // namespace seamwright

@@ -24,14 +24,14 @@ constexpr std::chrono::seconds kPingPeriod{1};
 constexpr const char* kLookAtSensor = "check power, cable and address of the sensor";
 
 struct Settings {
-    std::string address, output = "profiles", serial;
-    std::uint16_t control_port = gdp::kControlPort, data_port = 0;
+    std::string address, output, serial;
+    std::uint16_t control_port = 0, data_port = 0;
     int source = 0;
     std::vector<std::pair<int, int>> points{{0, 1}};
     gocator::AsciiFormat format;
     bool hardware_trigger = false;
-    Timeout timeout{1000}, start_timeout{15000}, reconnect{100}, reconnect_most{5000};
-    std::size_t buffers = 8;
+    Timeout timeout{}, start_timeout{}, reconnect{}, reconnect_most{};
+    std::size_t buffers = 0;
     bool ascii() const { return output == "ascii"; }
 };
 
@@ -55,33 +55,27 @@ Expected<std::vector<std::pair<int, int>>> points_from(const nlohmann::json& jso
 
 Expected<Settings> settings_from(const nlohmann::json& json) {
     Settings s;
-    SettingsReader read(json, "settings");
-    read.only({"address", "control_port", "data_port", "output", "source", "points", "format", "delimiter",
-               "terminator", "invalid", "serial", "hardware_trigger", "timeout_ms", "start_timeout_ms",
-               "reconnect_ms", "reconnect_most_ms", "buffers"});
+    SettingsReader read(json, "settings", gocator_settings());
     read.text("address", s.address);
     read.text("output", s.output);
     read.text("serial", s.serial);
-    read.whole("control_port", s.control_port, 1, 65535);
-    read.whole("data_port", s.data_port, 1, 65535);
-    read.whole("source", s.source, 0, 3);
+    read.whole("control_port", s.control_port);
+    read.whole("data_port", s.data_port);
+    read.whole("source", s.source);
     read.text("format", s.format.pattern);
     read.text("delimiter", s.format.delimiter);
     read.text("terminator", s.format.terminator);
     read.text("invalid", s.format.invalid);
     read.truth("hardware_trigger", s.hardware_trigger);
-    int timeout = 1000, start_timeout = 15000, reconnect = 100, most = 5000;
-    read.whole("timeout_ms", timeout, 50, 60000);
-    read.whole("start_timeout_ms", start_timeout, 50, 120000);
-    read.whole("reconnect_ms", reconnect, 10, 60000);
-    read.whole("reconnect_most_ms", most, 10, 600000);
-    read.whole("buffers", s.buffers, 2, 1000);
+    read.duration("timeout_ms", s.timeout);
+    read.duration("start_timeout_ms", s.start_timeout);
+    read.duration("reconnect_ms", s.reconnect);
+    read.duration("reconnect_most_ms", s.reconnect_most);
+    read.whole("buffers", s.buffers);
     if (read.failed()) return tl::unexpected(read.error());
     if (s.address.empty())
         return input_error("the address of the sensor is missing", "settings.address",
                            "as in \"192.168.1.10\"");
-    if (s.output != "profiles" && s.output != "ascii")
-        return input_error(Text("\"{}\" is no output", s.output), "settings.output", "profiles or ascii");
     if (json.contains("points")) {
         auto points = points_from(json.at("points"), "settings.points");
         if (!points) return tl::unexpected(points.error());
@@ -89,10 +83,8 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
     }
     if (auto format = gocator::check_format(s.format); !format) return tl::unexpected(format.error());
     if (s.data_port == 0) s.data_port = s.ascii() ? gocator::kAsciiPort : gdp::kDataPort;
-    s.timeout = Timeout(timeout);
-    s.start_timeout = Timeout(std::max(timeout, start_timeout));
-    s.reconnect = Timeout(reconnect);
-    s.reconnect_most = Timeout(std::max(reconnect, most));
+    s.start_timeout = std::max(s.timeout, s.start_timeout);
+    s.reconnect_most = std::max(s.reconnect, s.reconnect_most);
     return s;
 }
 
@@ -502,6 +494,34 @@ class GocatorSource final : public ProfileSource {
 };
 
 }  // namespace
+
+const SettingTable& gocator_settings() {
+    const gocator::AsciiFormat ascii;
+    static const SettingTable table = entry::joined(
+        {entry::text("address", nullptr, "of the sensor, must be given"),
+         entry::whole("control_port", gdp::kControlPort, 1, 65535, "of the sensor's commands"),
+         entry::choice(
+             "output", {"profiles", "ascii"},
+             "whole profiles (tick them on the sensor's Output page), or what the sensor's own tools "
+             "measured, as a profile of a few points"),
+         entry::whole("data_port", nullptr, 1, 65535, "3196 of profiles, 8190 of ascii"),
+         entry::whole("source", 0, 0, 3, "of profiles: 0 top, 1 bottom, 2 top left, 3 top right"),
+         entry::list(
+             "points", nlohmann::json{{0, 1}},
+             "of ascii: ids of the measurements X and Z of each point; feature kind sensor-point takes "
+             "one of them"),
+         entry::text("format", ascii.pattern, "of ascii, as set on the sensor"),
+         entry::text("delimiter", ascii.delimiter, "of ascii, as set on the sensor"),
+         entry::text("terminator", ascii.terminator, "of ascii, as set on the sensor"),
+         entry::text("invalid", ascii.invalid, "of ascii, as set on the sensor"),
+         entry::text("serial", "", "another sensor is refused"),
+         entry::yes_no("hardware_trigger", false, "the robot fires the sensor's digital input"),
+         entry::whole("timeout_ms", 1000, 50, 60000, "for an answer"),
+         entry::whole("start_timeout_ms", 15000, 50, 120000, "for the answers to start and stop"),
+         entry::whole("buffers", 8, 2, 1000, "frames that may be handed out")},
+        entry::reconnect(10, 100, 5000));
+    return table;
+}
 
 Expected<std::unique_ptr<ProfileSource>> open_gocator_sensor(const nlohmann::json& settings, DeviceSession&) {
     auto read = settings_from(settings);

@@ -15,6 +15,7 @@
 #include "devices/kuka/eki.h"
 #include "devices/kuka/eki_telegram.h"
 #include "devices/kuka/move_time.h"
+#include "devices/kuka/program.h"
 #include "devices/net/socket.h"
 #include "devices/same_robot.h"
 
@@ -395,15 +396,25 @@ class EkiLink final : public RobotLink {
 
 }  // namespace
 
+const SettingTable& kuka_eki_settings() {
+    static const SettingTable table =
+        entry::joined({entry::text("listen", "127.0.0.1", "this computer's address in the robot's network"),
+                       entry::whole("port", 54600, 0, 65535, "where the controller connects to"),
+                       entry::text("robot_address", "",
+                                   "the controller's; must be named unless listen is a loopback address"),
+                       entry::whole("timeout_ms", 1000, 10, 60000, "for a connection and for every answer")},
+                      kuka_program_settings());
+    return table;
+}
+
 Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& settings, DeviceSession&) {
-    std::string listen = "127.0.0.1", robot_address;
-    int port = 54600, timeout_ms = 1000;
-    SettingsReader f(settings, "settings");
-    f.only({"listen", "port", "robot_address", "timeout_ms", "trigger_output", "flag_alive", "flag_command"});
+    std::string listen, robot_address;
+    int port = 0, timeout_ms = 0;
+    SettingsReader f(settings, "settings", kuka_eki_settings());
     f.text("listen", listen);
     f.text("robot_address", robot_address);
-    f.whole("port", port, 0, 65535);
-    f.whole("timeout_ms", timeout_ms, 10, 60000);
+    f.whole("port", port);
+    f.whole("timeout_ms", timeout_ms);
     if (f.failed()) return tl::unexpected(f.error());
     if (auto known = check_robot_address(listen, robot_address); !known) return tl::unexpected(known.error());
     auto listener = TcpListener::listen(listen, static_cast<std::uint16_t>(port));

@@ -3,9 +3,7 @@
 // and works the global variables of seamwright.dat (program.h), so no EthernetKRL is needed. Messages:
 // kvp_message.h.
 //
-// Settings, defaults: {"address": the controller's, "port": 7000, "timeout_ms": 1000 (connection, and every
-// answer), "poll_ms": 10 (start signal and triggers), "retry_ms": 100, "retry_most_ms": 500 (back-off,
-// doubling)}.
+// Settings: kuka_kvp_settings().
 //
 // A region's frame is one of the module's (SW_NAME) or any variable of type FRAME by its own name
 // ("BASE_DATA[5]"). What the protocol cannot do: it does not tell the controller that the connection is lost;
@@ -17,10 +15,12 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/robot_link.h"
 
 namespace seamwright {
 
+const SettingTable& kuka_kvp_settings();
 Expected<std::unique_ptr<RobotLink>> open_kuka_kvp(const nlohmann::json& settings, DeviceSession& session);
 
 }  // namespace seamwright

@@ -12,6 +12,7 @@
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/kvp_message.h"
 #include "devices/kuka/move_time.h"
+#include "devices/kuka/program.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
 #include "devices/same_robot.h"
@@ -23,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 struct KvpSettings {
     std::string address;
-    int port = 7000, timeout_ms = 1000, poll_ms = 10, retry_ms = 100, retry_most_ms = 500;
+    int port = 0, timeout_ms = 0, poll_ms = 0, reconnect_ms = 0, reconnect_most_ms = 0;
 };
 
 class KvpLink final : public RobotLink {
@@ -32,7 +33,7 @@ class KvpLink final : public RobotLink {
         : settings_(std::move(settings)),
           where_(fmt::format("{}:{}", settings_.address, settings_.port)),
           timeout_(settings_.timeout_ms),
-          back_off_(settings_.retry_ms) {}
+          back_off_(settings_.reconnect_ms) {}
 
     Expected<RobotIdentity> identity() override {
         auto now = ask_identity();
@@ -311,10 +312,10 @@ class KvpLink final : public RobotLink {
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
         if (!made) {
             not_before_ = Clock::now() + back_off_;
-            back_off_ = std::min(2 * back_off_, Timeout(settings_.retry_most_ms));
+            back_off_ = std::min(2 * back_off_, Timeout(settings_.reconnect_most_ms));
             return fail(made.error());
         }
-        back_off_ = Timeout(settings_.retry_ms);
+        back_off_ = Timeout(settings_.reconnect_ms);
         stream_.clear();
         connection_.emplace(std::move(*made));
         robot_.connected_anew();
@@ -520,18 +521,26 @@ class KvpLink final : public RobotLink {
 
 }  // namespace
 
+const SettingTable& kuka_kvp_settings() {
+    static const SettingTable table = entry::joined(
+        entry::joined({entry::text("address", "127.0.0.1", "the controller's"),
+                       entry::whole("port", 7000, 1, 65535, "of KUKAVARPROXY"),
+                       entry::whole("timeout_ms", 1000, 10, 60000, "for a connection and for every answer"),
+                       entry::whole("poll_ms", 10, 1, 1000, "between two looks for a start or a trigger")},
+                      entry::reconnect(1, 100, 500, "retry_ms", "retry_most_ms")),
+        kuka_program_settings());
+    return table;
+}
+
 Expected<std::unique_ptr<RobotLink>> open_kuka_kvp(const nlohmann::json& settings, DeviceSession&) {
     KvpSettings s;
-    s.address = "127.0.0.1";
-    SettingsReader f(settings, "settings");
-    f.only({"address", "port", "timeout_ms", "poll_ms", "retry_ms", "retry_most_ms", "trigger_output",
-            "flag_alive", "flag_command"});
+    SettingsReader f(settings, "settings", kuka_kvp_settings());
     f.text("address", s.address);
-    f.whole("port", s.port, 1, 65535);
-    f.whole("timeout_ms", s.timeout_ms, 10, 60000);
-    f.whole("poll_ms", s.poll_ms, 1, 1000);
-    f.whole("retry_ms", s.retry_ms, 1, 60000);
-    f.whole("retry_most_ms", s.retry_most_ms, 1, 600000);
+    f.whole("port", s.port);
+    f.whole("timeout_ms", s.timeout_ms);
+    f.whole("poll_ms", s.poll_ms);
+    f.whole("reconnect_ms", s.reconnect_ms);
+    f.whole("reconnect_most_ms", s.reconnect_most_ms);
     if (f.failed()) return tl::unexpected(f.error());
     return std::make_unique<KvpLink>(s);
 }

@@ -6,6 +6,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/settings.h"
+#include "devices/kuka/eki.h"
 #include "devices/kuka/program.h"
 #include "devices/kuka/rsi_program.h"
 #include "kuka_resources.h"
@@ -49,24 +50,34 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 
 }  // namespace
 
+const SettingTable& kuka_program_settings() {
+    static const SettingTable table = {
+        entry::whole("trigger_output", 1, 1, 8192, "output that fires the sensor, for the program"),
+        entry::whole("flag_alive", 1, 1, 1024, "flag of EthernetKRL's connection, for the program"),
+        entry::whole("flag_command", 2, 1, 1024, "flag of EthernetKRL's commands, for the program")};
+    return table;
+}
+
 Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& request) {
     if (request.driver == "kuka-rsi") return write_rsi_program(request);
     if (request.moves.size() > kMostSpots)
         return input_error(Text("{} spots are more than the module holds", request.moves.size()),
                            request.project, Text("measure at most {} in one program", kMostSpots));
     if (request.frames.size() > kMostFrames)
-        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
-                           request.project, Text("give at most {}", kMostFrames));
-    std::string listen = "127.0.0.1";
-    int port = 54600, output = 1, alive = 1, command = 2;
-    SettingsReader f(request.settings, "settings");
+        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
+                           request.project, fmt::format("give at most {}", kMostFrames));
+    std::string listen;
+    int port = 0, output = 0, alive = 0, command = 0;
+    SettingsReader f(request.settings, "settings", kuka_eki_settings(), UnknownSettings::passed_over);
     f.text("listen", listen);
-    f.whole("port", port, 1, 65535);
-    f.whole("trigger_output", output, 1, 8192);
-    f.whole("flag_alive", alive, 1, 1024);
-    f.whole("flag_command", command, 1, 1024);
+    f.whole("port", port);
+    f.whole("trigger_output", output);
+    f.whole("flag_alive", alive);
+    f.whole("flag_command", command);
     if (f.failed()) return tl::unexpected(f.error());
 
+    if (port == 0)
+        return input_error("a controller connects to no port 0", "settings.port", "give 1 to 65535");
     if (listen == "0.0.0.0" || listen.empty() || listen.find_first_not_of("0123456789.") != std::string::npos)
         return input_error(Text("\"{}\" is no address that a controller connects to", listen),
                            "settings.listen", "give this computer's address in the robot's network");
@@ -128,7 +139,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         "\nDEF SEAMWRIGHT_SPOTS()\nIF NOT StrComp(SW_SIGNATURE[],\"" + signature +
         "\",#CASE_SENS) THEN\n   SW_SETUP()\nENDIF\nSW_BEGIN_PART()\nBAS(#INITMOV,0)\n"
         "; the points are poses of the flange in the robot's base; the application sets its $TOOL again\n"
-        "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n$APO.CDIS=5\n" +
+        "$IPO_MODE=#BASE\n$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n$APO.CDIS=5\n" +
         path +
         "WAIT SEC 0\nSW_END_PART(20.0)\nEND\n\n"
         "; Taught frames and names: call it once at the start of the application program.\nGLOBAL DEF "

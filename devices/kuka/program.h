@@ -14,12 +14,15 @@
 // Seamwright measures by command. SW_VERDICT tells an application that goes on without correction how the
 // part ended.
 //
-// Settings that it reads from the robot's: "listen" and "port" (where the controller connects to),
-// "trigger_output" (1), "flag_alive" (1), "flag_command" (2).
+// Of the robot's settings it reads "listen" and "port", and kuka_program_settings().
 
+#include "devices/exchange/settings.h"
 #include "devices/robot_program.h"
 
 namespace seamwright {
+
+// What the KUKA drivers' settings hold for the program alone.
+const SettingTable& kuka_program_settings();
 
 // Error (input): more than 64 spots or 32 frames, names that KRL cannot hold, a speed over 2 m/s, a "listen"
 // that is no address of this computer.

@@ -31,10 +31,10 @@
 // seamwright_rsi.src waits with the path for <Release>, which is 1 from confirm(corrected) on, and tells by
 // <Path> when it runs: permission() is `given`, `running` while <Path> is 1 (where it is not sent: once RSol
 // moves) and `taken` when it is over, that is <Path> is 0 again, or the session ends with RSol standing.
+// <Release> falls with the permission, by an alarm too. On the path that stops the robot (an interrupt of the
+// program), and RSI ends with <Path> at 1: a path that was stopped is never told as over.
 //
-// Further settings (defaults): {"mode": "absolute" | "relative", "reference": "base" | "tool",
-//   "sen_type": "ImFree" (SENTYPE of the controller's configuration), "decimals": 7,
-//   "path_output", "release_output": see rsi_program.h}
+// Settings: kuka_rsi_settings().
 // "mode" is that of RSI_ON: absolute tells the whole correction in every cycle, relative its increments,
 // which the controller adds up axis by axis. Increments are the differences of what has been told after
 // rounding, so their sum is the correction to half a unit of the last decimal at every moment. "tool" with
@@ -47,41 +47,11 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/cyclic/link.h"
-#include "devices/cyclic/measuring.h"
-#include "devices/simulated/cell.h"
-#include "devices/simulated/controller.h"
 
 namespace seamwright {
 
+const SettingTable& kuka_rsi_settings();
 Expected<std::unique_ptr<RobotLink>> open_kuka_rsi(const nlohmann::json& settings, DeviceSession& session,
                                                    OpenRobot open_robot);
-
-// The robot's side. Settings: {"address": "127.0.0.1", "port": 49152, "cycle_ms": 4, "mode", "reference",
-// "sen_type" as above, "late_limit": 100 (late answers in a row until RSITimeout), "max_translation_mm": 20
-// (POSCORR limit: beyond it RSI stops), "restart_ms": 100 (how long a stopped RSI stays off before the
-// program starts it again), "delay": "run_length" | "sum" (of D), "hold_on": true for absolute, false for
-// relative, "following_ms": 8 (servo lag), "application": true (the path waits for <Release>, takes "path_s":
-// 2, and RSI is off for restart_ms; false: a circle without end), "speed_mm_s": 100, "slow_ms": 300,
-// "measuring": {"driver", "settings"}}. Faults:
-// silent sends nothing, slow sends late, wrong_answer repeats an old IPOC, half_message and disconnect cut
-// telegrams (the latter stops sending after it), reject_write stops RSI as soon as a correction comes,
-// out_of_range tells positions that no robot has. released() is true from <Release> on (without an
-// application: while a correction is in force), and once the path is over (taken()).
-class SimulatedRsi : public SimulatedController {
-  public:
-    struct Sample {
-        Pose programmed = Pose::Identity(), corrected = Pose::Identity();  // reference_from_tcp
-        std::array<double, 6> correction{};                                // as in force: X Y Z A B C
-        std::uint64_t ipoc = 0;
-    };
-    virtual Sample newest() const = 0;
-    virtual std::vector<Sample> history() const = 0;  // of all cycles since its making, at most 20000
-    virtual std::uint64_t stops() const = 0;          // RSITimeout, limits
-    virtual std::uint64_t late() const = 0;
-    virtual SimulatedController* measuring() = 0;  // may be null
-};
-Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<SimulatedCell> cell,
-                                                              const nlohmann::json& settings,
-                                                              StartController start_controller);
 
 }  // namespace seamwright

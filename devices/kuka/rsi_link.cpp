@@ -1,55 +1,42 @@
 // Seamwright's end of RSI.
 
-#include <cmath>
-
-#include "devices/exchange/json_fields.h"
 #include "devices/kuka/rsi.h"
 #include "devices/kuka/rsi_protocol.h"
 
 namespace seamwright {
-namespace {
-
-Expected<std::string> one_of(const nlohmann::json& settings, const char* key,
-                             std::initializer_list<const char*> known) {
-    auto value = json_string_or(settings, key, *known.begin(), "");
-    if (!value) return value;
-    std::string all;
-    for (const char* name : known) {
-        if (*value == name) return value;
-        all += (all.empty() ? "" : ", ") + std::string(name);
-    }
-    return input_error(Text("\"{}\" is not known", *value), key, Text("known are {}", all));
+const SettingTable& kuka_rsi_settings() {
+    static const SettingTable table = entry::joined(
+        cyclic_settings(49152, 2),
+        {entry::choice("mode", {"absolute", "relative"}, "of RSI_ON"),
+         entry::choice("reference", {"base", "tool"}, "of the correction, as POSCORR is set"),
+         entry::text("sen_type", "ImFree", "SENTYPE of the controller's configuration"),
+         entry::whole("decimals", 7, 1, 9, "of the telegrams' numbers"),
+         entry::whole("path_output", 101, 1, 4096, "is on while the path runs, for the program"),
+         entry::whole("release_output", 102, 1, 4096, "lets the path begin, for the program")});
+    return table;
 }
-
-}  // namespace
 
 Expected<std::unique_ptr<RobotLink>> open_kuka_rsi(const nlohmann::json& settings, DeviceSession& session,
                                                    OpenRobot open_robot) {
-    auto common = parse_cyclic_settings(
-        settings, {"mode", "reference", "sen_type", "decimals", "path_output", "release_output"}, "kuka-rsi",
-        49152);
+    auto common = parse_cyclic_settings(settings, kuka_rsi_settings(), "kuka-rsi");
     if (!common) return tl::unexpected(common.error());
     common->brand = "KUKA";
     RsiOptions options;
-    auto mode = one_of(settings, "mode", {"absolute", "relative"});
-    if (!mode) return tl::unexpected(mode.error());
-    options.relative = *mode == "relative";
-    auto reference = one_of(settings, "reference", {"base", "tool"});
-    if (!reference) return tl::unexpected(reference.error());
-    options.tool = *reference == "tool";
+    std::string mode, reference;
+    SettingsReader f(settings, "", kuka_rsi_settings());
+    f.text("mode", mode);
+    f.text("reference", reference);
+    f.text("sen_type", options.sen_type);
+    f.whole("decimals", options.decimals);
+    if (f.failed()) return tl::unexpected(f.error());
+    options.relative = mode == "relative";
+    options.tool = reference == "tool";
     if (options.relative && options.tool)
         return input_error("relative corrections in the tool do not add up", "reference",
                            "use base, or absolute");
-    auto type = json_string_or(settings, "sen_type", options.sen_type, "");
-    if (!type) return tl::unexpected(type.error());
-    if (type->empty() || type->size() > 64 || type->find_first_of("<>&\"'") != std::string::npos)
+    if (options.sen_type.empty() || options.sen_type.size() > 64 ||
+        options.sen_type.find_first_of("<>&\"'") != std::string::npos)
         return input_error("not a name that XML can hold", "sen_type");
-    options.sen_type = *type;
-    auto decimals = json_number_or(settings, "decimals", options.decimals, "");
-    if (!decimals) return tl::unexpected(decimals.error());
-    if (!(*decimals >= 1 && *decimals <= 9 && *decimals == std::floor(*decimals)))
-        return input_error("not a whole number from 1 to 9", "decimals");
-    options.decimals = static_cast<int>(*decimals);
     return CyclicLink::open(*common, make_rsi_protocol(options, common->server.cycle_ms), open_robot,
                             session);
 }

@@ -7,6 +7,7 @@
 
 #include "devices/exchange/settings.h"
 #include "devices/kuka/program.h"
+#include "devices/kuka/rsi.h"
 #include "kuka_resources.h"
 
 namespace seamwright {
@@ -22,20 +23,19 @@ struct Values {
 
 Expected<Values> read_values(const nlohmann::json& settings) {
     Values v;
-    SettingsReader f(settings, "settings");
+    SettingsReader f(settings, "settings", kuka_rsi_settings(), UnknownSettings::passed_over);
     f.text("listen", v.listen);
     f.text("sen_type", v.sen_type);
     f.text("mode", v.mode);
     f.text("reference", v.reference);
-    f.whole("port", v.port, 1, 65535);
-    f.whole("path_output", v.path_output, 1, 4096);
-    f.whole("release_output", v.release_output, 1, 4096);
-    f.number("max_translation_mm", v.max_translation_mm, 0, 1000);
-    f.number("max_rotation_deg", v.max_rotation_deg, 0, 45);
+    f.whole("port", v.port);
+    f.whole("path_output", v.path_output);
+    f.whole("release_output", v.release_output);
+    f.number("max_translation_mm", v.max_translation_mm);
+    f.number("max_rotation_deg", v.max_rotation_deg);
     if (f.failed()) return tl::unexpected(f.error());
-    if (!v.relative() && v.mode != "absolute")
-        return input_error("not absolute or relative", "settings.mode");
-    if (!v.tool() && v.reference != "base") return input_error("not base or tool", "settings.reference");
+    if (v.port == 0)
+        return input_error("a controller connects to no port 0", "settings.port", "give 1 to 65535");
     if (v.path_output == v.release_output)
         return input_error("path and release have one output", "settings.release_output", "give it another");
     return v;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <thread>
 
-#include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/settings.h"
 #include "devices/replay/capture_replay.h"
 #include "devices/silence.h"
 
@@ -158,16 +158,17 @@ class CaptureRobot final : public RobotLink {
 };
 
 // Opens the file for the first device of a session; the others share it.
-Expected<std::shared_ptr<CaptureReplay>> shared_replay(const nlohmann::json& settings,
-                                                       DeviceSession& session) {
-    const auto file = json_string(settings, "file", "settings");
+Expected<std::shared_ptr<CaptureReplay>> shared_replay(SettingsReader& f, DeviceSession& session) {
+    if (f.failed()) return tl::unexpected(f.error());
+    const auto file = json_string(f.json(), "file", "settings");
     if (!file) return tl::unexpected(file.error());
-    const auto speed = json_number_or(settings, "speed", 1, "settings");
-    if (!speed) return tl::unexpected(speed.error());
-    if (*speed != 0 && !(*speed >= 0.001 && *speed <= 1000))
+    double speed = 1;
+    bool loop = false;
+    f.number("speed", speed);
+    f.truth("loop", loop);
+    if (f.failed()) return tl::unexpected(f.error());
+    if (speed != 0 && speed < 0.001)
         return input_error("must be 0 (as fast as frames are asked for) or 0.001 to 1000", "settings.speed");
-    const auto loop = json_bool_or(settings, "loop", false, "settings");
-    if (!loop) return tl::unexpected(loop.error());
     std::error_code problem;
     const auto path = std::filesystem::weakly_canonical(*file, problem);
     if (problem || file->empty()) return file_error("is no file", *file);
@@ -175,10 +176,10 @@ Expected<std::shared_ptr<CaptureReplay>> shared_replay(const nlohmann::json& set
         "capture:" + path.string(), [&]() -> Expected<std::shared_ptr<CaptureReplay>> {
             auto reader = CaptureReader::open(path);
             if (!reader) return tl::unexpected(reader.error());
-            return std::make_shared<CaptureReplay>(std::move(*reader), *speed, *loop);
+            return std::make_shared<CaptureReplay>(std::move(*reader), speed, loop);
         });
     if (!replay) return replay;
-    if ((*replay)->speed() != *speed || (*replay)->loop() != *loop)
+    if ((*replay)->speed() != speed || (*replay)->loop() != loop)
         return input_error("the devices of one capture disagree", "settings.speed, settings.loop",
                            "set them alike");
     return replay;
@@ -186,62 +187,69 @@ Expected<std::shared_ptr<CaptureReplay>> shared_replay(const nlohmann::json& set
 
 }  // namespace
 
+const SettingTable& capture_sensor_settings() {
+    using namespace entry;
+    static const SettingTable table = {
+        text("file", nullptr, "the capture"),
+        text("source", "", "name in the capture; empty: the only one"),
+        number("speed", 1, 0, 1000,
+               "of the recording; 0: as fast as frames are asked for; sensor and robot alike"),
+        yes_no("step", false, "a frame only after a trigger"),
+        yes_no("loop", false, "begins anew at the end; sensor and robot alike"),
+        whole("from", 0, 0, 1e15, "first frame, counted from 0"),
+        yes_no("recorded_host_time", false, "frames carry the recorded time of arrival"),
+        whole("buffers", 16, 2, 4096, "frames that may be handed out")};
+    return table;
+}
+
+const SettingTable& capture_robot_settings() {
+    using namespace entry;
+    static const SettingTable table = {
+        text("file", nullptr, "the capture"),
+        text("source", "", "name in the capture; empty: the only one"),
+        number("speed", 1, 0, 1000,
+               "of the recording; 0: as fast as frames are asked for; sensor and robot alike"),
+        yes_no("loop", false, "begins anew at the end; sensor and robot alike"),
+        yes_no("accept_frames", false, "written frames are taken"),
+        object("frames", {}, "NAME: POSE that the controller holds")};
+    return table;
+}
+
 Expected<std::unique_ptr<ProfileSource>> open_capture_sensor(const nlohmann::json& settings,
                                                              DeviceSession& session) {
-    if (auto ok = only_fields(
-            settings, {"file", "source", "speed", "step", "loop", "from", "recorded_host_time", "buffers"},
-            "settings");
-        !ok)
-        return tl::unexpected(ok.error());
-    const auto name = json_string_or(settings, "source", "", "settings");
-    if (!name) return tl::unexpected(name.error());
-    const auto step = json_bool_or(settings, "step", false, "settings");
-    if (!step) return tl::unexpected(step.error());
-    const auto recorded_time = json_bool_or(settings, "recorded_host_time", false, "settings");
-    if (!recorded_time) return tl::unexpected(recorded_time.error());
-    const auto from = json_number_or(settings, "from", 0, "settings");
-    if (!from) return tl::unexpected(from.error());
-    if (!(*from >= 0 && *from <= 1e15) || *from != std::floor(*from))
-        return input_error("must be a whole number, 0 or more", "settings.from");
-    const auto buffers = json_number_or(settings, "buffers", 16, "settings");
-    if (!buffers) return tl::unexpected(buffers.error());
-    if (!(*buffers >= 2 && *buffers <= 4096)) return input_error("must be 2 to 4096", "settings.buffers");
-    auto replay = shared_replay(settings, session);
+    SettingsReader f(settings, "settings", capture_sensor_settings());
+    std::string name;
+    bool step = false, recorded_time = false;
+    std::uint64_t from = 0;
+    std::size_t buffers = 0;
+    f.text("source", name);
+    f.truth("step", step);
+    f.truth("recorded_host_time", recorded_time);
+    f.whole("from", from);
+    f.whole("buffers", buffers);
+    auto replay = shared_replay(f, session);
     if (!replay) return tl::unexpected(replay.error());
-    const auto source = (*replay)->source(*name, SourceKind::sensor);
+    const auto source = (*replay)->source(name, SourceKind::sensor);
     if (!source) return tl::unexpected(source.error());
-    if (auto ok = (*replay)->open_sensor(*source, static_cast<std::uint64_t>(*from), *step); !ok)
-        return tl::unexpected(ok.error());
-    return std::make_unique<CaptureSensor>(*replay, *source, *recorded_time,
-                                           static_cast<std::size_t>(*buffers));
+    if (auto ok = (*replay)->open_sensor(*source, from, step); !ok) return tl::unexpected(ok.error());
+    return std::make_unique<CaptureSensor>(*replay, *source, recorded_time, buffers);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_capture_robot(const nlohmann::json& settings,
                                                         DeviceSession& session) {
-    if (auto ok =
-            only_fields(settings, {"file", "source", "speed", "loop", "accept_frames", "frames"}, "settings");
-        !ok)
-        return tl::unexpected(ok.error());
-    const auto name = json_string_or(settings, "source", "", "settings");
-    if (!name) return tl::unexpected(name.error());
-    const auto accept = json_bool_or(settings, "accept_frames", false, "settings");
-    if (!accept) return tl::unexpected(accept.error());
+    SettingsReader f(settings, "settings", capture_robot_settings());
+    std::string name;
+    bool accept = false;
     std::map<std::string, Pose> frames;
-    if (settings.contains("frames")) {
-        if (auto ok = only_fields(settings["frames"], {}, "settings.frames"); !ok)
-            return tl::unexpected(ok.error());
-        for (const auto& [frame, pose] : settings["frames"].items()) {
-            const auto parsed = parse_pose(pose, "settings.frames." + frame);
-            if (!parsed) return tl::unexpected(parsed.error());
-            frames[frame] = *parsed;
-        }
-    }
-    auto replay = shared_replay(settings, session);
+    f.text("source", name);
+    f.truth("accept_frames", accept);
+    f.poses("frames", frames);
+    auto replay = shared_replay(f, session);
     if (!replay) return tl::unexpected(replay.error());
-    const auto source = (*replay)->source(*name, SourceKind::robot);
+    const auto source = (*replay)->source(name, SourceKind::robot);
     if (!source) return tl::unexpected(source.error());
     if (auto ok = (*replay)->open_robot(*source); !ok) return tl::unexpected(ok.error());
-    return std::make_unique<CaptureRobot>(*replay, *source, *accept, std::move(frames));
+    return std::make_unique<CaptureRobot>(*replay, *source, accept, std::move(frames));
 }
 
 }  // namespace seamwright

@@ -1,11 +1,6 @@
 #pragma once
 // A recorded capture, played back. Opened by the drivers "replay" when their settings name a file instead of
-// a folder:
-//   sensor {"file": path of the capture, "source": sensor's name ("" = the only one), "speed": 1.0 (0 = as
-//           fast as frames are asked for), "step": false, "loop": false, "from": 0 (first frame, counted from
-//           0), "recorded_host_time": false, "buffers": 16}
-//   robot  {"file": path, "source": robot's name, "speed": 1.0, "loop": false, "accept_frames": false,
-//           "frames": {name: POSE}}
+// a folder; settings: capture_sensor_settings(), capture_robot_settings().
 // Sensors and robot of one session play one file: "speed", "loop" must be the same for all.
 //
 // Frames come back as recorded, bit for bit: status, sequence with its gaps, spot, pose, device time, damaged
@@ -31,6 +26,7 @@
 
 #include "devices/capture/capture_file.h"
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 
@@ -97,6 +93,8 @@ class CaptureReplay {
     std::deque<std::string> moves_;
 };
 
+const SettingTable& capture_sensor_settings();
+const SettingTable& capture_robot_settings();
 Expected<std::unique_ptr<ProfileSource>> open_capture_sensor(const nlohmann::json& settings,
                                                              DeviceSession& session);
 Expected<std::unique_ptr<RobotLink>> open_capture_robot(const nlohmann::json& settings,

@@ -31,6 +31,7 @@
 #include <vector>
 
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/profile_source.h"
 #include "devices/replay/recording_layout.h"
 #include "devices/robot_link.h"
@@ -94,14 +95,9 @@ class Recording {
     std::deque<std::size_t> due_;
 };
 
-// Settings of sensor and robot, both with the same "folder" (those that name a "file": capture_replay.h):
-//   sensor {"folder": path, "loop": false, "rate_hz": 0 (as fast as asked), "kind": "profiles"|"images",
-//   "bit_depth": 0,
-//           "layout": {} (recording_layout.h, alike in both), "require_poses": false, "buffers": 16,
-//           "vendor": "", "model": "", "serial": folder's name}
-//   robot  {"folder": path, "loop": false, "kind": .., "accept_frames": false, "frames": {name: POSE},
-//   "mode": "automatic",
-//           "brand": "", "model": "", "serial": folder's name}
+// Settings of sensor and robot, both with the same "folder", or "file" (capture_replay.h).
+const SettingTable& replay_sensor_settings();
+const SettingTable& replay_robot_settings();
 // The robot writes no frames, since there is no controller behind it, unless "accept_frames" is true: then it
 // keeps them in memory and reads them back, which proves nothing about a real controller. "frames" are those
 // it starts with.

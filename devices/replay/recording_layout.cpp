@@ -22,6 +22,7 @@ nlohmann::json recording_layout_json(const RecordingLayout& layout) {
     put("pose_unit", layout.pose.unit);
     put("pose_angle", layout.pose.angle);
     if (layout.channel != ImageChannel::grey) json["channel"] = to_string(layout.channel);
+    if (!layout.profile.invalid.empty()) json["invalid"] = layout.profile.invalid;
     if (layout.flange_from_sensor) json["flange_from_sensor"] = pose_json(*layout.flange_from_sensor);
     return json;
 }
@@ -55,7 +56,7 @@ Expected<Profile> into_plane(const ReadProfile& points, const Pose& base_from_se
 Expected<RecordingLayout> parse_recording_layout(const nlohmann::json& json, const std::string& where) {
     if (auto ok = only_fields(json,
                               {"unit", "columns", "poses", "pose_convention", "pose_unit", "pose_angle",
-                               "channel", "flange_from_sensor"},
+                               "channel", "flange_from_sensor", "invalid"},
                               where);
         !ok)
         return tl::unexpected(ok.error());
@@ -75,6 +76,15 @@ Expected<RecordingLayout> parse_recording_layout(const nlohmann::json& json, con
     const auto known = image_channel(channel);
     if (!known) return input_error(Text("\"{}\" is no channel", channel), json_path(where, "channel"));
     layout.channel = *known;
+    if (json.contains("invalid")) {
+        auto values = json_array(json, "invalid", where);
+        if (!values) return tl::unexpected(values.error());
+        for (const nlohmann::json& value : **values) {
+            if (!value.is_number())
+                return input_error("is no height", json_path(where, "invalid"), "give numbers");
+            layout.profile.invalid.push_back(value.get<double>());
+        }
+    }
     if (json.contains("flange_from_sensor")) {
         auto pose = parse_pose(json["flange_from_sensor"], json_path(where, "flange_from_sensor"));
         if (!pose) return tl::unexpected(pose.error());

@@ -6,8 +6,8 @@
 #include <condition_variable>
 #include <thread>
 
-#include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/settings.h"
 #include "devices/replay/capture_replay.h"
 #include "devices/replay/recording.h"
 #include "devices/silence.h"
@@ -29,31 +29,69 @@ struct ReplaySettings {
     RecordingLayout layout;
 };
 
-Expected<ReplaySettings> common_settings(const nlohmann::json& json) {
+SettingTable common_table() {
+    using namespace entry;
+    return {text("folder", nullptr, "of the recording"),
+            yes_no("loop", false, "begins anew at the end; sensor and robot alike"),
+            choice("kind", {"", "profiles", "images"}, "which files of the folder; empty: what is there"),
+            yes_no("require_poses", false, "a frame without pose is refused"),
+            object("layout",
+                   {text("unit", "", "of the profiles"), text("columns", "", "of the profiles"),
+                    text("poses", "", "file of the poses"), text("pose_convention", "", "of the poses"),
+                    text("pose_unit", "", "of the poses"), text("pose_angle", "", "of the poses"),
+                    text("channel", "grey", "of colour images"),
+                    pose("flange_from_sensor", "when the poses are the sensor's")},
+                   "how foreign files are read; sensor and robot alike"),
+            text("model", "", "as the device answers"),
+            text("serial", nullptr, "as it answers; else the folder's name")};
+}
+
+const SettingTable& folder_sensor_settings() {
+    using namespace entry;
+    static const SettingTable table = joined(
+        common_table(), {number("rate_hz", 0, 0, 10000, "of the frames; 0: as fast as they are asked for"),
+                         whole("bit_depth", 0, 0, 16, "of images: 8, 10, 12, 16; 0: the file's own"),
+                         whole("buffers", 16, 2, 4096, "frames that may be handed out"),
+                         text("vendor", "", "as the sensor answers")});
+    return table;
+}
+
+const SettingTable& folder_robot_settings() {
+    using namespace entry;
+    static const SettingTable table =
+        joined(common_table(),
+               {yes_no("accept_frames", false, "written frames are taken"),
+                object("frames", {}, "NAME: POSE that the controller holds"),
+                text("mode", "automatic", "operating mode"), text("brand", "", "as the robot answers")});
+    return table;
+}
+
+// Settings that only a recording in a folder has, then those of a capture.
+SettingTable both(const SettingTable& folder, const SettingTable& capture) {
+    SettingTable table = capture;
+    for (const SettingInfo& s : folder)
+        if (std::none_of(capture.begin(), capture.end(),
+                         [&](const SettingInfo& c) { return c.name == s.name; }))
+            table.push_back(s);
+    return table;
+}
+
+Expected<ReplaySettings> common_settings(SettingsReader& f) {
     ReplaySettings s;
-    const auto folder = json_string(json, "folder", "settings");
+    if (f.failed()) return tl::unexpected(f.error());
+    const auto folder = json_string(f.json(), "folder", "settings");
     if (!folder) return tl::unexpected(folder.error());
     std::error_code problem;
     s.folder = std::filesystem::weakly_canonical(*folder, problem);
     if (problem || folder->empty()) return file_error("is no folder", *folder);
-    const auto loop = json_bool_or(json, "loop", false, "settings");
-    if (!loop) return tl::unexpected(loop.error());
-    s.loop = *loop;
-    const auto poses = json_bool_or(json, "require_poses", false, "settings");
-    if (!poses) return tl::unexpected(poses.error());
-    s.require_poses = *poses;
-    const auto kind = json_string_or(json, "kind", "", "settings");
-    if (!kind) return tl::unexpected(kind.error());
-    s.kind = *kind;
-    if (!s.kind.empty() && s.kind != "profiles" && s.kind != "images") {
-        return input_error(Text("\"{}\" is no kind of frame", s.kind), "settings.kind",
-                           "give \"profiles\" or \"images\"");
-    }
-    const auto serial = json_string_or(json, "serial", s.folder.filename().string(), "settings");
-    if (!serial) return tl::unexpected(serial.error());
-    s.serial = *serial;
-    if (json.contains("layout")) {
-        auto layout = parse_recording_layout(json["layout"], "settings.layout");
+    f.truth("loop", s.loop);
+    f.truth("require_poses", s.require_poses);
+    f.text("kind", s.kind);
+    s.serial = s.folder.filename().string();
+    f.text("serial", s.serial);
+    if (f.failed()) return tl::unexpected(f.error());
+    if (f.has("layout")) {
+        auto layout = parse_recording_layout(f.json().at("layout"), "settings.layout");
         if (!layout) return tl::unexpected(layout.error());
         s.layout = std::move(*layout);
     }
@@ -271,77 +309,62 @@ class ReplayRobot final : public RobotLink {
 
 }  // namespace
 
+const SettingTable& replay_sensor_settings() {
+    static const SettingTable table = both(folder_sensor_settings(), capture_sensor_settings());
+    return table;
+}
+
+const SettingTable& replay_robot_settings() {
+    static const SettingTable table = both(folder_robot_settings(), capture_robot_settings());
+    return table;
+}
+
 Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json& settings,
                                                             DeviceSession& session) {
     if (settings.is_object() && settings.contains("file")) return open_capture_sensor(settings, session);
-    if (auto ok = only_fields(settings,
-                              {"folder", "loop", "rate_hz", "kind", "bit_depth", "require_poses", "buffers",
-                               "layout", "vendor", "model", "serial"},
-                              "settings");
-        !ok) {
-        return tl::unexpected(ok.error());
-    }
-    const auto common = common_settings(settings);
+    SettingsReader f(settings, "settings", folder_sensor_settings());
+    const auto common = common_settings(f);
     if (!common) return tl::unexpected(common.error());
-    const auto rate = json_number_or(settings, "rate_hz", 0, "settings");
-    if (!rate) return tl::unexpected(rate.error());
-    if (*rate < 0 || *rate > 10000) return input_error("must be 0 to 10000", "settings.rate_hz");
-    const auto depth = json_number_or(settings, "bit_depth", 0, "settings");
-    if (!depth) return tl::unexpected(depth.error());
-    if (*depth != 0 && *depth != 8 && *depth != 10 && *depth != 12 && *depth != 16) {
+    double rate_hz = 0;
+    int depth = 0;
+    std::size_t buffers = 0;
+    std::string vendor, model;
+    f.number("rate_hz", rate_hz);
+    f.whole("bit_depth", depth);
+    f.whole("buffers", buffers);
+    f.text("vendor", vendor);
+    f.text("model", model);
+    if (f.failed()) return tl::unexpected(f.error());
+    if (depth != 0 && depth != 8 && depth != 10 && depth != 12 && depth != 16)
         return input_error("must be 0 (the file's own), 8, 10, 12 or 16", "settings.bit_depth");
-    }
-    const auto buffers = json_number_or(settings, "buffers", 16, "settings");
-    if (!buffers) return tl::unexpected(buffers.error());
-    if (!(*buffers >= 2 && *buffers <= 4096)) return input_error("must be 2 to 4096", "settings.buffers");
-    const auto vendor = json_string_or(settings, "vendor", "", "settings");
-    if (!vendor) return tl::unexpected(vendor.error());
-    const auto model = json_string_or(settings, "model", "", "settings");
-    if (!model) return tl::unexpected(model.error());
     auto recording = shared_recording(*common, session);
     if (!recording) return tl::unexpected(recording.error());
-    return std::make_unique<ReplaySensor>(
-        *recording, SensorIdentity{"replay", *vendor, *model, common->serial}, *rate,
-        static_cast<int>(*depth), static_cast<std::size_t>(*buffers), common->layout);
+    return std::make_unique<ReplaySensor>(*recording, SensorIdentity{"replay", vendor, model, common->serial},
+                                          rate_hz, depth, buffers, common->layout);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& settings,
                                                        DeviceSession& session) {
     if (settings.is_object() && settings.contains("file")) return open_capture_robot(settings, session);
-    if (auto ok = only_fields(settings,
-                              {"folder", "loop", "kind", "require_poses", "layout", "accept_frames", "frames",
-                               "mode", "brand", "model", "serial"},
-                              "settings");
-        !ok) {
-        return tl::unexpected(ok.error());
-    }
-    const auto common = common_settings(settings);
+    SettingsReader f(settings, "settings", folder_robot_settings());
+    const auto common = common_settings(f);
     if (!common) return tl::unexpected(common.error());
-    const auto accept = json_bool_or(settings, "accept_frames", false, "settings");
-    if (!accept) return tl::unexpected(accept.error());
-    const auto mode_name = json_string_or(settings, "mode", "automatic", "settings");
-    if (!mode_name) return tl::unexpected(mode_name.error());
-    const auto mode = robot_mode_from_string(*mode_name);
-    if (!mode)
-        return input_error(Text("\"{}\" is no mode", *mode_name), "settings.mode", "give e.g. \"automatic\"");
-    const auto brand = json_string_or(settings, "brand", "", "settings");
-    if (!brand) return tl::unexpected(brand.error());
-    const auto model = json_string_or(settings, "model", "", "settings");
-    if (!model) return tl::unexpected(model.error());
+    bool accept = false;
+    std::string mode_name, brand, model;
     std::map<std::string, Pose> frames;
-    if (settings.contains("frames")) {
-        if (auto ok = only_fields(settings["frames"], {}, "settings.frames"); !ok)
-            return tl::unexpected(ok.error());
-        for (const auto& [name, pose] : settings["frames"].items()) {
-            const auto parsed = parse_pose(pose, "settings.frames." + name);
-            if (!parsed) return tl::unexpected(parsed.error());
-            frames[name] = *parsed;
-        }
-    }
+    f.truth("accept_frames", accept);
+    f.text("mode", mode_name);
+    f.text("brand", brand);
+    f.text("model", model);
+    f.poses("frames", frames);
+    if (f.failed()) return tl::unexpected(f.error());
+    const auto mode = robot_mode_from_string(mode_name);
+    if (!mode)
+        return input_error("\"" + mode_name + "\" is no mode", "settings.mode", "give e.g. \"automatic\"");
     auto recording = shared_recording(*common, session);
     if (!recording) return tl::unexpected(recording.error());
-    return std::make_unique<ReplayRobot>(*recording, RobotIdentity{"replay", *brand, *model, common->serial},
-                                         *mode, *accept, std::move(frames));
+    return std::make_unique<ReplayRobot>(*recording, RobotIdentity{"replay", brand, model, common->serial},
+                                         *mode, accept, std::move(frames));
 }
 
 }  // namespace seamwright

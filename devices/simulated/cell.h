@@ -3,29 +3,8 @@
 // Frames are rendered images (renderer.h) and measured by the same code as real ones; nothing takes a profile
 // from the mesh.
 //
-// Settings, all optional; sensor and robot of one session share the cell and must be given the same settings.
-// Defaults:
-//   {"seed": 1,                        every random number follows from it and from the count of exposures
-//   and moves
-//    "scene": "part",                  part | sphere | plate | triangle; the targets stand at
-//    base_from_target "mesh": "", "mesh_unit": "",      STL/PLY/OBJ in the work object frame instead of the
-//    door; unit "mm" or "m" "base_from_workobject": POSE, "base_from_target": POSE, "flange_from_sensor":
-//    POSE, "part": {"displacement": POSE identity (D: workobject_from_movedworkobject), "bend_mm": 0,
-//    "twist_mm": 0}, "optics": {"width": 1280, "height": 1024, "bit_depth": 8|10|12|16, "stand_off_mm": 300,
-//    "triangulation_deg": 30,
-//               "field_mm": 100, "k1", "k2", "p1", "p2", "k3", "laser_width_mm": 0.2, "fan_deg": 30,
-//               "blur_px": 0.8, "blooming": 0.1},
-//    "surface": {"albedo": 0.5, "gloss": 0.4, "shininess": 30, "dark_share": 0.02, "dark_albedo": 0.06,
-//    "dark_size_mm": 12,
-//                "mirror": 0.3},
-//    "noise": {"shot": true, "read_electrons": 25, "speckle": 0.2, "ambient_electrons_per_ms": 120,
-//              "stray_probability": 0.15},
-//    "exposure_us": 1000, "gain_db": 0, "damaged_probability": 0, "buffers": 8,
-//    "robot": {"repeatability_mm": 0.03, "repeatability_deg": 0.002 (one sigma per axis, anew at every
-//    arrival),
-//              "trigger_jitter_mm": 1.5 (half width, uniform, at 100 mm/s; grows with speed, none when
-//              standing), "mode": "automatic", "frames": {name: POSE base_from_frame}},
-//    "sphere_radius_mm": 25, "board": {"columns": 7, "rows": 6, "pitch_mm": 10}, "serial": "SIM-1"}
+// Settings: simulated_cell_settings(), all optional. Sensor and robot of one session share the cell and must be
+// given the same.
 
 #include <cstdint>
 #include <deque>
@@ -37,6 +16,7 @@
 #include <vector>
 
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 #include "devices/simulated/door.h"
@@ -79,6 +59,7 @@ struct CellSettings {
 };
 CellSettings default_cell_settings();
 // Refuses unknown fields, wrong types and values out of range, with the field's path.
+const SettingTable& simulated_cell_settings();
 Expected<CellSettings> parse_cell_settings(const nlohmann::json& settings);
 
 // The settings' "part" alone: {"displacement": POSE, "bend_mm", "twist_mm"}.

@@ -28,17 +28,25 @@ std::string_view to_string(Scene scene) {
 }
 
 namespace {
-void read_part(SettingsReader& p, PartState& part) {
-    p.only({"displacement", "bend_mm", "twist_mm"});
-    p.pose("displacement", part.workobject_from_movedworkobject);
-    p.number("bend_mm", part.bend.bend_mm, -50, 50);
-    p.number("twist_mm", part.bend.twist_mm, -50, 50);
+
+SettingTable part_table() {
+    return {entry::pose("displacement", "workobject_from_movedworkobject"),
+            entry::number("bend_mm", 0, -50, 50, "bow in the middle"),
+            entry::number("twist_mm", 0, -50, 50, "of one end against the other")};
 }
+
+void read_part(SettingsReader& p, PartState& part) {
+    p.pose("displacement", part.workobject_from_movedworkobject);
+    p.number("bend_mm", part.bend.bend_mm);
+    p.number("twist_mm", part.bend.twist_mm);
+}
+
 }  // namespace
 
 Expected<PartState> parse_part_state(const nlohmann::json& json) {
     PartState part;
-    SettingsReader f(json, "part");
+    static const SettingTable table = part_table();
+    SettingsReader f(json, "part", table);
     read_part(f, part);
     if (f.failed()) return tl::unexpected(f.error());
     return part;
@@ -52,24 +60,90 @@ CellSettings default_cell_settings() {
     return s;
 }
 
+const SettingTable& simulated_cell_settings() {
+    using namespace entry;
+    static const SettingTable table = [] {
+        const CellSettings d = default_cell_settings();
+        return SettingTable{
+            whole("seed", d.seed, 0, 9e15,
+                  "every random number follows from it and from the count of exposures and moves"),
+            choice("scene", {"part", "sphere", "plate", "triangle"},
+                   "what stands before the sensor; the targets stand at base_from_target"),
+            text("mesh", "", "STL, PLY or OBJ in the work object frame instead of the door"),
+            text("mesh_unit", "", "of the mesh: mm or m; else suspected from its size"),
+            pose("base_from_workobject", "where the part is taught"),
+            pose("base_from_target", "where the targets stand"),
+            pose("flange_from_sensor", "true hand-eye"),
+            object("part", part_table(), "how the part lies"),
+            object(
+                "optics",
+                {whole("width", d.optics.width, 64, 8192, "columns of the image"),
+                 whole("height", d.optics.height, 64, 8192, "rows of the image"),
+                 whole("bit_depth", d.optics.bit_depth, 8, 16, "8, 10, 12 or 16"),
+                 number("stand_off_mm", d.optics.stand_off_mm, 20, 2000, "working distance"),
+                 number("triangulation_deg", d.optics.triangulation_deg, 5, 70, "between camera and laser"),
+                 number("field_mm", d.optics.field_mm, 5, 2000, "width of the view at the stand-off"),
+                 number("k1", d.optics.k1, -1, 1, "distortion"),
+                 number("k2", d.optics.k2, -1, 1, "distortion"),
+                 number("p1", d.optics.p1, -0.1, 0.1, "distortion"),
+                 number("p2", d.optics.p2, -0.1, 0.1, "distortion"),
+                 number("k3", d.optics.k3, -1, 1, "distortion"),
+                 number("laser_width_mm", d.optics.laser_width_mm, 0.001, 5, "of the stripe"),
+                 number("fan_deg", d.optics.fan_deg, 1, 120, "opening of the laser"),
+                 number("blur_px", d.optics.blur_px, 0.3, 5, "sigma"),
+                 number("blooming", d.optics.blooming, 0, 1, "share of light beyond saturation")},
+                "camera and laser"),
+            object("surface",
+                   {number("albedo", d.surface.albedo, 0, 1, "diffuse"),
+                    number("gloss", d.surface.gloss, 0, 10, "specular"),
+                    number("shininess", d.surface.shininess, 1, 1000, "exponent of the gloss"),
+                    number("dark_share", d.surface.dark_share, 0, 1, "share of the surface in dark patches"),
+                    number("dark_albedo", d.surface.dark_albedo, 0, 1, "of the patches"),
+                    number("dark_size_mm", d.surface.dark_size_mm, 0.1, 1000, "of the patches"),
+                    number("mirror", d.surface.mirror, 0, 5, "brightness of reflected stripes")},
+                   "of the part"),
+            object("noise",
+                   {yes_no("shot", d.noise.shot, "of the light"),
+                    number("read_electrons", d.noise.read_electrons, 0, 5000, "sigma"),
+                    number("speckle", d.noise.speckle, 0, 0.5, "contrast"),
+                    number("ambient_electrons_per_ms", d.noise.ambient_electrons_per_ms, 0, 1e6, "daylight"),
+                    number("stray_probability", d.noise.stray_probability, 0, 1,
+                           "of a stray reflection in a frame")},
+                   "of the camera"),
+            number("exposure_us", d.exposure.exposure_us, 1, 1e6, "exposure time"),
+            number("gain_db", d.exposure.gain_db, 0, 48, "gain"),
+            number("damaged_probability", d.damaged_probability, 0, 1, "of a frame that arrives damaged"),
+            whole("buffers", d.buffers, 2, 1024, "frames that may be handed out"),
+            number("sphere_radius_mm", d.sphere_radius_mm, 1, 500, "of the target"),
+            text("serial", d.serial, "of sensor and robot"),
+            object("board",
+                   {whole("columns", d.board.columns, 2, 50, "inner corners"),
+                    whole("rows", d.board.rows, 2, 50, "inner corners"),
+                    number("pitch_mm", d.board.pitch_mm, 0.5, 200, "between corners")},
+                   "chessboard of the scene plate"),
+            object("robot",
+                   {number("repeatability_mm", d.robot.repeatability_mm, 0, 10,
+                           "one sigma per axis, anew at every arrival"),
+                    number("repeatability_deg", d.robot.repeatability_deg, 0, 5,
+                           "one sigma per axis, anew at every arrival"),
+                    number("trigger_jitter_mm", d.robot.trigger_jitter_mm, 0, 50,
+                           "half width, uniform, at 100 mm/s; grows with the speed"),
+                    text("mode", std::string(to_string(d.robot.mode)),
+                         "operating mode: automatic, external, ..."),
+                    object("frames", {}, "NAME: POSE base_from_frame")},
+                   "what makes it imperfect")};
+    }();
+    return table;
+}
+
 Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     CellSettings s = default_cell_settings();
-    SettingsReader f(json, "settings");
-    f.only({"seed", "scene", "mesh", "mesh_unit", "base_from_workobject", "base_from_target",
-            "flange_from_sensor", "part", "optics", "surface", "noise", "exposure_us", "gain_db",
-            "damaged_probability", "buffers", "robot", "sphere_radius_mm", "board", "serial"});
-    f.whole("seed", s.seed, 0, 9e15);
+    SettingsReader f(json, "settings", simulated_cell_settings());
+    f.whole("seed", s.seed);
     std::string scene(to_string(s.scene));
     f.text("scene", scene);
-    if (!f.failed()) {
-        const auto it =
-            std::find_if(kScenes.begin(), kScenes.end(), [&](Scene k) { return to_string(k) == scene; });
-        if (it == kScenes.end()) {
-            return input_error(Text("\"{}\" is no scene", scene), "settings.scene",
-                               "give part, sphere, plate or triangle");
-        }
-        s.scene = *it;
-    }
+    for (const Scene known : kScenes)
+        if (to_string(known) == scene) s.scene = known;
     f.text("mesh", s.mesh);
     f.text("mesh_unit", s.mesh_unit);
     f.pose("base_from_workobject", s.base_from_workobject);
@@ -77,63 +151,57 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
     f.pose("flange_from_sensor", s.flange_from_sensor);
     f.object("part", [&](SettingsReader& p) { read_part(p, s.part); });
     f.object("optics", [&](SettingsReader& o) {
-        o.only({"width", "height", "bit_depth", "stand_off_mm", "triangulation_deg", "field_mm", "k1", "k2",
-                "p1", "p2", "k3", "laser_width_mm", "fan_deg", "blur_px", "blooming"});
-        o.whole("width", s.optics.width, 64, 8192);
-        o.whole("height", s.optics.height, 64, 8192);
-        o.whole("bit_depth", s.optics.bit_depth, 8, 16);
-        o.number("stand_off_mm", s.optics.stand_off_mm, 20, 2000);
-        o.number("triangulation_deg", s.optics.triangulation_deg, 5, 70);
-        o.number("field_mm", s.optics.field_mm, 5, 2000);
-        o.number("k1", s.optics.k1, -1, 1);
-        o.number("k2", s.optics.k2, -1, 1);
-        o.number("p1", s.optics.p1, -0.1, 0.1);
-        o.number("p2", s.optics.p2, -0.1, 0.1);
-        o.number("k3", s.optics.k3, -1, 1);
-        o.number("laser_width_mm", s.optics.laser_width_mm, 0.001, 5);
-        o.number("fan_deg", s.optics.fan_deg, 1, 120);
-        o.number("blur_px", s.optics.blur_px, 0.3, 5);
-        o.number("blooming", s.optics.blooming, 0, 1);
+        o.whole("width", s.optics.width);
+        o.whole("height", s.optics.height);
+        o.whole("bit_depth", s.optics.bit_depth);
+        o.number("stand_off_mm", s.optics.stand_off_mm);
+        o.number("triangulation_deg", s.optics.triangulation_deg);
+        o.number("field_mm", s.optics.field_mm);
+        o.number("k1", s.optics.k1);
+        o.number("k2", s.optics.k2);
+        o.number("p1", s.optics.p1);
+        o.number("p2", s.optics.p2);
+        o.number("k3", s.optics.k3);
+        o.number("laser_width_mm", s.optics.laser_width_mm);
+        o.number("fan_deg", s.optics.fan_deg);
+        o.number("blur_px", s.optics.blur_px);
+        o.number("blooming", s.optics.blooming);
         const int depth = s.optics.bit_depth;
         if (!o.failed() && depth != 8 && depth != 10 && depth != 12 && depth != 16) {
             o.keep(input_error("must be 8, 10, 12 or 16", o.path("bit_depth")));
         }
     });
     f.object("surface", [&](SettingsReader& o) {
-        o.only({"albedo", "gloss", "shininess", "dark_share", "dark_albedo", "dark_size_mm", "mirror"});
-        o.number("albedo", s.surface.albedo, 0, 1);
-        o.number("gloss", s.surface.gloss, 0, 10);
-        o.number("shininess", s.surface.shininess, 1, 1000);
-        o.number("dark_share", s.surface.dark_share, 0, 1);
-        o.number("dark_albedo", s.surface.dark_albedo, 0, 1);
-        o.number("dark_size_mm", s.surface.dark_size_mm, 0.1, 1000);
-        o.number("mirror", s.surface.mirror, 0, 5);
+        o.number("albedo", s.surface.albedo);
+        o.number("gloss", s.surface.gloss);
+        o.number("shininess", s.surface.shininess);
+        o.number("dark_share", s.surface.dark_share);
+        o.number("dark_albedo", s.surface.dark_albedo);
+        o.number("dark_size_mm", s.surface.dark_size_mm);
+        o.number("mirror", s.surface.mirror);
     });
     f.object("noise", [&](SettingsReader& o) {
-        o.only({"shot", "read_electrons", "speckle", "ambient_electrons_per_ms", "stray_probability"});
         o.truth("shot", s.noise.shot);
-        o.number("read_electrons", s.noise.read_electrons, 0, 5000);
-        o.number("speckle", s.noise.speckle, 0, 0.5);
-        o.number("ambient_electrons_per_ms", s.noise.ambient_electrons_per_ms, 0, 1e6);
-        o.number("stray_probability", s.noise.stray_probability, 0, 1);
+        o.number("read_electrons", s.noise.read_electrons);
+        o.number("speckle", s.noise.speckle);
+        o.number("ambient_electrons_per_ms", s.noise.ambient_electrons_per_ms);
+        o.number("stray_probability", s.noise.stray_probability);
     });
-    f.number("exposure_us", s.exposure.exposure_us, 1, 1e6);
-    f.number("gain_db", s.exposure.gain_db, 0, 48);
-    f.number("damaged_probability", s.damaged_probability, 0, 1);
-    f.whole("buffers", s.buffers, 2, 1024);
-    f.number("sphere_radius_mm", s.sphere_radius_mm, 1, 500);
+    f.number("exposure_us", s.exposure.exposure_us);
+    f.number("gain_db", s.exposure.gain_db);
+    f.number("damaged_probability", s.damaged_probability);
+    f.whole("buffers", s.buffers);
+    f.number("sphere_radius_mm", s.sphere_radius_mm);
     f.text("serial", s.serial);
     f.object("board", [&](SettingsReader& o) {
-        o.only({"columns", "rows", "pitch_mm"});
-        o.whole("columns", s.board.columns, 2, 50);
-        o.whole("rows", s.board.rows, 2, 50);
-        o.number("pitch_mm", s.board.pitch_mm, 0.5, 200);
+        o.whole("columns", s.board.columns);
+        o.whole("rows", s.board.rows);
+        o.number("pitch_mm", s.board.pitch_mm);
     });
     f.object("robot", [&](SettingsReader& o) {
-        o.only({"repeatability_mm", "repeatability_deg", "trigger_jitter_mm", "mode", "frames"});
-        o.number("repeatability_mm", s.robot.repeatability_mm, 0, 10);
-        o.number("repeatability_deg", s.robot.repeatability_deg, 0, 5);
-        o.number("trigger_jitter_mm", s.robot.trigger_jitter_mm, 0, 50);
+        o.number("repeatability_mm", s.robot.repeatability_mm);
+        o.number("repeatability_deg", s.robot.repeatability_deg);
+        o.number("trigger_jitter_mm", s.robot.trigger_jitter_mm);
         std::string mode(to_string(s.robot.mode));
         o.text("mode", mode);
         if (const auto known = robot_mode_from_string(mode)) {
@@ -141,10 +209,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         } else {
             o.keep(input_error(Text("\"{}\" is no mode", mode), o.path("mode"), "give e.g. \"automatic\""));
         }
-        o.object("frames", [&](SettingsReader& frames) {
-            for (const auto& [name, value] : frames.json().items())
-                frames.pose(name.c_str(), s.robot.frames[name]);
-        });
+        o.poses("frames", s.robot.frames);
     });
     if (f.failed()) return tl::unexpected(f.error());
     return s;

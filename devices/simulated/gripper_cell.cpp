@@ -124,11 +124,44 @@ std::map<std::string, Pose> default_gripper_heads() {
     return heads;
 }
 
+const SettingTable& gripper_cell_settings() {
+    using namespace entry;
+    static const SettingTable table = [] {
+        SettingTable own = {
+            text("head", "", "of the gripper's sensors; this one's"),
+            object("heads", {}, "NAME: POSE flange_from_sensor"),
+            pose("base_from_opening", "where the body's opening stands"),
+            number("gap_mm", GripperCellSettings().gap_mm, 0.5, 20, "between panel and body as designed"),
+        };
+        // What the door's cell has too; of another default where this cell is another one.
+        for (SettingInfo s : simulated_cell_settings()) {
+            if (s.name == "part") {
+                for (const char* name : {"panel", "body"}) {
+                    s.name = name;
+                    own.push_back(s);
+                }
+                continue;
+            }
+            const auto otherwise = [&](const char* field, double value) {
+                for (SettingInfo& f : s.fields)
+                    if (f.name == field) f.otherwise = value;
+            };
+            otherwise("field_mm", 70);
+            otherwise("dark_share", 0);
+            otherwise("mirror", 0);
+            otherwise("stray_probability", 0);
+            for (const char* shared : {"seed", "optics", "surface", "noise", "exposure_us", "gain_db",
+                                       "buffers", "robot", "serial"})
+                if (s.name == shared) own.push_back(s);
+        }
+        return own;
+    }();
+    return table;
+}
+
 Expected<GripperCellSettings> parse_gripper_settings(const nlohmann::json& json) {
     GripperCellSettings s;
-    SettingsReader f(json, "settings");
-    f.only({"seed", "head", "heads", "base_from_opening", "gap_mm", "panel", "body", "optics", "surface",
-            "noise", "exposure_us", "gain_db", "buffers", "robot", "serial"});
+    SettingsReader f(json, "settings", gripper_cell_settings());
     if (f.failed()) return tl::unexpected(f.error());
     // What the door's cell has too is read as there, over this cell's own defaults.
     nlohmann::json common = {{"optics", {{"field_mm", 70}}},
@@ -147,7 +180,7 @@ Expected<GripperCellSettings> parse_gripper_settings(const nlohmann::json& json)
     s.common = std::move(*parsed);
     s.base_from_opening = make_pose(rotation_exp({0.2, -0.1, 0.7}), {1400, -300, 900});
     f.pose("base_from_opening", s.base_from_opening);
-    f.number("gap_mm", s.gap_mm, 0.5, 20);
+    f.number("gap_mm", s.gap_mm);
     for (const auto& [key, part] : {std::pair{"panel", &s.panel}, {"body", &s.body}})
         if (json.contains(key)) {
             auto state = parse_part_state(json.at(key));
@@ -156,9 +189,7 @@ Expected<GripperCellSettings> parse_gripper_settings(const nlohmann::json& json)
         }
     if (json.contains("heads")) {
         s.heads.clear();
-        f.object("heads", [&](SettingsReader& heads) {
-            for (const auto& [name, value] : heads.json().items()) heads.pose(name.c_str(), s.heads[name]);
-        });
+        f.poses("heads", s.heads);
     }
     std::string head;
     f.text("head", head);

@@ -10,13 +10,9 @@
 // Motion. base_from_opening is where the gripper stands in zero position. With the flange at X the panel is
 // seen slipped by "panel": P (gripper frame), the body at X^-1 * base_from_opening * B.
 //
-// Settings, all optional; the sensors and the robot of one session share the cell and must be given the same
-// settings, but for "head", which of the heads a sensor is. Defaults:
-//   {"seed": 1, "head": "", "heads": {name: POSE flange_from_sensor} (default_gripper_heads()),
-//    "base_from_opening": POSE, "gap_mm": 4,
-//    "panel": {"displacement": POSE P, "bend_mm": 0, "twist_mm": 0}, "body": {the same, of B},
-//    "optics", "surface", "noise", "exposure_us", "gain_db", "buffers", "robot", "serial": as of cell.h, with
-//    optics.field_mm 70, no dark patches, no stray reflections and no second bounce}
+// Settings: gripper_cell_settings(), all optional; the sensors and the robot of one session share the cell and
+// must be given the same, but for "head", which of the heads a sensor is. The heads left out are
+// default_gripper_heads().
 
 #include <deque>
 #include <map>
@@ -49,6 +45,7 @@ struct GripperCellSettings {
     double gap_mm = 4;
     PartState panel, body;
 };
+const SettingTable& gripper_cell_settings();
 Expected<GripperCellSettings> parse_gripper_settings(const nlohmann::json& settings);
 
 // Thread-safe.

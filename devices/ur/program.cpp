@@ -11,6 +11,7 @@
 
 #include "devices/exchange/settings.h"
 #include "devices/ur/module.h"
+#include "devices/ur/rtde.h"
 #include "ur_resources.h"
 
 namespace seamwright {
@@ -63,9 +64,9 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
         return input_error(Text("{} frames are more than the module holds", request.frames.size()),
                            request.project, Text("give at most {}", ur::kMostFrames));
     int first = ur::kFirstRegister, output = 0;
-    SettingsReader f(request.settings, "settings");
-    f.whole("first_register", first, 0, ur::kLastRegister + 1 - ur::kOutputs);
-    f.whole("trigger_output", output, 0, 7);
+    SettingsReader f(request.settings, "settings", ur_rtde_settings(), UnknownSettings::passed_over);
+    f.whole("first_register", first);
+    f.whole("trigger_output", output);
     if (f.failed()) return tl::unexpected(f.error());
 
     std::string passes;

@@ -14,10 +14,7 @@
 // program running), external (remote control), automatic and manual_reduced (dashboard's operational mode;
 // automatic where no password makes a difference).
 //
-// Settings, defaults: {"address": "127.0.0.1", "port": 30004, "dashboard_port": 29999, "timeout_ms": 1000
-// (connection and every answer), "move_timeout_ms": 0 (move_to(), which answers when the robot stands; 0 =
-// from the way and the speed), "frequency_hz": 125, "first_register": 24 (0 to 36), "retry_ms": 100,
-// "retry_most_ms": 500 (back-off, doubling)}.
+// Settings: ur_rtde_settings(). move_to() answers when the robot stands.
 //
 // Failure: what comes too late, out of turn, of wrong length or beyond 100 m drops the connection, so that
 // nothing is taken for the answer of a later request. RTDE does not tell the module that a client went away:
@@ -28,10 +25,12 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/device_session.h"
+#include "devices/exchange/settings.h"
 #include "devices/robot_link.h"
 
 namespace seamwright {
 
+const SettingTable& ur_rtde_settings();
 Expected<std::unique_ptr<RobotLink>> open_ur_rtde(const nlohmann::json& settings, DeviceSession& session);
 
 }  // namespace seamwright

@@ -35,10 +35,10 @@ constexpr double kTeach_mm_s = 100, kTeach_deg_s = 10;
 constexpr int kPlaying = 2;
 
 struct RtdeSettings {
-    std::string address = "127.0.0.1";
-    int port = 30004, dashboard_port = 29999, timeout_ms = 1000, move_timeout_ms = 0,
-        first_register = ur::kFirstRegister, retry_ms = 100, retry_most_ms = 500;
-    double frequency_hz = 125;
+    std::string address;
+    int port = 0, dashboard_port = 0, timeout_ms = 0, move_timeout_ms = 0, first_register = 0,
+        reconnect_ms = 0, reconnect_most_ms = 0;
+    double frequency_hz = 0;
 };
 
 // One data package of the controller.
@@ -60,7 +60,7 @@ class RtdeLink final : public RobotLink {
           where_(fmt::format("ur-rtde {}:{}", settings_.address, settings_.port)),
           timeout_(settings_.timeout_ms),
           dashboard_(settings_.address, static_cast<std::uint16_t>(settings_.dashboard_port), timeout_),
-          back_off_(settings_.retry_ms),
+          back_off_(settings_.reconnect_ms),
           keeper_([this](const std::stop_token& stop) { keep(stop); }) {}
 
     Expected<RobotIdentity> identity() override {
@@ -447,7 +447,7 @@ class RtdeLink final : public RobotLink {
             session_ = number_;
             last_request_.clear();
             if (auto ready = negotiate(Clock::now() + timeout_); ready) {
-                back_off_ = Timeout(settings_.retry_ms);
+                back_off_ = Timeout(settings_.reconnect_ms);
                 robot_.connected_anew();
                 return {};
             } else {
@@ -455,7 +455,7 @@ class RtdeLink final : public RobotLink {
             }
         }
         not_before_ = Clock::now() + back_off_;
-        back_off_ = std::min(2 * back_off_, Timeout(settings_.retry_most_ms));
+        back_off_ = std::min(2 * back_off_, Timeout(settings_.reconnect_most_ms));
         return fail(made.error());
     }
 
@@ -627,20 +627,33 @@ class RtdeLink final : public RobotLink {
 
 }  // namespace
 
+const SettingTable& ur_rtde_settings() {
+    static const SettingTable table = entry::joined(
+        {entry::text("address", "127.0.0.1", "the controller's"),
+         entry::whole("port", 30004, 1, 65535, "of RTDE"),
+         entry::whole("dashboard_port", 29999, 1, 65535, "of the dashboard server"),
+         entry::whole("timeout_ms", 1000, 10, 60000, "for a connection and for every answer"),
+         entry::whole("move_timeout_ms", 0, 0, 3600000, "for a move; 0: from its way and speed"),
+         entry::number("frequency_hz", 125, 1, 500, "of the controller's state"),
+         entry::whole("first_register", ur::kFirstRegister, 0, ur::kLastRegister + 1 - ur::kOutputs,
+                      "first of the registers that the module uses, the same as in its program"),
+         entry::whole("trigger_output", 0, 0, 7, "digital output that fires the sensor, for the program")},
+        entry::reconnect(1, 100, 500, "retry_ms", "retry_most_ms"));
+    return table;
+}
+
 Expected<std::unique_ptr<RobotLink>> open_ur_rtde(const nlohmann::json& settings, DeviceSession&) {
     RtdeSettings s;
-    SettingsReader f(settings, "settings");
-    f.only({"address", "port", "dashboard_port", "timeout_ms", "move_timeout_ms", "frequency_hz",
-            "first_register", "retry_ms", "retry_most_ms"});
+    SettingsReader f(settings, "settings", ur_rtde_settings());
     f.text("address", s.address);
-    f.whole("port", s.port, 1, 65535);
-    f.whole("dashboard_port", s.dashboard_port, 1, 65535);
-    f.whole("timeout_ms", s.timeout_ms, 10, 60000);
-    f.whole("move_timeout_ms", s.move_timeout_ms, 0, 3600000);
-    f.number("frequency_hz", s.frequency_hz, 1, 500);
-    f.whole("first_register", s.first_register, 0, ur::kLastRegister + 1 - ur::kOutputs);
-    f.whole("retry_ms", s.retry_ms, 1, 60000);
-    f.whole("retry_most_ms", s.retry_most_ms, 1, 600000);
+    f.whole("port", s.port);
+    f.whole("dashboard_port", s.dashboard_port);
+    f.whole("timeout_ms", s.timeout_ms);
+    f.whole("move_timeout_ms", s.move_timeout_ms);
+    f.number("frequency_hz", s.frequency_hz);
+    f.whole("first_register", s.first_register);
+    f.whole("reconnect_ms", s.reconnect_ms);
+    f.whole("reconnect_most_ms", s.reconnect_most_ms);
     if (f.failed()) return tl::unexpected(f.error());
     return std::make_unique<RtdeLink>(s);
 }

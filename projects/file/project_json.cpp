@@ -26,6 +26,7 @@ SEAMWRIGHT_WORDS(AlignmentStatus, "frozen", "drifting", "shape_changes", "not_en
 SEAMWRIGHT_WORDS(ShiftBy, "simulated_part", "robot_moves", "by_hand");
 SEAMWRIGHT_WORDS(GapFlushSettings::Reference, "left", "right");
 SEAMWRIGHT_WORDS(GapBy, "along_surface", "edge_distance");
+SEAMWRIGHT_WORDS(PanelDeviation, "share", "leave_out");
 SEAMWRIGHT_WORDS(PanelVerdict, "not_verified", "in_tolerance", "out_of_tolerance");
 SEAMWRIGHT_WORDS(Verdict, "good", "usable", "poor", "undetermined");
 SEAMWRIGHT_WORDS(ShiftKind, "translation", "rotation", "both");
@@ -206,12 +207,31 @@ void describe(A& a, SpotResidual& v) {
     a("used", v.used);
 }
 template <class A>
+void describe(A& a, DofSigma& v) {
+    a("xyz_mm", v.xyz_mm);
+    a("abc_deg", v.abc_deg);
+}
+template <class A>
 void describe(A& a, RegionCorrection& v) {
     a("status", v.status);
     a("workobject_from_movedworkobject", v.displacement.workobject_from_movedworkobject);
     a("covariance", v.covariance);
+    a("covariance_systematic", v.covariance_systematic);
     a("sigma_xyz_mm", v.sigma_xyz_mm);
     a("sigma_abc_deg", v.sigma_abc_deg);
+    a("sigma_systematic", v.sigma_systematic);
+    if constexpr (A::reading) {
+        // A file from before the two parts were told apart knew the random one alone.
+        std::optional<Matrix6> random;
+        std::optional<DofSigma> sigma;
+        a("covariance_random", random);
+        a("sigma_random", sigma);
+        v.covariance_random = random.value_or(v.covariance);
+        v.sigma_random = sigma.value_or(DofSigma{v.sigma_xyz_mm, v.sigma_abc_deg});
+    } else {
+        a("covariance_random", v.covariance_random);
+        a("sigma_random", v.sigma_random);
+    }
     a("sigma_at_spots_mm", v.sigma_at_spots_mm);
     a("rms_mm", v.rms_mm);
     a("redundancy", v.redundancy);
@@ -248,6 +268,7 @@ void describe(A& a, RobotSetup& v) {
     a("settings", v.settings);
     a("identity", v.identity);
     a("required_mode", v.required_mode);
+    a("arrival_covariance", v.arrival_covariance);
 }
 template <class A>
 void describe(A& a, Calibration& v) {
@@ -343,6 +364,7 @@ void describe(A& a, PanelJob& v) {
     a("gap_tolerance_mm", v.gap_tolerance_mm);
     a("flush_tolerance_mm", v.flush_tolerance_mm);
     a("head_limit_mm", v.head_limit_mm);
+    a("deviation", v.deviation);
     a("frame_name", v.frame_name);
     a("base_from_frame", v.base_from_frame);
 }

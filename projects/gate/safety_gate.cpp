@@ -129,9 +129,12 @@ void judge_spots(const GateRequest& request, Reasons& reasons) {
 bool all_finite(const GateRequest& request) {
     const RegionCorrection& c = request.correction;
     bool finite = c.displacement.workobject_from_movedworkobject.matrix().allFinite() &&
-                  c.covariance.allFinite() && c.sigma_xyz_mm.allFinite() && c.sigma_abc_deg.allFinite() &&
-                  std::isfinite(c.sigma_at_spots_mm) && std::isfinite(c.rms_mm) &&
-                  std::isfinite(c.variance_factor);
+                  c.covariance.allFinite() && c.covariance_random.allFinite() &&
+                  c.covariance_systematic.allFinite() && c.sigma_random.xyz_mm.allFinite() &&
+                  c.sigma_random.abc_deg.allFinite() && c.sigma_systematic.xyz_mm.allFinite() &&
+                  c.sigma_systematic.abc_deg.allFinite() && c.sigma_xyz_mm.allFinite() &&
+                  c.sigma_abc_deg.allFinite() && std::isfinite(c.sigma_at_spots_mm) &&
+                  std::isfinite(c.rms_mm) && std::isfinite(c.variance_factor);
     for (const SpotResidual& spot : c.spots) finite = finite && spot.residual_mm.allFinite();
     for (const GateSpot& spot : request.spots) finite = finite && spot.point_workobject_mm.allFinite();
     return finite;

@@ -13,6 +13,7 @@
 #include "core/correction/correction.h"
 #include "core/features/gap_flush.h"
 #include "core/geometry/pose.h"
+#include "core/panel/panel_fit.h"
 #include "core/profile/profile.h"
 
 namespace seamwright {
@@ -43,7 +44,9 @@ struct PanelJob {
     double sigma_limit_mm = 0.1, sigma_limit_deg = 0.05;  // of the motion, as a region's
     // Of gap and flush against taught, at every place: as predicted before the motion, as measured after it.
     double gap_tolerance_mm = 0.5, flush_tolerance_mm = 0.5;
-    double head_limit_mm = 0.15;              // largest disagreement of a double head
+    double head_limit_mm = 0.15;  // largest disagreement of a double head
+    // Of a place that contradicts the others (a bent panel).
+    PanelDeviation deviation = PanelDeviation::share;
     std::string frame_name;                   // on the controller: what the panel is put in by
     Pose base_from_frame = Pose::Identity();  // taught, for panel and body in their zero relation
 };

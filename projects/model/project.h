@@ -50,6 +50,9 @@ struct RobotSetup {
     RobotIdentity identity;
     RobotMode required_mode =
         RobotMode::unknown;  // pushes are refused in any other; unknown = any but stopped/fault
+    // Of base_from_flange as one arrival at a taught pose reaches it (tangent of pose.h, base's axes): what the
+    // robot repeats. 0: not stated, then Spot::sigma_mm holds it.
+    Matrix6 arrival_covariance = Matrix6::Zero();
 };
 
 // A calibration that turns a sensor's frames into millimetres on the flange.

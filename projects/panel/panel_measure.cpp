@@ -258,7 +258,7 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
     options.limits = job.limits;
     options.sigma_limit_mm = std::max(options.sigma_limit_mm, job.sigma_limit_mm);
     options.sigma_limit_deg = std::max(options.sigma_limit_deg, job.sigma_limit_deg);
-    options.reject_outliers = false;
+    options.deviation = job.deviation;
     return fit_panel(spots, options);
 }
 
@@ -353,6 +353,8 @@ RegionCorrection motion_as_correction(const PanelJob& job, const Pose& base_from
     const Eigen::Matrix3d to_abc = kuka_jacobian(c.displacement.workobject_from_movedworkobject.linear());
     const Eigen::Matrix3d abc = to_abc * c.covariance.bottomRightCorner<3, 3>() * to_abc.transpose();
     c.sigma_abc_deg = abc.diagonal().cwiseSqrt() * deg_from_rad(1);
+    c.covariance_random = c.covariance;
+    c.sigma_random = {c.sigma_xyz_mm, c.sigma_abc_deg};
     return c;
 }
 

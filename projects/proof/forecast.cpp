@@ -54,7 +54,7 @@ class Forecaster {
   public:
     Forecaster(const Project& project, const Region& region, Spots spots)
         : project_(project),
-          options_(correction_options(region)),
+          options_(correction_options(project, region)),
           spots_(std::move(spots)),
           middle_(Eigen::Vector3d::Zero()) {
         for (SpotObservation& s : spots_) {
@@ -78,6 +78,7 @@ class Forecaster {
                 if (i == change.spot && change.feature) {
                     o.sigma_mm = spot.sigma_mm;
                     o.covariance_mm2.reset();
+                    o.reference_covariance_mm2.reset();
                 }
                 o.measured_mm = displaced_measure(o, d);
                 if (i != change.spot || !change.travel) add_travel(spot, d, o);
@@ -86,14 +87,15 @@ class Forecaster {
                 moved.push_back(*further);
                 moved.back().id = "further spot";
             }
-            const auto covariance = predicted_covariance(moved, options_);
-            if (!covariance || !covariance->allFinite()) return {kInfinity, kInfinity, 0};
+            const auto predicted = predicted_covariance(moved, options_, d);
+            if (!predicted || !predicted->sum.allFinite()) return {kInfinity, kInfinity, 0};
+            const Matrix6& covariance = predicted->sum;
             for (std::size_t i = 0; i < spots_.size(); ++i) {
                 const double at =
-                    sigma_at_mm(*covariance, d.workobject_from_movedworkobject, point(spots_[i]));
+                    sigma_at_mm(covariance, d.workobject_from_movedworkobject, point(spots_[i]));
                 if (!(at <= worst.mm)) worst.mm = at, worst.worst = i;
             }
-            worst.deg = std::max(worst.deg, deg_from_rad(worst_sigma(covariance->bottomRightCorner<3, 3>())));
+            worst.deg = std::max(worst.deg, deg_from_rad(worst_sigma(covariance.bottomRightCorner<3, 3>())));
         }
         return worst;
     }
@@ -155,7 +157,7 @@ class Forecaster {
 
 Expected<RegionForecast> forecast_region(const Project& project, const Region& region) {
     Spots spots = planned_observations(project, region);
-    auto plan = plan_region(spots, correction_options(region));
+    auto plan = plan_region(spots, correction_options(project, region));
     if (!plan) return tl::unexpected(plan.error());
     RegionForecast forecast;
     forecast.plan = std::move(*plan);

@@ -40,8 +40,8 @@ ZeroShift summarise_zero_shift(const Project& setup, const std::vector<RunRecord
                 for (std::size_t k = 0; k < 6; ++k) {
                     values[k].push_back(six[k]);
                     result.stated_three_sigma[k] =
-                        3 * (k < 3 ? r.correction->sigma_xyz_mm[static_cast<int>(k)]
-                                   : r.correction->sigma_abc_deg[static_cast<int>(k) - 3]);
+                        3 * (k < 3 ? r.correction->sigma_random.xyz_mm[static_cast<int>(k)]
+                                   : r.correction->sigma_random.abc_deg[static_cast<int>(k) - 3]);
                 }
                 for (std::size_t i = 0; i < points.size(); ++i) moved[i] += d * points[i] - points[i];
             }

@@ -94,7 +94,7 @@ Expected<void> check_units(const FolderImport& options, const Frame& frame, cons
 // What the region will be worth with these sigmas, so that nobody learns it from a refused run.
 std::string forecast_note(const Project& project) {
     const Region& region = project.regions.front();
-    const auto plan = plan_region(planned_observations(project, region), correction_options(region));
+    const auto plan = plan_region(planned_observations(project, region), correction_options(project, region));
     if (!plan || plan->status != CorrectionStatus::ok) return {};
     return fmt::format("expected of a correction: {:.3f} mm (1 sigma) at the worst spot, limit {:.3g} mm",
                        plan->sigma_at_spots_mm, region.sigma_limit_mm);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/correction/nuisance.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"
@@ -74,6 +75,8 @@ void check_calibration(const Calibration& c, Findings& findings) {
     findings.rigid(c.flange_from_sensor, where + ".flange_from_sensor");
     findings.unless(c.covariance.allFinite(), where,
                     "the covariance holds a value that is not a finite number");
+    findings.unless(!c.covariance.allFinite() || correction::semidefinite(c.covariance), where,
+                    "the covariance is none: not symmetric, or negative in some direction");
     if (!serves(c.verdict))
         findings.add(
             where,
@@ -306,6 +309,10 @@ std::vector<Error> check(const Project& project) {
     for (const RobotSetup& robot : project.robots)
         findings.unless(!robot.driver.empty(), "robot " + robot.id, "it has no driver",
                         "choose one of `seamwright devices`");
+    for (const RobotSetup& robot : project.robots)
+        findings.unless(correction::semidefinite(robot.arrival_covariance), "robot " + robot.id,
+                        "the covariance of its arrivals is none: not finite, not symmetric, or negative in "
+                        "some direction");
     for (const Calibration& calibration : project.calibrations) check_calibration(calibration, findings);
     for (const Spot& spot : project.spots) check_spot(project, spot, findings);
     for (const Region& region : project.regions) check_region(project, region, findings);

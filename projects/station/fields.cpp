@@ -107,6 +107,18 @@ const std::vector<Field<PanelJob>>& panel_fields() {
           "Largest disagreement of the two sensors of a double head."},
          [](const PanelJob& j) { return j.head_limit_mm; },
          [](PanelJob& j, double v) { j.head_limit_mm = v; }},
+        {{"deviation",
+          "",
+          0,
+          1,
+          0,
+          0,
+          "A place that contradicts the others: share its deviation out (best fit), or leave it out.",
+          {"share", "leave_out"}},
+         [](const PanelJob& j) { return static_cast<double>(j.deviation); },
+         [](PanelJob& j, double v) {
+             j.deviation = v < 0.5 ? PanelDeviation::share : PanelDeviation::leave_out;
+         }},
     };
     return fields;
 }

@@ -24,7 +24,7 @@ const std::vector<Field<Requirements>>& requirement_fields();
 const std::vector<Field<Region>>& region_fields();   // limit_translation_mm, limit_rotation_deg,
                                                      // sigma_limit_mm, sigma_limit_deg
 const std::vector<Field<PanelJob>>& panel_fields();  // those of a region, gap_tolerance_mm,
-                                                     // flush_tolerance_mm, head_limit_mm
+                                                     // flush_tolerance_mm, head_limit_mm, deviation
 
 // Error (input): not finite or out of range, with range and unit. Precondition (asserted): `name` is
 // described.

@@ -132,6 +132,34 @@ const Spot* find_spot(const Project& project, const std::string& id) {
     return find_by_id(project.spots, id);
 }
 
+namespace {
+
+// The spot's feature in its reference profile; nullopt where there is none.
+std::optional<Feature> feature_at_reference(const Spot& spot) {
+    if (spot.reference_profile.size() == 0) return std::nullopt;
+    const auto finder = make_feature_finder(spot.feature);
+    if (!finder) return std::nullopt;
+    Feature found = (*finder)->find(spot.reference_profile);
+    if (found.status != FeatureStatus::ok || !found.covariance_mm2.allFinite()) return std::nullopt;
+    return found;
+}
+
+// What errs in the same way again.
+void add_repeating(const Project& project, const Spot& spot, const Calibration& calibration,
+                   const std::optional<Feature>& at_reference, SpotObservation& o) {
+    o.sensor = spot.sensor_id;
+    if (at_reference) o.reference_covariance_mm2 = at_reference->covariance_mm2;
+    const RobotSetup* robot = find_robot(project, spot.robot_id);
+    if (!robot || robot->arrival_covariance.isZero(0)) return;
+    const Pose& flange_from_sensor = calibration.flange_from_sensor;
+    const Matrix6 in_base = covariance_of_product(spot.base_from_flange, robot->arrival_covariance,
+                                                  flange_from_sensor, Matrix6::Zero());
+    o.robot_covariance = covariance_of_product(project.part.base_from_workobject.inverse(), Matrix6::Zero(),
+                                               spot.base_from_flange * flange_from_sensor, in_base);
+}
+
+}  // namespace
+
 std::vector<SpotObservation> planned_observations(const Project& project, const Region& region) {
     std::vector<SpotObservation> observations;
     for (const std::string& id : region.spot_ids) {
@@ -142,14 +170,12 @@ std::vector<SpotObservation> planned_observations(const Project& project, const 
         SpotMeasurement at_reference;
         at_reference.spot_id = id;
         at_reference.measured_mm = spot->reference_mm;
-        if (spot->reference_profile.size() > 0)
-            if (const auto finder = make_feature_finder(spot->feature))
-                if (Feature found = (*finder)->find(spot->reference_profile);
-                    found.status == FeatureStatus::ok && found.covariance_mm2.allFinite())
-                    at_reference.feature = std::move(found);
+        const std::optional<Feature> found = feature_at_reference(*spot);
+        if (found) at_reference.feature = *found;
         at_reference.sigma_mm = total_sigma_mm(*spot, at_reference.feature);
         observations.push_back(observation(*spot, project.part.base_from_workobject,
                                            calibration->flange_from_sensor, at_reference));
+        add_repeating(project, *spot, *calibration, found, observations.back());
     }
     return observations;
 }
@@ -313,8 +339,15 @@ const StripePeaks& SpotMeasurer::peaks() const {
     return impl_->peaks;
 }
 
-CorrectionOptions correction_options(const Region& region) {
+CorrectionOptions correction_options(const Project& project, const Region& region) {
     CorrectionOptions options;
+    for (const SensorSetup& sensor : project.sensors)
+        if (const Calibration* calibration = calibration_of(project, sensor.id)) {
+            const Matrix6& c = calibration->covariance;
+            options.sensors.emplace_back().id = sensor.id;
+            options.sensors.back().hand_eye_covariance =
+                hand_eye_along_sensor(calibration->flange_from_sensor, 0.5 * (c + c.transpose()));
+        }
     options.free = region.free;
     options.limits = region.limits;
     options.sigma_limit_mm = std::max(options.sigma_limit_mm, region.sigma_limit_mm);
@@ -344,7 +377,7 @@ Expected<RegionCorrection> correct_region(const Project& project, const Region& 
                                           std::vector<SpotObservation> observations) {
     // First where the part lies, to know what the travel does there. A good spot that the travel made look
     // wrong does not matter to that.
-    CorrectionOptions roughly = correction_options(region);
+    CorrectionOptions roughly = correction_options(project, region);
     roughly.limits = {};
     auto rough = solve_region(observations, roughly);
     if (rough && rough->status != CorrectionStatus::ok) {
@@ -353,7 +386,7 @@ Expected<RegionCorrection> correct_region(const Project& project, const Region& 
     }
     if (rough && rough->status == CorrectionStatus::ok)
         for (SpotObservation& o : observations) add_travel(*find_spot(project, o.id), rough->displacement, o);
-    return solve_region(observations, correction_options(region));
+    return solve_region(observations, correction_options(project, region));
 }
 
 }  // namespace
@@ -382,6 +415,7 @@ std::vector<RegionRecord> correct_regions(const Project& project,
             }
             observations.push_back(observation(*spot, project.part.base_from_workobject,
                                                calibration->flange_from_sensor, *measured));
+            add_repeating(project, *spot, *calibration, feature_at_reference(*spot), observations.back());
         }
         if (observations.empty()) {
             record.refusals.push_back(uncalibrated ? "the sensors at the region's spots have no calibration"

@@ -45,7 +45,9 @@ SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
                             const Pose& flange_from_sensor, const SpotMeasurement& measurement);
 
 // The plan's input of a region: each of its enabled spots standing at its reference, with the noise that its
-// feature has in the reference profile. Spots without calibration are left out, as they are in a run.
+// feature has in the reference profile, and all that repeats (correction.h): its sensor, the reference's
+// covariance as its feature states it in the reference profile, one arrival of its robot. Spots without
+// calibration are left out, as they are in a run.
 std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
 
 // What the part's displacement does to a spot whose trigger may come anywhere in its jitter window, added to
@@ -91,13 +93,15 @@ class SpotMeasurer {
 };
 
 // What correction and plan of a region are asked for: its free degrees and limits; a direction that the
-// region's sigma limits would refuse anyway by far is not observed at all.
-CorrectionOptions correction_options(const Region& region);
+// region's sigma limits would refuse anyway by far is not observed at all. What its sensors err by is the
+// covariance of their calibrations' flange_from_sensor, turned into the sensor.
+CorrectionOptions correction_options(const Project& project, const Region& region);
 
 // Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
 // Solved twice: where the part lies tells how far the contour of each spot moves in the laser plane while the
 // trigger jitters over Spot::jitter_mm (uniform, half width; travel.h), and that is part of the covariance of
 // the measured point. A spot with stop_at_trigger does not jitter.
+// What repeats is stated as in planned_observations().
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
 // correction and says why in `refusals`.
 std::vector<RegionRecord> correct_regions(const Project& project,

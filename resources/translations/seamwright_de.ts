@@ -3362,6 +3362,10 @@
         <translation>ist kein bekanntes Feld</translation>
     </message>
     <message>
+        <source>%1 is given under its former name too</source>
+        <translation>%1 steht auch unter dem früheren Namen da</translation>
+    </message>
+    <message>
         <source>must be a number, not %1</source>
         <translation>muss eine Zahl sein, nicht %1</translation>
     </message>

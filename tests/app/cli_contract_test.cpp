@@ -141,6 +141,75 @@ TEST_F(Cli, CorrectTakesTheCovarianceOfAMeasureInPlaceOfItsSigma) {
     expect_refused({"correct", write("job.json", job.dump())}, "spots[0].covariance_mm2");
 }
 
+// Six of (mm, mm, mm, rad, rad, rad).
+json diagonal(double mm, double rad) {
+    json rows = json::array();
+    for (int i = 0; i < 6; ++i) {
+        rows.push_back({0, 0, 0, 0, 0, 0});
+        rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(i)] = i < 3 ? mm * mm : rad * rad;
+    }
+    return rows;
+}
+
+TEST_F(Cli, CorrectAndPlanStateWhatRepeats) {
+    json job = door_job(8, displacement());
+    const json before = answer({"correct", write("job.json", job.dump())}, 0);
+    EXPECT_EQ(before["covariance_random"], before["covariance"]);
+    EXPECT_EQ(before["covariance_systematic"][0][0], 0.0);
+    for (json& s : job["spots"]) {
+        s["sensor"] = "A";
+        s["reference_covariance_mm2"] = {{0.0016, 0.0004}, {0.0004, 0.0016}};
+        s["robot_covariance"] = diagonal(0.03, 1e-4);
+    }
+    job["sensors"] = {{"A",
+                       {{"hand_eye_covariance", diagonal(0.1, 2e-3)},
+                        {"scale_sigma", {0.001, 0.001}},
+                        {"shear_sigma", 0.001}}}};
+    for (const char* command : {"correct", "plan"}) {
+        const json a = answer({command, write("job.json", job.dump())}, 0);
+        for (std::size_t i = 0; i < 6; ++i)
+            for (std::size_t k = 0; k < 6; ++k)
+                EXPECT_NEAR(a["covariance"][i][k].get<double>(),
+                            a["covariance_random"][i][k].get<double>() +
+                                a["covariance_systematic"][i][k].get<double>(),
+                            1e-9 * std::sqrt(a["covariance"][i][i].get<double>() *
+                                             a["covariance"][k][k].get<double>()));
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_GT(a["sigma_systematic"]["xyz_mm"][i].get<double>(), 0);
+            EXPECT_GT(a["sigma_random"]["abc_deg"][i].get<double>(), 0);
+            EXPECT_GT(a["sigma"]["xyz_mm"][i].get<double>(), before["sigma"]["xyz_mm"][i].get<double>());
+        }
+    }
+    const auto spoilt = [&](const auto& spoil) {
+        json bad = job;
+        spoil(bad);
+        return write("bad.json", bad.dump());
+    };
+    for (const char* command : {"correct", "plan"}) {
+        const auto refused = [&](const auto& spoil, const char* part) {
+            expect_refused({command, spoilt(spoil)}, part);
+        };
+        refused([](json& j) { j["spots"][2]["sensor"] = "B"; }, "\"B\" is not among");
+        refused([](json& j) { j["spots"][2].erase("sensor"); }, "names no sensor");
+        refused([](json& j) { j["spots"][2]["sensor"] = ""; }, "spots[2].sensor");
+        refused([](json& j) { j.erase("sensors"); }, "\"A\" is not among");
+        refused([](json& j) { j["sensors"] = json::array(); }, "sensors");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye"] = 1; }, "hand_eye");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye_covariance"].erase(0); }, "six rows");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye_covariance"][0][1] = 0.001; }, "not symmetric");
+        refused([](json& j) { j["sensors"]["A"]["hand_eye_covariance"][0][0] = -1; }, "negative");
+        refused([](json& j) { j["sensors"]["A"]["scale_sigma"] = {0.1}; }, "scale_sigma");
+        refused([](json& j) { j["sensors"]["A"]["scale_sigma"][0] = -0.1; }, "scale_sigma");
+        refused([](json& j) { j["sensors"]["A"]["shear_sigma"] = 7; }, "shear_sigma");
+        refused([](json& j) { j["spots"][1]["robot_covariance"][3][3] = nullptr; },
+                "spots[1].robot_covariance");
+        refused([](json& j) { j["spots"][1]["robot_covariance"][3][3] = 1e300; }, "robot_covariance");
+        refused([](json& j) { j["spots"][1]["reference_covariance_mm2"] = 0.1; }, "two rows");
+        refused([](json& j) { j["spots"][1]["reference_covariance_mm2"][0][1] = 1; },
+                "reference_covariance_mm2");
+    }
+}
+
 TEST_F(Cli, CorrectOverItsLimitsIsNotOk) {
     json job = door_job(8, displacement());
     job["limits"] = {{"translation_mm", 5}, {"rotation_deg", 3}};
@@ -222,6 +291,32 @@ TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     }
 }
 
+// What a station measured, typed as a job: the motion is the same, the word for the other answer too.
+TEST_F(Cli, APanelJobHasTheStationsAnswerUnlessTheOtherIsNamed) {
+    json job = {{"spots", json::array()}};
+    for (int n = 0; n < 8; ++n) {
+        const double phi = 45.0 * n, a = phi * kPi / 180;
+        job["spots"].push_back(
+            {{"id", "P" + std::to_string(n + 1)},
+             {"gripper_from_sensor",
+              {{"xyz", {500 * std::cos(a), 350 * std::sin(a), 900}},
+               {"abc", {phi, 4 * (n % 3), 3 * (n % 2)}}}},
+             {"panel", {{"reference", {0, 0, 0}}, {"measured", {0, 0, n == 3 ? 1.2 : 0.0}}}},
+             {"body", {{"reference", {4, 0, 0}}, {"measured", {4, 0, 0}}}}});
+    }
+    const std::string file = write("job.json", job.dump());
+    const json shared = answer({"panel", file}, 0);
+    const json alone = answer({"panel", file, "--deviation", "leave_out"}, 0);
+    for (const json& s : shared["spots"]) EXPECT_TRUE(s["panel_used"].get<bool>()) << s;
+    for (const json& s : alone["spots"]) EXPECT_EQ(s["panel_used"].get<bool>(), s["id"] != "P4") << s;
+    EXPECT_GT(std::abs(shared["gripper_motion"]["xyz"][2].get<double>()), 0.02);
+    EXPECT_LT(std::abs(alone["gripper_motion"]["xyz"][2].get<double>()), 1e-6);
+    job["deviation"] = "leave_out";
+    EXPECT_EQ(answer({"panel", write("job.json", job.dump())}, 0)["gripper_motion"], alone["gripper_motion"]);
+    EXPECT_EQ(answer({"panel", file, "--deviation", "share"}, 0)["gripper_motion"], shared["gripper_motion"]);
+    expect_refused({"panel", file, "--deviation", "some"}, "share, leave_out");
+}
+
 TEST_F(Cli, PanelSettingsAreSetWithinTheirRanges) {
     const std::string project = (folder / "panel.seam").string();
     const json made = answer({"panel", project, "--simulated", "--teach", "1"}, 0);
@@ -234,6 +329,11 @@ TEST_F(Cli, PanelSettingsAreSetWithinTheirRanges) {
         answer({"panel", project, "--set", "flush_tolerance_mm", "0.2"}, 0)["settings"]["gap_tolerance_mm"],
         0.31)
         << "kept in the file";
+    EXPECT_EQ(set["settings"]["deviation"], "share");
+    EXPECT_EQ(answer({"panel", project, "--set", "deviation", "leave_out"}, 0)["settings"]["deviation"],
+              "leave_out");
+    expect_refused({"panel", project, "--set", "deviation", "perhaps"}, "share, leave_out");
+    expect_refused({"panel", project, "--deviation", "share"}, "--set deviation share");
     expect_refused({"panel", project, "--set", "gap_tolerance_mm", "0"}, "give 0.01 to 20 mm");
     expect_refused({"panel", project, "--set", "gap_tolerance_mm", "nan"}, "out of range");
     expect_refused({"panel", project, "--set", "gap", "1"}, "known are");

@@ -123,6 +123,41 @@ TEST_F(HandOverCommands, FromOpenStepsToASignedReport) {
     }
 }
 
+TEST_F(HandOverCommands, AcceptanceOfTheMeasuringProcess) {
+    answer({"zero-shift", file.string(), "--runs", "26"}, 0);
+    answer({"known-shift", file.string(), "--range-mm", "4", "--step-mm", "1", "--range-deg", "0.2",
+            "--step-deg", "0.1"},
+           0);
+    fs::create_directories(SEAMWRIGHT_SCREENS);
+    for (const std::string language : {"en", "de"}) {
+        const fs::path pdf = folder / "acceptance.pdf", text = folder / "acceptance.txt";
+        const json a = answer({"acceptance", file.string(), "--tolerance-mm", "8", "--pdf", pdf.string(),
+                               "--dfq", (folder / "a.dfq").string(), "--language", language},
+                              1);
+        ASSERT_TRUE(a["type1"].contains("n") && a["linearity"].contains("n") &&
+                    a["stability"].contains("subgroups") && a["vda5"].contains("type3"))
+            << a.dump(1);
+        EXPECT_TRUE(a["source"]["simulated"]);
+        EXPECT_EQ(a["type1"]["n"], 26);
+        EXPECT_EQ(a["type1"]["verdict"], "ok") << a["type1"].dump(1);
+        EXPECT_LT(a["type1"]["s"].get<double>(), 0.3);
+        EXPECT_GT(a["type1"]["s"].get<double>(), 0.001) << "the simulation has noise";
+        EXPECT_EQ(a["type3"]["verdict"], "not_done") << "no part was measured twice";
+        EXPECT_GE(a["linearity"]["n"].get<int>(), 50);
+        EXPECT_NEAR(a["linearity"]["slope"].get<double>(), 0, 0.1);
+        EXPECT_EQ(a["stability"]["subgroups"], 5);
+        EXPECT_EQ(a["vda5"]["type3"], false);
+        EXPECT_EQ(a["correlation"]["verdict"], "not_done");
+        EXPECT_THAT(slurp(folder / "a.dfq"), HasSubstr("K2401/1 SIM-1\r\n"));
+        const std::string pictures = std::string(SEAMWRIGHT_SCREENS) + "/acceptance_" + language;
+        EXPECT_EQ(std::system(("pdftoppm -r 70 -png '" + pdf.string() + "' '" + pictures + "'").c_str()), 0);
+        EXPECT_EQ(std::system(("pdftotext -layout '" + pdf.string() + "' '" + text.string() + "'").c_str()),
+                  0);
+        EXPECT_THAT(slurp(text),
+                    HasSubstr(language == "en" ? "the cell was simulated" : "die Zelle war simuliert"));
+    }
+}
+
 TEST_F(HandOverCommands, ReteachLeadsTheSpotsAlong) {
     {
         auto opened = ProjectFile::open(file).value();

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "devices/abb/egm.h"
+#include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/kuka/rsi.h"
 #include "devices/net/socket.h"
@@ -35,7 +36,8 @@ void answer(benchmark::State& state, Open open, Start start) {
         bool up = false;
         while (std::chrono::steady_clock::now() < end) {
             up = !up;
-            if (!(*link)->confirm(up ? PartVerdict::corrected : PartVerdict::refused, "")) {
+            if (!(*link)->write_frame("PATH", up ? moved : taught) ||
+                !(*link)->confirm(PartVerdict::corrected, "")) {
                 state.SkipWithError("a correction was refused");
                 return;
             }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <bit>
 #include <cstring>
 
@@ -82,8 +84,8 @@ TEST(ProfileLayout, TextOfManyHands) {
         return text;
     }());
     expect_contour(rows(" 0.0 "));  // x y z, y holds still
-    expect_contour("a,b\n" + rows(","), {"", "1,2"});
-    expect_contour("a,b\n" + rows(","), {"", "a,b"});
+    expect_contour("a,b\n" + rows(","), {"", "1,2", {}});
+    expect_contour("a,b\n" + rows(","), {"", "a,b", {}});
 }
 
 TEST(ProfileLayout, UnitsOfTheHeaderAndOfThePerson) {
@@ -97,8 +99,8 @@ TEST(ProfileLayout, UnitsOfTheHeaderAndOfThePerson) {
     }
     expect_contour(um);
     expect_contour(mixed);
-    expect_contour(inches, {"in", ""});
-    expect_no_profile("x,z\n1,2\n", "no unit", {"furlong", ""});
+    expect_contour(inches, {"in", "", {}});
+    expect_no_profile("x,z\n1,2\n", "no unit", {"furlong", "", {}});
     expect_no_profile("x,z\n1e12,2\n1,2\n", "line 2");
 }
 
@@ -208,8 +210,8 @@ TEST(ProfileLayout, WhatCannotBeKnownIsAskedAndWhatIsBrokenNamesItsLine) {
     expect_no_profile("1.5 2.5 3.5 4.5\n1.6 2.5 3.6 4.6\n", "--columns-xz");
     expect_no_profile("time,x\n1.0,2.5\n2.0,2.5\n", "names no column z");
     expect_no_profile("a,b\n1.5,2.5\n", "names no column x");
-    expect_no_profile("a,b\n1.5,2.5\n", "no column \"c\"", {"", "a,c"});
-    expect_no_profile("a,b\n1.5,2.5\n", "two columns", {"", "a"});
+    expect_no_profile("a,b\n1.5,2.5\n", "no column \"c\"", {"", "a,c", {}});
+    expect_no_profile("a,b\n1.5,2.5\n", "two columns", {"", "a", {}});
     expect_no_profile(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
     expect_no_profile(std::string(100, '\0'), "no text");
     expect_no_profile("x;z\n1;nan\n2;\n", "no point");
@@ -245,6 +247,22 @@ TEST(ProfileScale, UnitsAreSuspectedFromRangePitchAndNoise) {
     for (const Sensor& s : {Sensor{25, 1280, 0.005}, Sensor{60, 320, 0.05}, Sensor{60, 1200, 0.05},
                             Sensor{120, 1200, 0.05}, Sensor{80, 800, 0.02}})
         EXPECT_NE(profile_scale(contour(s.width, s.points, 25.4, s.noise)).suspected, "") << s.width << " in";
+}
+
+TEST(ProfileLayout, HeightsThatStandForNoReturnAreNone) {
+    ProfileLayout layout;
+    layout.invalid = {12.5, -1};
+    for (const char* text : {"X;Z\n0;1\n1;12.5\n2;-1\n3;2\n", "x_mm,z_mm\n0,1\n1,12.5\n2,-1\n3,2\n"}) {
+        const auto read = parse_profiles(text, "scan.csv", layout);
+        ASSERT_TRUE(read) << read.error().sentence();
+        const auto& z = read->profiles[0].profile.z_mm;
+        ASSERT_EQ(z.size(), 4u);
+        EXPECT_EQ(z[0], 1);
+        EXPECT_TRUE(std::isnan(z[1]) && std::isnan(z[2]));
+        EXPECT_EQ(z[3], 2);
+    }
+    for (const char* text : {"X;Z\n0;-1\n1;12.5\n2;-1\n", "x_mm,z_mm\n0,-1\n1,12.5\n2,-1\n"})
+        EXPECT_FALSE(parse_profiles(text, "scan.csv", layout));
 }
 
 }  // namespace

@@ -206,6 +206,7 @@ inline Project sample_project(unsigned seed = 1) {
     job.gap_tolerance_mm = 0.7;
     job.flush_tolerance_mm = 0.4;
     job.head_limit_mm = 0.2;
+    job.deviation = PanelDeviation::leave_out;
     job.frame_name = "BASE_DATA[9]";
     job.base_from_frame = make.pose();
     p.panel_jobs.push_back(job);

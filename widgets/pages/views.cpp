@@ -154,7 +154,7 @@ void ViewFeeder::project() {
         SceneRegion r;
         r.id = region.id;
         r.spot_ids = region.spot_ids;
-        if (auto plan = plan_region(planned_observations(p, region), correction_options(region))) {
+        if (auto plan = plan_region(planned_observations(p, region), correction_options(p, region))) {
             const Eigen::Vector3d along = plan->weakest_direction.head<3>();
             if (along.norm() > 0.1 && region.id == desk_.selection().region())
                 r.weak_direction = along.normalized();

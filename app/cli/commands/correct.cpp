@@ -21,6 +21,20 @@ struct Job {
     CorrectionOptions options;
 };
 
+// Rows of N numbers, (mm, mm, mm, rad, rad, rad).
+Expected<Matrix6> read_pose_covariance(const json& rows, const std::string& path) {
+    Matrix6 c;
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t k = 0; k < 6; ++k) {
+            if (!rows.is_array() || rows.size() != 6 || !rows[i].is_array() || rows[i].size() != 6 ||
+                !rows[i][k].is_number())
+                return input_error("not six rows of six numbers", path,
+                                   "give the covariance of translation (mm) and rotation vector (rad)");
+            c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = rows[i][k].get<double>();
+        }
+    return c;
+}
+
 // [[xx, xz], [xz, zz]], as `feature` writes it.
 Expected<Eigen::Matrix2d> read_covariance(const json& rows, const std::string& path) {
     Eigen::Matrix2d c;
@@ -35,10 +49,11 @@ Expected<Eigen::Matrix2d> read_covariance(const json& rows, const std::string& p
 }
 
 Expected<SpotObservation> read_spot(const json& spot, const std::string& path, bool needs_measured) {
-    if (auto known = only_fields(spot,
-                                 {"id", "workobject_from_sensor", "reference", "measured", "weights",
-                                  "sigma_mm", "covariance_mm2"},
-                                 path);
+    if (auto known =
+            only_fields(spot,
+                        {"id", "workobject_from_sensor", "reference", "measured", "weights", "sigma_mm",
+                         "covariance_mm2", "sensor", "reference_covariance_mm2", "robot_covariance"},
+                        path);
         !known)
         return tl::unexpected(known.error());
     SpotObservation s;
@@ -71,7 +86,47 @@ Expected<SpotObservation> read_spot(const json& spot, const std::string& path, b
         if (!covariance) return tl::unexpected(covariance.error());
         s.covariance_mm2 = *covariance;
     }
+    if (spot.contains("sensor") && !spot["sensor"].is_null()) {
+        auto sensor = json_string(spot, "sensor", path);
+        if (!sensor) return tl::unexpected(sensor.error());
+        if (sensor->empty())
+            return input_error("the sensor's id is empty", json_path(path, "sensor"),
+                               "name one of \"sensors\", or leave the field out");
+        s.sensor = *sensor;
+    }
+    if (const auto c = spot.find("reference_covariance_mm2"); c != spot.end() && !c->is_null()) {
+        auto covariance = read_covariance(*c, json_path(path, "reference_covariance_mm2"));
+        if (!covariance) return tl::unexpected(covariance.error());
+        s.reference_covariance_mm2 = *covariance;
+    }
+    if (const auto c = spot.find("robot_covariance"); c != spot.end() && !c->is_null()) {
+        auto covariance = read_pose_covariance(*c, json_path(path, "robot_covariance"));
+        if (!covariance) return tl::unexpected(covariance.error());
+        s.robot_covariance = *covariance;
+    }
     return s;
+}
+
+Expected<SensorPrior> read_sensor(const std::string& id, const json& sensor, const std::string& path) {
+    if (auto known = only_fields(sensor, {"hand_eye_covariance", "scale_sigma", "shear_sigma"}, path); !known)
+        return tl::unexpected(known.error());
+    SensorPrior prior;
+    prior.id = id;
+    if (const auto c = sensor.find("hand_eye_covariance"); c != sensor.end() && !c->is_null()) {
+        auto covariance = read_pose_covariance(*c, json_path(path, "hand_eye_covariance"));
+        if (!covariance) return tl::unexpected(covariance.error());
+        prior.hand_eye_covariance = *covariance;
+    }
+    if (const auto k = sensor.find("scale_sigma"); k != sensor.end() && !k->is_null()) {
+        if (!k->is_array() || k->size() != 2 || !(*k)[0].is_number() || !(*k)[1].is_number())
+            return input_error("not two numbers", json_path(path, "scale_sigma"),
+                               "give the shares of x and z, e.g. [0.001, 0.001]");
+        prior.scale_sigma = {(*k)[0].get<double>(), (*k)[1].get<double>()};
+    }
+    auto shear = json_number_or(sensor, "shear_sigma", 0.0, path);
+    if (!shear) return tl::unexpected(shear.error());
+    prior.shear_sigma = *shear;
+    return prior;
 }
 
 Expected<FreeDof> read_free(const json& list) {
@@ -95,7 +150,7 @@ Expected<Job> read_job(const std::string& file, bool needs_measured) {
     if (!text) return tl::unexpected(text.error());
     auto document = parse_json(*text, file);
     if (!document) return tl::unexpected(document.error());
-    if (auto known = only_fields(*document, {"spots", "free", "limits"}, ""); !known)
+    if (auto known = only_fields(*document, {"spots", "free", "limits", "sensors"}, ""); !known)
         return tl::unexpected(known.error());
     auto spots = json_array(*document, "spots", "");
     if (!spots) return tl::unexpected(spots.error());
@@ -111,6 +166,16 @@ Expected<Job> read_job(const std::string& file, bool needs_measured) {
         auto free = read_free(**list);
         if (!free) return tl::unexpected(free.error());
         job.options.free = *free;
+    }
+    if (const auto sensors = document->find("sensors"); sensors != document->end() && !sensors->is_null()) {
+        if (!sensors->is_object())
+            return input_error("not an object", "sensors",
+                               "give {\"A\":{\"hand_eye_covariance\":..}} with the spots' sensors as names");
+        for (const auto& [id, sensor] : sensors->items()) {
+            auto prior = read_sensor(id, sensor, json_path("sensors", id));
+            if (!prior) return tl::unexpected(prior.error());
+            job.options.sensors.push_back(std::move(*prior));
+        }
     }
     if (document->contains("limits") && !(*document)["limits"].is_null()) {
         const json& limits = (*document)["limits"];
@@ -164,7 +229,11 @@ void add_correct(CommandLine& line) {
         "\"reference\":[0,0,0],\"measured\":[1.2,0,-0.4],\"weights\":[1,0,1],\"sigma_mm\":0.05}, ...],\n"
         "             "
         "\"free\":[\"x\",\"y\",\"z\",\"a\",\"b\",\"c\"],\"limits\":{\"translation_mm\":25,\"rotation_deg\":3}"
-        "}");
+        "}\n"
+        "  What errs the same again, all optional: spots \"sensor\":\"A\", "
+        "\"reference_covariance_mm2\":2x2,\n"
+        "  \"robot_covariance\":6x6 (one arrival), and \"sensors\":{\"A\":{\"hand_eye_covariance\":6x6,\n"
+        "  \"scale_sigma\":[kx,kz],\"shear_sigma\":s}}; 6x6 of translation (mm) and rotation vector (rad).");
     auto file = std::make_shared<std::string>();
     command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");
     line.on(command, [file] { return correct(*file); });

@@ -326,6 +326,12 @@ void add_import(CommandLine& line) {
                      "The columns of x and z, by name or by number from 1")
         ->type_name("X,Z");
     command
+        ->add_option("--invalid", a->layout.profile.invalid,
+                     "Heights that stand for \"no return\", as the files write them, e.g. -9999 (default: "
+                     "recognised)")
+        ->delimiter(',')
+        ->type_name("Z");
+    command
         ->add_option("--poses", a->layout.poses,
                      "All poses in one file: CSV by name or by order, 4x4 matrices, FANUC .ls, JSON")
         ->type_name("FILE");

@@ -2,6 +2,7 @@
 // or run on a project's devices.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <fstream>
 
 #include "app/cli/command.h"
+#include "app/cli/feature_setting.h"
 #include "app/cli/result_json.h"
 #include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
@@ -80,12 +82,27 @@ Expected<PanelSpot> read_fit_spot(const json& spot, const std::string& path) {
     return s;
 }
 
+const Field<PanelJob>& deviation_field() {
+    const auto& fields = panel_fields();
+    return *std::find_if(fields.begin(), fields.end(),
+                         [](const Field<PanelJob>& f) { return f.info.name == "deviation"; });
+}
+
+Expected<PanelDeviation> deviation_from(const std::string& word) {
+    const auto& choices = deviation_field().info.choices;
+    const auto at = std::find(choices.begin(), choices.end(), word);
+    if (at == choices.end())
+        return usage_error(fmt::format("\"{}\" is not one of {}", word, fmt::join(choices, ", ")),
+                           "deviation");
+    return static_cast<PanelDeviation>(at - choices.begin());
+}
+
 Expected<FitJob> read_fit_job(const std::string& file) {
     auto text = read_text_file(file);
     if (!text) return tl::unexpected(text.error());
     auto document = parse_json(*text, file);
     if (!document) return tl::unexpected(document.error());
-    if (auto known = only_fields(*document, {"spots", "limits"}, ""); !known)
+    if (auto known = only_fields(*document, {"spots", "limits", "deviation"}, ""); !known)
         return tl::unexpected(known.error());
     auto spots = json_array(*document, "spots", "");
     if (!spots) return tl::unexpected(spots.error());
@@ -106,12 +123,25 @@ Expected<FitJob> read_fit_job(const std::string& file) {
         if (!rotation) return tl::unexpected(rotation.error());
         to = {*translation, *rotation};
     }
+    if (document->contains("deviation")) {
+        auto word = json_string(*document, "deviation", "");
+        if (!word) return tl::unexpected(word.error());
+        auto deviation = deviation_from(*word);
+        if (!deviation) return tl::unexpected(deviation.error());
+        job.options.deviation = *deviation;
+    }
     return job;
 }
 
-Expected<Answer> panel(const std::string& file) {
+// `deviation`, where given, stands above the file's.
+Expected<Answer> panel(const std::string& file, const std::string& deviation) {
     auto job = read_fit_job(file);
     if (!job) return tl::unexpected(job.error());
+    if (!deviation.empty()) {
+        auto asked = deviation_from(deviation);
+        if (!asked) return tl::unexpected(asked.error());
+        job->options.deviation = *asked;
+    }
     auto fit = fit_panel(job->spots, job->options);
     if (!fit) return tl::unexpected(fit.error());
     Answer answer;
@@ -124,12 +154,12 @@ Expected<Answer> panel(const std::string& file) {
 // --- on a project's devices
 
 struct PanelArguments {
-    std::string file, job, part;
+    std::string file, job, part, deviation;
     bool push = false, dry_run = false, keep_images = false, simulated = false;
     int hold_s = static_cast<int>(kHold.count() / 1000);
     int teach = 0;
     std::uint64_t seed = 1;
-    std::vector<std::pair<std::string, double>> settings;
+    std::vector<std::pair<std::string, std::string>> settings;
 };
 
 bool is_project(const PanelArguments& a) {
@@ -186,22 +216,30 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
     if (job == project.panel_jobs.end())
-        return input_error(Text("there is no panel job \"{}\"", id), a.file);
-    for (const auto& [name, value] : a.settings) {
+        return input_error(fmt::format("there is no panel job \"{}\"", id), a.file);
+    for (const auto& [name, text] : a.settings) {
         std::string known;
-        bool described = false;
+        const Field<PanelJob>* field = nullptr;
         for (const Field<PanelJob>& f : panel_fields()) {
             known += (known.empty() ? "" : ", ") + f.info.name;
-            described = described || f.info.name == name;
+            if (f.info.name == name) field = &f;
         }
-        if (!described)
-            return usage_error(Text("a panel job has no setting \"{}\"", name), "--set", Text("known are {}", known));
-        if (auto good = set_field(*job, name, value); !good) return tl::unexpected(good.error());
+        if (!field)
+            return usage_error("a panel job has no setting \"" + name + "\"", "--set", "known are " + known);
+        const auto value = setting_value(field->info, text);
+        if (!value) return tl::unexpected(value.error());
+        if (auto good = set_field(*job, name, *value); !good) return tl::unexpected(good.error());
     }
     if (auto kept = station.edit(project); !kept) return tl::unexpected(kept.error());
     Answer answer;
     answer.json = {{"status", "set"}, {"job", id}};
     for (const Field<PanelJob>& f : panel_fields()) {
+        if (!f.info.choices.empty()) {
+            const std::string& word = f.info.choices[static_cast<std::size_t>(f.get(*job))];
+            answer.json["settings"][f.info.name] = word;
+            answer.text += fmt::format("{:<22}{:>10}\n", f.info.name, word);
+            continue;
+        }
         answer.json["settings"][f.info.name] = f.get(*job);
         answer.text +=
             fmt::format("{:<22}{:10.{}f} {}\n", f.info.name, f.get(*job), f.info.decimals, f.info.unit);
@@ -290,7 +328,9 @@ void add_panel(CommandLine& line) {
         "frame).\n"
         "G minimises the deviation of panel from body at the spots (4.29); \"single_step\" is B * P^-1 of "
         "the\n"
-        "separate fits of body and panel; they agree when nothing is deformed.\n"
+        "separate fits of body and panel; they agree when nothing is deformed. A spot that contradicts the\n"
+        "others (a bent panel) has its deviation shared out over all spots (best fit), or is left out:\n"
+        "--deviation, \"deviation\" in JOB.json, or the job's setting of that name in a project.\n"
         "Per spot, what is left off after the motion, now minus taught: residual_mm = panel relative to body "
         "in the\n"
         "sensor frame; gap_mm > 0 = too wide (along the surface); flush_mm > 0 = the panel stands too proud "
@@ -302,12 +342,13 @@ void add_panel(CommandLine& line) {
         "  seamwright panel fender.seam --part CAR-0815 --push\n"
         "  seamwright panel try.seam --simulated --push\n"
         "  seamwright panel fender.seam --set gap_tolerance_mm 0.3 --set flush_tolerance_mm 0.2\n"
+        "  seamwright panel fender.seam --set deviation leave_out\n"
         "  job.json: "
         "{\"spots\":[{\"id\":\"S1\",\"gripper_from_sensor\":{\"xyz\":[500,0,900],\"abc\":[0,0,0]},\n"
         "             \"panel\":{\"reference\":[0,0,0],\"measured\":[0.3,0,0.1]},\n"
         "             \"body\":{\"reference\":[4,0,0],\"measured\":[4.2,0,-0.1]},\n"
         "             \"weights\":[1,0,1],\"sigma_mm\":0.05}, ...],\n"
-        "             \"limits\":{\"translation_mm\":25,\"rotation_deg\":3}}");
+        "             \"limits\":{\"translation_mm\":25,\"rotation_deg\":3},\"deviation\":\"share\"}");
     auto a = std::make_shared<PanelArguments>();
     command->add_option("job", a->file, "The job's measures (JSON), or a project")
         ->required()
@@ -336,6 +377,10 @@ void add_panel(CommandLine& line) {
                                          "Instead of a run: a limit or tolerance of the job, e.g. "
                                          "gap_tolerance_mm 0.3");
     settings->type_name("NAME VALUE")->excludes(push)->excludes(command->get_option("--teach"));
+    command->add_option(
+        "--deviation", a->deviation,
+        "With JOB.json: of a spot that contradicts the others, \"share\" out its deviation (best "
+        "fit, the default) or \"leave_out\" the spot");
     auto* simulated =
         command->add_flag("--simulated", a->simulated,
                           "Make FILE.seam first: a simulated gripper, taught, then panel and body displaced");
@@ -343,9 +388,14 @@ void add_panel(CommandLine& line) {
         ->needs(simulated);
     settings->excludes(simulated);
     line.on(command, [a]() -> Expected<Answer> {
-        if (is_project(*a)) return panel_on_devices(*a);
+        if (is_project(*a)) {
+            if (!a->deviation.empty())
+                return usage_error("a project keeps what becomes of a deviation in its panel job",
+                                   "--deviation", "give --set deviation " + a->deviation);
+            return panel_on_devices(*a);
+        }
         if (!a->settings.empty()) return usage_error("--set is for a project's panel job", a->file);
-        return panel(a->file);
+        return panel(a->file, a->deviation);
     });
 }
 

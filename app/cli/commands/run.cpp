@@ -1,4 +1,4 @@
-// seamwright run, replay, devices: the Station from the command line.
+// seamwright run and replay: the Station from the command line.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,7 +16,6 @@
 #include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/genicam/genicam.h"
 #include "devices/registry.h"
 #include "projects/proof/replay.h"
 #include "projects/station/check.h"
@@ -275,87 +274,6 @@ void add_replay(CommandLine& line) {
     command->add_option("--run", a->run, "Only this run");
     command->add_option("--jobs", a->jobs, "Threads")->check(CLI::Range(1, 256))->capture_default_str();
     line.on(command, [a] { return replay_command(*a); });
-}
-
-void add_devices(CommandLine& line) {
-    auto file = std::make_shared<std::string>();
-    CLI::App* command = line.add("devices",
-                                 "The drivers there are, and with --search the cameras; with a project: its "
-                                 "devices, identities and counters.",
-                                 "seamwright devices door_left.seam --json -");
-    command->add_option("file", *file, "Connect this project's devices")->type_name("FILE.seam");
-    auto search = std::make_shared<bool>(false);
-    command->add_flag("--search", *search,
-                      "Ask all networks of this computer for cameras (GigE Vision broadcast)");
-    line.on(command, [file, search]() -> Expected<Answer> {
-        Answer answer;
-        answer.json = {{"status", "ok"}, {"sensor_drivers", json::array()}, {"robot_drivers", json::array()}};
-        answer.text = "sensor drivers\n";
-        for (const SensorDriver& d : sensor_drivers()) {
-            answer.json["sensor_drivers"].push_back({{"name", d.name}, {"help", d.help}});
-            answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
-        }
-        answer.text += "robot drivers\n";
-        for (const RobotDriver& d : robot_drivers()) {
-            answer.json["robot_drivers"].push_back({{"name", d.name}, {"help", d.help}});
-            answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
-        }
-        if (*search) {
-            answer.json["cameras"] = json::array();
-            answer.text += "cameras found\n";
-            for (const DiscoveredCamera& c : discover_cameras()) {
-                answer.json["cameras"].push_back({{"vendor", c.vendor},
-                                                  {"model", c.model},
-                                                  {"serial", c.serial},
-                                                  {"address", c.address},
-                                                  {"protocol", c.protocol}});
-                answer.text += fmt::format("  {} {} serial {} at {} ({})\n", c.vendor, c.model, c.serial,
-                                           c.address, c.protocol);
-            }
-        }
-        if (file->empty()) return answer;
-        auto station = Station::open(*file, FileAccess::read_only);
-        if (!station) return tl::unexpected(station.error());
-        if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
-        answer.json["sensors"] = json::array();
-        answer.json["robots"] = json::array();
-        for (const SensorSetup& s : station->project().sensors) {
-            ProfileSource* sensor = station->sensor(s.id);
-            const SensorIdentity id = sensor->identity();
-            const SourceCounters c = sensor->counters();
-            answer.json["sensors"].push_back({{"id", s.id},
-                                              {"driver", s.driver},
-                                              {"vendor", id.vendor},
-                                              {"model", id.model},
-                                              {"serial", id.serial},
-                                              {"completed", c.completed},
-                                              {"damaged", c.damaged},
-                                              {"underrun", c.underrun},
-                                              {"missing_packets", c.missing_packets},
-                                              {"late", c.late},
-                                              {"lost", c.lost},
-                                              {"resent_packets", c.resent_packets},
-                                              {"reconnects", c.reconnects}});
-            answer.text += fmt::format("sensor {}: {} {} {} serial {}\n", s.id, s.driver, id.vendor, id.model,
-                                       id.serial);
-        }
-        for (const RobotSetup& r : station->project().robots) {
-            RobotLink* robot = station->robot(r.id);
-            auto id = robot->identity();
-            if (!id) return tl::unexpected(id.error());
-            auto mode = robot->mode();
-            if (!mode) return tl::unexpected(mode.error());
-            answer.json["robots"].push_back({{"id", r.id},
-                                             {"driver", r.driver},
-                                             {"brand", id->brand},
-                                             {"model", id->model},
-                                             {"serial", id->serial},
-                                             {"mode", to_string(*mode)}});
-            answer.text += fmt::format("robot {}: {} {} {} serial {}, mode {}\n", r.id, r.driver, id->brand,
-                                       id->model, id->serial, to_string(*mode));
-        }
-        return answer;
-    });
 }
 
 }  // namespace seamwright::cli

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kCurveTravelMm = 20;
 constexpr int kEdgeRepeats = 3;        // of the edge that the template is cut at: any one will do
+constexpr int kMostPresses = 3;        // of a person who teaches a spot
 constexpr int kReferenceRepeats = 10;  // each with an arrival of its own: the robot's scatter averages out
 constexpr double kPassStepMm = 4;
 constexpr const char* kSensor = "A";
@@ -96,6 +97,14 @@ Profile cut_out(const Profile& profile, double from_mm, double to_mm) {
     return piece;
 }
 
+// A person presses again where reflections have spoiled the measurements; what stays so is told.
+Expected<TaughtSpot> teach_again(Station& station, const Spot& spot, const TeachOptions& options) {
+    for (int presses = 1;; ++presses) {
+        auto taught = teach_spot(station, spot, options);
+        if (taught || presses == kMostPresses || taught.error().kind != ErrorKind::input) return taught;
+    }
+}
+
 // A spot of the door: first the edge by its contour end, then the hem around it as template with the edge as
 // landmark, then the pass that shows whether the contour stands still and how it curves.
 Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, const DoorSpot& door,
@@ -112,7 +121,7 @@ Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, c
     spot.feature.parameters = {{"side", 0.0}};
     TeachOptions repeated;
     repeated.repeats = kEdgeRepeats;
-    auto edge = teach_spot(station, spot, repeated);
+    auto edge = teach_again(station, spot, repeated);
     if (!edge) return tl::unexpected(edge.error());
     const double x = edge->spot.reference_mm.x(), z = edge->spot.reference_mm.z();
     spot.feature.kind = "template";
@@ -120,7 +129,7 @@ Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, c
     spot.feature.template_profile = cut_out(edge->spot.reference_profile, x - 1, x + 40);
     spot.feature.template_reference_mm = {x, z};
     repeated.repeats = kReferenceRepeats;
-    auto taught = teach_spot(station, spot, repeated);
+    auto taught = teach_again(station, spot, repeated);
     if (!taught) return tl::unexpected(taught.error());
     spot = taught->spot;
     PassOptions passing;
@@ -405,7 +414,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     world.set_mode(RobotMode::automatic);
     for (const Region& region : project.regions) {
-        auto plan = plan_region(planned_observations(project, region), {});
+        auto plan = plan_region(planned_observations(project, region), correction_options(project, region));
         if (!plan) return tl::unexpected(plan.error());
         outcome.plans.push_back(std::move(*plan));
     }

@@ -5,46 +5,11 @@
 #include <cmath>
 
 #include "core/number_text.h"
+#include "devices/controllers/kuka/arguments.h"
 #include "devices/controllers/kuka/robot.h"
 
 namespace seamwright::krl {
 namespace {
-
-std::string text(const std::vector<Argument>& arguments, std::size_t i) {
-    if (i >= arguments.size() || !arguments[i].given)
-        throw KrlError(fmt::format("parameter {} is left out", i + 1));
-    if (!arguments[i].value.string || !arguments[i].value.set)
-        throw KrlError(fmt::format("parameter {} is no string, or one that is not initialised", i + 1));
-    return arguments[i].value.text;
-}
-const Value& value(const std::vector<Argument>& arguments, std::size_t i, Type type) {
-    if (i >= arguments.size() || !arguments[i].given)
-        throw KrlError(fmt::format("parameter {} is left out", i + 1));
-    const Value& v = arguments[i].value;
-    if (v.type != type || v.string || !v.set)
-        throw KrlError(
-            fmt::format("parameter {} is no {}, or one that is not initialised", i + 1, to_string(type)));
-    return v;
-}
-void count(const std::vector<Argument>& arguments, std::size_t n) {
-    if (arguments.size() != n)
-        throw KrlError(fmt::format("it takes {} parameters, not {}", n, arguments.size()));
-}
-// The variable that a value goes into. EthernetKRL demands that it was initialised before.
-const Place& into(const std::vector<Argument>& arguments, std::size_t i) {
-    if (i >= arguments.size() || !arguments[i].place || !arguments[i].place->variable)
-        throw KrlError(fmt::format("parameter {} is no variable", i + 1));
-    const Place& p = *arguments[i].place;
-    if (p.row) {
-        if (!p.variable->row_initialised(p.cell))
-            throw KrlError(fmt::format("{}[] must be initialised, every character, before it is read into",
-                                       p.variable->name));
-        return p;
-    }
-    if (!arguments[i].value.set)
-        throw KrlError(fmt::format("{} must be initialised before it is read into", p.variable->name));
-    return p;
-}
 
 Value status_value(const EkiChannel::Status& s) {
     Value v = Value::unset(Type::eki_status);
@@ -69,11 +34,12 @@ EkiChannel& KukaRobot::channel(const std::string& name) {
 std::optional<Value> KukaRobot::call(Task& task, const std::string& name, std::vector<Argument>& arguments) {
     try {
         if (name.starts_with("EKI_")) return eki(task, name, arguments);
+        if (const auto message = message_of(name, arguments)) {
+            told(*message);
+            return Value();
+        }
         if (name == "BAS") {
-            count(arguments, 2);
-            if (value(arguments, 0, Type::enumeration).text != "INITMOV")
-                throw KrlError("only #INITMOV is known here");
-            (void)value(arguments, 1, Type::integer);
+            expect_initmov(arguments);
             if (task.kind() != TaskKind::robot) throw KrlError("BAS prepares motions");
             const std::lock_guard lock(mutex_);
             velocity_m_s_ = 2.0;
@@ -81,22 +47,17 @@ std::optional<Value> KukaRobot::call(Task& task, const std::string& name, std::v
             advance_moves_ = 3;
             return Value();
         }
-        if (name == "MSGQUIT" || name == "MSGNOTIFY") {
-            if (arguments.empty() || arguments.size() > 6) throw KrlError("it takes 1 to 6 parameters");
-            told(text(arguments, 0));
-            return Value();
-        }
         if (name == "STRCOMP") {
-            count(arguments, 3);
-            const std::string& how = value(arguments, 2, Type::enumeration).text;
+            expect_count(arguments, 3);
+            const std::string& how = value_of(arguments, 2, Type::enumeration).text;
             if (how != "CASE_SENS" && how != "NOT_CASE_SENS")
                 throw KrlError("parameter 3 is no way to compare");
-            const std::string a = text(arguments, 0), b = text(arguments, 1);
+            const std::string a = text_of(arguments, 0), b = text_of(arguments, 1);
             return Value::boolean(how == "CASE_SENS" ? a == b : capitals(a) == capitals(b));
         }
         if (name == "VARSTATE") {
-            count(arguments, 1);
-            const auto e = parse_expression(text(arguments, 0));
+            expect_count(arguments, 1);
+            const auto e = parse_expression(text_of(arguments, 0));
             if (e->kind != Expression::Kind::place) throw KrlError("parameter 1 names no variable");
             std::optional<Place> place;
             try {
@@ -112,7 +73,7 @@ std::optional<Value> KukaRobot::call(Task& task, const std::string& name, std::v
             }
         }
         if (name == "INV_POS") {
-            count(arguments, 1);
+            expect_count(arguments, 1);
             if (!arguments[0].given || !is_geometric(arguments[0].value.type))
                 throw KrlError("parameter 1 is no FRAME");
             return Value::of(arguments[0].value.pose().inverse(), Type::frame);
@@ -124,9 +85,9 @@ std::optional<Value> KukaRobot::call(Task& task, const std::string& name, std::v
 }
 
 std::optional<Value> KukaRobot::eki(Task& task, const std::string& name, std::vector<Argument>& arguments) {
-    const std::string channel_name = text(arguments, 0);
+    const std::string channel_name = text_of(arguments, 0);
     if (name == "EKI_INIT") {
-        count(arguments, 1);
+        expect_count(arguments, 1);
         const auto file = settings_.channels.find(capitals(channel_name));
         if (file == settings_.channels.end())
             throw KrlError(fmt::format("there is no file {}.xml in EthernetKRL's folder", channel_name));
@@ -143,12 +104,12 @@ std::optional<Value> KukaRobot::eki(Task& task, const std::string& name, std::ve
     EkiChannel& c = channel(channel_name);
     EkiChannel::Status status;
     if (name == "EKI_OPEN" || name == "EKI_CLOSE" || name == "EKI_CLEAR") {
-        count(arguments, 1);
+        expect_count(arguments, 1);
         task.unlocked([&] { status = name == "EKI_OPEN" ? c.open() : c.close(); });
         if (name == "EKI_CLEAR") channels_.erase(capitals(channel_name));
     } else if (name == "EKI_SEND") {
-        count(arguments, 2);
-        const std::string root = text(arguments, 1);
+        expect_count(arguments, 2);
+        const std::string root = text_of(arguments, 1);
         std::optional<KrlError> failed;
         task.unlocked([&] {
             try {
@@ -159,24 +120,25 @@ std::optional<Value> KukaRobot::eki(Task& task, const std::string& name, std::ve
         });
         if (failed) throw KrlError(*failed);
     } else if (name == "EKI_CHECKBUFFER") {
-        count(arguments, 2);
-        status = c.check(text(arguments, 1));
+        expect_count(arguments, 2);
+        status = c.check(text_of(arguments, 1));
     } else if (name == "EKI_SETSTRING" || name == "EKI_SETINT" || name == "EKI_SETREAL") {
-        count(arguments, 3);
-        c.set(text(arguments, 1), name == "EKI_SETSTRING" ? text(arguments, 2)
-                                  : name == "EKI_SETINT"
-                                      ? fmt::format("{:.0f}", value(arguments, 2, Type::integer).as_number())
-                                      : fmt::format("{:.6f}", value(arguments, 2, Type::real).as_number()));
+        expect_count(arguments, 3);
+        c.set(text_of(arguments, 1),
+              name == "EKI_SETSTRING" ? text_of(arguments, 2)
+              : name == "EKI_SETINT"
+                  ? fmt::format("{:.0f}", value_of(arguments, 2, Type::integer).as_number())
+                  : fmt::format("{:.6f}", value_of(arguments, 2, Type::real).as_number()));
     } else if (name == "EKI_GETSTRING" || name == "EKI_GETINT" || name == "EKI_GETREAL") {
-        count(arguments, 3);
-        const Place& to = into(arguments, 2);
+        expect_count(arguments, 3);
+        const Place& to = place_of(arguments, 2);
         const std::string type = name == "EKI_GETSTRING" ? "STRING" : name == "EKI_GETINT" ? "INT" : "REAL";
         const Type held = to.component.empty() ? to.variable->type : Type::real;
         if ((type == "STRING") != to.row || (type == "INT" && held != Type::integer) ||
             (type == "REAL" && held != Type::real))
             throw KrlError(fmt::format("parameter 3 is no {}", type));
         std::string got;
-        status = c.take(text(arguments, 1), type, got);
+        status = c.take(text_of(arguments, 1), type, got);
         if (status.read == 1) {
             if (type == "STRING") {
                 if (!got.empty()) task.write(to, Value::string_of(got));

@@ -235,7 +235,7 @@ class Parser {
         return Reader(lines_[at_++]);
     }
     static bool declares(const Reader& r) {
-        return r.is("DECL") || r.is("GLOBAL") ||
+        return r.is("DECL") || (r.is("GLOBAL") && r.peek(1).text != "INTERRUPT") ||
                (type_from(r.peek().text) && r.peek(1).kind == TokenKind::name);
     }
 
@@ -400,6 +400,8 @@ class Parser {
             s.value = expression(r);
         } else if (r.accept("TRIGGER")) {
             trigger(s, r);
+        } else if (r.is("INTERRUPT") || r.is("GLOBAL")) {
+            interrupt(s, r);
         } else {
             simple(s, r);
         }
@@ -457,6 +459,26 @@ class Parser {
         s.blocks.push_back({std::move(what)});
     }
 
+    static void interrupt(Statement& s, Reader& r) {
+        using Kind = Statement::Kind;
+        s.global = r.accept("GLOBAL");
+        r.expect("INTERRUPT");
+        if (!s.global && (r.is("ON") || r.is("OFF"))) {
+            s.kind = r.take().text == "ON" ? Kind::interrupt_on : Kind::interrupt_off;
+            s.value = expression(r);
+            return;
+        }
+        s.kind = Kind::interrupt_decl;
+        r.expect("DECL");
+        s.value = expression(r);
+        r.expect("WHEN");
+        s.second = expression(r);
+        r.expect("DO");
+        s.third = place_or_call(r);
+        if (s.third->kind != Expression::Kind::call)
+            throw KrlError("INTERRUPT calls a program, written with brackets");
+    }
+
     // One line's statements.
     static void simple(Statement& s, Reader& r) {
         using Kind = Statement::Kind;
@@ -469,6 +491,11 @@ class Parser {
             s.kind = Kind::exit;
         } else if (r.accept("HALT")) {
             s.kind = Kind::halt;
+        } else if (r.accept("BRAKE")) {
+            s.kind = Kind::brake;
+            r.accept("F");
+        } else if (r.accept("RESUME")) {
+            s.kind = Kind::resume;
         } else if (r.accept("RETURN")) {
             s.kind = Kind::return_;
             if (!r.done()) s.value = expression(r);

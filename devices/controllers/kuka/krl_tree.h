@@ -46,13 +46,19 @@ struct Statement {
         lin_rel,
         ptp,
         trigger,
-        pulse
+        pulse,
+        interrupt_decl,  // value: its priority; second: the event; third: the call
+        interrupt_on,    // value: its priority
+        interrupt_off,
+        brake,
+        resume
     } kind = Kind::halt;
     int line = 0;
     ExpressionPtr target, value, second, third;  // as the kind needs them
     std::vector<Block> blocks;                   // bodies: THEN, ELSE; the loop's; one a CASE, then DEFAULT
     std::vector<std::vector<ExpressionPtr>> cases;
     bool approximates = false;  // C_DIS
+    bool global = false;        // GLOBAL INTERRUPT DECL
 };
 
 struct Declaration {

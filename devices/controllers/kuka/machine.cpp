@@ -17,6 +17,13 @@ constexpr std::size_t kDeepest = 20;  // nested calls
 
 }  // namespace
 
+void Host::brake(Task&) {
+    throw KrlError("BRAKE is not known to this controller");
+}
+void Host::give_up_motions(Task&) {
+    throw KrlError("RESUME is not known to this controller");
+}
+
 void Machine::load(const std::string& file_name, const std::string& text) {
     auto module = std::make_shared<Module>(parse_module(file_name, text));
     const std::lock_guard lock(mutex_);
@@ -143,6 +150,13 @@ void Task::unlocked(const std::function<void()>& wait) {
     if (stop_.stop_requested()) throw TaskStopped{};
 }
 
+void Task::wait(const std::function<bool()>& over) {
+    while (!over()) {
+        unlocked([] { std::this_thread::sleep_for(kTaskTick); });
+        interrupts();
+    }
+}
+
 void Task::fail(const Statement& s, const std::string& why) const {
     const std::string where = stack_.empty() ? "" : stack_.back().routine->module + " ";
     throw KrlError(fmt::format("{}line {}: {}", where, s.line, why));
@@ -154,6 +168,8 @@ Task::Flow Task::execute(const Block& block) {
         Flow flow = Flow::next;
         try {
             flow = execute(s);
+        } catch (const Resumed& resumed) {
+            if (resumed.level != stack_.size()) throw;
         } catch (const KrlError& e) {
             const std::string what = e.what();
             if (what.find(" line ") != std::string::npos) throw;  // told where it happened
@@ -161,6 +177,7 @@ Task::Flow Task::execute(const Block& block) {
         }
         if (flow != Flow::next) return flow;
         unlocked([] {});  // another interpreter may run between two statements
+        interrupts();
     }
     return Flow::next;
 }
@@ -238,7 +255,25 @@ void Task::simple(const Statement& s) {
     const bool moves = s.kind == Kind::lin || s.kind == Kind::lin_rel || s.kind == Kind::ptp;
     if (kind_ == TaskKind::submit && (moves || s.kind == Kind::trigger || s.kind == Kind::halt))
         throw KrlError("the submit interpreter has no motions, TRIGGER and HALT");
+    const bool interrupts = s.kind == Kind::interrupt_decl || s.kind == Kind::interrupt_on ||
+                            s.kind == Kind::interrupt_off || s.kind == Kind::brake || s.kind == Kind::resume;
+    if (interrupts && kind_ != TaskKind::robot)
+        throw KrlError("INTERRUPT, BRAKE and RESUME are the robot interpreter's");
     switch (s.kind) {
+        case Kind::interrupt_decl:
+            declare_interrupt(s);
+            return;
+        case Kind::interrupt_on:
+        case Kind::interrupt_off:
+            switch_interrupt(s, s.kind == Kind::interrupt_on);
+            return;
+        case Kind::brake:
+            if (serving_.empty()) throw KrlError("BRAKE stands in an interrupt program only");
+            host_.brake(*this);
+            return;
+        case Kind::resume:
+            resume();
+            return;
         case Kind::assign:
             write(place(*s.target), evaluate(*s.value));
             return;
@@ -251,7 +286,7 @@ void Task::simple(const Statement& s) {
             return;
         case Kind::wait_for:
             if (kind_ == TaskKind::robot) host_.wait_main_run(*this);
-            while (!condition(s.value)) unlocked([] { std::this_thread::sleep_for(kTaskTick); });
+            wait([&] { return condition(s.value); });
             return;
         case Kind::wait_sec: {
             if (kind_ == TaskKind::robot) host_.wait_main_run(*this);
@@ -585,9 +620,11 @@ Value Task::invoke(const Routine& routine, std::vector<Argument>& arguments) {
             throw KrlError(fmt::format("{} ends without a value", routine.name));
     } catch (...) {
         stack_.pop_back();
+        end_interrupts();
         throw;
     }
     stack_.pop_back();
+    end_interrupts();
     return routine.returns ? converted(returned_, *routine.returns) : Value();
 }
 

@@ -61,6 +61,10 @@ class Host {
     virtual void wait_main_run(Task& task) = 0;  // the advance run stops until the motions are done
     virtual void wait_seconds(Task& task, double seconds) = 0;
     virtual void halt(Task& task) = 0;  // until the start key
+    // Of an interrupt program. A controller that does not override them has no BRAKE and no RESUME.
+    virtual void brake(Task& task);            // until the robot stands; its motions wait
+    virtual void give_up_motions(Task& task);  // RESUME: those begun and those planned
+    virtual void interrupt_ended(Task&) {}     // by its END: the motions go on
     virtual void told(const std::string& message) = 0;
 };
 
@@ -95,6 +99,10 @@ class Task {
     const std::stop_token& stop() const { return stop_; }
     // Without the lock meanwhile; ends the task when it was stopped.
     void unlocked(const std::function<void()>& wait);
+    // Until `over`, looking every few milliseconds; interrupts happen meanwhile.
+    void wait(const std::function<bool()>& over);
+    // Whether what is read or written now stops the advance run: not the event of an interrupt.
+    bool stops_advance() const { return kind_ == TaskKind::robot && !watching_; }
 
     Value read(const Place& place);
     void write(const Place& place, const Value& value);
@@ -119,7 +127,28 @@ class Task {
     Value aggregate(const Expression& e);
     Value binary(const Expression& e);
     [[noreturn]] void fail(const Statement& s, const std::string& why) const;
+    void declare_interrupt(const Statement& s);
+    void switch_interrupt(const Statement& s, bool on);
+    void resume();
+    void interrupts();
+    void serve(int priority);
+    void end_interrupts();  // local ones, with the program that declared them
 
+    // Declared on a level, recognised there and below, GLOBAL above too. An event counts when it comes, not
+    // while it lasts.
+    struct Interrupt {
+        bool global = false, on = false, was = false;
+        std::size_t level = 0;
+        std::string module;
+        ExpressionPtr event, call;
+    };
+    struct Resumed {  // thrown by RESUME
+        std::size_t level;
+    };
+    struct Serving {
+        int priority = 0;
+        std::size_t level = 0, interrupted = 0;  // where it was declared, and what it interrupts
+    };
     Machine& machine_;
     Host& host_;
     const TaskKind kind_;
@@ -128,6 +157,9 @@ class Task {
     std::vector<Locals> stack_;
     std::vector<PathTrigger> triggers_;  // of the next motion
     Value returned_;
+    std::map<int, Interrupt> interrupts_;  // by priority
+    std::vector<Serving> serving_;
+    bool watching_ = false;
 };
 
 }  // namespace seamwright::krl

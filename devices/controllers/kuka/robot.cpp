@@ -7,19 +7,13 @@
 #include <set>
 #include <thread>
 
+#include "devices/controllers/kuka/arguments.h"
+
 namespace seamwright::krl {
 namespace {
 
 constexpr double kT1MmS = 250, kPtpMmS = 500;
 constexpr std::size_t kMostMessages = 200;
-
-int index_of(const Place& place, int most) {
-    if (place.indices.size() != 1 || place.row)
-        throw KrlError(fmt::format("{} wants one index", place.system));
-    if (place.indices[0] < 1 || place.indices[0] > most)
-        throw KrlError(fmt::format("{}[{}] is outside 1 to {}", place.system, place.indices[0], most));
-    return static_cast<int>(place.indices[0]);
-}
 
 Value structure(const std::string& component, std::optional<double> value) {
     Value v = Value::unset(Type::frame);
@@ -106,7 +100,7 @@ Value KukaRobot::flag(int number) const {
 
 std::optional<Value> KukaRobot::system_value(Task& task, const Place& place) {
     const std::string& name = place.system;
-    if (task.kind() == TaskKind::robot && belongs_to_main_run(name)) wait_main_run(task);
+    if (task.stops_advance() && belongs_to_main_run(name)) wait_main_run(task);
     if (name == "$NULLFRAME") return Value::of(Pose::Identity(), Type::frame);
     if (name == "$FLAG") return flag(index_of(place, 1024));
     if (name == "$IN") {
@@ -125,7 +119,6 @@ std::optional<Value> KukaRobot::system_value(Task& task, const Place& place) {
     if (name == "$PRO_STATE1") return Value::name(name_of(state_));
     if (name == "$KR_SERIALNO") return Value::integer(settings_.serial);
     if (name == "$TRAFONAME") return Value::string_of("#KR SIMULATED");
-    if (name == "$IPO_MODE" || name == "$IPO_MODE_C") return Value::name("BASE");
     if (name == "$AXIS_ACT") {
         Value v = Value::unset(Type::e6axis);
         v.set = true;
@@ -144,6 +137,8 @@ std::optional<Value> KukaRobot::system_value(Task& task, const Place& place) {
     }
     if (name == "$BASE") return frame_or_unset(advance_.base, name);
     if (name == "$TOOL") return frame_or_unset(advance_.tool, name);
+    if (name == "$IPO_MODE") return Value::name(advance_.fixed_tool ? "TCP" : "BASE");
+    if (name == "$IPO_MODE_C") return Value::name(main_.fixed_tool ? "TCP" : "BASE");
     if (name == "$BASE_C") return frame_or_unset(main_.base, name);
     if (name == "$TOOL_C") return frame_or_unset(main_.tool, name);
     if (name == "$VEL") return structure("CP", velocity_m_s_);
@@ -204,6 +199,12 @@ bool KukaRobot::set_system(Task& task, const Place& place, const Value& value) {
         (name == "$BASE" ? advance_.base : advance_.tool) = value.pose();
         return true;
     }
+    if (name == "$IPO_MODE") {
+        if (value.type != Type::enumeration || (value.text != "BASE" && value.text != "TCP"))
+            throw KrlError("$IPO_MODE is #BASE or #TCP");
+        advance_.fixed_tool = value.text == "TCP";
+        return true;
+    }
     if (name == "$VEL" && place.component == "CP") {
         const double v = value.as_number();
         if (!(v > 0 && v <= 3)) throw KrlError(fmt::format("$VEL.CP={} m/s is not possible", v));
@@ -238,6 +239,8 @@ void KukaRobot::move(Task& task, Motion motion, const Value& target, bool approx
         if (motion != Motion::ptp && !velocity_m_s_) throw KrlError("$VEL.CP is not initialised");
         if (!at_block_) planned_ = arm_.position();
         const Frames now = advance_;
+        if (now.fixed_tool && target.type != Type::e6axis)
+            throw KrlError("with a fixed tool ($IPO_MODE=#TCP) only axis angles are known here");
         if (target.type == Type::e6axis) {
             if (motion != Motion::ptp) throw KrlError("a LIN goes to a position, not to axis angles");
             move.base_from_flange = planned_;  // the only angles there are: $AXIS_ACT

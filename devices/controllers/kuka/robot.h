@@ -65,6 +65,7 @@ class KukaRobot final : public Host {
     };
     struct Frames {  // $BASE and $TOOL, of the advance run or of the main run
         std::optional<Pose> base, tool;
+        bool fixed_tool = false;  // $IPO_MODE #TCP
     };
     Value flag(int number) const;
     std::optional<Value> eki(Task& task, const std::string& name, std::vector<Argument>& arguments);

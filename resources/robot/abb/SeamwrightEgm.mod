@@ -6,6 +6,8 @@ MODULE SeamwrightEgm
     ! The controller asks every SampleRate ms (a multiple of 4); give Seamwright the same as "cycle_ms".
     LOCAL VAR egmident egm_id;
 
+    ! Seamwright answers as long as the path has its permission. When that goes on the path, or the connection, no answer
+    ! comes within CommTimeout: the path is stopped where it is and raises, it is not run uncorrected.
     ! Set up before the path, robot standing in a fine point. The sensor frame is that of the tool.
     PROC SeamwrightEgmOn(PERS tooldata tool_used)
         EGMReset egm_id;
@@ -29,9 +31,12 @@ MODULE SeamwrightEgm
         SeamwrightEgmOff;
     ERROR
         IF ERRNO = ERR_UDPUC_COMM THEN
-            ! No answer from Seamwright within CommTimeout: the path is not run uncorrected.
-            TPWrite "Seamwright does not answer (EGM)";
+            ! What is left of the path is forgotten: a StartMove of who handles this does not run it uncorrected.
+            StopMove\Quick;
+            ClearPath;
             SeamwrightEgmOff;
+            StartMove;
+            TPWrite "Seamwright took its permission back or is gone: the path was stopped (EGM)";
         ENDIF
         RAISE;
     ENDPROC

@@ -302,6 +302,8 @@ TEST(Texts, WhatTheLayersBelowRefuseIsInTheList) {
                                              "devices/exchange/path_csv.cpp",
                                              "devices/cyclic/measuring.cpp",
                                              "projects/panel/panel_measure.cpp",
+                                             "projects/acceptance/studies.cpp",
+                                             "projects/acceptance/stored_values.cpp",
                                              "projects/panel/panel_station.cpp",
                                                                                           "projects/station/path.cpp",
                                              "projects/station/program.cpp",

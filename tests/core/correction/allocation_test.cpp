@@ -15,8 +15,13 @@ TEST(RegionSolver, AllocatesNothingAfterTheFirstCall) {
     Rng rng(1);
     RegionSolver solver;
     RegionCorrection result;
-    for (const bool restricted : {false, true}) {
+    for (const auto& [restricted, priors] :
+         {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
         CorrectionOptions options;
+        if (priors) {
+            SensorPrior prior{"A", 1e-4 * Matrix6::Identity(), {1e-3, 1e-3}, 1e-3};
+            options.sensors = {prior};
+        }
         if (restricted) options.free = {true, true, true, true, false, false};
         std::vector<std::vector<SpotObservation>> parts;
         for (int i = 0; i < 20; ++i) {
@@ -24,6 +29,11 @@ TEST(RegionSolver, AllocatesNothingAfterTheFirstCall) {
             measure(parts.back(), make_pose(rotation_exp({0, 0, 0.01}), {3, -2, 1}));
             add_noise(parts.back(), rng, 0.02);
             for (std::size_t n = 0; n < parts.back().size(); ++n) {
+                if (priors) {
+                    parts.back()[n].sensor = "A";
+                    parts.back()[n].reference_covariance_mm2 = 1e-4 * Eigen::Matrix2d::Identity();
+                    parts.back()[n].robot_covariance = 1e-6 * Matrix6::Identity();
+                }
                 if (n % 3 == 0) parts.back()[n].curve = ContourCurve{{0, 1e-6, 0}, {0, 0, 0}, -20, 20};
             }
         }

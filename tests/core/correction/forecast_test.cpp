@@ -14,7 +14,7 @@ TEST(Forecast, CovarianceIsThePlans) {
     Rng rng(1);
     for (int trial = 0; trial < 20; ++trial) {
         const auto spots = door(rng, 3 + trial % 5, {500, 0, 900});
-        EXPECT_EQ(*predicted_covariance(spots, {}), plan_region(spots, {})->covariance);
+        EXPECT_EQ(predicted_covariance(spots, {})->sum, plan_region(spots, {})->covariance);
     }
     EXPECT_FALSE(predicted_covariance({}, {}));
 }
@@ -25,7 +25,7 @@ TEST(Forecast, SigmaAtAPointIsItsScatter) {
     auto spots = door(rng, 5, {500, 0, 900});
     const Pose d = random_displacement(rng, 10, 2, {500, 0, 900});
     const Eigen::Vector3d point(700, 200, 950);
-    const Matrix6 covariance = *predicted_covariance(spots, {});
+    const Matrix6 covariance = predicted_covariance(spots, {})->sum;
     const Eigen::Matrix<double, 6, 6> root = covariance.llt().matrixL();
     std::normal_distribution<double> normal;
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();

@@ -85,8 +85,6 @@ TEST(PanelFit, StatedSigmaHoldsForEveryDegreeOfFreedom) {
     const Pose truth = b * p.inverse();
     constexpr int kTrials = 4000;
     Vector6 inside = Vector6::Zero();
-    PanelOptions options;
-    options.reject_outliers = false;
     double nees = 0;
     for (int trial = 0; trial < kTrials; ++trial) {
         auto spots = clean;
@@ -95,7 +93,7 @@ TEST(PanelFit, StatedSigmaHoldsForEveryDegreeOfFreedom) {
                 s.panel.measured_mm[i] += dice.normal(s.sigma_mm);
                 s.body.measured_mm[i] += dice.normal(s.sigma_mm);
             }
-        const auto fit = fit_panel(spots, options);
+        const auto fit = fit_panel(spots, {});
         ASSERT_TRUE(fit);
         ASSERT_EQ(fit->status, CorrectionStatus::ok);
         const Vector6 off = difference(fit->gripper_motion, truth);
@@ -112,8 +110,6 @@ TEST(PanelFit, StatedSigmaHoldsForEveryDegreeOfFreedom) {
 TEST(PanelFit, SpreadAtTheSpotsIsSixOfTwoNAtAnyDisplacement) {
     constexpr double kSigma = 0.03;
     constexpr int kTrials = 1500;
-    PanelOptions options;
-    options.reject_outliers = false;
     for (const double reach : {0.0, 0.01, 1.0}) {
         Dice dice(9);
         auto clean = rim(dice, 8);
@@ -131,7 +127,7 @@ TEST(PanelFit, SpreadAtTheSpotsIsSixOfTwoNAtAnyDisplacement) {
                     s.panel.measured_mm[i] += dice.normal(kSigma);
                     s.body.measured_mm[i] += dice.normal(kSigma);
                 }
-            const auto fit = fit_panel(spots, options);
+            const auto fit = fit_panel(spots, {});
             ASSERT_TRUE(fit);
             ASSERT_EQ(fit->status, CorrectionStatus::ok) << fit->message;
             const Pose left = b.inverse() * fit->gripper_motion * p;
@@ -162,9 +158,7 @@ TEST(PanelFit, ResidualIsTheDeformationThatNoMotionRemoves) {
         spots[n].panel.measured_mm = shaped[n].panel.measured_mm;
         spots[n].body.measured_mm = shaped[n].body.measured_mm;
     }
-    PanelOptions options;
-    options.reject_outliers = false;
-    const auto fit = fit_panel(spots, options);
+    const auto fit = fit_panel(spots, {});
     ASSERT_TRUE(fit);
     ASSERT_EQ(fit->status, CorrectionStatus::ok) << fit->message;
     // The rigid part of the deformation by plain linear least squares, independent of the solver.
@@ -204,9 +198,7 @@ TEST(PanelFit, SameDeformationOnBothSidesIsNoDeviation) {
         spots[n].panel.measured_mm = shaped[n].panel.measured_mm;
         spots[n].body.measured_mm = shaped[n].body.measured_mm;
     }
-    PanelOptions options;
-    options.reject_outliers = false;
-    const auto fit = fit_panel(spots, options);
+    const auto fit = fit_panel(spots, {});
     ASSERT_TRUE(fit);
     // Gap and flush are as taught everywhere: the gripper stays, to the panel's own rotation seen in the
     // body's frame.
@@ -247,7 +239,9 @@ TEST(PanelFit, FindsTheWrongSpotOnEitherSideAndKeepsTheMotion) {
     measure(spots, p, b, true);
     spots[2].panel.measured_mm.x() += 3;
     spots[6].body.measured_mm.z() -= 3;
-    const auto fit = fit_panel(spots, {});
+    PanelOptions options;
+    options.deviation = PanelDeviation::leave_out;
+    const auto fit = fit_panel(spots, options);
     ASSERT_TRUE(fit);
     ASSERT_EQ(fit->status, CorrectionStatus::ok);
     EXPECT_FALSE(fit->spots[2].panel_used);
@@ -255,6 +249,32 @@ TEST(PanelFit, FindsTheWrongSpotOnEitherSideAndKeepsTheMotion) {
     EXPECT_TRUE(fit->spots[6].panel_used);
     EXPECT_LT(distance_mm(fit->gripper_motion, b * p.inverse()), 1e-6);
     EXPECT_THAT(fit->message, testing::HasSubstr("S3"));
+}
+
+// A bent corner: the best fit uses every spot, spreads the deviation and says where the shape is off.
+TEST(PanelFit, SharesTheDeviationOfABentCornerByDefaultAndNamesIt) {
+    Dice dice(29);
+    auto spots = rim(dice, 9);
+    const Pose p = dice.displacement(), b = dice.displacement();
+    measure(spots, p, b, true);
+    spots[4].panel.measured_mm.z() += 0.9;
+    const auto fit = fit_panel(spots, {});
+    ASSERT_TRUE(fit);
+    ASSERT_EQ(fit->status, CorrectionStatus::ok) << fit->message;
+    double most = 0;
+    for (const PanelSpotResult& s : fit->spots) {
+        EXPECT_TRUE(s.panel_used && s.body_used) << s.id;
+        most = std::max(most, s.residual_mm.norm());
+    }
+    EXPECT_LT(most, 0.8) << "part of it is carried by the others";
+    EXPECT_THAT(fit->message, testing::HasSubstr("panel deviates from its taught shape at S5"));
+    PanelOptions alone;
+    alone.deviation = PanelDeviation::leave_out;
+    const auto other = fit_panel(spots, alone);
+    ASSERT_TRUE(other);
+    EXPECT_FALSE(other->spots[4].panel_used);
+    EXPECT_NEAR(other->spots[4].residual_mm.norm(), 0.9, 0.01);
+    EXPECT_GT(distance_mm(fit->gripper_motion, other->gripper_motion), 0.05);
 }
 
 TEST(PanelFit, SaysWhenTheMotionIsBeyondTheLimits) {

@@ -8,6 +8,7 @@
 #include "core/geometry/pose.h"
 #include "devices/abb/program.h"
 #include "devices/controllers/abb/controller.h"
+#include "devices/controllers/abb/rapid_language.h"
 #include "devices/controllers/abb/rapid_system.h"
 
 namespace seamwright {
@@ -255,6 +256,17 @@ TEST(RapidDelivered, TheMovesCarryTheLoadOfTheProject) {
                                  R"({"tool": "gun", "load": {"mass_kg": 1}})", R"({"load": {"mass": 1}})"}) {
         request.settings = nlohmann::json::parse(settings);
         EXPECT_FALSE(write_abb_program(request)) << settings;
+    }
+}
+
+// EGM's own instructions are not executed here; the module is RAPID, and no word of it is reserved.
+TEST(RapidDelivered, TheModuleOfEgmIsRead) {
+    try {
+        const auto module =
+            rapid::parse_module(std::string(resources::SeamwrightEgm_mod), "SeamwrightEgm.mod");
+        EXPECT_EQ(module->routines.size(), 3u);
+    } catch (const std::exception& e) {
+        ADD_FAILURE() << e.what();
     }
 }
 

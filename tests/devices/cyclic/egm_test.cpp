@@ -203,7 +203,9 @@ TEST_P(EgmOnPath, ThePathIsShiftedAcrossItself) {
     EXPECT_LT(best, GetParam() ? 1e-6 : 1e-4);
     ASSERT_TRUE(pair.link->confirm(PartVerdict::refused, ""));
     const auto deadline = Clock::now() + milliseconds(1000);
-    while (pair.controller->released() && Clock::now() < deadline)
+    // The robot stops, and EGM leads its correction out.
+    while ((pair.controller->released() || !pair.robot().newest().told_mm.isZero(0)) &&
+           Clock::now() < deadline)
         std::this_thread::sleep_for(milliseconds(5));
     EXPECT_FALSE(pair.controller->released());
     EXPECT_TRUE(pair.robot().newest().told_mm.isZero(0));
@@ -299,6 +301,61 @@ TEST(Egm, ARobotGuidedByJointsIsNotConfirmed) {
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("carry no planned Cartesian pose"));
 }
+
+// EGM has no release. A path whose permission goes is not run on uncorrected: the robot keeps its correction
+// until it stands, and its program raises.
+class EgmWithdrawn : public testing::TestWithParam<const char*> {};
+
+TEST_P(EgmWithdrawn, StopsThePathWhichIsNeverTaken) {
+    EgmPair pair = open_egm({{"application", true},
+                             {"path_s", 3},
+                             {"late_limit", 50},
+                             {"restart_ms", 1000},
+                             {"speed_mm_s", 40},
+                             {"straight", true}});
+    ASSERT_TRUE(pair.link->write_frame("PATH", egm_written()));
+    const auto confirmed = pair.link->confirm(PartVerdict::corrected, "");
+    ASSERT_TRUE(confirmed) << confirmed.error().sentence();
+    const auto patience = Clock::now() + milliseconds(1000);
+    while (*pair.link->permission() != Permission::running && Clock::now() < patience)
+        std::this_thread::sleep_for(milliseconds(5));
+    ASSERT_EQ(*pair.link->permission(), Permission::running);
+    const std::size_t then = pair.robot().history().size();
+    const double whole = pair.robot().newest().told_mm.norm();
+    ASSERT_GT(whole, 0.5);
+    const std::string how = GetParam();
+    if (how == "ends") {
+        pair.link.reset();
+    } else if (how == "verdict") {
+        const auto failed = pair.link->confirm(PartVerdict::failed, "");
+        EXPECT_TRUE(failed) << failed.error().sentence();
+    } else {
+        pair.controller->set_fault(ControllerFault::out_of_range);
+        std::this_thread::sleep_for(milliseconds(40));
+        pair.controller->set_fault(ControllerFault::none);
+    }
+    std::this_thread::sleep_for(milliseconds(700));
+    EXPECT_EQ(pair.robot().stops(), 1u);
+    EXPECT_FALSE(pair.controller->taken());
+    EXPECT_FALSE(pair.controller->released());
+    const auto history = pair.robot().history();
+    for (std::size_t i = then + 1; i < history.size(); ++i) {
+        const bool moves = distance_mm(history[i].programmed, history[i - 1].programmed) > 1e-9;
+        ASSERT_TRUE(!moves || history[i].told_mm.norm() > 0.9 * whole) << "it ran on uncorrected";
+    }
+    EXPECT_LT(distance_mm(history.back().programmed, history[history.size() - 20].programmed), 1e-9);
+    if (how != "verdict") return;
+    EXPECT_EQ(*pair.link->permission(), Permission::none);
+    Expected<void> next;
+    for (const auto until = Clock::now() + milliseconds(4000); Clock::now() < until;) {
+        next = pair.link->confirm(PartVerdict::corrected, "");
+        if (next) break;
+        std::this_thread::sleep_for(milliseconds(50));
+    }
+    EXPECT_TRUE(next) << next.error().sentence();
+}
+INSTANTIATE_TEST_SUITE_P(Ways, EgmWithdrawn, testing::Values("ends", "verdict", "alarm"),
+                         [](const auto& way) { return std::string(way.param); });
 
 TEST(Egm, ThePathIsTakenAtItsEnd) {
     EgmPair pair = open_egm({{"application", true}, {"path_s", 1}, {"restart_ms", 800}});

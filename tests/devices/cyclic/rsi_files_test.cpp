@@ -100,6 +100,9 @@ TEST_P(RsiFiles, ContextConfigurationAndProgramAgree) {
     EXPECT_EQ(parameter(release, "Index"), "101");
     EXPECT_NE(d.program.find("WAIT FOR $OUT[101]"), std::string::npos);
     EXPECT_NE(d.program.find("$OUT[102]=TRUE"), std::string::npos);
+    EXPECT_NE(d.program.find("WHEN $OUT[101]==FALSE"), std::string::npos);
+    EXPECT_STREQ(element(d, "RECEIVE", "Release").attribute("HOLDON").value(), "1")
+        << "a late answer is no release that falls";
     EXPECT_STREQ(ethernet.child("Inputs").child("Input").attribute("OutObjID").value(),
                  path.attribute("ObjID").value());
     EXPECT_STREQ(ethernet.child("Inputs").child("Input").attribute("InIdx").value(),

@@ -28,6 +28,7 @@ class RsiRobot {
     bool relative = false, hold_on = true, adds_up_late = false, with_rist = true, with_rsol = true;
     int cycle_ms = 4;
     std::size_t lag_cycles = 0;
+    std::optional<bool> path;  // <Path>
     Pose programmed = make_pose(rotation_exp({0, 0, 0.4}), {900, -200, 600});
 
     const Numbers& in_force() const { return in_force_; }
@@ -51,6 +52,7 @@ class RsiRobot {
         const Pose& actual = shown_[std::min(lag_cycles, shown_.size() - 1)];
         return "<Rob Type=\"KUKA\">" + (with_rist ? frame("RIst", actual) : "") +
                (with_rsol ? frame("RSol", programmed) : "") +
+               (path ? fmt::format("<Path>{}</Path>", *path ? 1 : 0) : "") +
                fmt::format("<Delay D=\"{}\"/><Tech T21=\"1.09\"/><IPOC>{}</IPOC></Rob>", late_, ipoc_);
     }
     // Before the next one is sent: what has come. False: it was late.

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "core/geometry/notation.h"
+#include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/kuka/rsi_telegram.h"
 #include "devices/net/socket.h"
@@ -524,6 +525,80 @@ TEST(RsiApplication, RunsOnceItIsReleasedAndIsTakenAtItsEnd) {
     EXPECT_TRUE(pair.controller->released()) << "it is the application's";
     EXPECT_TRUE(pair.controller->taken());
 }
+
+// Where the robot is on its programmed path once nothing has moved for 200 ms; nothing within `most`.
+std::optional<Pose> comes_to_stand(const SimulatedRsi& robot, milliseconds most) {
+    Pose before = robot.newest().programmed;
+    int still = 0;
+    for (const auto until = Clock::now() + most; Clock::now() < until;) {
+        std::this_thread::sleep_for(milliseconds(20));
+        const Pose now = robot.newest().programmed;
+        still = distance_mm(now, before) < 1e-9 ? still + 1 : 0;
+        before = now;
+        if (still == 10) return now;
+    }
+    return std::nullopt;
+}
+
+bool runs(CyclicLink& link, milliseconds most) {
+    for (const auto until = Clock::now() + most; Clock::now() < until;) {
+        const auto permission = link.permission();
+        if (permission && *permission == Permission::running) return true;
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+    return false;
+}
+
+// How the permission goes while the path runs: the program ends, or the robot does what no robot should.
+class RsiWithdrawn : public testing::TestWithParam<const char*> {};
+
+TEST_P(RsiWithdrawn, StopsThePathWhichIsNeverTaken) {
+    Pair pair = open_pair({{"max_late", 5}}, {{"application", true}, {"path_s", 1.5}, {"restart_ms", 700}});
+    ASSERT_TRUE(pair.link->write_frame("PATH", written()));
+    const auto confirmed = pair.link->confirm(PartVerdict::corrected, "");
+    ASSERT_TRUE(confirmed) << confirmed.error().sentence();
+    ASSERT_TRUE(runs(pair.cyclic(), milliseconds(1000)));
+    const Pose begin = pair.robot().history().front().programmed;
+    const std::string how = GetParam();
+    if (how == "program ends") {
+        pair.link.reset();
+    } else if (how == "verdict") {
+        ASSERT_TRUE(pair.link->confirm(PartVerdict::failed, ""));
+    } else {
+        pair.controller->set_fault(ControllerFault::out_of_range);  // an alarm of the corrector
+        std::this_thread::sleep_for(milliseconds(40));
+        pair.controller->set_fault(ControllerFault::none);
+        EXPECT_FALSE(pair.link->permission());
+    }
+    const auto stands = comes_to_stand(pair.robot(), milliseconds(900));
+    ASSERT_TRUE(stands) << "it ran on";
+    EXPECT_GT(distance_mm(*stands, begin), 1) << "in the middle of the path";
+    std::this_thread::sleep_for(milliseconds(800));
+    EXPECT_FALSE(pair.controller->taken());
+    EXPECT_FALSE(pair.controller->released());
+    if (!pair.link) return;
+    // The program that is started next begins at the beginning, and waits.
+    const auto from_begin = [&] { return distance_mm(pair.robot().newest().programmed, begin); };
+    for (const auto until = Clock::now() + milliseconds(4000); from_begin() > 1e-9 && Clock::now() < until;)
+        std::this_thread::sleep_for(milliseconds(10));
+    EXPECT_LT(from_begin(), 1e-9);
+    EXPECT_TRUE(comes_to_stand(pair.robot(), milliseconds(1000)));
+    ASSERT_FALSE(pair.robot().messages().empty());
+    EXPECT_THAT(pair.robot().messages().front(), HasSubstr("the path was stopped"));
+    Expected<void> next;
+    for (const auto until = Clock::now() + milliseconds(4000); Clock::now() < until;) {
+        next = pair.link->confirm(PartVerdict::corrected, "");
+        if (next) break;
+    }
+    ASSERT_TRUE(next) << next.error().sentence();
+    EXPECT_TRUE(runs(pair.cyclic(), milliseconds(1000)));
+}
+INSTANTIATE_TEST_SUITE_P(Ways, RsiWithdrawn, testing::Values("program ends", "verdict", "alarm"),
+                         [](const auto& way) {
+                             std::string name = way.param;
+                             std::replace(name.begin(), name.end(), ' ', '_');
+                             return name;
+                         });
 
 }  // namespace
 }  // namespace seamwright

@@ -259,6 +259,7 @@ struct Direct {
     RsiRobot robot;
     CyclicCorrector corrector;
     StepMeter steps;
+    std::optional<bool> released;  // by the newest answer
     explicit Direct(bool relative = false)
         : corrector(corrector_settings(), make_rsi_protocol({.relative = relative}, 4)) {
         robot.relative = relative;
@@ -269,9 +270,11 @@ struct Direct {
         const auto before = robot.in_force();
         const std::string text = robot.send();
         std::optional<RsiSen> sen;
+        released.reset();
         if (telegram && corrector.handle(bytes_of(text))) {
             const auto bytes = corrector.answer();
             if (!bytes.empty() && answer) sen = *parse_rsi_sen(bytes);
+            if (sen) released = sen->release;
         }
         robot.end_of_cycle(sen);
         steps.add(before, robot.in_force());
@@ -353,6 +356,52 @@ TEST(RobotFoundCorrected, IsLedBackFromThere) {
         second.cycles(600);
         EXPECT_LE(second.steps.mm, kStepMm) << relative;
         EXPECT_NEAR(second.robot.in_force()[2], 0, 1e-3) << relative;
+    }
+}
+
+// The release falls in the same cycle in which the permission goes, whatever takes it, and what becomes of
+// <Path> afterwards is not told as the end of a path, neither of this permission nor of the next.
+TEST(PathPermission, GoesAtOnceAndAStoppedPathIsNoPathThatIsOver) {
+    for (const bool by_alarm : {false, true}) {
+        Direct d;
+        d.robot.path = false;
+        d.cycles(20);
+        d.move_to(1);
+        d.cycles(200);
+        d.corrector.await_path();
+        d.cycles(2);
+        EXPECT_EQ(d.released, true);
+        d.robot.path = true;
+        d.cycles(50);
+        ASSERT_EQ(d.corrector.state().path, PathPhase::running);
+        if (by_alarm)
+            d.robot.programmed.translation().x() += 100;  // a jump
+        else
+            d.corrector.withdraw();
+        d.steps = {};
+        d.cycle();
+        EXPECT_EQ(d.corrector.alarm().has_value(), by_alarm);
+        EXPECT_EQ(d.released, false) << by_alarm;
+        EXPECT_EQ(d.corrector.state().path, PathPhase::none);
+        d.cycles(300);
+        EXPECT_LE(d.steps.mm, kStepMm);
+        // Confirmed anew while the old path is not yet stopped.
+        (void)d.corrector.take_alarm();
+        d.move_to(1);
+        d.cycles(300);
+        d.corrector.await_path();
+        d.cycles(5);
+        EXPECT_EQ(d.corrector.state().path, PathPhase::waiting);
+        d.robot.path = false;
+        d.cycles(5);
+        EXPECT_EQ(d.corrector.state().path, PathPhase::waiting);
+        d.robot.path = true;
+        d.cycles(5);
+        EXPECT_EQ(d.corrector.state().path, PathPhase::running);
+        d.robot.path = false;
+        d.cycles(5);
+        EXPECT_EQ(d.corrector.state().path, PathPhase::over);
+        EXPECT_EQ(d.released, false);
     }
 }
 

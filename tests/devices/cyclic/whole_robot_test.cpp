@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "devices/abb/egm.h"
+#include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/kuka/rsi.h"
 #include "devices/net/socket.h"
@@ -20,9 +21,10 @@ using std::chrono::milliseconds;
 struct Brand {
     const char *cyclic, *measuring;
     bool robot_is_client;
+    double way_mm = 20;  // from entry to spot and on to exit
 };
 void PrintTo(const Brand& b, std::ostream* out) {
-    *out << b.cyclic << " with " << b.measuring;
+    *out << b.cyclic << " with " << b.measuring << (b.way_mm > 0 ? "" : ", standing at its spot");
 }
 
 class WholeRobot : public testing::TestWithParam<Brand> {};
@@ -34,8 +36,8 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
     move.spot_id = "S1";
     move.trigger = make_pose(rotation_exp({0.1, 0.2, -0.3}), {800, -200, 600});
     move.entry = move.exit = move.trigger;
-    move.entry.translation().y() -= 20;
-    move.exit.translation().y() += 20;
+    move.entry.translation().y() -= GetParam().way_mm;
+    move.exit.translation().y() += GetParam().way_mm;
     (*cell)->store_program({move});
     const std::uint16_t port = UdpSocket::bind("127.0.0.1", 0)->port();
     const std::uint16_t tcp = TcpListener::listen("127.0.0.1", 0)->port();
@@ -95,6 +97,14 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
                                       ? static_cast<SimulatedRsi&>(*controller).measuring()
                                       : static_cast<SimulatedEgm&>(*controller).measuring();
     ASSERT_NE(beside, nullptr);
+    // The permission is there as long as nobody takes it back, of both controllers.
+    for (int i = 0; i < 100 && !controller->released(); ++i) std::this_thread::sleep_for(milliseconds(2));
+    EXPECT_TRUE(controller->released()) << "told with the next cycles";
+    std::this_thread::sleep_for(milliseconds(100));
+    EXPECT_TRUE(controller->released());
+    const auto permission = link->permission();
+    ASSERT_TRUE(permission) << permission.error().sentence();
+    EXPECT_TRUE(*permission == Permission::given || *permission == Permission::running);
     EXPECT_EQ(beside->verdict(), PartVerdict::corrected);
     // The next part starts without a correction.
     auto again = start_measuring();
@@ -104,6 +114,7 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
 }
 INSTANTIATE_TEST_SUITE_P(Brands, WholeRobot,
                          testing::Values(Brand{"kuka-rsi", "kuka-eki", true},
+                                         Brand{"kuka-rsi", "kuka-eki", true, 0},
                                          Brand{"abb-egm", "abb-rapid", false}));
 
 }  // namespace

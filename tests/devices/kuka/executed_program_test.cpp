@@ -6,10 +6,13 @@
 #include <thread>
 
 #include "devices/controllers/kuka/controller.h"
+#include "devices/exchange/files.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/kvp.h"
+#include "devices/kuka/program.h"
 #include "devices/net/socket.h"
 #include "devices/silence.h"
+#include "tests/devices/temporary_folder.h"
 
 namespace seamwright {
 namespace {
@@ -48,9 +51,10 @@ class ExecutedKrl : public testing::TestWithParam<std::string> {
         cell->move_to(two_spots()[0].entry);
     }
     bool eki() const { return GetParam() == "kuka-eki"; }
-    void start(double time_scale, int timeout_ms = 1000) {
-        const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
-        const nlohmann::json settings = {{"port", port}, {"time_scale", time_scale}};
+    void start(double time_scale, int timeout_ms = 1000, std::uint16_t port = 0,
+               const std::string& programs = "") {
+        if (port == 0) port = TcpListener::listen("127.0.0.1", 0)->port();
+        const nlohmann::json settings = {{"port", port}, {"time_scale", time_scale}, {"programs", programs}};
         const auto controller_up = [&] {
             auto started =
                 eki() ? start_kuka_eki_controller(cell, settings) : start_kuka_kvp_controller(cell, settings);
@@ -189,6 +193,97 @@ TEST_P(ExecutedKrl, TheFlangeIsToldWithoutToolAndBase) {
     ASSERT_TRUE(told) << told.error().sentence();
     EXPECT_LT(distance_mm(*told, cell->reported_flange().value()), 1e-2);
     EXPECT_LT(deg_from_rad(angle_rad(*told, cell->reported_flange().value())), 1e-3);
+}
+
+// The measuring program as delivered, then what an application leaves behind it: its own tool, or one that is
+// fixed in the cell.
+class FlangeAfterAnApplication : public ExecutedKrl {
+  protected:
+    void leave(const std::string& lines) {
+        ProgramRequest request;
+        request.project = "door";
+        request.moves = two_spots();
+        request.frames = {{"left", "BASE_left", cell->read_frame("BASE_left").value()}};
+        const std::uint16_t port = TcpListener::listen("127.0.0.1", 0)->port();
+        request.settings = {{"listen", "127.0.0.1"}, {"port", port}};
+        const auto files = write_kuka_program(request);
+        ASSERT_TRUE(files) << files.error().sentence();
+        for (const ProgramFile& f : *files) {
+            std::string text = f.text;
+            if (f.name == "seamwright_spots.src") {
+                const auto end = text.find("SW_END_PART(20.0)\n");
+                ASSERT_NE(end, std::string::npos);
+                text.insert(end, lines);
+            }
+            ASSERT_TRUE(write_text_file(folder.path() / f.name, text));
+        }
+        start(5, 1000, port, folder.path().string());
+    }
+    TemporaryFolder folder;
+};
+
+TEST_P(FlangeAfterAnApplication, IsTheFlangeWithEveryToolAndBase) {
+    leave(
+        "$BASE={X 700.0,Y -300.0,Z 120.0,A 33.0,B -12.0,C 7.0}\n"
+        "$TOOL={X 12.5,Y -40.0,Z 151.0,A 90.0,B 25.0,C -170.0}\nLIN_REL {Z 3.0}\nWAIT SEC 0\n");
+    ASSERT_FALSE(HasFatalFailure());
+    for (int part = 0; part < 2; ++part) {
+        measure();
+        ASSERT_FALSE(HasFatalFailure()) << part;
+        std::this_thread::sleep_for(milliseconds(400));
+        const auto told = link->base_from_flange();
+        ASSERT_TRUE(told) << told.error().sentence();
+        EXPECT_LT(distance_mm(*told, cell->reported_flange().value()), 1e-2);
+        EXPECT_LT(deg_from_rad(angle_rad(*told, cell->reported_flange().value())), 1e-3);
+        EXPECT_GT(distance_mm(*told, two_spots()[1].exit), 2) << "moved with its tool";
+    }
+}
+
+TEST_P(FlangeAfterAnApplication, IsNotToldWithAFixedToolAndMeasuringGoesOn) {
+    leave("$IPO_MODE=#TCP\nPTP $AXIS_ACT\nWAIT SEC 0\n");
+    ASSERT_FALSE(HasFatalFailure());
+    for (int part = 0; part < 2; ++part) {
+        measure();
+        ASSERT_FALSE(HasFatalFailure()) << part;
+        std::this_thread::sleep_for(milliseconds(400));
+        const auto told = link->base_from_flange();
+        ASSERT_FALSE(told);
+        EXPECT_THAT(told.error().sentence(), HasSubstr("fixed in the cell"));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Drivers, FlangeAfterAnApplication, testing::Values("kuka-eki", "kuka-kvp"),
+                         [](const auto& i) { return i.param == "kuka-eki" ? "eki" : "kvp"; });
+
+// A robot that stands at its spots, turns over them or only passes them.
+TEST_P(ExecutedKrl, EntrySpotAndExitMayBeOnePose) {
+    auto moves = two_spots();
+    for (MeasuringMove& m : moves) {
+        m.entry = m.exit = m.trigger;
+        m.via.clear();
+    }
+    for (const bool stops : {false, true}) {
+        if (stops) moves.resize(1);  // and the robot stands there already
+        for (MeasuringMove& m : moves) m.stop_at_trigger = stops;
+        cell->store_program(moves);
+        controller.reset();
+        link.reset();
+        start(5);
+        for (int part = 0; part < 2; ++part) {
+            auto started = link->start_measuring(moves);
+            for (int i = 0; i < 40 && !started; ++i) {
+                std::this_thread::sleep_for(milliseconds(50));
+                started = link->start_measuring(moves);
+            }
+            ASSERT_TRUE(started) << started.error().sentence();
+            for (const MeasuringMove& move : moves) {
+                auto trigger = link->wait_trigger(std::chrono::seconds(5));
+                ASSERT_TRUE(trigger) << trigger.error().sentence();
+                EXPECT_EQ(trigger->spot_id, move.spot_id);
+            }
+            EXPECT_TRUE(link->confirm(PartVerdict::refused, ""));
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Drivers, ExecutedKrl, testing::Values("kuka-eki", "kuka-kvp"),

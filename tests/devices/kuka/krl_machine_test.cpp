@@ -87,6 +87,37 @@ TEST_F(KrlRun, TypesAreKept) {
     EXPECT_THAT(run("DECL INT N\nN=$NOSUCH\n"), HasSubstr("no system variable"));
 }
 
+// An event counts when it comes, not while it lasts; local interrupts end with their program; higher
+// priorities interrupt lower ones only.
+TEST_F(KrlRun, InterruptsComeWithTheEvent) {
+    const std::string ready = "ARR[1]=0\nARR[2]=0\n";
+    const std::string sub = "END\nDEF COUNT()\nARR[1]=ARR[1]+1\n";
+    const auto expect = [&](const std::string& lines, int count) {
+        return ready + "INTERRUPT DECL 10 WHEN $FLAG[1]==TRUE DO COUNT()\n" + lines + "IF ARR[1]<>" +
+               std::to_string(count) + " THEN\nWRONG()\nENDIF\n" + sub;
+    };
+    EXPECT_EQ(run(expect("INTERRUPT ON 10\n$FLAG[1]=TRUE\nWAIT SEC 0.01\n", 1)), "");
+    EXPECT_EQ(run(expect("$FLAG[1]=TRUE\nINTERRUPT ON 10\nWAIT SEC 0.01\n", 0)), "") << "it was before";
+    EXPECT_EQ(run(expect("$FLAG[1]=TRUE\nWAIT SEC 0.01\n", 0)), "") << "not switched on";
+    EXPECT_EQ(run(expect("INTERRUPT ON 10\n$FLAG[1]=TRUE\n$FLAG[1]=FALSE\n$FLAG[1]=TRUE\n", 2)), "");
+    EXPECT_EQ(run(expect("INTERRUPT ON 10\nINTERRUPT OFF 10\n$FLAG[1]=TRUE\nWAIT SEC 0.01\n", 0)), "");
+    EXPECT_THAT(run("HELP()\nINTERRUPT ON 10\nEND\nDEF HELP()\nINTERRUPT DECL 10 WHEN $FLAG[1] DO HELP()\n"),
+                HasSubstr("10 is not declared"));
+    EXPECT_EQ(
+        run("HELP()\nINTERRUPT ON 10\nEND\nDEF HELP()\nGLOBAL INTERRUPT DECL 10 WHEN $FLAG[1] DO HELP()\n"),
+        "");
+    EXPECT_THAT(
+        run("INTERRUPT DECL 3 WHEN $FLAG[1] DO COUNT()\nINTERRUPT DECL 40 WHEN $FLAG[1] DO COUNT()\n"),
+        HasSubstr("40 is no priority"));
+    EXPECT_THAT(run("RESUME\n"), HasSubstr("in an interrupt program only"));
+    EXPECT_THAT(run("BRAKE\n"), HasSubstr("in an interrupt program only"));
+    EXPECT_THAT(run("INTERRUPT DECL 10 WHEN $FLAG[1] DO COUNT\n"), HasSubstr("brackets"));
+    EXPECT_THAT(run("INTERRUPT ON 10\n", TaskKind::submit), HasSubstr("the robot interpreter's"));
+    EXPECT_THAT(run("INTERRUPT DECL 10 WHEN $FLAG[1] DO COUNT()\nINTERRUPT ON 10\n$FLAG[1]=TRUE\nEND\n"
+                    "DEF COUNT()\nRESUME\n"),
+                HasSubstr("RESUME: the program that declared"));
+}
+
 TEST_F(KrlRun, MotionsWantTheirPreparation) {
     EXPECT_THAT(run("$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\nBAS(#INITMOV,0)\nLIN $NULLFRAME\n"),
                 HasSubstr("first motion"));

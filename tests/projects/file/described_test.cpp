@@ -22,7 +22,8 @@ std::size_t names_in(std::string_view list) {
         return names_in(#__VA_ARGS__);                      \
     }
 MEMBERS(SpotResidual, a, b, c)
-MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(DofSigma, a, b)
+MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Feature, a, b, c, d, e, f, g, h)
 MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
@@ -35,13 +36,13 @@ MEMBERS(PartSetup, a, b, c, d)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
 MEMBERS(FilterOptions, a, b, c, d, e, f)
-MEMBERS(RobotSetup, a, b, c, d, e)
+MEMBERS(RobotSetup, a, b, c, d, e, f)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(FeatureRecipe, a, b, c, d)
 MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Region, a, b, c, d, e, f, g, h)
 MEMBERS(PanelPlace, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
-MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l)
+MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l, m)
 MEMBERS(Requirements, a, b, c, d, e)
 MEMBERS(FrozenContour, a, b, c, d, e, f, g, h, i)
 MEMBERS(ZeroShift, a, b, c)
@@ -62,6 +63,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(region, r);
     whole(region.push, r["push"]);
     whole(*region.correction, r["correction"]);
+    whole(region.correction->sigma_random, r["correction"]["sigma_random"]);
     whole(region.correction->spots[0], r["correction"]["spots"][0]);
 
     SpotMeasurement spot;
@@ -103,6 +105,23 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(ZeroShift{}, to_json_document(ZeroShift{}));
     whole(KnownShift{}, to_json_document(KnownShift{}));
     whole(HeadlessRun{}, to_json_document(HeadlessRun{}));
+}
+
+// A file from before random and systematic were told apart: all it knew was random.
+TEST(Described, ACorrectionWithoutPartsIsRandom) {
+    RegionRecord region;
+    region.correction.emplace();
+    region.correction->covariance.setIdentity();
+    region.correction->sigma_xyz_mm.setOnes();
+    auto document = to_json_document(region);
+    for (const char* field :
+         {"covariance_random", "covariance_systematic", "sigma_random", "sigma_systematic"})
+        ASSERT_EQ(document["correction"].erase(field), 1u) << field;
+    const auto back = from_json_document<RegionRecord>(document, "region");
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->correction->covariance_random, Matrix6::Identity());
+    EXPECT_EQ(back->correction->covariance_systematic, Matrix6::Zero());
+    EXPECT_EQ(back->correction->sigma_random.xyz_mm, Eigen::Vector3d::Ones());
 }
 
 TEST(Described, ACorrectionComesBackWhole) {

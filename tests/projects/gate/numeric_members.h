@@ -61,13 +61,23 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, SpotRes
     auto& [id, residual, used] = v;
     numbers(visit, path + ".residual_mm", residual);
 }
+inline void numbers(const NumberVisitor& visit, const std::string& path, DofSigma& v) {
+    auto& [xyz, abc] = v;
+    numbers(visit, path + ".xyz_mm", xyz);
+    numbers(visit, path + ".abc_deg", abc);
+}
 inline void numbers(const NumberVisitor& visit, const std::string& path, RegionCorrection& v) {
-    auto& [status, displacement, covariance, sigma_xyz, sigma_abc, sigma_at_spots, rms, redundancy, factor,
-           consistent, spots, unobservable, message, iterations] = v;
+    auto& [status, displacement, covariance, random, systematic, sigma_xyz, sigma_abc, sigma_random,
+           sigma_systematic, sigma_at_spots, rms, redundancy, factor, consistent, spots, unobservable,
+           message, iterations] = v;
     numbers(visit, path + ".displacement", displacement);
     numbers(visit, path + ".covariance", covariance);
+    numbers(visit, path + ".covariance_random", random);
+    numbers(visit, path + ".covariance_systematic", systematic);
     numbers(visit, path + ".sigma_xyz_mm", sigma_xyz);
     numbers(visit, path + ".sigma_abc_deg", sigma_abc);
+    numbers(visit, path + ".sigma_random", sigma_random);
+    numbers(visit, path + ".sigma_systematic", sigma_systematic);
     numbers(visit, path + ".sigma_at_spots_mm", sigma_at_spots);
     numbers(visit, path + ".rms_mm", rms);
     numbers(visit, path + ".variance_factor", factor);
@@ -146,7 +156,7 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, PanelPl
     numbers(visit, path + ".sigma_mm", sigma);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, PanelJob& v) {
-    auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, frame_name, frame] = v;
+    auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, deviation, frame_name, frame] = v;
     numbers(visit, path + ".places", places);
     numbers(visit, path + ".base_from_gripper", gripper);
     numbers(visit, path + ".limits", limits);

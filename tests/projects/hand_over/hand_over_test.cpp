@@ -122,7 +122,8 @@ TEST(HandOverTexts, AreTranslated) {
     const std::regex literal(R"re("((?:[^"\\]|\\.)*)")re");
     for (const char* name :
          {"proof/checklist.cpp", "proof/forecast.cpp", "hand_over/hand_over.cpp",
-          "hand_over/hand_over_panel.cpp", "hand_over/hand_over_proof.cpp", "hand_over/hand_over_detail.h"}) {
+          "hand_over/hand_over_panel.cpp", "hand_over/hand_over_proof.cpp", "hand_over/hand_over_detail.h",
+          "acceptance/acceptance_page.cpp", "acceptance/stored_values.cpp", "acceptance/studies.cpp"}) {
         std::ifstream in(std::filesystem::path(SEAMWRIGHT_PROJECTS) / name);
         const std::string source{std::istreambuf_iterator<char>(in), {}};
         ASSERT_FALSE(source.empty()) << name;

@@ -347,6 +347,25 @@ TEST(PanelStation, ADeformedPanelIsBestFittedOrRefused) {
     EXPECT_TRUE(bench.frame().matrix() == before.matrix());
 }
 
+TEST(PanelStation, TheJobSaysWhetherADeviationIsSharedOrLeftOut) {
+    Bench bench;
+    bench.displace();
+    const RunRecord run = bench.run(false);
+    ASSERT_TRUE(run.panel && run.panel->fit) << run.message;
+    std::vector<PanelMeasurement> bent = run.panel->before;
+    ASSERT_GE(bent.size(), 6u);
+    bent[2].panel_mm.z() += 1.5;
+    PanelJob job = bench.project.panel_jobs[0];
+    EXPECT_EQ(job.deviation, PanelDeviation::share);
+    const auto shared = fit_places(bench.project, job, bent);
+    job.deviation = PanelDeviation::leave_out;
+    const auto alone = fit_places(bench.project, job, bent);
+    ASSERT_TRUE(shared && alone);
+    EXPECT_TRUE(shared->spots[2].panel_used);
+    EXPECT_FALSE(alone->spots[2].panel_used);
+    EXPECT_LT(distance_mm(alone->gripper_motion, run.panel->fit->gripper_motion), 0.1);
+}
+
 // The body moves between the measurement and the motion: only the measurement afterwards can notice.
 TEST(PanelStation, TakesBackAMotionThatDidNotBringThePanelIn) {
     Bench bench;
@@ -399,7 +418,7 @@ TEST(PanelFields, DescribeEveryLimitAndTolerance) {
     for (const Field<PanelJob>& f : panel_fields()) {
         EXPECT_TRUE(names.insert(f.info.name).second) << f.info.name;
         EXPECT_EQ(f.get(job), f.info.default_value) << f.info.name;
-        EXPECT_FALSE(f.info.unit.empty());
+        EXPECT_NE(f.info.unit.empty(), f.info.choices.empty());
         EXPECT_TRUE(set_field(job, f.info.name, f.info.minimum)) << f.info.name;
         EXPECT_EQ(f.get(job), f.info.minimum) << f.info.name << " is set where it is read";
         for (const double bad : {f.info.minimum - 1e-6, f.info.maximum + 1e-6, std::nan("")})

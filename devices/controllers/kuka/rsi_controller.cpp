@@ -1,4 +1,4 @@
-// The robot's end of RSI, before a simulated cell.
+#include "devices/controllers/kuka/rsi_controller.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include <thread>
 
 #include "core/geometry/notation.h"
-#include "devices/cyclic/path.h"
+#include "devices/controllers/kuka/rsi_application.h"
 #include "devices/exchange/json_fields.h"
-#include "devices/kuka/rsi.h"
+#include "devices/kuka/rsi_program.h"
 #include "devices/kuka/rsi_telegram.h"
 #include "devices/net/socket.h"
 
@@ -24,7 +24,6 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t kHistory = 20000;
 constexpr std::uint64_t kFirstIpoc = 4208163634;
-constexpr int kStandsAtEnd_ms = 100;  // seamwright_rsi.src waits so before RSI_OFF
 
 struct Options {
     std::string address = "127.0.0.1", sen_type = "ImFree";
@@ -37,14 +36,24 @@ struct Options {
 class Rsi final : public SimulatedRsi {
   public:
     Rsi(Options options, UdpSocket socket, std::unique_ptr<SimulatedController> measuring)
-        : options_(std::move(options)),
-          socket_(std::move(socket)),
-          measuring_(std::move(measuring)),
-          thread_([this] { run(); }) {}
+        : options_(std::move(options)), socket_(std::move(socket)), measuring_(std::move(measuring)) {}
+    // Error (KrlError) for a program that the controller does not load.
+    void start(const std::shared_ptr<SimulatedCell>& cell, const std::vector<ProgramFile>& program) {
+        if (options_.application) {
+            krl::RsiApplicationSettings settings{options_.path, options_.path_s, options_.restart_ms};
+            settings.path_over = [this] { take(); };
+            if (cell)
+                settings.stop_message = [cell] {
+                    return cell->mode() == RobotMode::stopped || cell->mode() == RobotMode::fault;
+                };
+            application_ = std::make_unique<krl::RsiApplication>(std::move(settings), program);
+        }
+        thread_ = std::thread([this] { run(); });
+    }
     ~Rsi() override {
         stop_ = true;
         socket_.close();
-        thread_.join();
+        if (thread_.joinable()) thread_.join();
     }
     std::uint16_t port() const override { return static_cast<std::uint16_t>(options_.port); }
     Sample newest() const override {
@@ -58,6 +67,9 @@ class Rsi final : public SimulatedRsi {
     std::uint64_t stops() const override { return stops_; }
     std::uint64_t late() const override { return late_total_; }
     SimulatedController* measuring() override { return measuring_.get(); }
+    std::vector<std::string> messages() const override {
+        return application_ ? application_->messages() : std::vector<std::string>{};
+    }
 
   private:
     static std::string frame(const char* name, const Pose& pose, double scale = 1) {
@@ -77,31 +89,50 @@ class Rsi final : public SimulatedRsi {
         return make_pose(turn * programmed.linear(), programmed.translation() + offset);
     }
 
-    // RSI_ON: the correction is zero, the path at its beginning.
+    // RSI_ON: the correction is zero.
     void begin_session() {
         sum_ = last_ = {};
         late_ = 0;
         late_in_row_ = 0;
-        path_ms_ = 0;
-        stands_ms_ = 0;
         release_ = false;
         shown_.clear();
         withdraw();
     }
 
-    bool ended() const { return options_.application && path_ms_ >= options_.path_s * 1000; }
-    bool on_path() const { return options_.application && (release_ || path_ms_ > 0) && !ended(); }
+    // What the program does in this cycle; without one RSI is on and the path goes on for ever.
+    krl::RsiApplication::Now next_cycle() {
+        if (application_) return application_->cycle(options_.cycle_ms);
+        krl::RsiApplication::Now now;
+        if (off_ms_ > 0 && (off_ms_ -= options_.cycle_ms) <= 0) ++session_;
+        endless_ms_ += options_.cycle_ms;
+        now.on = off_ms_ <= 0;
+        now.relative = options_.relative;
+        now.session = session_;
+        now.under_way = now.on;
+        now.programmed = options_.path.at(endless_ms_ / 1e3);
+        return now;
+    }
 
     void run() {
         auto next = Clock::now();
-        begin_session();
-        std::uint64_t ipoc = kFirstIpoc;
+        std::uint64_t ipoc = kFirstIpoc, session = 0;
         bool half_sent = false;
         const auto cycle = static_cast<std::uint64_t>(options_.cycle_ms);
         while (!stop_) {
             next += milliseconds(options_.cycle_ms);
             ipoc += cycle;
-            if (!options_.application || on_path()) path_ms_ += static_cast<double>(cycle);
+            const krl::RsiApplication::Now now = next_cycle();
+            relative_ = now.relative;
+            if (now.session != session || !now.on) {
+                session = now.session;
+                begin_session();
+            }
+            if (!now.on) {
+                if (measured_.begins(measuring_.get())) part_begins();
+                book(now.programmed, ipoc);
+                std::this_thread::sleep_until(next = std::max(next, Clock::now()));
+                continue;
+            }
             const ControllerFault kind = fault();
             if (kind == ControllerFault::slow) {
                 for (int waited = 0; waited < options_.slow_ms && !stop_; waited += 10)
@@ -118,15 +149,14 @@ class Rsi final : public SimulatedRsi {
                 }
             }
             // The controller's time is its cycle stamp: a pause of this machine stops both.
-            const Pose programmed = options_.path.at(path_ms_ / 1e3);
-            const Pose actual = lagging(corrected(programmed));
+            const Pose actual = lagging(corrected(now.programmed));
             if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
                 half_sent = false;
             const bool wild = kind == ControllerFault::out_of_range;
             const std::string text = fmt::format(
                 "<Rob Type=\"KUKA\">{}{}<Delay D=\"{}\" /><DiL>0</DiL><Path>{}</Path><IPOC>{}</IPOC></Rob>",
-                frame("RIst", actual, wild ? 1e9 : 1), frame("RSol", programmed, wild ? 1e9 : 1), late_,
-                on_path() ? 1 : 0, kind == ControllerFault::wrong_answer ? kFirstIpoc : ipoc);
+                frame("RIst", actual, wild ? 1e9 : 1), frame("RSol", now.programmed, wild ? 1e9 : 1), late_,
+                now.under_way ? 1 : 0, kind == ControllerFault::wrong_answer ? kFirstIpoc : ipoc);
             const Endpoint to{options_.address, static_cast<std::uint16_t>(options_.port)};
             switch (kind) {
                 case ControllerFault::silent:
@@ -145,31 +175,33 @@ class Rsi final : public SimulatedRsi {
             } else {
                 missed();
             }
+            if (application_) application_->set_release(release_);
             if (measured_.begins(measuring_.get())) part_begins();
             const bool correcting = std::any_of(sum_.begin(), sum_.end(), [](double x) { return x != 0; });
             const double size = Eigen::Vector3d(sum_[0], sum_[1], sum_[2]).norm();
-            const bool over = ended() && (stands_ms_ += options_.cycle_ms) > kStandsAtEnd_ms;
-            if (over) take();  // RSI_OFF; the next part's program switches it on again
-            if (over || late_in_row_ > options_.late_limit || size > options_.max_translation_mm ||
+            if (late_in_row_ > options_.late_limit || size > options_.max_translation_mm ||
                 (kind == ControllerFault::reject_write && correcting)) {
-                if (!over) ++stops_;
+                ++stops_;
                 begin_session();
-                for (int off = 0; off < options_.restart_ms && !stop_; off += 10) {
-                    std::this_thread::sleep_for(milliseconds(10));
-                    ipoc += 10;
-                }
-                next = Clock::now();
+                if (application_)
+                    application_->rsi_fails();
+                else
+                    off_ms_ = options_.restart_ms;
                 continue;
             }
-            const bool may_run = options_.application ? release_ : correcting;
+            const bool may_run = application_ ? release_ : correcting;
             if (may_run && !released())
                 take_verdict(PartVerdict::corrected);
-            else if (!may_run && !correcting && released())
+            else if (!may_run && released())
                 withdraw();
-            const std::lock_guard lock(mutex_);
-            history_.push_back({programmed, corrected(programmed), sum_, ipoc});
-            if (history_.size() > kHistory) history_.pop_front();
+            book(now.programmed, ipoc);
         }
+    }
+
+    void book(const Pose& programmed, std::uint64_t ipoc) {
+        const std::lock_guard lock(mutex_);
+        history_.push_back({programmed, corrected(programmed), sum_, ipoc});
+        if (history_.size() > kHistory) history_.pop_front();
     }
 
     // A cycle without an answer in time: HOLDON takes the last RKorr once more, else it is zero.
@@ -182,9 +214,9 @@ class Rsi final : public SimulatedRsi {
     }
 
     void take_correction() {
-        for (std::size_t k = 0; k < 6; ++k) sum_[k] = options_.relative ? sum_[k] + last_[k] : last_[k];
+        for (std::size_t k = 0; k < 6; ++k) sum_[k] = relative_ ? sum_[k] + last_[k] : last_[k];
         // Sums of decimals: what rounding of the addition leaves is no correction.
-        if (options_.relative)
+        if (relative_)
             for (double& x : sum_)
                 if (std::abs(x) < 1e-10) x = 0;
     }
@@ -229,9 +261,13 @@ class Rsi final : public SimulatedRsi {
     NextPart measured_;
     std::array<double, 6> sum_{}, last_{};
     std::uint64_t late_ = 0;  // as Delay D tells
-    int late_in_row_ = 0, stands_ms_ = 0;
-    double path_ms_ = 0;
-    bool release_ = false;
+    int late_in_row_ = 0;
+    bool release_ = false, relative_ = false;
+    std::unique_ptr<krl::RsiApplication> application_;
+    // Without one.
+    int off_ms_ = 0;
+    double endless_ms_ = 0;
+    std::uint64_t session_ = 1;
     std::deque<Pose> shown_;
     std::atomic<std::uint64_t> stops_ = 0, late_total_ = 0;
     mutable std::mutex mutex_;
@@ -295,11 +331,22 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
         if (!(*number >= 0 && *number <= 1e4)) return input_error("not within 0 and 10000", key);
         *value = *number;
     }
-    auto measuring = start_measuring_controller(settings, std::move(cell), start_controller);
+    auto measuring = start_measuring_controller(settings, cell, start_controller);
     if (!measuring) return measuring;
     auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);
     if (!socket) return tl::unexpected(socket.error());
-    return std::make_unique<Rsi>(std::move(o), std::move(*socket), std::move(*measuring));
+    ProgramRequest request;
+    request.settings = {{"port", o.port}, {"mode", mode}, {"reference", reference}, {"sen_type", o.sen_type}};
+    auto program = write_rsi_program(request);
+    if (!program) return tl::unexpected(program.error());
+    auto controller = std::make_unique<Rsi>(std::move(o), std::move(*socket), std::move(*measuring));
+    try {
+        controller->start(cell, *program);
+    } catch (const krl::KrlError& e) {
+        return device_error(std::string("the controller does not take the program: ") + e.what(),
+                            "simulated KUKA");
+    }
+    return controller;
 }
 
 }  // namespace seamwright

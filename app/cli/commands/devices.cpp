@@ -1,0 +1,144 @@
+// seamwright devices: the drivers, their settings, and a project's devices.
+
+#include <fmt/format.h>
+
+#include "app/cli/command.h"
+#include "devices/genicam/genicam.h"
+#include "devices/registry.h"
+#include "projects/station/station.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+json settings_json(const SettingTable& table) {
+    json list = json::array();
+    for (const SettingInfo& s : table) {
+        json one = {
+            {"name", s.name}, {"kind", to_string(s.kind)}, {"default", s.otherwise}, {"help", s.help}};
+        if (s.kind == SettingKind::number || s.kind == SettingKind::whole) {
+            one["low"] = s.low;
+            one["high"] = s.high;
+        }
+        if (!s.choices.empty()) one["choices"] = s.choices;
+        if (!s.former.empty()) one["former"] = s.former;
+        if (!s.fields.empty()) one["fields"] = settings_json(s.fields);
+        list.push_back(std::move(one));
+    }
+    return list;
+}
+
+Expected<Answer> helped(const CLI::App& command, const std::string& driver) {
+    Answer answer;
+    if (driver.empty()) {
+        answer.text = command.help("seamwright");
+        return answer;
+    }
+    auto text = driver == "all" ? std::optional(settings_document()) : driver_text(driver);
+    if (!text) {
+        std::string known;
+        for (const SensorDriver& d : sensor_drivers()) known += std::string(d.name) + ", ";
+        for (const RobotDriver& d : robot_drivers())
+            if (known.find(std::string(d.name) + ", ") == std::string::npos)
+                known += std::string(d.name) + ", ";
+        return usage_error("there is no driver \"" + driver + "\"", "--help", "known are " + known + "all");
+    }
+    answer.text = *text;
+    answer.json = {{"status", "ok"}, {"driver", driver}, {"text", *text}};
+    return answer;
+}
+
+}  // namespace
+
+void add_devices(CommandLine& line) {
+    auto file = std::make_shared<std::string>();
+    auto help = std::make_shared<std::string>();
+    CLI::App* command = line.add("devices",
+                                 "The drivers there are, and with --search the cameras; with a project: its "
+                                 "devices, identities and counters.",
+                                 "seamwright devices door_left.seam --json -");
+    command->set_help_flag();
+    auto* asked =
+        command->add_option("-h,--help", *help, "This message; with a driver's name, or all, the settings")
+            ->expected(0, 1)
+            ->type_name("[DRIVER|all]");
+    command->add_option("file", *file, "Connect this project's devices")->type_name("FILE.seam");
+    auto search = std::make_shared<bool>(false);
+    command->add_flag("--search", *search,
+                      "Ask all networks of this computer for cameras (GigE Vision broadcast)");
+    line.on(command, [file, search, help, asked, command]() -> Expected<Answer> {
+        if (asked->count() > 0) return helped(*command, *help);
+        Answer answer;
+        answer.json = {{"status", "ok"}, {"sensor_drivers", json::array()}, {"robot_drivers", json::array()}};
+        answer.text = "sensor drivers\n";
+        for (const SensorDriver& d : sensor_drivers()) {
+            answer.json["sensor_drivers"].push_back(
+                {{"name", d.name}, {"help", d.help}, {"settings", settings_json(d.settings())}});
+            answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
+        }
+        answer.text += "robot drivers\n";
+        for (const RobotDriver& d : robot_drivers()) {
+            answer.json["robot_drivers"].push_back(
+                {{"name", d.name}, {"help", d.help}, {"settings", settings_json(d.settings())}});
+            answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
+        }
+        if (*search) {
+            answer.json["cameras"] = json::array();
+            answer.text += "cameras found\n";
+            for (const DiscoveredCamera& c : discover_cameras()) {
+                answer.json["cameras"].push_back({{"vendor", c.vendor},
+                                                  {"model", c.model},
+                                                  {"serial", c.serial},
+                                                  {"address", c.address},
+                                                  {"protocol", c.protocol}});
+                answer.text += fmt::format("  {} {} serial {} at {} ({})\n", c.vendor, c.model, c.serial,
+                                           c.address, c.protocol);
+            }
+        }
+        if (file->empty()) return answer;
+        auto station = Station::open(*file, FileAccess::read_only);
+        if (!station) return tl::unexpected(station.error());
+        if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+        answer.json["sensors"] = json::array();
+        answer.json["robots"] = json::array();
+        for (const SensorSetup& s : station->project().sensors) {
+            ProfileSource* sensor = station->sensor(s.id);
+            const SensorIdentity id = sensor->identity();
+            const SourceCounters c = sensor->counters();
+            answer.json["sensors"].push_back({{"id", s.id},
+                                              {"driver", s.driver},
+                                              {"vendor", id.vendor},
+                                              {"model", id.model},
+                                              {"serial", id.serial},
+                                              {"completed", c.completed},
+                                              {"damaged", c.damaged},
+                                              {"underrun", c.underrun},
+                                              {"missing_packets", c.missing_packets},
+                                              {"late", c.late},
+                                              {"lost", c.lost},
+                                              {"resent_packets", c.resent_packets},
+                                              {"reconnects", c.reconnects}});
+            answer.text += fmt::format("sensor {}: {} {} {} serial {}\n", s.id, s.driver, id.vendor, id.model,
+                                       id.serial);
+        }
+        for (const RobotSetup& r : station->project().robots) {
+            RobotLink* robot = station->robot(r.id);
+            auto id = robot->identity();
+            if (!id) return tl::unexpected(id.error());
+            auto mode = robot->mode();
+            if (!mode) return tl::unexpected(mode.error());
+            answer.json["robots"].push_back({{"id", r.id},
+                                             {"driver", r.driver},
+                                             {"brand", id->brand},
+                                             {"model", id->model},
+                                             {"serial", id->serial},
+                                             {"mode", to_string(*mode)}});
+            answer.text += fmt::format("robot {}: {} {} {} serial {}, mode {}\n", r.id, r.driver, id->brand,
+                                       id->model, id->serial, to_string(*mode));
+        }
+        return answer;
+    });
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,166 @@
+// A region's spots made ready: each with its noise as unit, what errs from spot to spot folded in.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/correction/region_system.h"
+
+namespace seamwright::correction {
+namespace {
+
+// What errs at one spot beside the noise of its measure, along the sensor's axes, mm^2.
+struct LocalTerms {
+    bool any = false;
+    Eigen::Matrix3d random = Eigen::Matrix3d::Zero(), systematic = Eigen::Matrix3d::Zero();
+};
+
+LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
+    LocalTerms out;
+    if (in.robot_covariance && !in.robot_covariance->isZero(0)) {
+        out.any = true;
+        const Pose& w = in.workobject_from_sensor;
+        const bool curved = in.curve && in.weights.y() == 0;
+        const bool travel = curved || in.weights.y() > 0;
+        out.random = arrival_covariance(w, *in.robot_covariance,
+                                        from_reference ? in.reference_mm : in.measured_mm, travel);
+        out.systematic = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel);
+        if (curved) {
+            // An arrival further along the contour sees it where it runs on.
+            Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
+            along(0, 1) = -in.curve->x_coefficients[0];
+            along(2, 1) = -in.curve->z_coefficients[0];
+            out.random = along * out.random * along.transpose();
+            out.systematic = along * out.systematic * along.transpose();
+        }
+    }
+    if (in.reference_covariance_mm2 && !in.reference_covariance_mm2->isZero(0)) {
+        out.any = true;
+        const Eigen::Matrix2d& c = *in.reference_covariance_mm2;
+        out.systematic(0, 0) += c(0, 0);
+        out.systematic(2, 2) += c(1, 1);
+        out.systematic(0, 2) += c(0, 1);
+        out.systematic(2, 0) += c(0, 1);
+    }
+    return out;
+}
+
+// shape with shape shape^T sigma^2 = noise + local terms over the observed axes; flat is its inverse.
+void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, Eigen::Matrix3d& flat) {
+    const double variance = in.sigma_mm * in.sigma_mm;
+    Eigen::Matrix3d all = variance * Eigen::Matrix3d::Identity();
+    if (in.covariance_mm2) {
+        const Eigen::Matrix2d& c = *in.covariance_mm2;
+        all(0, 0) = c(0, 0);
+        all(2, 2) = c(1, 1);
+        all(0, 2) = all(2, 0) = c(1, 0);
+    }
+    all += local.random + local.systematic;
+    Eigen::Matrix3d systematic = local.systematic;
+    const double weight = in.weights.maxCoeff();
+    bool together = true;  // the observed axes count the same
+    for (int i = 0; i < 3; ++i) together = together && (in.weights[i] == 0 || in.weights[i] == weight);
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const bool kept = in.weights[i] > 0 && in.weights[k] > 0 && (together || i == k);
+            if (!kept) systematic(i, k) = 0, all(i, k) = i == k ? variance : 0.0;
+        }
+    }
+    // Cholesky, and its inverse.
+    Eigen::Matrix3d& t = s.shape;
+    t(0, 0) = std::sqrt(all(0, 0));
+    t(1, 0) = all(1, 0) / t(0, 0);
+    t(2, 0) = all(2, 0) / t(0, 0);
+    t(1, 1) = std::sqrt(all(1, 1) - t(1, 0) * t(1, 0));
+    t(2, 1) = (all(2, 1) - t(2, 0) * t(1, 0)) / t(1, 1);
+    t(2, 2) = std::sqrt(all(2, 2) - t(2, 0) * t(2, 0) - t(2, 1) * t(2, 1));
+    t /= in.sigma_mm;
+    for (int i = 0; i < 3; ++i) flat(i, i) = 1 / t(i, i);
+    flat(1, 0) = -t(1, 0) * flat(0, 0) * flat(1, 1);
+    flat(2, 1) = -t(2, 1) * flat(1, 1) * flat(2, 2);
+    flat(2, 0) = -(t(2, 0) * flat(0, 0) + t(2, 1) * flat(1, 0)) * flat(2, 2);
+    s.repeats = !systematic.isZero(0);
+    const Eigen::Matrix3d half = flat.lazyProduct(systematic);
+    s.systematic = half.lazyProduct(flat.transpose()) / variance;
+}
+
+}  // namespace
+
+void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                        bool from_reference) {
+    options_ = options;
+    spots_.resize(spots.size());
+    binary_ = true;
+    repeats_ = false;
+    centroid_.setZero();
+    priors_.clear();
+    prior_of_.clear();
+    for (const SensorPrior& prior : options.sensors) {
+        prior_of_.push_back(is_zero(prior) ? -1 : static_cast<int>(priors_.size()));
+        if (prior_of_.back() >= 0) priors_.push_back(root_of(prior));
+    }
+    const auto prior_index = [&](const std::string& id) {
+        for (std::size_t i = 0; i < options.sensors.size(); ++i)
+            if (options.sensors[i].id == id) return prior_of_[i];
+        return -1;
+    };
+    for (std::size_t n = 0; n < spots.size(); ++n) {
+        const SpotObservation& in = spots[n];
+        PreparedSpot& s = spots_[n];
+        s.shape.setIdentity();
+        Eigen::Matrix3d flat = Eigen::Matrix3d::Identity();
+        s.repeats = false;
+        if (const LocalTerms local = local_terms(in, from_reference); local.any) {
+            fold(in, local, s, flat);
+            repeats_ = repeats_ || s.repeats;
+        } else if (in.covariance_mm2) {
+            // Lower triangle of Cholesky, over sigma.
+            const Eigen::Matrix2d& c = *in.covariance_mm2;
+            const double xx = std::sqrt(c(0, 0)), zx = c(1, 0) / xx, zz = std::sqrt(c(1, 1) - zx * zx);
+            s.shape(0, 0) = xx / in.sigma_mm;
+            s.shape(2, 0) = zx / in.sigma_mm;
+            s.shape(2, 2) = zz / in.sigma_mm;
+            flat(0, 0) = in.sigma_mm / xx;
+            flat(2, 2) = in.sigma_mm / zz;
+            flat(2, 0) = -zx / xx * flat(2, 2);
+        }
+        s.sensor_from_workobject = flat * in.workobject_from_sensor.linear().transpose();
+        s.sensor_origin = in.workobject_from_sensor.translation();
+        s.axes = s.sensor_from_workobject.transpose();
+        s.offset = flat * in.reference_mm + s.sensor_from_workobject * s.sensor_origin;
+        s.measured = in.workobject_from_sensor * (from_reference ? in.reference_mm : in.measured_mm);
+        s.reference = flat * in.reference_mm;
+        s.weights = in.weights;
+        s.sigma = in.sigma_mm;
+        s.curved = in.curve && in.weights.y() == 0;
+        if (s.curved) {
+            s.curve = *in.curve;
+            s.curve.x_coefficients *= flat(0, 0);
+            s.curve.z_coefficients =
+                flat(2, 0) * in.curve->x_coefficients + flat(2, 2) * in.curve->z_coefficients;
+        }
+        s.sensor = prior_index(in.sensor);
+        if (s.sensor >= 0) {
+            s.geometry.axes = in.workobject_from_sensor.linear();
+            s.geometry.origin = in.workobject_from_sensor.translation();
+            s.geometry.reference = in.reference_mm;
+            s.geometry.measured = from_reference ? in.reference_mm : in.measured_mm;
+            s.geometry.flat = flat;
+        }
+        s.observed = 0;
+        for (int i = 0; i < 3; ++i) {
+            s.observed += in.weights[i] > 0;
+            binary_ = binary_ && (in.weights[i] == 0 || in.weights[i] == 1);
+        }
+        centroid_ += in.workobject_from_sensor * in.reference_mm;
+    }
+    centroid_ /= static_cast<double>(spots.size());
+    double square = 0;
+    for (const SpotObservation& in : spots)
+        square += (in.workobject_from_sensor * in.reference_mm - centroid_).squaredNorm();
+    spread_ = std::max(1.0, std::sqrt(square / static_cast<double>(spots.size())));
+    free_count_ = static_cast<int>(std::count(options.free.begin(), options.free.end(), true));
+    all_free_ = free_count_ == 6;
+    by_angles_ = !(options.free[3] && options.free[4] && options.free[5]);
+}
+
+}  // namespace seamwright::correction

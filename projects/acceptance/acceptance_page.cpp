@@ -1,0 +1,416 @@
+#include "projects/acceptance/acceptance_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/acceptance/distributions.h"
+#include "projects/file/project_file.h"
+#include "projects/report/svg_plot.h"
+
+namespace seamwright {
+namespace {
+
+using report::Band;
+using report::Mark;
+using report::Plot;
+using report::Rows;
+using report::Series;
+namespace colour = report::colour;
+
+struct AcceptanceWriter {
+    const Acceptance& a;
+    Language language;
+    report::Page& page;
+
+    template <class... A>
+    std::string t(const char* english, const A&... arguments) const {
+        return Phrase(english, arguments...).in(language);
+    }
+    std::string number(double value, int decimals) const {
+        return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+    }
+    void index(Rows& rows, const std::string& name, double value, const Interval& limits, int decimals,
+               const std::string& required = {}) const {
+        rows.push_back({name, number(value, decimals), number(limits.low, decimals),
+                        number(limits.high, decimals), required});
+    }
+    Rows head() const { return {{t("Index"), t("Value"), t("from (95 %)"), t("to (95 %)"), t("Required")}}; }
+    void verdict(AcceptanceVerdict v, const std::string& why) const {
+        page.verdict(name_of(v).in(language), tone_of(v), why);
+    }
+    void verdict(Study study, AcceptanceVerdict v, const std::string& why) const {
+        const Phrase lacks = what_lacks(a, study);
+        verdict(v, lacks.empty() ? why : lacks.in(language));
+    }
+    double lower() const { return a.settings.nominal_mm - a.settings.tolerance_mm / 2; }
+    double upper() const { return a.settings.nominal_mm + a.settings.tolerance_mm / 2; }
+};
+
+std::string run_chart(const AcceptanceWriter& w) {
+    const Type1& r = *w.a.type1;
+    Plot plot;
+    plot.title = w.t("Run chart");
+    plot.x_label = w.t("value");
+    plot.y_label = "mm";
+    plot.width_px = 400;
+    plot.height_px = 250;
+    Series values{w.t("value"), {}, {}, Mark::dots, colour::kBlue},
+        reference{w.t("reference"), {}, {}, Mark::line, colour::kGreen},
+        mean{w.t("mean"), {}, {}, Mark::dashed, colour::kVermilion};
+    const double half = w.a.settings.share * w.a.settings.tolerance_mm / 2;
+    for (const StudyValue& v : w.a.type1_values) {
+        values.x.push_back(static_cast<double>(values.x.size() + 1));
+        values.y.push_back(v.value_mm);
+    }
+    for (Series* s : {&reference, &mean}) {
+        s->x = {1, static_cast<double>(r.n)};
+        s->y.assign(2, s == &mean ? r.mean_mm : r.reference_mm);
+    }
+    plot.bands = {{r.reference_mm - half, r.reference_mm + half, w.t("share of the tolerance")}};
+    plot.series = {reference, mean, values};
+    return report::svg(plot);
+}
+
+std::string histogram(const AcceptanceWriter& w) {
+    const Type1& r = *w.a.type1;
+    const double half = w.a.settings.tolerance_mm / 2;
+    double reach = std::max(half, 1e-9);
+    for (const StudyValue& v : w.a.type1_values)
+        reach = std::max(reach, std::abs(v.value_mm - r.reference_mm));
+    constexpr int kClasses = 41;
+    std::vector<double> share(kClasses);
+    for (const StudyValue& v : w.a.type1_values) {
+        const int k = static_cast<int>((v.value_mm - r.reference_mm + reach) / (2 * reach) * kClasses);
+        share[static_cast<std::size_t>(std::clamp(k, 0, kClasses - 1))] += 100.0 / r.n;
+    }
+    Plot plot;
+    plot.title = w.t("Histogram over the tolerance");
+    plot.x_label = w.t("value minus reference (mm)");
+    plot.y_label = w.t("share (%)");
+    plot.width_px = 400;
+    plot.height_px = 250;
+    Series bars{w.t("share"), {}, {}, Mark::bars, colour::kBlue};
+    for (int k = 0; k < kClasses; ++k) {
+        bars.x.push_back(k);
+        bars.y.push_back(share[static_cast<std::size_t>(k)]);
+        plot.categories.push_back(
+            k % 10 == 0 ? fmt::format("{:+.3f}", -reach + (k + 0.5) * 2 * reach / kClasses) : std::string());
+    }
+    plot.series = {bars};
+    return report::svg(plot);
+}
+
+void type1_chapter(AcceptanceWriter& w) {
+    const Type1& r = *w.a.type1;
+    const AcceptanceSettings& s = w.a.settings;
+    w.page.heading(w.t("Type 1: capability on a reference part"));
+    w.verdict(Study::type1, r.verdict, w.t("Cg and Cgk must reach {}", w.number(s.required, 2)));
+    w.page.paragraph(w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).", w.a.type1_part, r.n,
+                         w.number(r.reference_mm, 4), s.share, s.width));
+    Rows rows = w.head();
+    w.index(rows, w.t("mean (mm)"), r.mean_mm, r.mean_limits, 4);
+    w.index(rows, w.t("s (mm)"), r.s_mm, r.s_limits, 4);
+    w.index(rows, w.t("bias (mm)"), r.bias_mm, r.bias_limits, 4);
+    w.index(rows, "Cg", r.cg, r.cg_limits, 2, w.number(s.required, 2));
+    w.index(rows, "Cgk", r.cgk, r.cgk_limits, 2, w.number(s.required, 2));
+    w.page.table(rows);
+    w.page.paragraph(r.bias_p < 0.05
+                         ? w.t("The bias is no chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p))
+                         : w.t("The bias may be chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p)));
+    w.page.figures({run_chart(w), histogram(w)});
+}
+
+void type3_chapter(AcceptanceWriter& w) {
+    const Type3& r = *w.a.type3;
+    w.page.heading(w.t("Type 3: repeatability and reproducibility"));
+    w.verdict(Study::type3, r.verdict,
+              w.t("up to 10 % of the tolerance with ndc of 5 is accepted, beyond 30 % not"));
+    w.page.paragraph(
+        w.t("{} parts, each hung {} times, each time measured {} times.", r.parts, r.rehangs, r.runs));
+    Rows rows = w.head();
+    w.index(rows, w.t("EV, repeat (mm)"), r.ev_mm, r.ev_limits, 4);
+    if (r.nested) w.index(rows, w.t("rehang (mm)"), r.rehang_mm, r.rehang_limits, 4);
+    w.index(rows, "GRR (mm)", r.grr_mm, r.grr_limits, 4);
+    w.index(rows, w.t("PV, parts (mm)"), r.pv_mm, r.pv_limits, 4);
+    w.index(rows, w.t("GRR of the tolerance (%)"), r.grr_percent_tolerance, r.tolerance_limits, 1, "10 / 30");
+    w.index(rows, w.t("GRR of the total variation (%)"), r.grr_percent_total, r.total_limits, 1);
+    w.index(rows, "ndc", r.ndc, r.ndc_limits, 0, "5");
+    w.page.table(rows);
+    Rows anova{{w.t("Source"), "df", "SS", "MS"}};
+    for (const AnovaRow& row : r.anova) {
+        const std::string source = row.source;
+        anova.push_back({source == "part"     ? w.t("part")
+                         : source == "rehang" ? w.t("rehang")
+                         : source == "repeat" ? w.t("repeat")
+                                              : w.t("total"),
+                         w.number(row.df, 0), fmt::format("{:.6g}", row.ss),
+                         source == "total" ? std::string() : fmt::format("{:.6g}", row.ms)});
+    }
+    w.page.table(anova, w.t("Analysis of variance"));
+    if (r.rehang_negative) w.page.paragraph(w.t("The component of the rehang came out negative and is 0."));
+    if (r.pv_negative) w.page.paragraph(w.t("The component of the parts came out negative and is 0."));
+    if (r.rehang_in_repeat)
+        w.page.paragraph(w.t("Each rehang was measured once: repeat and rehang cannot be told apart."));
+    if (w.a.type1_part_left_out)
+        w.page.paragraph(w.t("The reference part was measured unlike the others and is left out here."));
+}
+
+void linearity_chapter(AcceptanceWriter& w) {
+    const Linearity& r = *w.a.linearity;
+    w.page.heading(w.t("Linearity"));
+    w.verdict(Study::linearity, r.verdict,
+              r.zero_inside ? w.t("the line of no bias lies inside the 95 % band")
+                            : w.t("the line of no bias leaves the 95 % band"));
+    Rows rows = w.head();
+    w.index(rows, w.t("slope (mm per m)"), 1000 * r.line.slope,
+            {1000 * r.line.slope_limits.low, 1000 * r.line.slope_limits.high}, 3);
+    w.index(rows, w.t("intercept (mm)"), r.line.intercept, r.line.intercept_limits, 4);
+    w.page.table(rows);
+    Plot plot;
+    plot.title = w.t("Bias against the reference");
+    plot.x_label = w.t("reference (mm)");
+    plot.y_label = w.t("bias (mm)");
+    plot.width_px = 800;
+    Series dots{w.t("value"), {}, {}, Mark::dots, colour::kBlue},
+        line{w.t("line"), {}, {}, Mark::line, colour::kGreen},
+        low{w.t("95 % band"), {}, {}, Mark::dashed, colour::kVermilion},
+        high{"", {}, {}, Mark::dashed, colour::kVermilion};
+    for (const StudyValue& v : w.a.values.linearity) {
+        dots.x.push_back(*v.reference_mm);
+        dots.y.push_back(v.value_mm - *v.reference_mm);
+    }
+    const double from = r.levels.front().reference_mm, to = r.levels.back().reference_mm;
+    for (int i = 0; i <= 40; ++i) {
+        const double x = from + (to - from) * i / 40;
+        const Interval band = r.line.band(x);
+        for (Series* s : {&line, &low, &high}) s->x.push_back(x);
+        line.y.push_back(r.line.at(x));
+        low.y.push_back(band.low);
+        high.y.push_back(band.high);
+    }
+    plot.series = {dots, line, low, high};
+    w.page.figure(report::svg(plot));
+}
+
+std::string control_chart(const AcceptanceWriter& w, const Stability& r, bool spread) {
+    Plot plot;
+    plot.title = spread ? w.t("Standard deviations") : w.t("Means");
+    plot.x_label = w.t("subgroup");
+    plot.y_label = "mm";
+    plot.width_px = 400;
+    plot.height_px = 250;
+    const std::vector<double>& y = spread ? r.s_mm : r.means_mm;
+    const Interval& limits = spread ? r.s_chart : r.mean_chart;
+    Series line{w.t("value"), {}, y, Mark::line, colour::kBlue},
+        alarms{w.t("alarm"), {}, {}, Mark::crosses, colour::kVermilion};
+    for (std::size_t i = 0; i < y.size(); ++i) line.x.push_back(static_cast<double>(i + 1));
+    for (const StabilityAlarm& alarm : r.alarms) {
+        if (alarm.spread != spread) continue;
+        alarms.x.push_back(static_cast<double>(alarm.subgroup + 1));
+        alarms.y.push_back(y[alarm.subgroup]);
+    }
+    plot.bands = {{limits.low, limits.high, w.t("control limits")}};
+    plot.series = {line};
+    if (!alarms.x.empty()) plot.series.push_back(alarms);
+    return report::svg(plot);
+}
+
+void stability_chapter(AcceptanceWriter& w) {
+    const Stability& r = *w.a.stability;
+    w.page.heading(w.t("Stability"));
+    w.verdict(Study::stability, r.verdict,
+              r.alarms.empty() ? w.t("{} subgroups, no alarm", r.means_mm.size())
+                               : w.t("{} subgroups, {} alarms", r.means_mm.size(), r.alarms.size()));
+    w.page.paragraph(w.t("Subgroups of {} values; {} values that fill none are left out.", r.size,
+                         w.a.stability_left_out));
+    Rows rows = w.head();
+    w.index(rows, w.t("centre (mm)"), r.centre_mm, r.centre_limits, 4);
+    w.page.table(rows);
+    w.page.table({{w.t("Control limits"), w.t("lower (mm)"), w.t("upper (mm)")},
+                  {w.t("Means"), w.number(r.mean_chart.low, 4), w.number(r.mean_chart.high, 4)},
+                  {w.t("Standard deviations"), w.number(r.s_chart.low, 4), w.number(r.s_chart.high, 4)}});
+    if (!r.alarms.empty()) {
+        Rows alarms{{w.t("Run"), w.t("Nelson's rule"), w.t("Chart")}};
+        for (const StabilityAlarm& a : r.alarms)
+            alarms.push_back({std::to_string(a.run), std::to_string(a.rule),
+                              a.spread ? w.t("Standard deviations") : w.t("Means")});
+        w.page.table(alarms, w.t("Alarms"));
+    }
+    w.page.figures({control_chart(w, r, false), control_chart(w, r, true)});
+}
+
+void correlation_chapter(AcceptanceWriter& w) {
+    const Correlation& r = *w.a.correlation;
+    w.page.heading(w.t("Correlation with the reference instrument"));
+    w.verdict(Study::correlation, r.verdict,
+              w.t("0 must lie inside the offset's limits and 1 inside the slope's"));
+    Rows rows = w.head();
+    w.index(rows, w.t("offset (mm)"), r.offset_mm, r.offset_limits, 4, "0");
+    w.index(rows, w.t("slope"), r.line.slope, r.line.slope_limits, 4, "1");
+    w.page.table(rows);
+    w.page.paragraph(w.t("{} parts, correlation coefficient {}. The offset is stated, not applied.",
+                         r.pairs.size(), w.number(r.r, 4)));
+    Plot plot;
+    plot.title = w.t("Difference against the reference");
+    plot.x_label = w.t("reference (mm)");
+    plot.y_label = w.t("value minus reference (mm)");
+    plot.width_px = 800;
+    Series dots{w.t("part"), {}, {}, Mark::dots, colour::kBlue};
+    for (const CorrelationPair& p : r.pairs) {
+        dots.x.push_back(p.reference_mm);
+        dots.y.push_back(p.value_mm - p.reference_mm);
+    }
+    plot.bands = {{r.offset_limits.low, r.offset_limits.high, w.t("offset (mm)")}};
+    plot.series = {dots};
+    w.page.figure(report::svg(plot));
+}
+
+void vda5_chapter(AcceptanceWriter& w) {
+    const ProcessUncertainty& r = *w.a.vda5;
+    w.page.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
+    w.verdict(Study::vda5, r.verdict, w.t("Q of the system up to 15 %, of the process up to 30 %"));
+    Rows rows = w.head();
+    w.index(rows, "u_MS (mm)", r.u_ms_mm, r.u_ms_limits, 4);
+    w.index(rows, "u_MP (mm)", r.u_mp_mm, r.u_mp_limits, 4);
+    w.index(rows, "Q_MS (%)", r.q_ms_percent, r.q_ms_limits, 1, "15");
+    w.index(rows, "Q_MP (%)", r.q_mp_percent, r.q_mp_limits, 1, "30");
+    w.index(rows, w.t("conformity zone, lower (mm)"), r.conformity_zone.low, r.conformity_low_limits, 4);
+    w.index(rows, w.t("conformity zone, upper (mm)"), r.conformity_zone.high, r.conformity_high_limits, 4);
+    w.page.table(rows);
+    Rows terms{{w.t("Contribution"), "u (mm)", w.t("degrees of freedom"), w.t("counts in")}};
+    for (const UncertaintyTerm& t : r.terms)
+        terms.push_back({t.name, w.number(t.u_mm, 4), w.number(t.degrees, 1),
+                         t.in_system && t.in_process ? "MS, MP"
+                         : t.in_system               ? "MS"
+                         : t.in_process              ? "MP"
+                                                     : "-"});
+    w.page.table(terms);
+    if (!r.type3)
+        w.page.paragraph(w.t("Without production parts the process is known by its reference part alone."));
+    if (r.conformity_zone.low > r.conformity_zone.high)
+        w.page.paragraph(w.t("The uncertainty leaves nothing of the tolerance: no value proves conformity."));
+}
+
+std::string study_name(const AcceptanceWriter& w, Study study) {
+    switch (study) {
+        case Study::type1:
+            return w.t("Type 1: capability on a reference part");
+        case Study::type3:
+            return w.t("Type 3: repeatability and reproducibility");
+        case Study::linearity:
+            return w.t("Linearity");
+        case Study::stability:
+            return w.t("Stability");
+        case Study::correlation:
+            return w.t("Correlation with the reference instrument");
+        default:
+            return w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)");
+    }
+}
+
+void source_chapter(AcceptanceWriter& w) {
+    const StudySource& s = w.a.source;
+    if (s.simulated) w.page.verdict(w.t("simulated"), report::Tone::attention, w.t("the cell was simulated"));
+    Rows rows{{w.t("Requirement"), w.t("Value")},
+              {w.t("tolerance T"), w.number(w.a.settings.tolerance_mm, 4) + " mm"},
+              {w.t("limits"), w.number(w.lower(), 4) + " .. " + w.number(w.upper(), 4) + " mm"}};
+    if (!s.measurand.empty())
+        rows.push_back({w.t("measurand"), w.t("deviation of the bead across its path, {}", s.measurand)});
+    if (!s.part_name.empty()) rows.push_back({w.t("part"), s.part_name});
+    if (!s.sensor.empty())
+        rows.push_back({w.t("Sensor"), s.sensor + ", " + w.t("serial {}", s.sensor_serial)});
+    if (!s.robot.empty()) rows.push_back({w.t("Robot"), s.robot + ", " + w.t("serial {}", s.robot_serial)});
+    if (s.runs > 0) rows.push_back({w.t("stored runs"), std::to_string(s.runs)});
+    w.page.table(rows);
+    for (const Phrase& remark : s.remarks) w.page.paragraph(remark.in(w.language));
+}
+
+}  // namespace
+
+Phrase name_of(AcceptanceVerdict verdict) {
+    switch (verdict) {
+        case AcceptanceVerdict::ok:
+            return Phrase("accepted");
+        case AcceptanceVerdict::conditional:
+            return Phrase("conditional");
+        case AcceptanceVerdict::not_ok:
+            return Phrase("not accepted");
+        default:
+            return Phrase("too little data");
+    }
+}
+
+report::Tone tone_of(AcceptanceVerdict verdict) {
+    return verdict == AcceptanceVerdict::ok       ? report::Tone::good
+           : verdict == AcceptanceVerdict::not_ok ? report::Tone::alarm
+                                                  : report::Tone::attention;
+}
+
+report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& options) {
+    report::Page page(Phrase("Acceptance of the measuring process: {}", a.source.file).in(options.language),
+                      std::string(code_of(options.language)));
+    AcceptanceWriter w{a, options.language, page};
+    const std::string now = options.now_utc.empty() ? utc_now() : options.now_utc;
+    page.paragraph(w.t("File {}, {} UTC, {}.", a.source.file, now.substr(0, 10) + " " + now.substr(11, 5),
+                       options.program.empty() ? "Seamwright" : options.program));
+    w.verdict(a.verdict(), w.t("the worst of the studies below"));
+    source_chapter(w);
+    if (a.type1) type1_chapter(w);
+    if (a.type3) type3_chapter(w);
+    if (a.linearity) linearity_chapter(w);
+    if (a.stability) stability_chapter(w);
+    if (a.correlation) correlation_chapter(w);
+    if (a.vda5) vda5_chapter(w);
+    if (!a.not_done.empty()) {
+        page.heading(w.t("Studies that the data do not allow"));
+        Rows rows{{w.t("Study"), w.t("Finding")}};
+        for (const auto& [study, error] : a.not_done)
+            rows.push_back({study_name(w, study), error.sentence()});
+        page.table(rows);
+    }
+    page.heading(w.t("Signatures"));
+    const std::string date = w.t("Place, date");
+    page.signatures(
+        {{date, w.t("Commissioning engineer"), w.t("Signature")}, {date, w.t("Customer"), w.t("Signature")}});
+    return page;
+}
+
+std::string page_text(const report::Page& page) {
+    std::string out = page.title() + "\n";
+    for (const report::Block& b : page.blocks()) {
+        switch (b.kind) {
+            case report::Block::Kind::heading:
+                out += "\n" + b.text + "\n";
+                break;
+            case report::Block::Kind::paragraph:
+                out += b.text + "\n";
+                break;
+            case report::Block::Kind::verdict:
+                out += b.word + ": " + b.text + "\n";
+                break;
+            case report::Block::Kind::table: {
+                if (!b.text.empty()) out += b.text + "\n";
+                const std::vector<bool> numeric = report::numeric_columns(b.rows);
+                std::vector<std::size_t> widths;
+                for (const auto& row : b.rows) {
+                    widths.resize(std::max(widths.size(), row.size()));
+                    for (std::size_t c = 0; c < row.size(); ++c)
+                        widths[c] = std::max(widths[c], row[c].size());
+                }
+                for (const auto& row : b.rows) {
+                    std::string line = " ";
+                    for (std::size_t c = 0; c < row.size(); ++c)
+                        line += c < numeric.size() && numeric[c] ? fmt::format(" {:>{}} ", row[c], widths[c])
+                                                                 : fmt::format(" {:<{}} ", row[c], widths[c]);
+                    out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+                }
+                break;
+            }
+            default:
+                break;
+        }
+    }
+    return out;
+}
+
+}  // namespace seamwright

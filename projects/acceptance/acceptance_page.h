@@ -1,0 +1,28 @@
+#pragma once
+// The acceptance as it is read: one chapter a study with its indices, their 95 % limits, what is required, plots
+// and verdict, in English or German. A page of blocks (report::Page) for HTML and PDF; the same chapters as text
+// for the command line.
+
+#include <string>
+
+#include "projects/acceptance/studies.h"
+#include "projects/report/html.h"
+
+namespace seamwright {
+
+struct AcceptancePageOptions {
+    Language language = Language::english;
+    std::string now_utc;  // ISO 8601; empty: the clock's
+    std::string program;  // "Seamwright 0.1.0"
+};
+
+report::Page acceptance_page(const Acceptance& acceptance, const AcceptancePageOptions& options);
+
+// Headings, verdicts, sentences and tables of a page, without its plots.
+std::string page_text(const report::Page& page);
+
+// The word of a verdict and its colour.
+Phrase name_of(AcceptanceVerdict verdict);
+report::Tone tone_of(AcceptanceVerdict verdict);
+
+}  // namespace seamwright

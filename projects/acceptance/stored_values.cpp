@@ -1,0 +1,249 @@
+#include "projects/acceptance/stored_values.h"
+
+#include <algorithm>
+#include <map>
+
+#include "projects/proof/known_shift.h"
+#include "projects/proof/zero_shift.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+namespace {
+
+constexpr const char* kUnmovedPart = "zero shift";
+
+enum class RunKind { unmoved, known, part };
+
+struct UsedRun {
+    RunKind kind = RunKind::part;
+    std::string part;
+    long number = 0;
+    std::int64_t setup = 0;
+    std::string utc;
+    Pose found = Pose::Identity();
+    std::optional<Pose> truth;
+};
+
+struct PathDirection {
+    std::string spot_id;
+    bool normal = false;
+    Eigen::Vector3d point_mm, direction;
+    double value(const Pose& d) const { return direction.dot(d * point_mm - point_mm); }
+};
+
+std::vector<PathDirection> directions_of(const Project& setup, const Region& region) {
+    std::vector<PathDirection> out;
+    for (const SpotObservation& spot : planned_observations(setup, region)) {
+        Eigen::Vector3d tangent = Eigen::Vector3d::UnitY();
+        if (spot.curve) tangent = {spot.curve->x_coefficients[0], 1, spot.curve->z_coefficients[0]};
+        tangent = (spot.workobject_from_sensor.linear() * tangent).normalized();
+        const Eigen::Vector3d z = spot.workobject_from_sensor.linear().col(2);
+        const Eigen::Vector3d normal = (z - z.dot(tangent) * tangent).normalized();
+        const Eigen::Vector3d point = spot.workobject_from_sensor * spot.reference_mm;
+        out.push_back({spot.id, true, point, normal});
+        out.push_back({spot.id, false, point, tangent.cross(normal)});
+    }
+    return out;
+}
+
+// The cell that a demo serves over real protocols says so in its devices' names.
+bool names_simulation(std::string text) {
+    for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    return text.find("simulated") != std::string::npos;
+}
+
+// Mean square of value minus reference, or minus the part's mean.
+double mean_square(const std::vector<UsedRun>& runs, const PathDirection& at) {
+    struct OfPart {
+        double n = 0, sum = 0, squares = 0;
+    };
+    std::map<std::string, OfPart> parts;
+    double squares = 0, n = 0;
+    for (const UsedRun& r : runs) {
+        const double v = at.value(r.found);
+        if (r.truth) {
+            squares += (v - at.value(*r.truth)) * (v - at.value(*r.truth));
+            ++n;
+            continue;
+        }
+        OfPart& p = parts[r.part];
+        const double step = v - p.sum / std::max(1.0, p.n);
+        ++p.n;
+        p.sum += v;
+        p.squares += step * (v - p.sum / p.n);
+    }
+    for (const auto& [part, p] : parts) {
+        squares += p.squares;
+        n += p.n - 1;
+    }
+    return n > 0 ? squares / n : 0;
+}
+
+// Type 3 needs as many runs of every part.
+void balance(std::vector<StudyValue>& values, std::vector<Phrase>& remarks) {
+    std::map<std::string, std::size_t> counts;
+    for (const StudyValue& v : values) ++counts[v.part];
+    std::size_t least = 0, once = 0, dropped = 0;
+    for (const auto& [part, n] : counts) {
+        once += n == 1;
+        if (n > 1) least = least == 0 ? n : std::min(least, n);
+    }
+    std::vector<StudyValue> kept;
+    std::map<std::string, std::size_t> taken;
+    for (auto v = values.rbegin(); v != values.rend(); ++v) {
+        if (counts[v->part] < 2) continue;
+        if (taken[v->part]++ < least)
+            kept.push_back(*v);
+        else
+            ++dropped;
+    }
+    std::reverse(kept.begin(), kept.end());
+    values = std::move(kept);
+    if (once > 0)
+        remarks.push_back(Phrase("Parts left out of type 3 because they were measured once: {}.", once));
+    if (dropped > 0)
+        remarks.push_back(
+            Phrase("Older runs left out of type 3 because the other parts were not measured as often: {}.",
+                   dropped));
+}
+
+}  // namespace
+
+Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id) {
+    auto project = file.load();
+    if (!project) return tl::unexpected(project.error());
+    if (project->regions.empty()) return input_error("the project has no region", file.path().string());
+    if (region_id.empty() && project->regions.size() > 1)
+        return usage_error(fmt::format("the project has {} regions", project->regions.size()),
+                           file.path().string(), "name one with --region");
+    const std::string id = region_id.empty() ? project->regions.front().id : region_id;
+    auto summaries = file.runs();
+    if (!summaries) return tl::unexpected(summaries.error());
+    auto evidence = file.evidence();
+    if (!evidence) return tl::unexpected(evidence.error());
+    std::map<std::int64_t, Pose> known;
+    for (const Evidence& e : *evidence)
+        if (const auto* proof = std::get_if<KnownShift>(&e.what)) {
+            known.clear();
+            for (const ShiftTest& test : proof->tests) known[test.run] = test.workobject_from_movedworkobject;
+        }
+
+    StoredStudy study;
+    StudySource& source = study.source;
+    std::vector<UsedRun> used;
+    int refused = 0, of_older_proofs = 0;
+    for (const RunSummary& summary : *summaries) {
+        UsedRun r;
+        r.part = summary.part_id;
+        r.number = static_cast<long>(summary.number);
+        r.setup = summary.setup;
+        r.utc = summary.started_utc;
+        if (r.part.starts_with(kZeroShiftPrefix)) {
+            r.kind = RunKind::unmoved;
+            r.part = kUnmovedPart;
+            r.truth = Pose::Identity();
+        } else if (r.part.starts_with(kKnownShiftPrefix)) {
+            r.kind = RunKind::known;
+            const auto at = known.find(summary.number);
+            if (at == known.end()) {
+                ++of_older_proofs;
+                continue;
+            }
+            r.truth = at->second;
+        }
+        auto run = file.load_run(summary.number, false);
+        if (!run) return tl::unexpected(run.error());
+        const auto record = std::find_if(run->regions.begin(), run->regions.end(),
+                                         [&](const RegionRecord& region) { return region.region_id == id; });
+        if (record == run->regions.end()) continue;  // another region's, or a panel's
+        if (!record->gate_passed || !record->correction ||
+            record->correction->status != CorrectionStatus::ok) {
+            ++refused;
+            continue;
+        }
+        r.found = record->correction->displacement.workobject_from_movedworkobject;
+        used.push_back(std::move(r));
+    }
+    if (used.empty())
+        return input_error(
+            fmt::format("no stored run holds a correction of region \"{}\" that the gate let pass", id),
+            file.path().string(), "measure first, or name another region with --region");
+    int other_setup = 0;
+    for (const RunKind kind : {RunKind::unmoved, RunKind::part}) {
+        std::int64_t newest = 0;
+        for (const UsedRun& r : used)
+            if (r.kind == kind) newest = r.setup;
+        other_setup += static_cast<int>(
+            std::erase_if(used, [&](const UsedRun& r) { return r.kind == kind && r.setup != newest; }));
+    }
+    auto setup = file.load_run_setup(used.back().number);
+    if (!setup) return tl::unexpected(setup.error());
+    const auto region = std::find_if(setup->regions.begin(), setup->regions.end(),
+                                     [&](const Region& r) { return r.id == id; });
+    std::vector<PathDirection> directions;
+    if (region != setup->regions.end()) directions = directions_of(*setup, *region);
+    if (directions.empty())
+        return input_error(fmt::format("region \"{}\" has no calibrated spot", id), file.path().string());
+    const PathDirection* worst = &directions.front();
+    double largest = -1;
+    for (const PathDirection& d : directions)
+        if (const double square = mean_square(used, d); square > largest) largest = square, worst = &d;
+
+    for (const UsedRun& r : used) {
+        StudyValue v{r.part, "1", r.number, worst->value(r.found), {}, r.utc};
+        if (r.truth) v.reference_mm = worst->value(*r.truth);
+        if (r.kind != RunKind::known) {
+            study.values.type1.push_back(v);
+            study.values.stability.push_back(v);
+        }
+        if (r.kind == RunKind::unmoved) {
+            study.reference_part = kUnmovedPart;
+        } else if (r.kind == RunKind::known) {
+            study.values.linearity.push_back(v);
+        } else {
+            study.values.type3.push_back(v);
+        }
+    }
+    source.file = file.path().filename().string();
+    source.measurand = Phrase("region {}, spot {}, {}", id, worst->spot_id,
+                              worst->normal ? Phrase("normal") : Phrase("binormal"));
+    source.part_name = project->part.name;
+    source.runs = static_cast<int>(used.size());
+    if (const Spot* spot = find_spot(*setup, worst->spot_id)) {
+        if (const SensorSetup* sensor = find_sensor(*setup, spot->sensor_id)) {
+            source.sensor = sensor->identity.vendor + " " + sensor->identity.model;
+            source.sensor_serial = sensor->identity.serial;
+            source.simulated = sensor->driver == "simulated" || names_simulation(source.sensor);
+        }
+        if (const RobotSetup* robot = find_robot(*setup, spot->robot_id)) {
+            source.robot = robot->identity.brand + " " + robot->identity.model;
+            source.robot_serial = robot->identity.serial;
+            source.simulated =
+                source.simulated || robot->driver == "simulated" || names_simulation(source.robot);
+        }
+    }
+    if (refused > 0)
+        source.remarks.push_back(Phrase("Runs left out because the gate refused them: {}.", refused));
+    if (of_older_proofs > 0)
+        source.remarks.push_back(
+            Phrase("Runs left out because they belong to an older known shift: {}.", of_older_proofs));
+    if (other_setup > 0)
+        source.remarks.push_back(Phrase(
+            "Runs left out because they were made with another setup than the newest: {}.", other_setup));
+    balance(study.values.type3, source.remarks);
+    return study;
+}
+
+void add_references(StudyValues& values, const std::vector<StudyValue>& table) {
+    std::map<std::string, std::pair<double, double>> sums;
+    for (const StudyValue& v : table) {
+        sums[v.part].first += v.value_mm;
+        ++sums[v.part].second;
+    }
+    values.correlation = values.type3;
+    for (StudyValue& v : values.correlation)
+        if (const auto at = sums.find(v.part); at != sums.end())
+            v.reference_mm = at->second.first / at->second.second;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,127 @@
+// `seamwright acceptance --data`: the contract from the outside.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_program.h"
+
+namespace seamwright {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class AcceptanceCli : public testing::Test {
+  protected:
+    std::filesystem::path folder = test_folder("acceptance");
+    ~AcceptanceCli() override { std::filesystem::remove_all(folder); }
+    std::string write(const std::string& name, const std::string& text) {
+        std::ofstream(folder / name, std::ios::binary) << text;
+        return (folder / name).string();
+    }
+    ProgramResult run(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "acceptance");
+        return run_program(arguments, folder);
+    }
+    json answer(std::vector<std::string> arguments, int exit_code) {
+        arguments.insert(arguments.end(), {"--json", "-"});
+        const ProgramResult r = run(arguments);
+        EXPECT_EQ(r.exit_code, exit_code) << r.err;
+        return json::parse(r.out, nullptr, false);
+    }
+    void refused(const std::vector<std::string>& arguments, const std::string& part) {
+        const ProgramResult r = run(arguments);
+        EXPECT_EQ(r.exit_code, 2) << r.err;
+        EXPECT_THAT(r.err, HasSubstr(part));
+        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+        EXPECT_EQ(r.out, "");
+    }
+    // Fifty values of mean 10.01 and s = 0.1 about a reference of 10.
+    std::string fifty(bool reference) {
+        std::string text = reference ? "part;rehang;run;value;reference\n" : "part;rehang;run;value\n";
+        for (int i = 1; i <= 50; ++i) {
+            char number[32];
+            std::snprintf(number, sizeof number, "%.9f", 10.01 + (i % 2 ? 0.1 : -0.1) * std::sqrt(0.98));
+            std::string value = number;
+            value.replace(value.find('.'), 1, ",");
+            text += "M;1;" + std::to_string(i) + ";" + value + (reference ? ";10\n" : "\n");
+        }
+        return text;
+    }
+};
+
+TEST_F(AcceptanceCli, Type1) {
+    const std::string file = write("v.csv", fifty(true));
+    const json j = answer({"--data", file, "--study", "type1", "--tolerance-mm", "6"}, 0);
+    EXPECT_EQ(j["status"], "ok");
+    EXPECT_EQ(j["type1"]["n"], 50);
+    EXPECT_NEAR(j["type1"]["cg"], 2.0, 1e-6);
+    EXPECT_NEAR(j["type1"]["cgk"], 0.59 / 0.3, 1e-6);
+    EXPECT_NEAR(j["type1"]["bias"], 0.01, 1e-8);
+    EXPECT_LT(j["type1"]["limits"]["cg"][0], 2.0);
+    EXPECT_GT(j["type1"]["limits"]["cg"][1], 2.0);
+    EXPECT_FALSE(j.contains("type3"));
+    const json small = answer({"--data", file, "--study", "type1", "--tolerance-mm", "2"}, 1);
+    EXPECT_EQ(small["type1"]["verdict"], "not_ok");
+    const json variant = answer({"--data", file, "--study", "type1", "--tolerance-mm", "6", "--share", "0.15",
+                                 "--width", "4", "--reference", "10.01"},
+                                0);
+    EXPECT_NEAR(variant["type1"]["cg"], 0.15 * 6 / 0.4, 1e-6);
+    EXPECT_NEAR(variant["type1"]["bias"], 0, 1e-8);
+    const ProgramResult text = run({"--data", file, "--study", "type1", "--tolerance-mm", "6"});
+    EXPECT_EQ(text.exit_code, 0);
+    EXPECT_THAT(text.out, HasSubstr("Cgk"));
+}
+
+TEST_F(AcceptanceCli, FilesOfEveryKind) {
+    const std::string file = write("v.csv", fifty(true));
+    const auto dfq = folder / "v.dfq", html = folder / "v.html", pdf = folder / "v.pdf";
+    const json j = answer({"--data", file, "--tolerance-mm", "6", "--nominal", "10", "--dfq", dfq.string(),
+                           "--html", html.string(), "--pdf", pdf.string(), "--language", "de"},
+                          1);
+    EXPECT_EQ(j["type1"]["verdict"], "ok");
+    EXPECT_EQ(j["vda5"]["verdict"], "ok");
+    EXPECT_EQ(j["type3"]["verdict"], "not_done");
+    EXPECT_EQ(j["stability"]["verdict"], "too_little_data");  // ten subgroups
+    EXPECT_THAT(slurp(dfq), HasSubstr("K2110/1 7.0000\r\n"));
+    EXPECT_THAT(slurp(dfq), HasSubstr("K0014/1 M\r\n"));
+    EXPECT_THAT(slurp(html), HasSubstr("Abnahme des Messprozesses"));
+    EXPECT_EQ(slurp(pdf).substr(0, 5), "%PDF-");
+}
+
+TEST_F(AcceptanceCli, BadInputIsOneSentence) {
+    const std::string file = write("v.csv", fifty(false));
+    refused({"--data", file, "--tolerance-mm", "6", "--study", "type1"}, "reference");
+    for (const char* none : {"0", "-1", "inf", "nan", "1e9"})
+        refused(
+            {"--data", file, "--study", "type1", "--reference", "10", std::string("--tolerance-mm=") + none},
+            "tolerance");
+    refused({"--tolerance-mm", "1"}, "--data");
+    refused({"--data", file, file, "--tolerance-mm", "1"}, "--data");
+    refused({"--data", write("e.csv", ""), "--tolerance-mm", "1"}, "empty");
+    refused({"--data", write("h.csv", "a,b,c\n1,2,3\n"), "--tolerance-mm", "1"}, "no column part");
+    refused({"--data", write("n.csv", "part,rehang,run,value\nA,1,1,NaN\n"), "--tolerance-mm", "1"},
+            "missing");
+    refused({"--data", write("d.csv", "part,rehang,run,value\nA,1,1,1\nA,1,1,2\n"), "--tolerance-mm", "1"},
+            "already");
+    refused({"--data", write("t.csv", "part,rehang,run,value\nA,1,1,one\n"), "--tolerance-mm", "1"},
+            "no number");
+    refused({"--data", write("o.csv", "part,rehang,run,value\nA,1,1,1\nB,1,1,2\n"), "--tolerance-mm", "1",
+             "--study", "type3"},
+            "measured once");
+    refused({"--data", write("u.csv", "part,rehang,run,value\nA,1,1,1\nA,1,2,1.1\nB,1,1,2\n"),
+             "--tolerance-mm", "1", "--study", "type3"},
+            "runs");
+    refused({"--data", file, "--tolerance-mm", "1", "--study", "stability", "--subgroup", "0"}, "subgroup");
+    refused({"--data", file, "--tolerance-mm", "1", "--region", "edge"}, "--region");
+    EXPECT_EQ(run({"--data", (folder / "missing.csv").string(), "--tolerance-mm", "1"}).exit_code, 3);
+    EXPECT_EQ(run({"--data", file, "--tolerance-mm", "1", "--study", "type2"}).exit_code, 2);
+    EXPECT_EQ(run({"--data", file}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace seamwright

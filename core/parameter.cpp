@@ -26,7 +26,7 @@ double parameter(const ParameterValues& values, const std::vector<ParameterInfo>
 }
 
 Expected<void> validate(const ParameterValues& values, const std::vector<ParameterInfo>& infos,
-                        const std::string& where) {
+                        const Text& where) {
     for (const auto& [name, value] : values) {
         const ParameterInfo* info = find(infos, name);
         if (!info) {

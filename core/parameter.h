@@ -29,6 +29,6 @@ double parameter(const ParameterValues& values, const std::vector<ParameterInfo>
 
 // Refuses unknown names, non-finite values and values out of range, naming parameter, range and unit.
 Expected<void> validate(const ParameterValues& values, const std::vector<ParameterInfo>& infos,
-                        const std::string& where);
+                        const Text& where);
 
 }  // namespace seamwright

@@ -32,11 +32,31 @@ bool modest(std::string_view key) {
 
 }  // namespace
 
-std::string Text::in(Language language) const {
-    std::string_view pattern = key_;
-    if (language == Language::german)
-        if (const auto german = german_of(key_)) pattern = *german;
-    if (arguments_.empty()) return std::string(pattern);
+Text::Text(std::string said) {
+    if (said.empty()) return;
+    key_ = "{}";
+    add(std::move(said));
+}
+
+void Text::add(std::string value) {
+    arguments_.emplace_back(std::move(value));
+}
+void Text::add(Text value) {
+    arguments_.emplace_back(std::move(value));
+}
+void Text::add(double value) {
+    arguments_.emplace_back(value);
+}
+void Text::add(std::int64_t value) {
+    arguments_.emplace_back(value);
+}
+void Text::add_word(std::string_view english) {
+    Text word;
+    word.key_ = english;
+    add(std::move(word));
+}
+
+std::string Text::formatted(std::string_view pattern, Language language) const {
     fmt::dynamic_format_arg_store<fmt::format_context> values;
     for (const Argument& argument : arguments_)
         std::visit(
@@ -50,13 +70,26 @@ std::string Text::in(Language language) const {
     return fmt::vformat(fmt::string_view(pattern.data(), pattern.size()), values);
 }
 
+std::string Text::in(Language language) const {
+    std::string_view pattern = key_;
+    if (language == Language::german)
+        if (const auto german = german_of(key_)) pattern = *german;
+    if (arguments_.empty()) return std::string(pattern);
+    try {
+        return formatted(pattern, language);
+    } catch (const fmt::format_error&) {  // a catalogue that does not fit: never a reason to say nothing
+        return language == Language::english ? key_ : english();
+    }
+}
+
 std::optional<Text> Text::from(std::string key, std::vector<Argument> arguments) {
     if (arguments.size() > kMostArguments || (!arguments.empty() && !modest(key))) return std::nullopt;
     Text text;
     text.key_ = std::move(key);
     text.arguments_ = std::move(arguments);
+    if (text.arguments_.empty()) return text;
     try {
-        (void)text.english();
+        (void)text.formatted(text.key_, Language::english);
     } catch (const fmt::format_error&) {
         return std::nullopt;
     }
@@ -76,7 +109,8 @@ Text joined(const Text& first, std::string_view between, const Text& second) {
 Text listed(const std::vector<Text>& texts) {
     Text list;
     for (std::size_t i = 0; i < texts.size(); ++i)
-        list = i > 0 && i + 1 == texts.size() ? Text("{} and {}", list, texts[i]) : joined(list, ", ", texts[i]);
+        list =
+            i > 0 && i + 1 == texts.size() ? Text("{} and {}", list, texts[i]) : joined(list, ", ", texts[i]);
     return list;
 }
 

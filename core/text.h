@@ -3,6 +3,7 @@
 //
 //   Text("the driver \"{}\" is not known", name)      the literal is the English and the key
 //   Text("region {}: {}", id, error.what)             an argument may be a Text and is said in the same language
+//   Text("it is {}", to_string(verdict))              so is a word of ours, a literal or a std::string_view
 //   Text(error_of_a_library)                          a std::string is what somebody else says: never translated
 //
 // Nothing may be decided by a Text; what is acted upon is a code or a status beside it. The other languages are
@@ -31,43 +32,43 @@ std::optional<std::string_view> german_of(std::string_view english);
 
 class Text {
   public:
-    // Numbers stay numbers: their format stands in the pattern, "{:.3f} mm".
-    using Argument = std::variant<std::string, double, std::int64_t, std::uint64_t, Text>;
+    // Numbers stay numbers: their format stands in the pattern, "{:.3f} mm". Whole ones are counts and ids,
+    // below 2^63.
+    using Argument = std::variant<std::string, double, std::int64_t, Text>;
 
     Text() = default;
     // A sentence of the program without arguments; braces in it are signs like others.
     template <class T>
-        requires(std::is_array_v<T> || std::is_same_v<T, const char*>)
-    Text(const T& english) : key_(english) {}  // NOLINT(google-explicit-constructor): a literal is a sentence
+    requires(std::is_array_v<T> || std::is_same_v<T, const char*>) Text(const T& english)
+        : key_(english) {}  // NOLINT(google-explicit-constructor): a literal is a sentence
     // Words of somebody else: a library, a device, a person, an old file.
-    Text(std::string said) {  // NOLINT(google-explicit-constructor): most sentences name a thing
-        if (said.empty()) return;
-        key_ = "{}";
-        arguments_.emplace_back(std::move(said));
-    }
+    Text(std::string said);  // NOLINT(google-explicit-constructor): most sentences name a thing
     template <class First, class... Rest>
     explicit Text(fmt::format_string<First, Rest...> english, First&& first, Rest&&... rest)
         : key_(fmt::string_view(english).data(), fmt::string_view(english).size()) {
-        add(std::forward<First>(first));
-        (add(std::forward<Rest>(rest)), ...);
+        take(std::forward<First>(first));
+        (take(std::forward<Rest>(rest)), ...);
     }
     // The same with a pattern that is chosen while the program runs, from literals.
     template <class... A>
     static Text chosen(std::string_view english, const A&... arguments) {
         Text text;
         text.key_ = english;
-        (text.add(arguments), ...);
+        (text.take(arguments), ...);
         return text;
     }
     // As it was stored. nullopt: the pattern does not fit its arguments, or would print without measure.
     static std::optional<Text> from(std::string key, std::vector<Argument> arguments);
 
+    explicit operator std::string() const { return english(); }
     bool empty() const { return key_.empty(); }
     void clear() { *this = {}; }
     const std::string& key() const { return key_; }
     const std::vector<Argument>& arguments() const { return arguments_; }
     // What somebody else said, and has no translation.
-    bool foreign() const { return key_ == "{}"; }
+    bool foreign() const {
+        return key_ == "{}" && arguments_.size() == 1 && std::holds_alternative<std::string>(arguments_[0]);
+    }
 
     // A pattern without translation is said in English, what somebody else said as it is.
     std::string in(Language language) const;
@@ -76,31 +77,39 @@ class Text {
     bool operator==(const Text&) const = default;
     // Friends, so that no std::string becomes a Text to be compared.
     template <class S>
-        requires std::is_convertible_v<const S&, std::string_view>
+    requires std::is_convertible_v<const S&, std::string_view>
     friend bool operator==(const Text& text, const S& english) {
         return text.english() == std::string_view(english);
     }
+    // In JSON that others read: the English.
+    template <class Json>
+    requires requires { typename Json::json_pointer; }
+    friend void to_json(Json& json, const Text& text) { json = text.english(); }
     friend std::ostream& operator<<(std::ostream& out, const Text& text) { return text.print(out); }
 
   private:
+    std::string formatted(std::string_view pattern, Language language) const;  // throws fmt::format_error
     std::ostream& print(std::ostream& out) const;
+    void add(std::string value);
+    void add(Text value);
+    void add(double value);
+    void add(std::int64_t value);
+    void add_word(std::string_view english);
     template <class Value>
-    void add(Value&& value) {
+    void take(Value&& value) {
         using T = std::remove_cvref_t<Value>;
-        if constexpr (std::is_same_v<T, Text>)
-            arguments_.emplace_back(std::forward<Value>(value));
+        if constexpr (std::is_same_v<T, Text> || std::is_same_v<T, std::string>)
+            add(std::forward<Value>(value));
         else if constexpr (std::is_convertible_v<T, std::string_view>)
-            arguments_.emplace_back(std::string(std::string_view(value)));
+            add_word(value);
         else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, char>)
-            arguments_.emplace_back(fmt::format("{}", value));
+            add(fmt::format("{}", value));
         else if constexpr (std::is_floating_point_v<T>)
-            arguments_.emplace_back(static_cast<double>(value));
-        else if constexpr (std::is_integral_v<T> && std::is_signed_v<T>)
-            arguments_.emplace_back(static_cast<std::int64_t>(value));
+            add(static_cast<double>(value));
         else if constexpr (std::is_integral_v<T>)
-            arguments_.emplace_back(static_cast<std::uint64_t>(value));
+            add(static_cast<std::int64_t>(value));
         else
-            arguments_.emplace_back(fmt::format("{}", std::forward<Value>(value)));
+            add(fmt::format("{}", std::forward<Value>(value)));
     }
 
     std::string key_;

@@ -161,7 +161,7 @@ Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
         if (sensor || !is_in_use(sensor.error()) || Clock::now() >= until || patience.cancel.stop_requested())
             return sensor;
         if (patience.progress && Clock::now() >= tell_at) {
-            patience.progress(sensor.error().sentence());
+            patience.progress(sensor.error().text());
             tell_at += std::chrono::seconds(1);
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -64,7 +64,7 @@ Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
 struct Patience {
     std::chrono::milliseconds most{6000};
     std::stop_token cancel = {};
-    std::function<void(const std::string& text)> progress = {};
+    std::function<void(const Text& text)> progress = {};
 };
 Expected<std::unique_ptr<ProfileSource>> open_sensor(const std::string& driver,
                                                      const nlohmann::json& settings, DeviceSession& session,

@@ -117,7 +117,7 @@ class RobotLink {
     virtual Expected<void> move_to(const Pose& base_from_flange);
     // What the link has to tell since the last call beside its answers, a sentence each: peers that it
     // refused.
-    virtual std::vector<std::string> take_notices() { return {}; }
+    virtual std::vector<Text> take_notices() { return {}; }
 };
 
 }  // namespace seamwright

@@ -33,8 +33,8 @@ Expected<void> check_path_program(const PathProgramRequest& request) {
     const std::string& name = request.name;
     if (auto named = check_program_name(name, "name"); !named) return named;
     if (request.frame_from_tool.empty() || request.frame_from_tool.size() > kMostPathPoints)
-        return input_error(Text("{} points make no path program", request.frame_from_tool.size()),
-                           name, Text("give 1 to {}", kMostPathPoints));
+        return input_error(Text("{} points make no path program", request.frame_from_tool.size()), name,
+                           Text("give 1 to {}", kMostPathPoints));
     if (!(request.speed_mm_s > 0 && request.speed_mm_s <= 2000))
         return input_error(Text("{} mm/s is no speed of a path", request.speed_mm_s), name,
                            "give up to 2000 mm/s");

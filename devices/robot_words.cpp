@@ -153,9 +153,8 @@ Expected<void> check_program_name(const std::string& name, const std::string& wh
                            "use a letter, then letters, digits and _, at most 20");
     for (const RobotLanguage language : {RobotLanguage::krl, RobotLanguage::rapid, RobotLanguage::urscript})
         if (is_robot_word(language, name))
-            return input_error(
-                Text("\"{}\" is a word of {} itself", name, to_string(language)), where,
-                "choose another name");
+            return input_error(Text("\"{}\" is a word of {} itself", name, to_string(language)), where,
+                               "choose another name");
     static const std::set<std::string> modules = words_of(kModules);
     if (modules.count(upper(name)) > 0 || upper(name).starts_with("SW_") || upper(name).starts_with("XSW_"))
         return input_error(Text("\"{}\" is a name of Seamwright's own modules", name), where,

@@ -29,9 +29,9 @@ class SameRobot {
         const Expected<RobotIdentity> now = ask();
         if (!now) return tl::unexpected(now.error());
         if (*now != *told_)
-            return device_error(Text("another robot answers than before: \"{}\", not \"{}\"",
-                                            now->serial, told_->serial),
-                                where, "check the cables and addresses");
+            return device_error(
+                Text("another robot answers than before: \"{}\", not \"{}\"", now->serial, told_->serial),
+                where, "check the cables and addresses");
         compared_ = true;
         return {};
     }

@@ -1,7 +1,6 @@
 #pragma once
-// What the layers below say, for a person and in the chosen language: identifiers as files and flags spell
-// them
-// ("not_pushed", "window_x_min_mm") and the sentences that describe settings, drivers and kinds of feature.
+// Identifiers of the layers below, as files and flags spell them ("not_pushed", "window_x_min_mm"), for a
+// person and in the chosen language. Their sentences are Texts (shown_text.h).
 
 #include <QString>
 #include <string_view>
@@ -12,8 +11,5 @@ namespace seamwright {
 // camera's own feature) is shown with blanks for underscores.
 QString shown_word(std::string_view identifier);
 bool has_word(std::string_view identifier);
-
-// The sentence in the language of the window; English where it has no translation.
-QString shown_sentence(std::string_view english);
 
 }  // namespace seamwright

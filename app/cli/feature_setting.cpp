@@ -16,9 +16,8 @@ Expected<double> setting_value(const ParameterInfo& info, const std::string& tex
     auto [stop, failure] = std::from_chars(text.data(), end, value);
     if (failure != std::errc() || stop != end || text.empty())
         return usage_error(
-            fmt::format(
-                "\"{}\" is not {}", text,
-                info.choices.empty() ? "a number" : fmt::format("one of {}", fmt::join(info.choices, ", "))),
+            Text("\"{}\" is not {}", text,
+                 info.choices.empty() ? "a number" : fmt::format("one of {}", fmt::join(info.choices, ", "))),
             info.name);
     return value;
 }

@@ -26,7 +26,7 @@ void NoReturnOption::apply(Profile& profile, const std::string& file) {
     std::vector<double> values;
     for (const NoReturnCode& c : codes) values.push_back(c.value);
     erase_no_returns(profile, values);
-    std::string warning = file + ": " + no_return_sentence(codes);
+    std::string warning = file + ": " + no_return_sentence(codes).english();
     // The profiles of a pass say the same one after another: once is enough.
     if (warnings_.empty()) warnings_.push_back(std::move(warning));
 }

@@ -84,7 +84,7 @@ std::string correction_sigma_text(const RegionCorrection& c) {
 
 std::string correction_text(const RegionCorrection& c) {
     std::string text = fmt::format("{}{}{}\n", to_string(c.status), c.message.empty() ? "" : ": ", c.message);
-    for (const std::string& direction : c.unobservable) text += "unobservable: " + direction + "\n";
+    for (const Text& direction : c.unobservable) text += "unobservable: " + direction.english() + "\n";
     if (c.status == CorrectionStatus::under_determined) return text;
     text += "D      " + pose_text(c.displacement.workobject_from_movedworkobject) + "\n";
     text += sigma_text(c);
@@ -112,11 +112,11 @@ std::string plan_text(const RegionPlan& p) {
     std::string text = fmt::format("{}\n", to_string(p.status));
     if (p.status == CorrectionStatus::ok) text += sigma_text(p);
     text += fmt::format("weakest: {}\nredundancy: {}\n", p.weakest, p.redundancy);
-    for (const std::string& direction : p.unobservable) text += "unobservable: " + direction + "\n";
+    for (const Text& direction : p.unobservable) text += "unobservable: " + direction.english() + "\n";
     if (!p.uncontrolled.empty())
         text += fmt::format("a single wrong measure could not be found at: {}\n",
                             fmt::join(p.uncontrolled, ", "));
-    if (!p.advice.empty()) text += "advice: " + p.advice + "\n";
+    if (!p.advice.empty()) text += "advice: " + p.advice.english() + "\n";
     return text;
 }
 
@@ -202,7 +202,7 @@ std::string alignment_text(const AlignmentResult& a) {
         "expected error from jitter {:.4f} ± {:.4f} mm, shape change {:.4f} mm\n{}{}",
         to_string(a.status), a.yaw_deg, a.sigma_yaw_deg, a.pitch_deg, a.sigma_pitch_deg, a.roll_deg, radius,
         a.expected_error_mm, a.expected_error_sigma_mm, a.shape_change_mm,
-        a.cure.empty() ? "" : "to cure: ", a.cure.empty() ? "" : a.cure + "\n");
+        a.cure.empty() ? "" : "to cure: ", a.cure.empty() ? "" : a.cure.english() + "\n");
 }
 
 static json value_json(const GapFlushValue& v) {
@@ -237,7 +237,7 @@ json panel_fit_json(const PanelFit& fit) {
 std::string panel_fit_text(const PanelFit& fit) {
     std::string text =
         fmt::format("{}{}{}\n", to_string(fit.status), fit.message.empty() ? "" : ": ", fit.message);
-    for (const std::string& direction : fit.unobservable) text += "unobservable: " + direction + "\n";
+    for (const Text& direction : fit.unobservable) text += "unobservable: " + direction.english() + "\n";
     if (fit.status == CorrectionStatus::under_determined) return text;
     text += "G      " + pose_text(fit.gripper_motion) + "\n";
     text += fmt::format("sigma  X {:.3f}  Y {:.3f}  Z {:.3f} mm   A {:.4f}  B {:.4f}  C {:.4f} deg\n",

@@ -64,7 +64,7 @@ std::string panel_text(const RunRecord& run) {
                         : fmt::format("{}: {}\n", to_string(m.status), m.message);
         }
     if (p.fit) text += panel_fit_text(*p.fit);
-    for (const std::string& reason : p.refusals) text += "  refused: " + reason + "\n";
+    for (const Text& reason : p.refusals) text += "  refused: " + reason.english() + "\n";
     if (run.push)
         text += fmt::format("  push of {}: {}{}{}\n", p.push.frame_name, to_string(p.push.status),
                             p.push.message.empty() ? "" : ": ", p.push.message);
@@ -174,7 +174,7 @@ std::string run_text(const RunRecord& run) {
         if (r.correction && r.correction->status != CorrectionStatus::under_determined)
             text += "  D  " + pose_text(r.correction->displacement.workobject_from_movedworkobject) + "\n" +
                     correction_sigma_text(*r.correction);
-        for (const std::string& reason : r.refusals) text += "  refused: " + reason + "\n";
+        for (const Text& reason : r.refusals) text += "  refused: " + reason.english() + "\n";
         if (run.push)
             text += fmt::format("  push of {}: {}{}{}\n", r.push.frame_name, to_string(r.push.status),
                                 r.push.message.empty() ? "" : ": ", r.push.message);

@@ -88,7 +88,8 @@ Expected<Project> demo_project() {
         frame.sequence = ++number;
         cell->render(s.base_from_flange, number, frame);
         if (capture_frame(frame, a.peaks, &*c.model, peaks, capture, reason) != SpotStatus::measured)
-            return device_error(Text("the simulated sensor sees no stripe: {}", reason), Text("spot {}", s.id));
+            return device_error(Text("the simulated sensor sees no stripe: {}", reason),
+                                Text("spot {}", s.id));
         if (auto tracked = track_capture(capture, a.filter, s.reference_profile); !tracked)
             return tl::unexpected(tracked.error());
         auto finder = make_feature_finder(s.feature);

@@ -3,6 +3,7 @@
 #include <QDateTime>
 #include <QHeaderView>
 
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -61,7 +62,7 @@ void EventList::refresh() {
         const EventRecord& e = (*events)[events->size() - 1 - i];
         const QDateTime at = QDateTime::fromString(QString::fromStdString(e.utc), Qt::ISODateWithMs);
         const QStringList row{at.toLocalTime().toString("dd.MM. HH:mm:ss"), kind_text(e.kind),
-                              QString::fromStdString(e.subject), QString::fromStdString(e.text)};
+                              QString::fromStdString(e.subject), shown(e.text)};
         for (int c = 0; c < 4; ++c) {
             auto* item = new QTableWidgetItem(row[c]);
             item->setToolTip(row[c]);

@@ -26,7 +26,6 @@
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/exchange.h"
-#include "widgets/errors.h"
 #include "widgets/pages/align_page.h"
 #include "widgets/pages/calibrate_page.h"
 #include "widgets/pages/cell_page.h"
@@ -35,6 +34,7 @@
 #include "widgets/pages/run_page.h"
 #include "widgets/pages/teach_page.h"
 #include "widgets/print/pdf.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 

@@ -5,8 +5,8 @@
 
 #include "projects/station/measure.h"
 #include "widgets/editors/number_box.h"
-#include "widgets/errors.h"
 #include "widgets/pages/form.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 
 namespace seamwright {

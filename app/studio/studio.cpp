@@ -13,7 +13,7 @@
 #include "app/studio/demo_project.h"
 #include "app/studio/look.h"
 #include "app/studio/main_window.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 // Outside of any namespace, as Qt wants it: a static library's resources are linked only when named.
 static void link_resources() {
@@ -79,6 +79,7 @@ void Studio::set_language(const QString& language) {
             application_.installTranslator(&qt_texts_);
     }
     QLocale::setDefault(QLocale(language == "de" ? QLocale::German : QLocale::English));
+    set_shown_language(language_ == "de" ? Language::german : Language::english);
     desk_.set_language(language_ == "de" ? Language::german : Language::english);
     build_window();
 }

@@ -18,15 +18,15 @@ Expected<Correlation> correlation_study(std::span<const StudyValue> values) {
     for (const StudyValue& v : values) {
         if (!v.reference_mm) continue;
         if (!std::isfinite(v.value_mm) || !std::isfinite(*v.reference_mm))
-            return input_error(fmt::format("part {}, run {} is not finite", v.part, v.run), "correlation");
+            return input_error(Text("part {}, run {} is not finite", v.part, v.run), "correlation");
         Sums& s = parts[v.part];
         s.value += v.value_mm;
         s.reference += *v.reference_mm;
         ++s.n;
     }
     if (parts.size() < 3)
-        return input_error(fmt::format("{} part(s) with a reference", parts.size()), "correlation",
-                           fmt::format("measure at least {} parts on both", kCorrelationPairs));
+        return input_error(Text("{} part(s) with a reference", parts.size()), "correlation",
+                           Text("measure at least {} parts on both", kCorrelationPairs));
     Correlation r;
     std::vector<double> x, y, differences;
     for (const auto& [part, s] : parts) {

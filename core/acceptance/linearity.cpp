@@ -57,18 +57,18 @@ Expected<Linearity> linearity_study(std::span<const StudyValue> values) {
     std::map<double, std::vector<double>> levels;
     for (const StudyValue& v : values) {
         if (!v.reference_mm)
-            return input_error(fmt::format("part {}, run {} has no reference", v.part, v.run), "linearity",
+            return input_error(Text("part {}, run {} has no reference", v.part, v.run), "linearity",
                                "give the column reference for every value");
         if (!std::isfinite(v.value_mm) || !std::isfinite(*v.reference_mm))
-            return input_error(fmt::format("part {}, run {} is not finite", v.part, v.run), "linearity");
+            return input_error(Text("part {}, run {} is not finite", v.part, v.run), "linearity");
         x.push_back(*v.reference_mm);
         bias.push_back(v.value_mm - *v.reference_mm);
         levels[x.back()].push_back(bias.back());
     }
     if (levels.size() < 2 || x.size() < 3)
-        return input_error(
-            fmt::format("{} value(s) at {} different reference(s)", x.size(), levels.size()), "linearity",
-            fmt::format("measure {} levels {} times each", kLinearityLevels, kLinearityRepeats));
+        return input_error(Text("{} value(s) at {} different reference(s)", x.size(), levels.size()),
+                           "linearity",
+                           Text("measure {} levels {} times each", kLinearityLevels, kLinearityRepeats));
     Linearity r;
     r.line = fit_line(x, bias);
     if (r.line.s <= 1e-12)

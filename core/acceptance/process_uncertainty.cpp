@@ -54,14 +54,13 @@ Expected<ProcessUncertainty> process_uncertainty(std::span<const StudyValue> ref
     for (const StudyValue& v : references) {
         if (!v.reference_mm) continue;
         if (!std::isfinite(v.value_mm) || !std::isfinite(*v.reference_mm))
-            return input_error(fmt::format("part {}, run {} is not finite", v.part, v.run), "vda5");
+            return input_error(Text("part {}, run {} is not finite", v.part, v.run), "vda5");
         parts[v.part].biases.push_back(v.value_mm - *v.reference_mm);
     }
     std::erase_if(parts, [](const auto& p) { return p.second.biases.size() < kStandardValues; });
     if (parts.empty())
-        return input_error(
-            "no part with a reference was measured often enough", "vda5",
-            fmt::format("measure one at least {} times, better {}", kStandardValues, kProcessValues));
+        return input_error("no part with a reference was measured often enough", "vda5",
+                           Text("measure one at least {} times, better {}", kStandardValues, kProcessValues));
     ProcessUncertainty r;
     r.type3 = production.has_value();
     double squares = 0, degrees = 0, worst_n = 1;

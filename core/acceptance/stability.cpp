@@ -54,8 +54,7 @@ std::vector<StabilityAlarm> nelson_rules(std::span<const double> means, double c
 
 Expected<Subgroups> subgroups_of(std::span<const StudyValue> values, int size) {
     if (size < 1 || size > 1000)
-        return input_error(fmt::format("a subgroup of {} values is none", size), "stability",
-                           "give 1 to 1000");
+        return input_error(Text("a subgroup of {} values is none", size), "stability", "give 1 to 1000");
     std::map<long, std::vector<double>> runs;
     for (const StudyValue& v : values) runs[v.run].push_back(v.value_mm);
     Subgroups out;
@@ -63,8 +62,8 @@ Expected<Subgroups> subgroups_of(std::span<const StudyValue> values, int size) {
     const std::size_t in_run = runs.begin()->second.size();
     for (const auto& [run, of_run] : runs)
         if (of_run.size() != in_run)
-            return input_error(fmt::format("run {} holds {} values and run {} holds {}", runs.begin()->first,
-                                           in_run, run, of_run.size()),
+            return input_error(Text("run {} holds {} values and run {} holds {}", runs.begin()->first, in_run,
+                                    run, of_run.size()),
                                "stability", "measure as many in every run");
     const std::size_t wanted = in_run > 1 ? in_run : static_cast<std::size_t>(size);
     Subgroup group;
@@ -81,17 +80,17 @@ Expected<Subgroups> subgroups_of(std::span<const StudyValue> values, int size) {
 
 Expected<Stability> stability_study(std::span<const Subgroup> subgroups) {
     if (subgroups.size() < 2)
-        return input_error(fmt::format("{} subgroup(s)", subgroups.size()), "stability",
-                           fmt::format("measure at least {} subgroups", kStabilitySubgroups));
+        return input_error(Text("{} subgroup(s)", subgroups.size()), "stability",
+                           Text("measure at least {} subgroups", kStabilitySubgroups));
     Stability r;
     r.size = static_cast<int>(subgroups.front().values_mm.size());
     for (const Subgroup& g : subgroups) {
         if (g.values_mm.empty() || static_cast<int>(g.values_mm.size()) != r.size)
-            return input_error(fmt::format("the subgroup of run {} holds {} values where others hold {}",
-                                           g.run, g.values_mm.size(), r.size),
+            return input_error(Text("the subgroup of run {} holds {} values where others hold {}", g.run,
+                                    g.values_mm.size(), r.size),
                                "stability", "measure as many in every subgroup");
         if (!std::all_of(g.values_mm.begin(), g.values_mm.end(), [](double v) { return std::isfinite(v); }))
-            return input_error(fmt::format("a value of run {} is not finite", g.run), "stability");
+            return input_error(Text("a value of run {} is not finite", g.run), "stability");
         const Moments m = moments(g.values_mm);
         r.s_mm.push_back(r.size > 1 ? m.s : r.means_mm.empty() ? 0.0 : std::abs(m.mean - r.means_mm.back()));
         r.means_mm.push_back(m.mean);

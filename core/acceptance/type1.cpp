@@ -35,7 +35,7 @@ Interval noncentralities(double degrees, double t) {
 
 Expected<void> check_positive(double value, const char* word) {
     if (std::isfinite(value) && value > 0 && value < 1e6) return {};
-    return input_error(fmt::format("the {} of {} is none", word, value), "", "give a positive number");
+    return input_error(Text("the {} of {} is none", word, value), "", "give a positive number");
 }
 
 Expected<Type1> type1_study(std::span<const double> values_mm, double reference_mm,
@@ -46,8 +46,8 @@ Expected<Type1> type1_study(std::span<const double> values_mm, double reference_
                                       {settings.required, "limit of Cg and Cgk"}})
         if (auto ok = check_positive(value, word); !ok) return tl::unexpected(ok.error());
     if (values_mm.size() < 2)
-        return input_error(fmt::format("{} value(s) of the reference part", values_mm.size()), "type 1",
-                           fmt::format("measure it at least {} times", kType1Values));
+        return input_error(Text("{} value(s) of the reference part", values_mm.size()), "type 1",
+                           Text("measure it at least {} times", kType1Values));
     if (!std::isfinite(reference_mm) ||
         !std::all_of(values_mm.begin(), values_mm.end(), [](double v) { return std::isfinite(v); }))
         return input_error("a value is not finite", "type 1");

@@ -18,23 +18,22 @@ Expected<Parts> balanced(std::span<const StudyValue> values) {
     Parts parts;
     for (const StudyValue& v : values) {
         if (!std::isfinite(v.value_mm))
-            return input_error(fmt::format("the value of part {}, run {} is not finite", v.part, v.run),
-                               "type 3");
+            return input_error(Text("the value of part {}, run {} is not finite", v.part, v.run), "type 3");
         parts[v.part][v.rehang].push_back(v.value_mm);
     }
     if (parts.size() < 2)
-        return input_error(fmt::format("the values are of {} part(s)", parts.size()), "type 3",
-                           fmt::format("measure at least {} parts", kType3Parts));
+        return input_error(Text("the values are of {} part(s)", parts.size()), "type 3",
+                           Text("measure at least {} parts", kType3Parts));
     const auto& [first_name, first] = *parts.begin();
     for (const auto& [name, rehangs] : parts) {
         if (rehangs.size() != first.size())
-            return input_error(fmt::format("part {} was hung {} times and part {} {} times", first_name,
-                                           first.size(), name, rehangs.size()),
+            return input_error(Text("part {} was hung {} times and part {} {} times", first_name,
+                                    first.size(), name, rehangs.size()),
                                "type 3", "measure all parts alike, or leave out what some lack");
         for (const auto& [rehang, runs] : rehangs)
             if (runs.size() != first.begin()->second.size())
-                return input_error(fmt::format("part {} has {} runs and part {} has {}", first_name,
-                                               first.begin()->second.size(), name, runs.size()),
+                return input_error(Text("part {} has {} runs and part {} has {}", first_name,
+                                        first.begin()->second.size(), name, runs.size()),
                                    "type 3", "measure all parts alike, or leave out what some lack");
     }
     return parts;

@@ -11,6 +11,7 @@
 #include "core/correction/contour_fit.h"
 #include "core/features/contour_model.h"
 #include "core/features/registration.h"
+#include "core/median.h"
 
 namespace seamwright {
 namespace {
@@ -142,13 +143,6 @@ void track(const ContourMatcher& matcher, std::span<const TravelProfile> pass,
     }
 }
 
-double median(std::vector<double> v) {
-    if (v.empty()) return 0;
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-}
-
 // A profile as the one that the others are registered to.
 struct Reference {
     std::size_t index = 0;
@@ -202,7 +196,8 @@ std::optional<Reference> choose_reference(std::span<const TravelProfile> pass,
         counts.push_back(static_cast<double>(usable_points(pass[i].profile)));
         noises.push_back(noise_of(pass[i].profile));
     }
-    const double usual = median(counts), quiet = median(noises);
+    std::vector<double> by_size = counts, by_noise = noises;
+    const double usual = median(by_size), quiet = median(by_noise);
     std::optional<Reference> best;
     int tried = 0;
     for (std::size_t k = 0; k < order.size() && tried < kReferencesTried; ++k) {
@@ -297,8 +292,8 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
                            "give x and z in millimetres");
     for (std::size_t i = 0; i < pass.size(); ++i) {
         if (pass[i].profile.x_mm.size() != pass[i].profile.z_mm.size())
-            return input_error("x and z have different numbers of points",
-                               Text("profile {} of the pass", i), "give one x and one z a point");
+            return input_error("x and z have different numbers of points", Text("profile {} of the pass", i),
+                               "give one x and one z a point");
     }
     AlignmentResult result;
     result.offsets.resize(pass.size());
@@ -447,14 +442,16 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         const double z = result.cure_about_z_deg, x = result.cure_about_x_deg;
         const bool about_z = std::abs(z) > kLeastTurn_deg, about_x = std::abs(x) > kLeastTurn_deg;
         const auto turn = [&](const Text& how) {
-            say(Text("rotate the sensor at the trigger position, about the reference point and together with "
+            say(
+                Text("rotate the sensor at the trigger position, about the reference point and together with "
                      "its travel, {}",
                      how));
         };
         if (about_z && about_x)
-            turn(Text("about the sensor's own Z axis by {:+.2f} degrees, then about its turned X axis by "
-                      "{:+.2f} degrees",
-                      z, x));
+            turn(
+                Text("about the sensor's own Z axis by {:+.2f} degrees, then about its turned X axis by "
+                     "{:+.2f} degrees",
+                     z, x));
         else if (about_z)
             turn(Text("about the sensor's own Z axis by {:+.2f} degrees", z));
         else if (about_x)
@@ -462,16 +459,16 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
         if (rest > options.tolerance_mm)
             say(
                 Text("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
-                            "within the jitter: let "
-                            "the correction use the contour curve, or trigger more exactly",
-                            result.radius_mm, rest));
+                     "within the jitter: let "
+                     "the correction use the contour curve, or trigger more exactly",
+                     result.radius_mm, rest));
     }
     if (result.status == AlignmentStatus::undetermined && !result.sliding)
         say(
             Text("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
-                        "record the pass "
-                        "again with more profiles or less noise",
-                        result.expected_error_mm, result.expected_error_sigma_mm));
+                 "record the pass "
+                 "again with more profiles or less noise",
+                 result.expected_error_mm, result.expected_error_sigma_mm));
     if (changes)
         say("the profile changes its shape along the travel: teach the spot where the contour stays the "
             "same");

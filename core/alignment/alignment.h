@@ -80,7 +80,7 @@ struct AlignmentResult {
     bool sliding = false;               // the profile is a straight line: only the drift across it is seen
     ContourCurve curve;                 // of the reference point, for the correction, see correction.h
     std::vector<TravelOffset> offsets;  // in the order given
-    Text cure;                   // what to do, in whole sentences; empty when frozen
+    Text cure;                          // what to do, in whole sentences; empty when frozen
 };
 
 // Refuses (Error): an empty pass, x and z of different length, options that are not positive and finite.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/geometry/decompositions.h"
+#include "core/median.h"
 
 namespace seamwright {
 namespace bent_line {
@@ -41,12 +42,6 @@ double height(const Eigen::Vector3d& parabola, double u) {
     return parabola.x() + u * (parabola.y() + u * parabola.z());
 }
 
-double median_size(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // The parabola through three points that half of all points lie nearest to.
 Eigen::Vector3d least_median(const std::vector<Eigen::Vector2d>& own, std::vector<double>& off) {
     constexpr double kApart = 0.15;  // of the half length, or the parabola is guessed beyond its points
@@ -66,7 +61,7 @@ Eigen::Vector3d least_median(const std::vector<Eigen::Vector2d>& own, std::vecto
         trial.x() = p.y() - p.x() * (trial.y() + p.x() * trial.z());
         off.clear();
         for (const auto& point : own) off.push_back(std::abs(point.y() - height(trial, point.x())));
-        if (const double middle = median_size(off); middle < least) {
+        if (const double middle = median(off); middle < least) {
             least = middle;
             best = trial;
         }
@@ -88,7 +83,7 @@ std::vector<char> on_bent_line(const std::vector<Eigen::Vector2d>& points) {
         off.clear();
         for (std::size_t i = 0; i < own.size(); ++i)
             if (round == 0 || on[i]) off.push_back(std::abs(own[i].y() - height(parabola, own[i].x())));
-        const double limit = std::max(kLeastLimitPx, 6 * median_size(off));
+        const double limit = std::max(kLeastLimitPx, 6 * median(off));
         std::vector<char> support(own.size());
         Eigen::Index count = 0;
         for (std::size_t i = 0; i < own.size(); ++i)

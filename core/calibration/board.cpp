@@ -12,7 +12,8 @@ namespace seamwright {
 
 Expected<void> validate(const BoardSpec& spec) {
     if (spec.columns < 3 || spec.rows < 3 || spec.columns > 200 || spec.rows > 200)
-        return input_error(Text("a board of {}x{} points is not possible", std::to_string(spec.columns), std::to_string(spec.rows)),
+        return input_error(Text("a board of {}x{} points is not possible", std::to_string(spec.columns),
+                                std::to_string(spec.rows)),
                            "board", "give columns x rows between 3 and 200, e.g. 7x6");
     if (!std::isfinite(spec.pitch_mm) || spec.pitch_mm <= 0)
         return input_error("the pitch must be a positive number of millimetres", "pitch_mm", "give e.g. 10");

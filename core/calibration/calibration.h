@@ -47,7 +47,7 @@ struct PoseResidual {
     bool used = true;
     bool excluded = false;     // by the user; then not used
     bool contradicts = false;  // used, but for a part that was found wrong (the note says which)
-    Text note;          // why it is not used, or what is odd about it; empty when nothing is
+    Text note;                 // why it is not used, or what is odd about it; empty when nothing is
 };
 
 // Leave-k-out verification: the data are split into folds, each fold is predicted by the solution of the

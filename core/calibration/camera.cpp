@@ -35,8 +35,8 @@ Eigen::Vector3d extents(const std::vector<Eigen::Vector3d>& points) {
 
 Expected<void> check(const CameraData& data, const CameraOptions& options) {
     if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
-        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height),
-                           "size", "give width and height of the images in pixels");
+        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height), "size",
+                           "give width and height of the images in pixels");
     std::vector<std::string> ids;
     for (const auto& v : data.views) ids.push_back(v.id);
     if (ids.empty()) return input_error("there is no view", "views", "give at least 3 views of the plate");
@@ -45,21 +45,20 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
     for (const auto& v : data.views) {
         const std::string where = "views[" + v.id + "]";
         if (v.pixel.size() != v.object_mm.size())
-            return input_error(Text("{} points but {} pixels", v.object_mm.size(), v.pixel.size()),
-                               where, "give one pixel per point");
+            return input_error(Text("{} points but {} pixels", v.object_mm.size(), v.pixel.size()), where,
+                               "give one pixel per point");
         if (v.pixel.size() < 4)
-            return input_error(Text("{} points are too few for a pose, 4 are needed", v.pixel.size()),
-                               where, "leave the view out or give more points");
+            return input_error(Text("{} points are too few for a pose, 4 are needed", v.pixel.size()), where,
+                               "leave the view out or give more points");
         for (std::size_t i = 0; i < v.pixel.size(); ++i) {
             if (!v.pixel[i].allFinite() || !v.object_mm[i].allFinite() ||
                 v.object_mm[i].cwiseAbs().maxCoeff() > 1e6)
-                return input_error(
-                    Text("point {} is not a finite number of millimetres and pixels", i), where,
-                    "leave it out");
+                return input_error(Text("point {} is not a finite number of millimetres and pixels", i),
+                                   where, "leave it out");
             if (v.pixel[i].x() < -1 || v.pixel[i].y() < -1 || v.pixel[i].x() > data.width ||
                 v.pixel[i].y() > data.height)
                 return input_error(Text("pixel {} ({:.1f}, {:.1f}) lies outside the image of {}x{}", i,
-                                               v.pixel[i].x(), v.pixel[i].y(), data.width, data.height),
+                                        v.pixel[i].x(), v.pixel[i].y(), data.width, data.height),
                                    where, "check the image size; all views must have the same");
         }
         const Eigen::Vector3d e = extents(v.object_mm);
@@ -68,9 +67,8 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
         size_mm = std::max(size_mm, e(0));
     }
     if (size_mm < 0.5)
-        return input_error(
-            Text("the target is {:.3f} mm across, which looks like metres", 2 * size_mm), "views",
-            "give its points in millimetres");
+        return input_error(Text("the target is {:.3f} mm across, which looks like metres", 2 * size_mm),
+                           "views", "give its points in millimetres");
     return {};
 }
 
@@ -236,8 +234,8 @@ double hull_share(const CameraData& data) {
 }
 
 // What a free plate shape would explain, in words; empty when nothing to speak of.
-std::string plate_hint(const CameraData& data, const std::vector<std::vector<char>>& used,
-                       const CameraFreedom& freedom, const CameraSolution& solution) {
+Text plate_hint(const CameraData& data, const std::vector<std::vector<char>>& used,
+                const CameraFreedom& freedom, const CameraSolution& solution) {
     if (data.views.size() < 5) return {};
     for (const auto& v : data.views) {
         const Eigen::Vector3d e = extents(v.object_mm);
@@ -268,7 +266,7 @@ std::string plate_hint(const CameraData& data, const std::vector<std::vector<cha
         fit.state.shape.bow_mm.cwiseAbs().maxCoeff());
 }
 
-Judgement judge(const CameraResult& r, std::size_t views, const std::string& hint) {
+Judgement judge(const CameraResult& r, std::size_t views, const Text& hint) {
     const double f = 0.5 * (r.camera.fx + r.camera.fy);
     const double sigma = r.report.covariance.size() ? r.report.parameters[0].sigma : kInfinity;
     const char* tilt =
@@ -284,8 +282,7 @@ Judgement judge(const CameraResult& r, std::size_t views, const std::string& hin
         return {Verdict::poor, Text("the points fit to {:.2f} px only", r.rms_px),
                 "check focus, the pattern's size and that the plate is flat"};
     if (sigma > 0.01 * f)
-        return {Verdict::poor, Text("the focal length is known to {:.1f} % only", 100 * sigma / f),
-                tilt};
+        return {Verdict::poor, Text("the focal length is known to {:.1f} % only", 100 * sigma / f), tilt};
     if (!hint.empty()) return {Verdict::usable, hint, "measure the plate or take a flat one"};
     if (sigma > 0.002 * f)
         return {Verdict::usable, Text("the focal length is known to {:.2f} %", 100 * sigma / f), tilt};
@@ -295,12 +292,11 @@ Judgement judge(const CameraResult& r, std::size_t views, const std::string& hin
     if (r.covered_share < 1.0 / 3)
         return {Verdict::usable,
                 Text("the views cover {:.0f} % of the image: the distortion outside is extrapolated",
-                            100 * r.covered_share),
+                     100 * r.covered_share),
                 "add views with the plate in the corners of the image"};
     return {Verdict::good,
-            Text(
-                "{} views, points fit to {:.2f} px, focal length to {:.2f} %, {:.0f} % of the image covered",
-                views, r.rms_px, 100 * sigma / f, 100 * r.covered_share),
+            Text("{} views, points fit to {:.2f} px, focal length to {:.2f} %, {:.0f} % of the image covered",
+                 views, r.rms_px, 100 * sigma / f, 100 * r.covered_share),
             ""};
 }
 
@@ -333,8 +329,7 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
     }
     const CameraData data = without(input, drop);
     if (data.views.empty() || (flat == data.views.size() && flat < 2))
-        return input_error(Text("{} different view(s) of a plate are too few", data.views.size()),
-                           "views",
+        return input_error(Text("{} different view(s) of a plate are too few", data.views.size()), "views",
                            "give at least 3, better 10, views with the plate tilted in different directions");
     const auto start = start_camera(data);
     if (!start)

@@ -1,4 +1,5 @@
 #include "core/calibration/circle_section.h"
+#include "core/median.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -24,12 +25,6 @@ double distance(double dx, double dz) {
     return std::sqrt(dx * dx + dz * dz);
 }
 
-double median_of(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // Standard deviation of z from second differences along the sensor order: a smooth contour cancels, noise
 // does not (variance of z0 - 2 z1 + z2 is 6 sigma^2). The median keeps jumps and corners out.
 double noise_from_second_differences(const Points& p) {
@@ -41,7 +36,7 @@ double noise_from_second_differences(const Points& p) {
         d.push_back(std::abs(p.z[k - 1] - 2 * p.z[k] + p.z[k + 1]));
     }
     if (d.size() < 8) return 0.05;
-    return median_of(d) / (0.6745 * std::sqrt(6.0));
+    return median(d) / (0.6745 * std::sqrt(6.0));
 }
 
 bool circle_through(const Points& p, int i, int j, int k, Circle& out) {
@@ -137,7 +132,7 @@ std::optional<CircleSection> find_circle_section(const Profile& profile, const C
     std::vector<double> steps;
     for (int i = 1; i < n; ++i)
         steps.push_back(std::abs(p.x[static_cast<size_t>(i)] - p.x[static_cast<size_t>(i) - 1]));
-    const double step = median_of(steps);
+    const double step = median(steps);
     struct Candidate {
         double score = 0;
         Circle circle;

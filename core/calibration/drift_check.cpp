@@ -20,7 +20,7 @@ constexpr double kLever_mm = 100;
 struct Fit {
     Pose change = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();
-    std::vector<std::string> not_determined;
+    std::vector<Text> not_determined;
     double sigma_mm = 0, sigma_deg = 0;
     int determined = 0;
 };
@@ -58,10 +58,9 @@ Fit fit_change(const std::vector<DriftMeasurement>& list, const std::vector<Eige
             const Vector6 direction = eigen.vectors.col(k);
             if (value < 1 / (coarsest_mm * coarsest_mm)) {
                 const bool turn = direction.tail<3>().norm() > direction.head<3>().norm();
-                fit.not_determined.push_back(
-                    Text("{} {} of the flange", turn ? "turn about" : "shift along",
-                                axis_name(turn ? Eigen::Vector3d(direction.tail<3>())
-                                               : Eigen::Vector3d(direction.head<3>()))));
+                fit.not_determined.push_back(Text("{} {} of the flange", turn ? "turn about" : "shift along",
+                                                  axis_name(turn ? Eigen::Vector3d(direction.tail<3>())
+                                                                 : Eigen::Vector3d(direction.head<3>()))));
                 continue;
             }
             ++fit.determined;
@@ -104,7 +103,7 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
                                              const Pose& stored_flange_from_sensor,
                                              const Eigen::Vector3d& known_centre_base_mm,
                                              double other_sigma_mm) {
-    const std::string where = "measurement '" + observation.id + "'";
+    const Text where("measurement '{}'", observation.id);
     if (!(std::isfinite(radius_mm) && radius_mm > 0))
         return input_error("the sphere's radius is not a positive number", where);
     if (auto ok = check_rigid({observation.base_from_flange}, {observation.id}, "base_from_flange of"); !ok)
@@ -116,9 +115,8 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
     limits.smallest_radius_mm = 0.12 * radius_mm;
     const auto circle = find_circle_section(observation.profile, limits);
     if (!circle)
-        return input_error(
-            Text("the profile shows no circle of a sphere with radius {:.3f} mm", radius_mm), where,
-            "let the laser cut the sphere");
+        return input_error(Text("the profile shows no circle of a sphere with radius {:.3f} mm", radius_mm),
+                           where, "let the laser cut the sphere");
     const Eigen::Vector3d expected =
         stored_flange_from_sensor.inverse() * (observation.base_from_flange.inverse() * known_centre_base_mm);
     const double height =
@@ -166,7 +164,7 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     for (const auto& m : measurements) {
         ids.push_back(m.id);
         poses.push_back(m.base_from_flange);
-        const std::string where = fmt::format("measurement '{}'", m.id);
+        const Text where("measurement '{}'", m.id);
         if (!m.measured_flange_mm.allFinite() || !m.known_base_mm.allFinite() || !m.covariance.allFinite())
             return input_error("a value is not a finite number", where);
         const Eigen::LLT<Eigen::Matrix3d> llt(m.covariance);
@@ -233,20 +231,20 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     const bool shift_unknown = fit.determined < 3 || 2 * result.sigma_mm > limits.translation_mm;
     const bool turn_unknown = fit.determined < 6 || 2 * result.sigma_deg > limits.rotation_deg;
     const bool outside = result.change_mm > limits.translation_mm || result.change_deg > limits.rotation_deg;
-    const std::string change =
-        Text("change {:.3f} mm (sigma {:.3f}) and {:.3f} degrees (sigma {:.3f})", result.change_mm,
-                    result.sigma_mm, result.change_deg, result.sigma_deg);
+    const Text change("change {:.3f} mm (sigma {:.3f}) and {:.3f} degrees (sigma {:.3f})", result.change_mm,
+                      result.sigma_mm, result.change_deg, result.sigma_deg);
     if (significant && !explained) {
         result.status = DriftStatus::drifted;
         report.judgement = {
             Verdict::poor,
             Text("the measurements contradict the stored places and no rigid change of the sensor "
-                        "explains them ({:.3f} mm remain)",
-                        result.rms_after_mm),
+                 "explains them ({:.3f} mm remain)",
+                 result.rms_after_mm),
             "check that no target has moved, then calibrate again"};
     } else if (significant && beyond) {
         result.status = DriftStatus::drifted;
-        report.judgement = {Verdict::poor, "the calibration no longer holds: " + change, "calibrate again"};
+        report.judgement = {Verdict::poor, Text("the calibration no longer holds: {}", change),
+                            "calibrate again"};
     } else if (shift_unknown) {
         result.status = DriftStatus::undetermined;
         report.judgement = {
@@ -255,21 +253,21 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
             "measure two or three spheres, cut off their middle, from several poses"};
     } else if (turn_unknown) {
         result.status = DriftStatus::undetermined;
-        std::string open;
-        for (const auto& word : fit.not_determined) open += (open.empty() ? "" : ", ") + word;
-        report.judgement = {Verdict::undetermined,
-                            open.empty() ? Text("a turn of {:.3f} degrees cannot be seen: {}",
-                                                       limits.rotation_deg, change)
-                                         : Text("not seen: {}; {}", open, change),
-                            "measure further spheres near the rims of the view, left, right, near and far"};
+        Text open;
+        for (const auto& word : fit.not_determined) open = joined(open, ", ", word);
+        report.judgement = {
+            Verdict::undetermined,
+            open.empty() ? Text("a turn of {:.3f} degrees cannot be seen: {}", limits.rotation_deg, change)
+                         : Text("not seen: {}; {}", open, change),
+            "measure further spheres near the rims of the view, left, right, near and far"};
     } else if (outside) {
         result.status = DriftStatus::undetermined;
         report.judgement = {Verdict::undetermined,
-                            "more than the limits, and no more than chance could make it: " + change,
+                            Text("more than the limits, and no more than chance could make it: {}", change),
                             "measure the spheres again from further poses"};
     } else {
         result.status = DriftStatus::holds;
-        report.judgement = {Verdict::good, "the calibration holds: " + change, ""};
+        report.judgement = {Verdict::good, Text("the calibration holds: {}", change), ""};
     }
     return result;
 }

@@ -63,7 +63,7 @@ struct DriftResult {
     double sigma_mm = 0, sigma_deg = 0;             // of the two
     double chi_squared = 0, chi_squared_limit = 0;  // of "nothing has changed"
     double rms_before_mm = 0, rms_after_mm = 0;     // of e_i, with and without the change
-    std::vector<std::string> not_determined;        // "turn about Z of the flange"
+    std::vector<Text> not_determined;               // "turn about Z of the flange"
     CalibrationReport report;                       // poses: per-measurement |e_i|; judgement
 };
 

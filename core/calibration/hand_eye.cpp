@@ -300,7 +300,7 @@ Determination determination(const Chain& chain, const Pose& x, const Pose& y, co
     return result;
 }
 
-std::vector<std::string> degenerate_words(const std::vector<Pose>& base_from_flange) {
+std::vector<Text> degenerate_words(const std::vector<Pose>& base_from_flange) {
     const auto spread = orientation_spread(base_from_flange);
     if (spread.spread_rad[0] < rad_from_deg(5))
         return {
@@ -341,8 +341,7 @@ Expected<void> check_input(const std::vector<HandEyePair>& pairs, const std::vec
             kept.size() < static_cast<size_t>(kHandEyeFewestPairs)
                 ? Text("{} pairs are too few", kept.size())
                 : Text("only {} of the {} robot poses differ from one another", distinct, kept.size()),
-            "pairs",
-            Text("give at least {} different poses, better eight or more", kHandEyeFewestPairs));
+            "pairs", Text("give at least {} different poses, better eight or more", kHandEyeFewestPairs));
     return {};
 }
 
@@ -414,8 +413,8 @@ HoldOut verify(const Chain& chain, const Pose& x, const Pose& y, const Scales& s
 
 // The usual mistake of a first set-up: one direction reversed. A^-1 Y C^-1 = X says the same as A X C = Y, so
 // the other mount, and camera_from_target inverted, cannot be told apart.
-std::string likely_mistake(Mount mount, const std::vector<HandEyePair>& pairs, const std::vector<bool>& used,
-                           double rms_mm) {
+Text likely_mistake(Mount mount, const std::vector<HandEyePair>& pairs, const std::vector<bool>& used,
+                    double rms_mm) {
     const Mount other = mount == Mount::eye_in_hand ? Mount::eye_to_hand : Mount::eye_in_hand;
     const Chain chain = chain_of(other, pairs, used);
     const Closed start = best_start(chain).closed;
@@ -501,7 +500,7 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             wrong += (wrong.empty() ? "" : ", ") + pose.id;
         }
     }
-    if (!wrong.empty()) result.notices.push_back("not used, contradicting the others: " + wrong);
+    if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
     if (!(known.worst_mm < kUndetermined_mm) || !(known.worst_rad < kUndetermined_rad)) {
         result.status = HandEyeStatus::undetermined;
@@ -511,13 +510,12 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             report.judgement.reason = result.degenerate.front();
             return result;
         }
-        report.judgement.reason =
-            Text("the pairs leave the camera open to {:.3g} mm and {:.3g} degrees", known.worst_mm,
-                        deg_from_rad(known.worst_rad));
+        report.judgement.reason = Text("the pairs leave the camera open to {:.3g} mm and {:.3g} degrees",
+                                       known.worst_mm, deg_from_rad(known.worst_rad));
         double squares = 0;
         for (size_t i = 0; i < pairs.size(); ++i)
             if (wanted[i]) squares += residual_mm(chain, i, x, y).squaredNorm();
-        const std::string mistake =
+        const Text mistake =
             likely_mistake(mount, pairs, wanted, std::sqrt(squares / static_cast<double>(pairs.size())));
         if (!mistake.empty()) report.judgement.cure = mistake;
         return result;
@@ -562,13 +560,13 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     const double check_mm = std::isnan(report.hold_out.rms_mm) ? result.rms_mm : report.hold_out.rms_mm;
     const double check_deg = std::isnan(report.hold_out.rms_deg) ? result.rms_deg : report.hold_out.rms_deg;
     const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
-    const std::string fit =
-        Text("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
+    const Text fit("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
     if (check_mm > kUsableHand_mm || check_deg > kUsableHand_deg || 3 * sigma_mm > 2 * kUsableHand_mm) {
-        const std::string mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
-        report.judgement = {
-            Verdict::poor, fit,
-            mistake.empty() ? "check robot poses, the target's size and the camera's intrinsics" : mistake};
+        const Text mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
+        report.judgement = {Verdict::poor, fit,
+                            mistake.empty()
+                                ? Text("check robot poses, the target's size and the camera's intrinsics")
+                                : mistake};
     } else if (check_mm > kGoodHand_mm || check_deg > kGoodHand_deg || 3 * sigma_mm > kGoodHand_mm || n < 6) {
         report.judgement = {Verdict::usable,
                             n < 6 ? Text("only {:.0f} poses, little to check with; {}", n, fit) : fit,

@@ -58,6 +58,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
         report.poses.emplace_back();
         report.poses.back().id = pairs[i].id;
         report.poses.back().used = used[i];
+        report.poses.back().excluded = !used[i];
         if (!used[i]) report.poses.back().note = "excluded";
         extent = std::max(extent, (pairs[i].laser_mm - pairs[0].laser_mm).norm());
     }
@@ -67,7 +68,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                            "place the body in 10 or more positions over the whole field of view");
     if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
     static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
-    const auto undetermined = [&](const std::string& why) {
+    const auto undetermined = [&](const Text& why) {
         report.judgement = {Verdict::undetermined, why,
                             "spread the body's positions over the whole field of view, near and far"};
         for (int i = 0; i < 6; ++i)
@@ -149,32 +150,32 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     const double sigma_deg = deg_from_rad(std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace()));
     std::string left_out;
     for (const auto& p : report.poses)
-        if (!p.used && p.note != "excluded") left_out += (left_out.empty() ? "" : ", ") + p.id;
+        if (!p.used && !p.excluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
     const char* more = "add pairs in the corners of the field of view, near and far";
     if (!(sigma_mm < 5) || !(sigma_deg < 2)) {
         report.parameters.clear();
         report.covariance.resize(0, 0);
-        return undetermined(Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)",
-                                        sigma_mm, sigma_deg));
+        return undetermined(
+            Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)", sigma_mm, sigma_deg));
     }
     if (result.rms_px > 3)
         report.judgement = {Verdict::poor, Text("the pairs fit to {:.1f} px only", result.rms_px),
                             "check the camera and that pixels and laser points belong together"};
     else if (!left_out.empty())
         report.judgement = {Verdict::usable,
-                            "the pair " + left_out + " contradicts the others and was left out",
+                            Text("the pair {} contradicts the others and was left out", left_out),
                             "measure it again"};
     else if (count() < 10)
         report.judgement = {Verdict::usable, Text("{} pairs are few", count()),
                             "take 10 or more over the whole field of view"};
     else if (sigma_mm > 1 || sigma_deg > 0.3)
-        report.judgement = {
-            Verdict::usable,
-            Text("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg), more};
+        report.judgement = {Verdict::usable,
+                            Text("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg),
+                            more};
     else
         report.judgement = {Verdict::good,
-                            Text("{} pairs fit to {:.2f} px, sigma {:.2f} mm and {:.3f} degrees",
-                                        count(), result.rms_px, sigma_mm, sigma_deg),
+                            Text("{} pairs fit to {:.2f} px, sigma {:.2f} mm and {:.3f} degrees", count(),
+                                 result.rms_px, sigma_mm, sigma_deg),
                             ""};
     return result;
 }

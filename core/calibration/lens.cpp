@@ -15,7 +15,6 @@ namespace seamwright {
 namespace lens_lines {
 namespace {
 
-const std::string kExcluded = "excluded";
 constexpr double kFarSigmas = 5;    // a point farther from its line is left out ..
 constexpr double kNearPx = 0.05;    // .. unless it is this near
 constexpr double kLineShare = 0.6;  // of its points that a line must keep
@@ -248,8 +247,8 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
     const auto worst = static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
     if (lines.count() > fewest && rms[worst] > bent) {
         lines.used[worst] = 0;
-        poses[worst].note = fmt::format("left out: it stays bent by {:.2f} px, the others by {:.2f} px",
-                                        rms[worst], lens_median(rms_used));
+        poses[worst].note = Text("left out: it stays bent by {:.2f} px, the others by {:.2f} px", rms[worst],
+                                 lens_median(rms_used));
         return true;
     }
     const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * lens_median(std::move(all)));
@@ -271,14 +270,13 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
 Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options) {
     using namespace lens_lines;
     if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
-        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height),
-                           "size", "give [width, height] in pixels");
+        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height), "size",
+                           "give [width, height] in pixels");
     LensResult result;
     std::vector<char> excluded(data.lines.size(), 0);
     for (const int e : options.exclude) {
         if (e < 0 || static_cast<std::size_t>(e) >= data.lines.size())
-            return input_error(Text("there is no line {} to exclude", e), "exclude",
-                               "lines count from 0");
+            return input_error(Text("there is no line {} to exclude", e), "exclude", "lines count from 0");
         excluded[static_cast<std::size_t>(e)] = 1;
     }
     Lines lines(data);
@@ -298,7 +296,8 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         PoseResidual p;
         p.id = std::to_string(i);
         lines.used[i] = !excluded[i];
-        if (excluded[i]) p.note = kExcluded;
+        p.excluded = excluded[i];
+        if (p.excluded) p.note = "excluded";
         poses.push_back(std::move(p));
     }
     if (lines.count() == 0)
@@ -308,8 +307,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         if (!lines.used[i] || static_cast<double>(on) >= kLineShare * static_cast<double>(lines.on[i].size()))
             continue;
         lines.used[i] = 0;
-        poses[i].note =
-            Text("left out: only {} of its {} points lie on one line", on, lines.on[i].size());
+        poses[i].note = Text("left out: only {} of its {} points lie on one line", on, lines.on[i].size());
     }
 
     const double half = 0.5 * std::hypot(data.width, data.height);
@@ -350,8 +348,8 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         if (on > 0) poses[i].rms_px = std::sqrt(sum / on);
         const auto left_out = static_cast<double>(data.lines[i].size()) - on;
         if (lines.used[i] && left_out > 0)
-            poses[i].note = Text("{:.0f} of its {} points lie off it and took no part", left_out,
-                                        data.lines[i].size());
+            poses[i].note =
+                Text("{:.0f} of its {} points lie off it and took no part", left_out, data.lines[i].size());
     }
     static constexpr const char* names[] = {"", "", "centre_u", "centre_v", "k1", "k2", "p1", "p2", "k3"};
     auto& report = result.report;
@@ -384,39 +382,36 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     const char* cure = "take lines in all parts of the image, in two directions, from edge to edge";
     std::string left_out;
     for (const PoseResidual& p : poses)
-        if (!p.used && p.note != kExcluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
-    if (!left_out.empty()) left_out = "; left out as no straight lines: " + left_out;
+        if (!p.used && !p.excluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
+    const auto say = [&](const Text& reason) {
+        return left_out.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, left_out);
+    };
     if (lines.count() < 3 || !solved.converged || !(result.corner_sigma_px < 3) ||
         !report.covariance.allFinite()) {
         report.covariance.resize(0, 0);
         report.judgement = {
             Verdict::undetermined,
-            (lines.count() < 3   ? Text("{} line(s) do not determine a lens", lines.count())
-             : !solved.converged ? std::string("no lens makes the lines straight")
-                                 : Text("the lines do not span the field: the distortion in the "
-                                               "corners is known to {:.1f} px only",
-                                               result.corner_sigma_px)) +
-                left_out,
+            say(lines.count() < 3   ? Text("{} line(s) do not determine a lens", lines.count())
+                : !solved.converged ? Text("no lens makes the lines straight")
+                                    : Text("the lines do not span the field: the distortion in the "
+                                           "corners is known to {:.1f} px only",
+                                           result.corner_sigma_px)),
             cure};
         return result;
     }
     finish_statistics(report);
     if (result.straightness_after_px > 2)
-        report.judgement = {
-            Verdict::poor,
-            Text("the lines stay bent by {:.2f} px", result.straightness_after_px) + left_out,
-            "check that the lines lie on a flat plane"};
+        report.judgement = {Verdict::poor,
+                            say(Text("the lines stay bent by {:.2f} px", result.straightness_after_px)),
+                            "check that the lines lie on a flat plane"};
     else if (result.corner_sigma_px > 0.5)
         report.judgement = {
             Verdict::usable,
-            Text("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px) +
-                left_out,
-            cure};
+            say(Text("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px)), cure};
     else
         report.judgement = {Verdict::good,
-                            Text("{} lines, straight to {:.2f} px (before: {:.2f} px)", lines.count(),
-                                        result.straightness_after_px, result.straightness_before_px) +
-                                left_out,
+                            say(Text("{} lines, straight to {:.2f} px (before: {:.2f} px)", lines.count(),
+                                     result.straightness_after_px, result.straightness_before_px)),
                             ""};
     return result;
 }

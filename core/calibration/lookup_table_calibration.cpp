@@ -694,9 +694,8 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     if (fine != 0 &&
         (!(fine > 0) || !std::isfinite(fine) || fine > std::max(width, height) ||
          (std::ceil((width - 1) / fine) + 1) * (std::ceil((height - 1) / fine) + 1) > kMostNodes))
-        return input_error(
-            Text("a step of {} px is not possible for {}x{} pixels", fine, width, height), "step_px",
-            "give e.g. 8");
+        return input_error(Text("a step of {} px is not possible for {}x{} pixels", fine, width, height),
+                           "step_px", "give e.g. 8");
     if (pairs.size() > kMostPairs)
         return input_error(Text("{} pairs are too many", pairs.size()), "pairs",
                            "thin them out to 100000 or fewer");
@@ -715,8 +714,8 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
         if (!p.pixel.allFinite() || !p.laser_mm.allFinite() || p.laser_mm.norm() > 1e6)
             return input_error("the pair is not made of finite numbers", where, "leave it out");
         if (p.pixel.x() < -1 || p.pixel.y() < -1 || p.pixel.x() > width || p.pixel.y() > height)
-            return input_error(Text("the pixel ({:.1f}, {:.1f}) lies outside the image of {}x{}",
-                                           p.pixel.x(), p.pixel.y(), width, height),
+            return input_error(Text("the pixel ({:.1f}, {:.1f}) lies outside the image of {}x{}", p.pixel.x(),
+                                    p.pixel.y(), width, height),
                                where, "check the size and the order [u, v]");
         allowed[i] = !std::binary_search(excluded.begin(), excluded.end(), p.id);
         report.poses.emplace_back();
@@ -732,7 +731,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
 
     const char* spread = "measure 25 or more positions over the whole field of view, near and far";
-    const auto undetermined = [&](std::string reason) {
+    const auto undetermined = [&](Text reason) {
         result.table = {};
         report.parameters.clear();
         report.covariance.resize(0, 0);
@@ -743,8 +742,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     const Samples all = chosen(pairs, allowed);
     if (!(flatness(all.pixel) > 0.01)) return undetermined("the pixels lie on one line of the image");
     if (!(flatness(all.laser) > 0.01)) return undetermined("the targets lie on one line of the laser plane");
-    if (count < 9)
-        return undetermined(Text("{} pairs cannot tell a wrong one from the others", count));
+    if (count < 9) return undetermined(Text("{} pairs cannot tell a wrong one from the others", count));
     SmoothMap map;
     std::vector<char> used;
     if (!fit_without_wrong(pairs, allowed, used, map))
@@ -752,8 +750,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     const Samples s = chosen(pairs, used);
     const auto n = static_cast<double>(s.pixel.size());
     if (3 * n < 2 * static_cast<double>(count))
-        return undetermined(
-            Text("the largest set of pairs that agree has {} of {}", s.pixel.size(), count));
+        return undetermined(Text("the largest set of pairs that agree has {} of {}", s.pixel.size(), count));
     if (!(flatness(s.pixel) > 0.01) || !(flatness(s.laser) > 0.01))
         return undetermined("the pairs that agree lie on one line");
     const Support support(s.pixel);
@@ -858,17 +855,17 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     for (const auto& p : s.pixel) middle += p / n;
     describe(map, table, middle, report);
 
-    std::string wrong;
+    Text wrong;
     int wrong_count = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (allowed[i] && !used[i] && ++wrong_count <= 8) wrong += (wrong.empty() ? "" : ", ") + pairs[i].id;
-    if (wrong_count > 8) wrong += Text(" and {} more", wrong_count - 8);
+        if (allowed[i] && !used[i] && ++wrong_count <= 8) wrong = joined(wrong, ", ", pairs[i].id);
+    if (wrong_count > 8) wrong = Text("{} and {} more", wrong, wrong_count - 8);
     const double hold_px = report.hold_out.rms_px / std::sqrt(2.0);  // per coordinate, as noise_px
     if (result.noise_px > 3 || hold_px > 3)
         report.judgement = {
             Verdict::poor,
             Text("the pairs fit to {:.1f} px only",
-                        std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
+                 std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
             "check that pixels and laser points belong together"};
     else if (folded > 0)
         report.judgement = {Verdict::poor, Text("the map folds over in {} cells", folded),
@@ -876,8 +873,8 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     else if (wrong_count > 0)
         report.judgement = {Verdict::usable,
                             wrong_count == 1
-                                ? "the pair " + wrong + " contradicts the others and was left out"
-                                : "the pairs " + wrong + " contradict the others and were left out",
+                                ? Text("the pair {} contradicts the others and was left out", wrong)
+                                : Text("the pairs {} contradict the others and were left out", wrong),
                             "measure again there"};
     else if (n < 25)
         report.judgement = {Verdict::usable, Text("{:.0f} pairs are few", n), spread};
@@ -887,16 +884,16 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
                             "measure positions in the rest of the image, if the sensor is to see there"};
     else if (hold_px > std::max(1.6 * result.noise_px, 0.05))
         report.judgement = {Verdict::usable,
-                            Text("between the pairs the map is off by {:.2f} px, at them by {:.2f}",
-                                        hold_px, result.noise_px),
+                            Text("between the pairs the map is off by {:.2f} px, at them by {:.2f}", hold_px,
+                                 result.noise_px),
                             "measure positions closer together"};
     else
-        report.judgement = {Verdict::good,
-                            Text("{:.0f} pairs fit to {:.3f} mm ({:.2f} px), the map is known to "
-                                        "{:.3f} mm over {:.0f} % of the image",
-                                        n, result.forward_rms_mm, result.noise_px, result.map_sigma_mm,
-                                        100 * result.covered_share),
-                            ""};
+        report.judgement = {
+            Verdict::good,
+            Text("{:.0f} pairs fit to {:.3f} mm ({:.2f} px), the map is known to "
+                 "{:.3f} mm over {:.0f} % of the image",
+                 n, result.forward_rms_mm, result.noise_px, result.map_sigma_mm, 100 * result.covered_share),
+            ""};
     return result;
 }
 

@@ -127,9 +127,8 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
     for (size_t i = 0; i < points.size(); ++i)
         for (size_t k = 0; k < i; ++k)
             if (use[i] && use[k] && (plate[i] - plate[k]).norm() < 1e-6 * std::max(1.0, size))
-                return input_error(
-                    Text("'{}' and '{}' are the same point of the plate", ids[k], ids[i]), "points",
-                    "give different points, or their mean once");
+                return input_error(Text("'{}' and '{}' are the same point of the plate", ids[k], ids[i]),
+                                   "points", "give different points, or their mean once");
     return {};
 }
 
@@ -214,7 +213,7 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
         report.poses[suspect].note = Text("contradicts the other points by {:.2f} mm", miss);
         wrong += (wrong.empty() ? "" : ", ") + points[suspect].id;
     }
-    if (!wrong.empty()) result.notices.push_back("not used, contradicting the others: " + wrong);
+    if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
     const double count = static_cast<double>(std::count(use.begin(), use.end(), true));
     const double redundancy = 3 * count - 6;
@@ -282,22 +281,20 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     const double stretch = std::abs(result.scale - 1) * size;
     const double stretch_sigma =
         std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(1e-12, m.spread_from));
-    const std::string fit =
-        Text("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst);
+    const Text fit("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst);
     if (result.mirrored) {
         report.judgement = {Verdict::poor, "the world points fit a mirrored plate",
                             "check for an axis that is flipped or swapped"};
     } else if (stretch > 0.2 && stretch > 4 * stretch_sigma && std::abs(result.scale - 1) > 2e-4) {
         report.judgement = {
-            Verdict::poor,
-            Text("distances in the world are {:.5f} times those on the plate", result.scale),
+            Verdict::poor, Text("distances in the world are {:.5f} times those on the plate", result.scale),
             "check the plate's drawing, the scale of the measuring system and the order of the points"};
     } else if (3 * worst > kUsablePlate_mm || result.rms_mm > kUsablePlate_mm) {
         report.judgement = {Verdict::poor, fit,
                             "check the order of the points and measure again, with more points"};
     } else if (3 * worst > kGoodPlate_mm || count < 4) {
         report.judgement = {Verdict::usable,
-                            count < 4 ? "three points leave little to check with; " + fit : fit,
+                            count < 4 ? Text("three points leave little to check with; {}", fit) : fit,
                             "measure more points, spread over the whole plate"};
     } else {
         report.judgement = {Verdict::good, fit, ""};

@@ -49,7 +49,7 @@ struct PlateResult {
     double sigma_mm = 0;    // of a point an axis: estimated, or the given one
     double scale = 1;       // of world over plate distances; off 1 means units or a wrong plate
     bool mirrored = false;  // the points fit a mirrored plate better: an axis of one set is flipped
-    std::vector<std::string> notices;
+    std::vector<Text> notices;
     CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg]; poses = points
 };
 

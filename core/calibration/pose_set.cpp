@@ -10,7 +10,7 @@
 namespace seamwright {
 
 Expected<void> check_rigid(const std::vector<Pose>& poses, const std::vector<std::string>& ids,
-                           const std::string& where) {
+                           const Text& where) {
     for (size_t i = 0; i < poses.size(); ++i)
         if (auto pose = pose_from_matrix(poses[i].matrix(), fmt::format("{} '{}'", where, ids[i])); !pose)
             return tl::unexpected(pose.error());
@@ -18,7 +18,7 @@ Expected<void> check_rigid(const std::vector<Pose>& poses, const std::vector<std
 }
 
 Expected<void> check_ids(const std::vector<std::string>& ids, const std::vector<std::string>& exclude,
-                         const std::string& where) {
+                         const Text& where) {
     std::set<std::string> seen;
     for (size_t i = 0; i < ids.size(); ++i) {
         if (ids[i].empty())
@@ -34,14 +34,13 @@ Expected<void> check_ids(const std::vector<std::string>& ids, const std::vector<
     return {};
 }
 
-Expected<void> check_millimetres(const std::vector<Pose>& poses, const std::string& where) {
+Expected<void> check_millimetres(const std::vector<Pose>& poses, const Text& where) {
     double largest = 0;
     for (const auto& pose : poses) largest = std::max(largest, pose.translation().norm());
     if (largest > 0 && largest < 10)
         return input_error(
-            Text(
-                "no pose is farther than {:.3g} from its base: these look like metres, not millimetres",
-                largest),
+            Text("no pose is farther than {:.3g} from its base: these look like metres, not millimetres",
+                 largest),
             where, "give translations in millimetres (times 1000)");
     return {};
 }

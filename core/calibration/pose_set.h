@@ -15,15 +15,15 @@ inline constexpr double kSamePose_rad = 1e-3;
 
 // Refuses non-finite and non-rigid poses (see pose_from_matrix). `where` names the list, ids[i] the pose.
 Expected<void> check_rigid(const std::vector<Pose>& poses, const std::vector<std::string>& ids,
-                           const std::string& where);
+                           const Text& where);
 
 // Refuses a list whose ids are empty or occur twice, and `exclude` entries that name nobody.
 Expected<void> check_ids(const std::vector<std::string>& ids, const std::vector<std::string>& exclude,
-                         const std::string& where);
+                         const Text& where);
 
 // Refuses translations that can only be metres: a flange is never less than 10 mm from the robot's base in
 // every pose, so when all |translation| < 10 and they are not all zero the sentence says "look like metres".
-Expected<void> check_millimetres(const std::vector<Pose>& poses, const std::string& where);
+Expected<void> check_millimetres(const std::vector<Pose>& poses, const Text& where);
 
 // For each pose the index of the first pose equal to it (its own index when it is the first).
 std::vector<int> first_equal_pose(const std::vector<Pose>& poses);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kGoodChain_mm = 0.1, kUsableChain_mm = 0.3;  // three sigma of the working point
 
-Expected<void> check_link(const UncertainPose& link, const std::string& where) {
+Expected<void> check_link(const UncertainPose& link, const Text& where) {
     if (auto pose = pose_from_matrix(link.pose.matrix(), where); !pose) return tl::unexpected(pose.error());
     if (!link.covariance.allFinite())
         return input_error("the covariance holds a value that is not a finite number", where);
@@ -62,15 +62,15 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
     if (auto ok = check_ids(ids, options.exclude, "sensors"); !ok) return tl::unexpected(ok.error());
     std::vector<Pose> cameras, worlds;
     for (const auto& sensor : sensors) {
-        const std::string where = fmt::format("sensor '{}', ", sensor.id);
-        if (auto ok = check_link(sensor.world_from_plate, where + "world_from_plate"); !ok)
+        const Text where("sensor '{}', ", sensor.id);
+        if (auto ok = check_link(sensor.world_from_plate, joined(where, "", "world_from_plate")); !ok)
             return tl::unexpected(ok.error());
-        if (auto ok = check_link(sensor.plate_from_camera, where + "plate_from_camera"); !ok)
+        if (auto ok = check_link(sensor.plate_from_camera, joined(where, "", "plate_from_camera")); !ok)
             return tl::unexpected(ok.error());
-        if (auto ok = check_link(sensor.camera_from_laser, where + "camera_from_laser"); !ok)
+        if (auto ok = check_link(sensor.camera_from_laser, joined(where, "", "camera_from_laser")); !ok)
             return tl::unexpected(ok.error());
         if (!sensor.working_point_mm.allFinite())
-            return input_error("the working point is not finite", where + "working_point_mm");
+            return input_error("the working point is not finite", joined(where, "", "working_point_mm"));
         cameras.push_back(sensor.plate_from_camera.pose);
     }
     if (auto ok = check_millimetres(cameras, "plate_from_camera of the sensors"); !ok)
@@ -109,18 +109,16 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
             "the reference in the world", "the plate's place in the world", "the camera's pose on the plate",
             "the laser plane in the camera"};
         const double three = 3 * one.working_sigma_mm;
-        const std::string figure =
-            Text("sensor {}: three sigma at the working point {:.3f} mm", one.id, three);
+        const Text figure("sensor {}: three sigma at the working point {:.3f} mm", one.id, three);
         if (sum == 0)
-            one.judgement = {
-                Verdict::usable,
-                Text("sensor {}: no covariance was given, the accuracy is unknown", one.id),
-                "give the covariance of each link"};
+            one.judgement = {Verdict::usable,
+                             Text("sensor {}: no covariance was given, the accuracy is unknown", one.id),
+                             "give the covariance of each link"};
         else if (three > kUsableChain_mm)
             one.judgement = {Verdict::poor, figure,
-                             Text("most of it is {}: calibrate that better", names[largest])};
+                             Text("most of it is {}: calibrate that better", Text(names[largest]))};
         else if (three > kGoodChain_mm)
-            one.judgement = {Verdict::usable, figure, Text("most of it is {}", names[largest])};
+            one.judgement = {Verdict::usable, figure, Text("most of it is {}", Text(names[largest]))};
         else
             one.judgement = {Verdict::good, figure, ""};
         if (result.sensors.empty() || one.judgement.verdict > result.judgement.verdict)

@@ -46,7 +46,6 @@ class Solver {
     Expected<StripeCameraResult> run() {
         if (auto ok = collect(); !ok) return tl::unexpected(ok.error());
         if (auto ok = start(); !ok) return tl::unexpected(ok.error());
-        if (!result_.frames.empty() && undetermined_) return std::move(result_);
         choose_model();
         refine_without_stripe();
         if (auto ok = check_scale_again(); !ok) return tl::unexpected(ok.error());
@@ -68,8 +67,8 @@ class Solver {
                 return input_error(Text("the frame id '{}' occurs twice", o.id), o.id, "name frames apart");
             if (o.width != observations_.front().width || o.height != observations_.front().height)
                 return input_error(
-                    Text("the images have different sizes ({}x{} and {}x{})",
-                                observations_.front().width, observations_.front().height, o.width, o.height),
+                    Text("the images have different sizes ({}x{} and {}x{})", observations_.front().width,
+                         observations_.front().height, o.width, o.height),
                     o.id, "give frames of one camera at one resolution");
         }
         for (const auto& e : options_.exclude)
@@ -101,13 +100,13 @@ class Solver {
             result_.frames.push_back(std::move(f));
         }
         if (result_.boards_found == 0)
-            return input_error(Text("no board of {}x{} points was found in any of {} images",
-                                           spec_.columns, spec_.rows, observations_.size()),
+            return input_error(Text("no board of {}x{} points was found in any of {} images", spec_.columns,
+                                    spec_.rows, observations_.size()),
                                "board", "check the number of inner corners, the light and the focus");
         if (count() < 3)
             return input_error(
-                Text("only {} different frames show the board, at least 3 are needed", count()),
-                "images", "take 8 or more frames with the plate tilted in different directions");
+                Text("only {} different frames show the board, at least 3 are needed", count()), "images",
+                "take 8 or more frames with the plate tilted in different directions");
         return {};
     }
 
@@ -174,7 +173,7 @@ class Solver {
             return {};
         }
         if (start->status != HandEyeStatus::ok) {
-            robot_note_ = start->degenerate.empty() ? "the robot's poses do not determine it"
+            robot_note_ = start->degenerate.empty() ? Text("the robot's poses do not determine it")
                                                     : start->degenerate.front();
             return {};
         }
@@ -238,8 +237,7 @@ class Solver {
             const auto k = with[i];
             const auto other = turned(*observations_[view_frame_[k]].board, spec_, turns[i] * step);
             data_.views[k].object_mm = other.object_mm;
-            result_.frames[view_frame_[k]].note =
-                Text("board read {} degrees round", 90 * turns[i] * step);
+            result_.frames[view_frame_[k]].note = Text("board read {} degrees round", 90 * turns[i] * step);
             if (const auto located =
                     locate_target(camera_of(state_.intrinsics, data_.width, data_.height), data_.views[k]))
                 state_.camera_from_target[k] = located->camera_from_target;
@@ -277,13 +275,12 @@ class Solver {
         if (!(s > 0) || std::abs(s - 1) < 0.06 || free_cost > 0.3 * unit_cost) return {};
         if (s > 300 || s < 1 / 300.0)
             return input_error(Text("the robot's motion is {:.0f} times the board's: metres were "
-                                           "given where millimetres were meant",
-                                           s > 1 ? s : 1 / s),
+                                    "given where millimetres were meant",
+                                    s > 1 ? s : 1 / s),
                                "poses", "give both in millimetres");
-        return input_error(
-            Text("by the robot's motion the pitch of the board is {:.2f} mm, not {:.2f} mm",
-                        s * spec_.pitch_mm, spec_.pitch_mm),
-            "pitch_mm", "measure the board");
+        return input_error(Text("by the robot's motion the pitch of the board is {:.2f} mm, not {:.2f} mm",
+                                s * spec_.pitch_mm, spec_.pitch_mm),
+                           "pitch_mm", "measure the board");
     }
 
     // With the plate's shape solved the residuals are small enough to tell a pitch that is 6 % wrong.
@@ -537,9 +534,8 @@ class Solver {
             if (f.stripe_used)
                 rows += f.rows_on_board, on += f.rows_on_plane;
             else
-                f.note = Text(
-                    "its stripe lies {:.1f} mm off the plane of the other frames and was left out",
-                    std::abs(f.median_off_plane_mm));
+                f.note = Text("its stripe lies {:.1f} mm off the plane of the other frames and was left out",
+                              std::abs(f.median_off_plane_mm));
         }
         result_.on_plane_share = rows ? static_cast<double>(on) / rows : 0;
         result_.on_plane_share_all = rows_all ? static_cast<double>(on_all) / rows_all : 0;
@@ -655,30 +651,30 @@ class Solver {
         for (const auto& x : result_.frames)
             if (x.used && !x.stripe_used && !x.stripe.empty()) off += (off.empty() ? "" : ", ") + x.id;
         if (!fit_.covariance.size() || sigma_f > 0.05 * f)
-            return {Verdict::undetermined,
-                    Text("the frames do not determine the focal length (sigma {:.0f} of {:.0f} px)",
-                                sigma_f, f),
-                    "tilt the plate by 20 to 40 degrees in several directions"};
+            return {
+                Verdict::undetermined,
+                Text("the frames do not determine the focal length (sigma {:.0f} of {:.0f} px)", sigma_f, f),
+                "tilt the plate by 20 to 40 degrees in several directions"};
         if (!result_.plane)
             return {Verdict::undetermined, "fewer than two frames show a stripe on the plate",
                     "place the plate so that the stripe crosses it in every frame"};
         if (stripes < 3 || result_.plane_sigma_deg > 2)
             return {Verdict::undetermined,
                     Text("the stripes of {} frames do not fix the laser plane (sigma {:.1f} degrees)",
-                                stripes, result_.plane_sigma_deg),
+                         stripes, result_.plane_sigma_deg),
                     "add frames with the plate nearer, farther and tilted"};
         if (result_.on_plane_share < 0.8 || result_.rms_px > 1.5)
             return {Verdict::poor,
                     Text("only {:.0f} % of the stripe rows lie within 0.5 mm of one plane, corners "
-                                "fit to {:.2f} px",
-                                100 * result_.on_plane_share, result_.rms_px),
+                         "fit to {:.2f} px",
+                         100 * result_.on_plane_share, result_.rms_px),
                     "check focus, that plate, laser and camera are held firmly, and the board's size"};
         // Beyond what corners are read to, the model does not explain them.
         const double noise = std::max(detail::corner_noise_px(data_.views), 0.02);
         const double misfit = result_.sigma_px / noise;
         const auto misfits = [&] {
-            return fmt::format("the corners fit to {:.2f} px, {:.0f} times as far off as they are read",
-                               result_.rms_px, misfit);
+            return Text("the corners fit to {:.2f} px, {:.0f} times as far off as they are read",
+                        result_.rms_px, misfit);
         };
         if (misfit > 5)
             return {Verdict::poor, misfits(), "check that the plate is flat and firm, and the lens in focus"};
@@ -687,39 +683,37 @@ class Solver {
         if (2 * stripes <= with_stripe)
             return {Verdict::poor,
                     Text("the stripes of {} of {} frames contradict the plane of the others ({})",
-                                with_stripe - stripes, with_stripe, off),
+                         with_stripe - stripes, with_stripe, off),
                     "hold laser and camera firmly together and take all frames again"};
         if (result_.flange_from_camera && result_.target_spread_mm > 3)
-            return {Verdict::poor,
-                    Text("the plate's origin spreads by {:.1f} mm in the robot's base",
-                                result_.target_spread_mm),
-                    "check that poses and images belong together and that the plate did not move"};
+            return {
+                Verdict::poor,
+                Text("the plate's origin spreads by {:.1f} mm in the robot's base", result_.target_spread_mm),
+                "check that poses and images belong together and that the plate did not move"};
         if (!off.empty())
             return {Verdict::usable,
-                    Text("the stripe of {} lies off the plane that the other {} frames share", off,
-                                stripes),
+                    Text("the stripe of {} lies off the plane that the other {} frames share", off, stripes),
                     "check that laser and camera sit firmly, and take these frames again"};
         if (misfit > 3)
             return {Verdict::usable, misfits(),
                     "check that the plate is flat and firm, and the lens in focus"};
         if (sigma_f > 0.01 * f)
-            return {Verdict::usable,
-                    Text("the focal length is known to {:.1f} % only", 100 * sigma_f / f),
+            return {Verdict::usable, Text("the focal length is known to {:.1f} % only", 100 * sigma_f / f),
                     "add frames with the plate tilted by 20 to 40 degrees"};
         if (result_.on_plane_share < 0.95)
             return {Verdict::usable,
                     Text("{:.0f} % of the stripe rows lie within 0.5 mm of one plane",
-                                100 * result_.on_plane_share),
+                         100 * result_.on_plane_share),
                     "use a flatter plate or less exposure"};
         if (!result_.flange_from_camera && !robot_note_.empty())
-            return {Verdict::usable, "no hand-eye: " + robot_note_,
+            return {Verdict::usable, Text("no hand-eye: {}", robot_note_),
                     "turn the robot about two axes by 20 degrees or more"};
-        std::string reason = Text("{} frames, corners {:.2f} px, {:.1f} % of the stripe on one plane",
-                                         count(), result_.rms_px, 100 * result_.on_plane_share);
+        Text reason("{} frames, corners {:.2f} px, {:.1f} % of the stripe on one plane", count(),
+                    result_.rms_px, 100 * result_.on_plane_share);
         if (model_.shape != ShapeFreedom::rigid)
-            reason += Text(
-                "; the plate is stretched by {:.2f} % and sheared by {:.2f} %, which was solved for",
-                100 * state_.shape.stretch, 100 * state_.shape.shear);
+            reason =
+                Text("{}; the plate is stretched by {:.2f} % and sheared by {:.2f} %, which was solved for",
+                     reason, 100 * state_.shape.stretch, 100 * state_.shape.shear);
         return {Verdict::good, reason, ""};
     }
 
@@ -737,8 +731,7 @@ class Solver {
     std::vector<std::size_t> choice_;
     std::vector<char> best_used_;
     bool best_on_bow_ = false;
-    bool undetermined_ = false;
-    std::string robot_note_;
+    Text robot_note_;
 };
 
 }  // namespace

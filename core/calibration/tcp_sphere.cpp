@@ -12,6 +12,7 @@
 #include "core/calibration/statistics.h"
 #include "core/calibration/tcp_sphere_advice.h"
 #include "core/calibration/tcp_sphere_solve.h"
+#include "core/median.h"
 
 namespace seamwright {
 namespace {
@@ -60,8 +61,7 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
     for (size_t i = 0; i < first.size(); ++i) distinct += first[i] == static_cast<int>(i) ? 1 : 0;
     if (distinct < kTcpSphereFewestPoses)
         return input_error(
-            Text("only {} of the {} poses differ from one another", distinct, kept.size()),
-            "observations",
+            Text("only {} of the {} poses differ from one another", distinct, kept.size()), "observations",
             Text("give at least {} different poses, better nine or more", kTcpSphereFewestPoses));
 
     // Extents of the points, for units: a sensor's field is centimetres, a sphere's radius is millimetres.
@@ -80,11 +80,11 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
     if (high - low < 0.5)
         return input_error(
             Text("all profile points lie within {:.3g} in x: these look like metres, not millimetres",
-                        high - low),
+                 high - low),
             "observations", "give profile points in millimetres (times 1000)");
     if (options.radius_mm && *options.radius_mm < 0.5)
-        return input_error(Text("a radius of {:.3g} mm looks like metres", *options.radius_mm),
-                           "radius_mm", "give it in millimetres (times 1000)");
+        return input_error(Text("a radius of {:.3g} mm looks like metres", *options.radius_mm), "radius_mm",
+                           "give it in millimetres (times 1000)");
     return {};
 }
 
@@ -101,12 +101,6 @@ double point_squares(const Section& section, const Model& model) {
 
 double section_rms(const Section& section, const Model& model) {
     return section.x.empty() ? kNaN : std::sqrt(point_squares(section, model) / section.count());
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 size_t used_count(const std::vector<Section>& sections) {
@@ -224,7 +218,7 @@ void settle(std::vector<Section>& sections, Model& model, bool radius_free, cons
 
 MirroredAxis judge_axes(const std::vector<Section>& sections,
                         const std::vector<SphereObservation>& observations, const TcpSphereOptions& options,
-                        const Model& model, std::vector<std::string>& notices) {
+                        const Model& model, std::vector<Text>& notices) {
     double side = 0, descending = 0, ascending = 0, used = 0;
     for (const auto& section : sections) {
         if (!section.used) continue;
@@ -436,8 +430,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     if (static_cast<int>(radii.size()) < kFewestSections) {
         result.status = TcpSphereStatus::not_converged;
         write_poses(observations, sections, excluded, nullptr, result.report);
-        judgement = {Verdict::undetermined,
-                     Text("the sphere was found in {} profiles only", radii.size()),
+        judgement = {Verdict::undetermined, Text("the sphere was found in {} profiles only", radii.size()),
                      radius_free ? "let the laser cut the sphere in every pose"
                                  : "let the laser cut the sphere in every pose, and check its radius"};
         return result;
@@ -542,13 +535,13 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     std::string rejected;
     for (const auto& pose : result.report.poses)
         if (!pose.used && !pose.excluded) rejected += (rejected.empty() ? "" : ", ") + pose.id;
-    if (!rejected.empty()) result.notices.push_back("not used: " + rejected);
+    if (!rejected.empty()) result.notices.push_back(Text("not used: {}", rejected));
     if (noise.poses_disagree)
         result.notices.push_back(
             Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
-                        "less exact than the "
-                        "profiles, and the stated sigma counts that in",
-                        std::sqrt(noise.ratio)));
+                 "less exact than the "
+                 "profiles, and the stated sigma counts that in",
+                 std::sqrt(noise.ratio)));
     double free_radius = kNaN;
     if (!radius_free && noise.poses_disagree && result.rms_mm > 0.1) {
         Model free_model = model;
@@ -561,37 +554,36 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     // With less than six poses left a wrong one among them still fits; leaving it out shows it.
     const double hold_out_limit = used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
     if (std::isfinite(free_radius)) {
-        judgement = {
-            Verdict::poor,
-            Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
-                        free_radius, model.radius),
-            "check the radius (was the diameter given?)"};
+        judgement = {Verdict::poor,
+                     Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
+                          free_radius, model.radius),
+                     "check the radius (was the diameter given?)"};
     } else if (used < 0.5 * static_cast<double>(candidates)) {
         judgement = {Verdict::poor, "most profiles contradict the solution found from the others",
                      "check the robot poses and that the sphere did not move"};
     } else if (result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit) {
-        judgement = {
-            Verdict::poor,
-            Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
-                        result.rms_mm, hold_out),
-            "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
-    } else if (three_sigma > kUsableTcp_mm) {
         judgement = {Verdict::poor,
-                     Text("three sigma at the working distance are {:.2f} mm", three_sigma),
-                     result.proposals.empty() ? "take more poses"
-                                              : "take more poses, first: " + result.proposals.front().words};
+                     Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
+                          result.rms_mm, hold_out),
+                     "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
+    } else if (three_sigma > kUsableTcp_mm) {
+        judgement = {Verdict::poor, Text("three sigma at the working distance are {:.2f} mm", three_sigma),
+                     result.proposals.empty()
+                         ? Text("take more poses")
+                         : Text("take more poses, first: {}", result.proposals.front().words)};
     } else if (three_sigma > kGoodTcp_mm) {
         judgement = {Verdict::usable,
-                     Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}",
-                                 three_sigma, kGoodTcp_mm),
-                     result.proposals.empty() ? "take more poses"
-                                              : "take more poses, first: " + result.proposals.front().words};
+                     Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}", three_sigma,
+                          kGoodTcp_mm),
+                     result.proposals.empty()
+                         ? Text("take more poses")
+                         : Text("take more poses, first: {}", result.proposals.front().words)};
     } else if (used < kTcpSphereFewestPoses) {
         judgement = {Verdict::usable, Text("only {:.0f} of the poses could be used", used),
                      "take more poses that show the sphere"};
     } else {
-        judgement = {Verdict::good,
-                     Text("three sigma at the working distance are {:.3f} mm", three_sigma), ""};
+        judgement = {Verdict::good, Text("three sigma at the working distance are {:.3f} mm", three_sigma),
+                     ""};
     }
     return result;
 }

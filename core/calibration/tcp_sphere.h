@@ -73,7 +73,7 @@ std::string_view name_of(MirroredAxis axis);
 // the data know where it is; from an undetermined set the orientation counts, and the sphere is jogged into
 // the view.
 struct PoseProposal {
-    std::string words;  // "turn the sensor about its X axis by 25 degrees with the sphere in view"
+    Text words;  // "turn the sensor about its X axis by 25 degrees with the sphere in view"
     Pose base_from_flange = Pose::Identity();
     double sigma_mm = 0;  // largest sigma of the weakest direction after adding it (see weakest_sigma_mm)
 };
@@ -92,8 +92,8 @@ struct TcpSphereResult {
     double working_sigma_mm = 0;  // largest sigma of the working point in the flange frame
     double weakest_sigma_mm = 0;  // largest sigma of any direction, rotations on a lever of 100 mm
     MirroredAxis mirrored = MirroredAxis::none;
-    std::vector<std::string> notices;     // plain words, worth a look
-    std::vector<std::string> degenerate;  // plain words, what the poses do not determine and what to do
+    std::vector<Text> notices;            // plain words, worth a look
+    std::vector<Text> degenerate;         // plain words, what the poses do not determine and what to do
     std::vector<PoseProposal> proposals;  // best first; each assumes the ones before it were taken
     CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg, rotation vector] centre_* radius
 };

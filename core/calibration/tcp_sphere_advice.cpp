@@ -63,9 +63,9 @@ Determination determination(const Matrix10& information, const Model& model,
     return result;
 }
 
-std::vector<std::string> degenerate_pose_words(const std::vector<Section>& sections, const Model& model,
-                                               bool radius_free) {
-    std::vector<std::string> words;
+std::vector<Text> degenerate_pose_words(const std::vector<Section>& sections, const Model& model,
+                                        bool radius_free) {
+    std::vector<Text> words;
     std::vector<Pose> poses;
     std::vector<Eigen::Vector3d> centres;
     double smallest_cut = std::numeric_limits<double>::infinity(), largest_cut = 0;
@@ -95,9 +95,9 @@ std::vector<std::string> degenerate_pose_words(const std::vector<Section>& secti
             choice.replace(at, 5, " or ");
         words.push_back(
             Text("the poses turn about the flange's {} axis only, all poses share one orientation "
-                        "about {}: rotate about {} by "
-                        "20 degrees or more",
-                        axis_name(axis), missing, choice));
+                 "about {}: rotate about {} by "
+                 "20 degrees or more",
+                 axis_name(axis), missing, choice));
     }
     // Where the sphere stands in the sensor frame: a point or a line leaves rotations about it free.
     if (centres.size() >= 2) {
@@ -118,9 +118,9 @@ std::vector<std::string> degenerate_pose_words(const std::vector<Section>& secti
         else if (second < 0.5)
             words.push_back(
                 Text("the sphere's places in the sensor frame lie on one line along {}: shift it "
-                            "across that line by "
-                            "half the field of view",
-                            axis_name(eigen.eigenvectors().col(2))));
+                     "across that line by "
+                     "half the field of view",
+                     axis_name(eigen.eigenvectors().col(2))));
     }
     if (radius_free && largest_cut - smallest_cut < 0.1 * largest_cut)
         words.push_back(
@@ -185,18 +185,18 @@ std::vector<PoseProposal> propose_poses(const std::vector<Section>& sections, co
         {{0, 0.5 * model.radius, 0}, "the laser cutting it half a radius off its middle"},
         {{0, -0.5 * model.radius, 0}, "the laser cutting it half a radius off its middle on the other side"}};
     struct View {
-        std::string words;
+        Text words;
         Section section;
         Matrix10 information;
     };
     std::vector<View> views;
-    const auto add = [&](const Eigen::Matrix3d& rotation, const std::string& turn) {
+    const auto add = [&](const Eigen::Matrix3d& rotation, const Text& turn) {
         for (const auto& place : places) {
             const Eigen::Vector3d s =
                 Eigen::Vector3d(working_point_sensor.x(), 0, working_point_sensor.z()) + place.shift;
             const Pose pose =
                 make_pose(rotation, model.centre_base - rotation * s) * model.flange_from_sensor.inverse();
-            View view{turn + ", with " + place.words, {}, {}};
+            View view{Text("{}, with {}", turn, Text(place.words)), {}, {}};
             view.section.flange_from_base = pose.inverse();
             view.information = information_of_view(view.section, model, arc_points, arc_side);
             views.push_back(std::move(view));
@@ -206,8 +206,7 @@ std::vector<PoseProposal> propose_poses(const std::vector<Section>& sections, co
     for (const auto& turn : turns)
         for (const double angle_deg : {25.0, -25.0})
             add(base_from_sensor * rotation_exp(turn.axis * rad_from_deg(angle_deg)),
-                Text("turn the sensor about its own {} axis by {:+.0f} degrees", turn.name,
-                            angle_deg));
+                Text("turn the sensor about its own {} axis by {:+.0f} degrees", turn.name, angle_deg));
 
     Matrix10 known = information;
     for (int k = 0; k < count; ++k) {

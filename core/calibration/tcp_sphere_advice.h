@@ -23,8 +23,8 @@ Determination determination(const Matrix10& information, const Model& model,
 
 // Sentences such as "all poses share one orientation about Y: rotate the flange about Y by 20 degrees or
 // more". Empty when nothing in the poses explains a weak direction.
-std::vector<std::string> degenerate_pose_words(const std::vector<Section>& sections, const Model& model,
-                                               bool radius_free);
+std::vector<Text> degenerate_pose_words(const std::vector<Section>& sections, const Model& model,
+                                        bool radius_free);
 
 // Greedy choice among views that keep the sphere in sight: turned by +-25 degrees about the sensor's axes and
 // with the sphere a little to the side, nearer, or cut off its middle; each scored by the information of an

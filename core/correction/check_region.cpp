@@ -19,8 +19,8 @@ bool is_pose(const Pose& pose) {
            r.determinant() > 0;
 }
 
-std::string where(std::size_t n, const SpotObservation& spot, const char* field) {
-    return fmt::format("spots[{}] \"{}\" {}", n, spot.id, field);
+Text where(std::size_t n, const SpotObservation& spot, const char* field) {
+    return Text("spots[{}] \"{}\" {}", n, spot.id, field);
 }
 
 constexpr const char* kNoCovariance =
@@ -37,12 +37,12 @@ Expected<void> check_sensors(std::span<const SpotObservation> spots,
                              const std::vector<SensorPrior>& sensors) {
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const SensorPrior& p = sensors[i];
-        const auto at = [&](const char* field) { return fmt::format("sensors \"{}\" {}", p.id, field); };
+        const auto at = [&](const char* field) { return Text("sensors \"{}\" {}", p.id, field); };
         if (p.id.empty())
             return input_error("a sensor has an empty id", "sensors", "give every sensor its name");
         for (std::size_t k = 0; k < i; ++k)
             if (sensors[k].id == p.id)
-                return input_error(fmt::format("the sensor id \"{}\" occurs twice", p.id), "sensors",
+                return input_error(Text("the sensor id \"{}\" occurs twice", p.id), "sensors",
                                    "give every sensor its own id");
         if (!covariance_of_pose(p.hand_eye_covariance))
             return input_error(kNoCovariance, at("hand_eye_covariance"),
@@ -64,15 +64,14 @@ Expected<void> check_sensors(std::span<const SpotObservation> spots,
                                "name the sensor that measures it");
         if (std::none_of(sensors.begin(), sensors.end(),
                          [&](const SensorPrior& p) { return p.id == s.sensor; }))
-            return input_error(fmt::format("the sensor \"{}\" is not among the stated ones", s.sensor),
+            return input_error(Text("the sensor \"{}\" is not among the stated ones", s.sensor),
                                where(n, s, "sensor"), "add it to \"sensors\" or mend the id");
     }
     return {};
 }
 
 tl::unexpected<Error> twice(const std::string& id) {
-    return input_error(Text("the spot id \"{}\" occurs twice", id), "spots",
-                       "give every spot its own id");
+    return input_error(Text("the spot id \"{}\" occurs twice", id), "spots", "give every spot its own id");
 }
 
 Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured) {

@@ -7,17 +7,10 @@
 #include "core/correction/contour_fit.h"
 #include "core/correction/correction.h"
 #include "core/geometry/decompositions.h"
+#include "core/median.h"
 
 namespace seamwright {
-namespace {
-
-double median(std::vector<double> v) {
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order) {
     PolynomialFit out;
@@ -129,12 +122,11 @@ Expected<ContourCurve> fit_contour_curve(std::span<const TravelPoint> points) {
         z.push_back(p.z_mm);
     }
     if (y.size() < 5)
-        return input_error(Text("only {} reference points of the pass are usable", y.size()),
-                           "contour curve", "record at least 5 profiles between entry and exit");
+        return input_error(Text("only {} reference points of the pass are usable", y.size()), "contour curve",
+                           "record at least 5 profiles between entry and exit");
     const auto [from, to] = std::minmax_element(y.begin(), y.end());
     if (*to - *from < 1.0)
-        return input_error(Text("the pass covers only {:.3f} mm of travel", *to - *from),
-                           "contour curve",
+        return input_error(Text("the pass covers only {:.3f} mm of travel", *to - *from), "contour curve",
                            "record profiles over about 20 mm before and after the trigger position");
     const PolynomialFit fx = fit_lowest_order(y, x, 1, 3), fz = fit_lowest_order(y, z, 1, 3);
     if (!fx.ok || !fz.ok)

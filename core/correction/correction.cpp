@@ -89,9 +89,8 @@ struct RegionSolver::Impl {
         r.unobservable = name_directions(seen.weak, system.centroid(), system.spread_mm());
         r.sigma_at_spots_mm = seen.weakest_sigma_mm;
         report_spread(system, spread, seen, state, nullptr, r);
-        r.message =
-            Text("the spots do not determine the {}: add a spot whose edge runs in another direction",
-                        listed(r.unobservable));
+        r.message = Text("the spots do not determine the {}: add a spot whose edge runs in another direction",
+                         listed(r.unobservable));
     }
 
     void fill_spots(std::span<const SpotObservation> spots, RegionCorrection& r) {
@@ -124,7 +123,7 @@ struct RegionSolver::Impl {
         const auto add = [&](const Text& sentence) { r.message = joined(r.message, "; ", sentence); };
         if (!out.empty())
             add(Text("left out as wrong: {}: look there for a foreign particle or a wrong feature",
-                            listed(out)));
+                     listed(out)));
         const double scatter = std::sqrt(r.variance_factor);
         if (verdict == Verdict::contradictory)
             add(Text(
@@ -140,7 +139,7 @@ struct RegionSolver::Impl {
             const double beyond = system.beyond_curve_mm(n, fit.state);
             if (beyond > 0.5)
                 add(Text("{} slid {:.1f} mm beyond the taught range of its contour curve", spots[n].id,
-                                beyond));
+                         beyond));
         }
     }
 

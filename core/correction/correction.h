@@ -189,9 +189,8 @@ struct RegionCorrection {
     double variance_factor = 1;
     bool consistent = true;           // false: the variance factor is beyond chance (chi-square, 1e-4)
     std::vector<SpotResidual> spots;  // in the order given
-    std::vector<Text>
-        unobservable;     // plain words: "translation along X", "rotation about the axis ..."
-    Text message;  // one sentence: the verdict and how to cure it
+    std::vector<Text> unobservable;   // plain words: "translation along X", "rotation about the axis ..."
+    Text message;                     // one sentence: the verdict and how to cure it
     int iterations = 0;
 };
 
@@ -240,7 +239,7 @@ struct RegionPlan {
     double sigma_at_spots_mm = 0;                 // of the weakest direction; infinity when singular
     Vector6 weakest_direction = Vector6::Zero();  // (translation of the spots' centroid, rotation vector
                                                   // times the spots' spread), unit length
-    Text weakest;                          // in plain words
+    Text weakest;                                 // in plain words
     std::vector<Text> unobservable;
     int redundancy = 0;
     // Spots whose single wrong measure of kFindableErrorMm could not be found and named.

@@ -71,7 +71,7 @@ double no_minus(double v) {
 }  // namespace
 
 std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
-                                         const Eigen::Vector3d& centroid, double spread) {
+                                  const Eigen::Vector3d& centroid, double spread) {
     std::vector<Text> words;
     if (xi.cols() == 0) return words;
     const Eigen::MatrixXd u = singular_values(xi).u;

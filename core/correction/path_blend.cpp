@@ -31,7 +31,7 @@ Expected<void> check(std::span<const PathPoint> points, std::span<const PathRegi
                            "give a positive length");
     if (names.size() != regions.size()) return input_error("every region needs its name", "regions");
     for (std::size_t r = 0; r < regions.size(); ++r) {
-        const std::string where = "region " + names[r];
+        const Text where("region {}", names[r]);
         const auto rigid =
             pose_from_matrix(regions[r].displacement.workobject_from_movedworkobject.matrix(), where, 1e-6);
         if (!rigid) return tl::unexpected(rigid.error());
@@ -43,7 +43,7 @@ Expected<void> check(std::span<const PathPoint> points, std::span<const PathRegi
     }
     bool any = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::string where = fmt::format("path point {}", i + 1);
+        const Text where("path point {}", i + 1);
         const auto rigid = pose_from_matrix(points[i].workobject_from_tool.matrix(), where, 1e-6);
         if (!rigid) return tl::unexpected(rigid.error());
         if (points[i].region < -1 || points[i].region >= static_cast<int>(regions.size()))
@@ -190,10 +190,9 @@ Expected<CorrectedPath> correct_path(std::span<const PathPoint> points, std::spa
             deg_from_rad(angle_rad(regions[t.a].displacement.workobject_from_movedworkobject,
                                    regions[t.b].displacement.workobject_from_movedworkobject));
         if (turn > kMostBetweenRegions_deg)
-            return input_error(
-                Text("regions {} and {} are turned by {:.1f} degrees against each other", names[t.a],
-                            names[t.b], turn),
-                "path");
+            return input_error(Text("regions {} and {} are turned by {:.1f} degrees against each other",
+                                    names[t.a], names[t.b], turn),
+                               "path");
     }
 
     CorrectedPath out;
@@ -253,9 +252,9 @@ Expected<CorrectedPath> correct_path(std::span<const PathPoint> points, std::spa
         });
         if (!holds)
             out.remarks.push_back(
-                fmt::format("between {} and {} the path has no point within the transition of {:.1f} mm: the "
-                            "whole step lies in one segment",
-                            names[t.a], names[t.b], t.to - t.from));
+                Text("between {} and {} the path has no point within the transition of {:.1f} mm: the "
+                     "whole step lies in one segment",
+                     names[t.a], names[t.b], t.to - t.from));
     }
     return out;
 }

@@ -76,7 +76,7 @@ struct CorrectedPath {
     std::size_t curvature_point = 0;
     // The path's own largest curvature, taught, to compare.
     double curvature_per_m = 0;
-    std::vector<std::string> remarks;  // transitions that hold no point: the whole step lies in one segment
+    std::vector<Text> remarks;  // transitions that hold no point: the whole step lies in one segment
 };
 
 // Refuses (Error): fewer than 2 points, poses or displacements that are not finite or no rigid motion, a

@@ -161,9 +161,8 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
             c.penalty = penalty;
             c.near = near;
             c.edge = axis_name(edge);
-            c.words =
-                Text("{} at ({:.0f}, {:.0f}, {:.0f}) mm of the work object with its edge along {}",
-                            place, p.x() + 0.0, p.y() + 0.0, p.z() + 0.0, c.edge);
+            c.words = Text("{} at ({:.0f}, {:.0f}, {:.0f}) mm of the work object with its edge along {}",
+                           place, p.x() + 0.0, p.y() + 0.0, p.z() + 0.0, c.edge);
             out.push_back(std::move(c));
         }
     };
@@ -196,7 +195,7 @@ std::vector<Candidate> candidates(std::span<const SpotObservation> spots) {
 }
 
 Text advise(std::span<const SpotObservation> spots, const CorrectionOptions& options,
-                   const RegionPlan& plan) {
+            const RegionPlan& plan) {
     Spots extended(spots.begin(), spots.end());
     std::vector<Text> added;
     RegionSystem system;
@@ -241,7 +240,7 @@ Text advise(std::span<const SpotObservation> spots, const CorrectionOptions& opt
         return std::isfinite(mm) ? Text("{:.3g} mm", mm) : Text("undetermined");
     };
     const Text gain("the weakest direction goes from {} to {} (1 sigma at the spots)",
-                                         sigma(plan.sigma_at_spots_mm), sigma(best.sigma_mm));
+                    sigma(plan.sigma_at_spots_mm), sigma(best.sigma_mm));
     if (weak_before) return Text("add {} {}: {}", count, where, gain);
     if (!plan.uncontrolled.empty() && best.uncontrolled < plan.uncontrolled.size())
         return Text(

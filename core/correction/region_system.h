@@ -162,7 +162,7 @@ class RegionSystem {
 // Plain words for a set of unobservable directions (columns in xi, spanning the unobservable space): pure
 // translations first, then rotations with their axis. `centroid` and `spread` as in RegionSystem.
 std::vector<Text> name_directions(const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& xi,
-                                         const Eigen::Vector3d& centroid, double spread);
+                                  const Eigen::Vector3d& centroid, double spread);
 
 // Checks everything that solve_region and plan_region refuse.
 Expected<void> check_region(std::span<const SpotObservation> spots, const CorrectionOptions& options,

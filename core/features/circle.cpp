@@ -270,7 +270,7 @@ class CircleFinder final : public FeatureFinder {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message =
                 Text("the arc of {:.0f} degrees is too short: the centre is uncertain by {:.2g} mm",
-                            deg_from_rad(arc), worst);
+                     deg_from_rad(arc), worst);
             return feature;
         }
         feature.status = FeatureStatus::ok;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -15,13 +16,6 @@ constexpr double kSmallestSigma_mm = 1e-4;
 constexpr int kNodesPerEdge = 64;
 // Sigmas of the next order's coefficient that a window may show.
 constexpr double kLineBend = 0.8, kParabolaBend = 1.5;
-
-double median(std::vector<double>& v) {
-    if (v.empty()) return 0;
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-}
 
 // Sums over the point numbers of a window of m equally numbered points, counted from its middle:
 // s2 = sum xi^2, s4 = sum (xi^2 - mean2)^2 and s6 = sum (xi^3 - slope3 xi)^2 (the orthogonal parabola and

@@ -86,8 +86,7 @@ class Corner final : public FeatureFinder {
         const auto n = points_.x.size();
         if (n < 2 * kFewestPerLine) {
             feature.status = FeatureStatus::no_points;
-            feature.message =
-                Text("{} points in the window, a corner needs {}", n, 2 * kFewestPerLine);
+            feature.message = Text("{} points in the window, a corner needs {}", n, 2 * kFewestPerLine);
             return feature;
         }
         if (settings_.given) {
@@ -155,7 +154,7 @@ class Corner final : public FeatureFinder {
         feature.status = FeatureStatus::ambiguous;
         feature.message =
             Text("{} corners lie in the window: {}; say which by the window or by the setting which",
-                        feature.rivals_mm.size(), places);
+                 feature.rivals_mm.size(), places);
         return nullptr;
     }
 
@@ -215,7 +214,7 @@ class Corner final : public FeatureFinder {
             if (left_x_.size() < kFewestPerLine || right_x_.size() < kFewestPerLine) {
                 feature.status = FeatureStatus::no_points;
                 feature.message = Text("{} points left and {} right of the corner, each line needs {}",
-                                              left_x_.size(), right_x_.size(), kFewestPerLine);
+                                       left_x_.size(), right_x_.size(), kFewestPerLine);
                 return feature;
             }
             a = fit_line(left_x_, left_z_, workspace_);
@@ -228,7 +227,7 @@ class Corner final : public FeatureFinder {
             if (std::abs(cross) < std::sin(settings_.minimum_angle)) {
                 feature.status = FeatureStatus::ill_conditioned;
                 feature.message = Text("the two lines meet at {:.1f} degrees only",
-                                              deg_from_rad(std::asin(std::abs(cross))));
+                                       deg_from_rad(std::asin(std::abs(cross))));
                 feature.covariance_mm2 = Eigen::Matrix2d::Identity() * 1e12;
                 return feature;
             }
@@ -322,9 +321,9 @@ Expected<std::unique_ptr<FeatureFinder>> make_corner(const FeatureRecipe& recipe
         return input_error("a range of x for the corner's lines is empty", "left_from_mm",
                            "give each range a beginning below its end");
     if (s.side_length > 0 && s.side_length <= s.blend)
-        return input_error(Text("side_length_mm = {} leaves no points outside of blend_mm = {}",
-                                       s.side_length, s.blend),
-                           "side_length_mm", "give a longer side");
+        return input_error(
+            Text("side_length_mm = {} leaves no points outside of blend_mm = {}", s.side_length, s.blend),
+            "side_length_mm", "give a longer side");
     return std::make_unique<Corner>(*window, s);
 }
 

@@ -149,8 +149,7 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
         case EndOf::outermost:
             chosen = ends.outermost();
             if (!chosen)
-                feature.message =
-                    Text("fewer than {} contours end on that side in the window", rule.order);
+                feature.message = Text("fewer than {} contours end on that side in the window", rule.order);
             break;
         case EndOf::longest:
             chosen = ends.most([&](const Sheet& s) { return ends.length(s); }, 0, kNearlyAsLong, rival);
@@ -185,9 +184,9 @@ std::optional<ChosenEnd> choose_end(const ContourSheets& sheets, const EndRule& 
         case SheetEnd::covered:
             // Who says which sheet is meant takes its end as it is seen.
             if (rule.of != EndOf::only) break;
-            feature.message = Text(
-                "the contour runs under a higher one at x = {:.2f} mm: its end on that side is not seen",
-                ends.place(*chosen).x());
+            feature.message =
+                Text("the contour runs under a higher one at x = {:.2f} mm: its end on that side is not seen",
+                     ends.place(*chosen).x());
             return std::nullopt;
         case SheetEnd::open:
             break;

@@ -130,8 +130,8 @@ class Extremum final : public FeatureFinder {
         feature.points_used = used;
         if (used < kFewestForApex) {
             feature.status = FeatureStatus::no_points;
-            feature.message = Text("{} points within {} mm of the extremum, the parabola needs {}",
-                                          used, fit_length_, kFewestForApex);
+            feature.message = Text("{} points within {} mm of the extremum, the parabola needs {}", used,
+                                   fit_length_, kFewestForApex);
             return feature;
         }
         feature.rms_mm = std::sqrt(sigma2 * (used - 3) / used);

@@ -35,7 +35,7 @@ struct Feature {
     std::optional<double> phi_rad;
     double rms_mm = 0;  // residual of the points that the feature rests on
     int points_used = 0;
-    Text message;                     // empty when ok, else why, in plain words
+    Text message;                            // empty when ok, else why, in plain words
     std::vector<Eigen::Vector2d> rivals_mm;  // ambiguous: the places between which nothing decides
 };
 

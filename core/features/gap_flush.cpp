@@ -36,10 +36,9 @@ Expected<void> check(const GapFlushSettings& s) {
                            "give a minimum below the maximum");
     const auto in = [](double value, double least, double most) { return value >= least && value <= most; };
     if (!in(s.surface_mm, 0.1, 1000) || !in(s.edge_skip_mm, 0, 100))
-        return input_error(Text("a surface of {} mm, {} mm beside the edge, gives no line",
-                                       s.surface_mm, s.edge_skip_mm),
-                           "surface_mm, edge_skip_mm",
-                           "give 0.1 to 1000 mm of surface and 0 to 100 mm beside the edge");
+        return input_error(
+            Text("a surface of {} mm, {} mm beside the edge, gives no line", s.surface_mm, s.edge_skip_mm),
+            "surface_mm, edge_skip_mm", "give 0.1 to 1000 mm of surface and 0 to 100 mm beside the edge");
     if (s.minimum_points < 4 || s.minimum_points > 1000000)
         return input_error(Text("{} points are no surface", s.minimum_points), "minimum_points",
                            "give at least 4");

@@ -64,7 +64,7 @@ struct GapFlush {
     // The surfaces at their edges: flush and the gap along the surface are n and u of their difference.
     Eigen::Vector2d reference_point_mm = Eigen::Vector2d::Zero(), other_point_mm = Eigen::Vector2d::Zero();
     Eigen::Vector2d along = Eigen::Vector2d::UnitX();  // u
-    Text message;                               // empty when ok
+    Text message;                                      // empty when ok
 };
 
 // Allocates nothing after the first calls; one thread per object. `profile` as for features; settings as

@@ -1,4 +1,5 @@
 #include "core/features/gap_scan.h"
+#include "core/median.h"
 
 #include <fmt/format.h>
 
@@ -31,19 +32,13 @@ Expected<void> check(std::span<const GapSection> sections, const GapScanOptions&
     if (auto ok = validate(values_of(o), gap_scan_parameters(), "gap"); !ok) return ok;
     if (auto ok = check(o.gauge); !ok) return ok;
     for (std::size_t i = 0; i < sections.size(); ++i) {
-        const std::string where = fmt::format("profile {}", i + 1);
+        const Text where("profile {}", i + 1);
         if (auto ok = pose_from_matrix(sections[i].frame_from_sensor.matrix(), where, 1e-6); !ok)
             return tl::unexpected(ok.error());
         if (sections[i].profile.size() > 0 && !sections[i].profile.filtered())
             return input_error("it was not filtered", where);
     }
     return {};
-}
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // The measured points of a scan, by path.

@@ -72,7 +72,7 @@ struct GapPoint {
     Eigen::Vector3d middle_mm = Eigen::Vector3d::Zero();  // in the frame; the sensor's origin without a width
     Eigen::Vector3d across = Eigen::Vector3d::UnitX(),
                     along = Eigen::Vector3d::UnitY();  // unit, in the frame
-    Text message;                               // why without a width
+    Text message;                                      // why without a width
 };
 
 // Neighbouring points that the nozzle does not pass: blocked (too narrow, and closed where any of them is),
@@ -83,7 +83,7 @@ struct GapStretch {
     std::size_t sections = 0;
     double narrowest_mm = 0, sigma_mm = 0, at_mm = 0;    // 0 and no sigma where closed or not measured
     Eigen::Vector3d place_mm = Eigen::Vector3d::Zero();  // of the narrowest; of the first closed one
-    Text message;                                 // of the first without a width
+    Text message;                                        // of the first without a width
 };
 
 struct GapScan {

@@ -58,7 +58,7 @@ FanucWpr fanuc_from_rotation(const Eigen::Matrix3d& r) {
     return {abc.c_deg, abc.b_deg, abc.a_deg};
 }
 
-Expected<Eigen::Matrix3d> rotation_from_abb(const AbbQuaternion& q, const std::string& where) {
+Expected<Eigen::Matrix3d> rotation_from_abb(const AbbQuaternion& q, const Text& where) {
     const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     if (!(std::abs(norm - 1.0) <= 1e-3))
         return input_error(Text("the quaternion has length {:.4g} instead of 1", norm), where,

@@ -33,7 +33,7 @@ FanucWpr fanuc_from_rotation(const Eigen::Matrix3d& rotation);
 struct AbbQuaternion {
     double w = 1, x = 0, y = 0, z = 0;
 };
-Expected<Eigen::Matrix3d> rotation_from_abb(const AbbQuaternion& q, const std::string& where);
+Expected<Eigen::Matrix3d> rotation_from_abb(const AbbQuaternion& q, const Text& where);
 AbbQuaternion abb_from_rotation(const Eigen::Matrix3d& rotation);
 
 // Universal Robots rotation vector in radian (the brand's own unit): axis times angle.

@@ -122,7 +122,7 @@ double angle_rad(const Pose& a, const Pose& b) {
     return rotation_log(a.linear() * b.linear().transpose()).norm();
 }
 
-Expected<Pose> pose_from_matrix(const Eigen::Matrix4d& m, const std::string& where, double tolerance) {
+Expected<Pose> pose_from_matrix(const Eigen::Matrix4d& m, const Text& where, double tolerance) {
     if (!m.allFinite()) return input_error("the pose holds a value that is not a finite number", where);
     const Eigen::RowVector4d last = m.row(3);
     if ((last - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > tolerance) {

@@ -64,7 +64,6 @@ double angle_rad(const Pose& a, const Pose& b);
 // Checks finite entries, last row 0 0 0 1, orthonormal rotation (entrywise within `tolerance`), determinant
 // +1; then returns the nearest rotation. The Error names what is wrong: NaN, a mirrored or scaled or sheared
 // matrix, a transposed one (translation in the last row). Translations beyond 100 m are refused.
-Expected<Pose> pose_from_matrix(const Eigen::Matrix4d& matrix, const std::string& where,
-                                double tolerance = 1e-4);
+Expected<Pose> pose_from_matrix(const Eigen::Matrix4d& matrix, const Text& where, double tolerance = 1e-4);
 
 }  // namespace seamwright

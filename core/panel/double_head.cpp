@@ -43,7 +43,7 @@ struct Shared {
     double weight;
 };
 
-Expected<void> check_head(const Profile& profile, const Head& head, const std::string& where) {
+Expected<void> check_head(const Profile& profile, const Head& head, const Text& where) {
     const std::size_t n = profile.x_mm.size();
     if (profile.z_mm.size() != n || (!profile.intensity.empty() && profile.intensity.size() != n))
         return input_error("the columns of the profile differ in length", where);
@@ -287,8 +287,8 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     }
     if (const double off = std::max(a.off_plane, b.off_plane); off > options.plane_limit_mm) {
         out.status = DoubleHeadStatus::not_coplanar;
-        out.message = Text("the laser planes of the heads lie {:.2f} mm apart, allowed are {:.2f} mm",
-                                  off, options.plane_limit_mm);
+        out.message = Text("the laser planes of the heads lie {:.2f} mm apart, allowed are {:.2f} mm", off,
+                           options.plane_limit_mm);
         return out;
     }
     const double pitch = std::max(a.pitch, b.pitch);
@@ -309,14 +309,14 @@ Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_
     if (contradicting > out.shared_cells) {
         out.status = DoubleHeadStatus::disagree;
         out.disagreement_mm = kSameSurfaceMm;
-        out.message = Text("the heads show surfaces more than {:g} mm apart in most of the overlap",
-                                  kSameSurfaceMm);
+        out.message =
+            Text("the heads show surfaces more than {:g} mm apart in most of the overlap", kSameSurfaceMm);
         return out;
     }
     if (!(out.overlap_mm >= options.minimum_overlap_mm)) {
         out.status = DoubleHeadStatus::no_overlap;
-        out.message = Text("the stripes of the heads share {:.1f} mm, needed are {:.1f} mm",
-                                  out.overlap_mm, options.minimum_overlap_mm);
+        out.message = Text("the stripes of the heads share {:.1f} mm, needed are {:.1f} mm", out.overlap_mm,
+                           options.minimum_overlap_mm);
         return out;
     }
     compare(shared, out);

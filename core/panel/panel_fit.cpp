@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/correction/region_system.h"
 #include "core/geometry/decompositions.h"
@@ -303,7 +304,8 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
             "panel and body together do not determine the gripper's {} well enough: add a spot whose edge "
             "runs "
             "in another direction",
-            fmt::join(fit.unobservable, ", "));
+            std::accumulate(fit.unobservable.begin(), fit.unobservable.end(), Text(),
+                            [](const Text& so_far, const Text& one) { return joined(so_far, ", ", one); }));
         fill_spots(spots, panel, body, p_alone, b, fit);
         return fit;
     }
@@ -311,9 +313,10 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     if (options.deviation == PanelDeviation::share)
         for (const auto& [side, of] : {std::pair{"panel", &panel}, std::pair{"body", &body}})
             if (const auto names = contradicting(*of, each); !names.empty())
-                fit.message +=
-                    fmt::format("{}the {} deviates from its taught shape at {}: shared out over the spots",
-                                fit.message.empty() ? "" : "; ", side, fmt::join(names, ", "));
+                fit.message =
+                    joined(fit.message, "; ",
+                           Text("the {} deviates from its taught shape at {}: shared out over the spots",
+                                Text(side), fmt::format("{}", fmt::join(names, ", "))));
     const double moved = fit.gripper_motion.translation().norm();
     const double turned = deg_from_rad(rotation_log(fit.gripper_motion.linear()).norm());
     if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {

@@ -142,11 +142,11 @@ int erase_no_returns(Profile& profile, const std::vector<double>& values) {
     return erased;
 }
 
-std::string no_return_sentence(const std::vector<NoReturnCode>& codes) {
-    std::string text;
+Text no_return_sentence(const std::vector<NoReturnCode>& codes) {
+    Text counts;
     for (const NoReturnCode& c : codes)
-        text += fmt::format("{}{} points stand at z = {}", text.empty() ? "" : ", ", c.points, c.value);
-    return text + ": taken for lines without return";
+        counts = joined(counts, ", ", Text("{} points stand at z = {}", c.points, c.value));
+    return Text("{}: taken for lines without return", counts);
 }
 
 }  // namespace seamwright

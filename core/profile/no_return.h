@@ -30,6 +30,6 @@ std::vector<NoReturnCode> find_no_return_codes(const Profile& profile);
 int erase_no_returns(Profile& profile, const std::vector<double>& values);
 
 // "213 points stand at z = -9999 ..." for a list that is not empty.
-std::string no_return_sentence(const std::vector<NoReturnCode>& codes);
+Text no_return_sentence(const std::vector<NoReturnCode>& codes);
 
 }  // namespace seamwright

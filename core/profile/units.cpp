@@ -1,4 +1,5 @@
 #include "core/profile/units.h"
+#include "core/median.h"
 
 #include <fmt/format.h>
 
@@ -21,14 +22,13 @@ constexpr const char* kMend = "give x and z in millimetres";
 
 }  // namespace
 
-Expected<void> check_span_millimetres(double span_mm, const std::string& where) {
+Expected<void> check_span_millimetres(double span_mm, const Text& where) {
     if (span_mm > 0 && span_mm < kLeastSpan)
-        return input_error(Text("the laser points span {:.3g} mm, which looks like metres", span_mm),
-                           where, kMend);
+        return input_error(Text("the laser points span {:.3g} mm, which looks like metres", span_mm), where,
+                           kMend);
     if (span_mm > kMostSpan)
-        return input_error(
-            Text("the laser points span {:.4g} mm, which looks like micrometres", span_mm), where,
-            kMend);
+        return input_error(Text("the laser points span {:.4g} mm, which looks like micrometres", span_mm),
+                           where, kMend);
     return {};
 }
 
@@ -41,13 +41,6 @@ std::optional<double> mm_of_unit(std::string_view unit) {
 }
 
 namespace {
-
-double median(std::vector<double>& values) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 // At most three digits that count.
 bool is_round(double value) {
@@ -71,8 +64,7 @@ void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
         s.suspected = unit;
         s.why = std::move(why);
     };
-    const Text apart =
-        Text("the points stand {:.2g} mm apart and span {:.3g} mm", s.pitch, s.span);
+    const Text apart = Text("the points stand {:.2g} mm apart and span {:.3g} mm", s.pitch, s.span);
     if (s.span > 0 && s.span < kLeastSpan)
         say("metres or inches", Text("the laser points span {:.3g} mm", s.span));
     else if (s.span > kMostSpan)
@@ -87,7 +79,7 @@ void suspect(ProfileScale& s, const std::vector<double>& x_steps) {
         say("micrometres", Text("the points scatter by {:.2g} mm", s.noise));
     else if (inch_grid(x_steps))
         say("inches", Text("the pitch is {:.6g}, which is {:.3g} mm if it is inches", s.pitch,
-                                  std::abs(x_steps.front()) * 25.4));
+                           std::abs(x_steps.front()) * 25.4));
 }
 
 }  // namespace
@@ -124,7 +116,7 @@ ProfileScale profile_scale(const Profile& profile) {
     return s;
 }
 
-Expected<void> check_profile_millimetres(const Profile& profile, const std::string& where) {
+Expected<void> check_profile_millimetres(const Profile& profile, const Text& where) {
     const ProfileScale s = profile_scale(profile);
     if (s.suspected.empty()) return {};
     return input_error(Text("{}, which looks like {}", s.why, s.suspected), where, kMend);

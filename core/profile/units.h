@@ -13,7 +13,7 @@
 namespace seamwright {
 
 // Error (input): points in the laser plane that span less than 1 mm, or more than 5 m. 0 (one point) passes.
-Expected<void> check_span_millimetres(double span_mm, const std::string& where);
+Expected<void> check_span_millimetres(double span_mm, const Text& where);
 
 // Units of length that profiles and poses come in: "mm", "m", "um", "in". nullopt: none of them.
 std::optional<double> mm_of_unit(std::string_view unit);
@@ -39,6 +39,6 @@ ProfileScale profile_scale(const Profile& profile);
 // - less than 6 mm at under 20 um a point (a small sensor's field is as fine, but wider);
 // - points more than 5 mm apart, or scattering by more than 2 mm, over more than 50 mm;
 // - an even pitch that is a round number of millimetres only if it is inches (0.1 mm = 0.003937 in).
-Expected<void> check_profile_millimetres(const Profile& profile, const std::string& where);
+Expected<void> check_profile_millimetres(const Profile& profile, const Text& where);
 
 }  // namespace seamwright

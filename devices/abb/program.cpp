@@ -51,7 +51,7 @@ bool is_taken_name(const std::string& name) {
            text.starts_with("err_") || text.starts_with("op_") || text.starts_with("seamwright");
 }
 
-Expected<void> check_name(const std::string& name, const std::string& what, const std::string& where) {
+Expected<void> check_name(const std::string& name, const char* what, const Text& where) {
     if (!abb::is_rapid_identifier(name))
         return input_error(Text("\"{}\" is no name of a {}", name, what), where,
                            "use a letter, then letters, digits and _, at most 32 characters");
@@ -106,7 +106,7 @@ std::string load_lines(const Load& load) {
         i.z());
 }
 
-Expected<void> check_pose(const Pose& pose, const std::string& where) {
+Expected<void> check_pose(const Pose& pose, const Text& where) {
     if (pose.matrix().allFinite() && pose.translation().cwiseAbs().maxCoeff() <= 1e5) return {};
     return input_error("a pose is not finite or beyond 100 m", where);
 }
@@ -149,7 +149,7 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     std::string targets, names, passes;
     int n = 0;
     for (const MeasuringMove& move : request.moves) {
-        const std::string where = "spot " + move.spot_id;
+        const Text where("spot {}", move.spot_id);
         if (!abb::is_spot_name(move.spot_id))
             return input_error(Text("\"{}\" cannot be written in RAPID", move.spot_id), where,
                                "use at most 32 characters without blanks, quotes and backslashes");
@@ -179,7 +179,7 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     std::string objects;
     std::set<std::string> known;
     for (const ApplicationFrame& frame : request.frames) {
-        const std::string where = "frame of region " + frame.region_id;
+        const Text where("frame of region {}", frame.region_id);
         if (auto named = check_name(frame.name, "work object", where); !named)
             return tl::unexpected(named.error());
         if (!known.insert(folded(frame.name)).second)

@@ -9,6 +9,7 @@
 #include "devices/abb/rapid.h"
 #include "devices/abb/rapid_message.h"
 #include "devices/exchange/settings.h"
+#include "devices/host_time.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
 #include "devices/same_robot.h"
@@ -45,10 +46,6 @@ Expected<LinkSettings> parse_link_settings(const nlohmann::json& json) {
     if (f.failed()) return tl::unexpected(f.error());
     s.reconnect_most = std::max(s.reconnect_most, s.reconnect);
     return s;
-}
-
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
 }
 
 class AbbRapidLink final : public RobotLink {
@@ -102,9 +99,9 @@ class AbbRapidLink final : public RobotLink {
         std::vector<std::string> names;
         for (const MeasuringMove& move : moves) {
             if (!abb::is_spot_name(move.spot_id))
-                return input_error(
-                    Text("\"{}\" is no name for a spot on an ABB controller", move.spot_id), where_,
-                    "use at most 32 characters without blanks, quotes and backslashes");
+                return input_error(Text("\"{}\" is no name for a spot on an ABB controller", move.spot_id),
+                                   where_,
+                                   "use at most 32 characters without blanks, quotes and backslashes");
             names.push_back(move.spot_id);
         }
         if (auto open = connected(); !open) return open;
@@ -227,7 +224,7 @@ class AbbRapidLink final : public RobotLink {
         wait_ = wait_.count() == 0 ? settings_.reconnect : std::min(wait_ * 2, settings_.reconnect_most);
         not_before_ = Clock::now() + wait_;
     }
-    tl::unexpected<Error> broken(std::string what) {
+    tl::unexpected<Error> broken(Text what) {
         drop();
         return device_error(std::move(what), where_,
                             "the controller's module and this program must speak the same version");
@@ -245,7 +242,7 @@ class AbbRapidLink final : public RobotLink {
         if (turn > settings_.timeout)
             return device_error(ErrorCode::silence,
                                 Text("{}: the next attempt to connect is in {} ms", kNoAnswer,
-                                            std::chrono::duration_cast<Milliseconds>(turn).count()),
+                                     std::chrono::duration_cast<Milliseconds>(turn).count()),
                                 where_);
         if (turn.count() > 0) std::this_thread::sleep_for(turn);
         auto connection = TcpConnection::connect(settings_.address, settings_.port, settings_.timeout);
@@ -284,8 +281,7 @@ class AbbRapidLink final : public RobotLink {
             received_.append(buffer, *got);
             if (received_.size() >= abb::kMessageBytes) continue;
             if (Clock::now() >= until)
-                return device_error(ErrorCode::silence, Text("{}: half a message came", kNoAnswer),
-                                    where_);
+                return device_error(ErrorCode::silence, Text("{}: half a message came", kNoAnswer), where_);
         }
     }
 
@@ -293,30 +289,28 @@ class AbbRapidLink final : public RobotLink {
         if (triggers_.size() + starts_.size() >= kEventLimit)
             return device_error("the controller floods with events", where_);
         const auto count = event.fields.empty() ? std::nullopt : abb::parse_count(event.fields.front());
-        if (!count)
-            return device_error(Text("an event \"{}\" without its number came", event.word), where_);
+        if (!count) return device_error(Text("an event \"{}\" without its number came", event.word), where_);
         if (event.word == "START") {
             if (start_count_ && *count != *start_count_ + 1)
-                return device_error(Text("start signal {} came after {}", *count, *start_count_),
-                                    where_, "a start signal was lost; the part has to be started again");
+                return device_error(Text("start signal {} came after {}", *count, *start_count_), where_,
+                                    "a start signal was lost; the part has to be started again");
             start_count_ = *count;
             starts_.clear();  // the robot calls for one part at a time: an older call is over
-            const std::int64_t now = now_ns();
+            const std::int64_t now = host_now_ns();
             starts_.push_back({event.line2, now, quiet_ns_ == 0 ? now : quiet_ns_});
             return {};
         }
         if (event.word == "END") {
             if (next_trigger_ == 0) return {};
             if (*count + 1 != next_trigger_)
-                return device_error(Text("the program ended after {} triggers, of which {} came",
-                                                *count, next_trigger_ - 1),
-                                    where_, "a trigger was lost; the part has to be measured again");
+                return device_error(
+                    Text("the program ended after {} triggers, of which {} came", *count, next_trigger_ - 1),
+                    where_, "a trigger was lost; the part has to be measured again");
             ended_ = true;
             return {};
         }
         if (event.word != "TRIGGER" || event.fields.size() != 3)
-            return device_error(Text("the controller sent an unknown event \"{}\"", event.word),
-                                where_);
+            return device_error(Text("the controller sent an unknown event \"{}\"", event.word), where_);
         if (next_trigger_ == 0) return {};  // of a measuring that another connection started
         if (*count != next_trigger_)
             return device_error(Text("trigger {} came instead of {}", *count, next_trigger_), where_,
@@ -324,7 +318,7 @@ class AbbRapidLink final : public RobotLink {
         auto pose = abb::parse_pose_lines(event, where_);
         if (!pose) return tl::unexpected(pose.error());
         ++next_trigger_;
-        triggers_.push_back({event.fields[2], now_ns(), *pose});
+        triggers_.push_back({event.fields[2], host_now_ns(), *pose});
         return {};
     }
 
@@ -336,7 +330,7 @@ class AbbRapidLink final : public RobotLink {
         auto message = receive(slice);
         if (!message) {
             if (!is_silence(message.error()) || !received_.empty()) return lost(fell_silent(message.error()));
-            quiet_ns_ = now_ns();
+            quiet_ns_ = host_now_ns();
             if (Clock::now() >= until) {
                 Error error = message.error();
                 error.where = where_;
@@ -376,10 +370,10 @@ class AbbRapidLink final : public RobotLink {
             if (message->number != request.number)
                 return broken(fmt::format("answer {} came to request {}", message->number, request.number));
             wait_ = Milliseconds(0);  // it answers: the next loss begins with the shortest wait
-            quiet_ns_ = now_ns();
+            quiet_ns_ = host_now_ns();
             if (message->word == "NO")
-                return device_error(
-                    Text("the controller refuses {}: {}", request.word, message->line2), where_);
+                return device_error(Text("the controller refuses {}: {}", request.word, message->line2),
+                                    where_);
             if (message->word != request.word)
                 return broken(fmt::format("the answer to {} is one to {}", request.word, message->word));
             if ((request.word == "READ" || request.word == "WRITE" || request.word == "VERDICT") &&

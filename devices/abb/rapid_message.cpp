@@ -60,23 +60,22 @@ void append_line(std::string& bytes, std::string_view line) {
 
 Expected<Message> parse_message(std::string_view bytes, const std::string& where) {
     if (bytes.size() != kMessageBytes)
-        return device_error(
-            Text("a message of {} bytes came, they have {}", bytes.size(), kMessageBytes), where);
+        return device_error(Text("a message of {} bytes came, they have {}", bytes.size(), kMessageBytes),
+                            where);
     std::array<std::string_view, 3> lines;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::string_view line = bytes.substr(i * kLineBytes, kLineBytes);
         if (line.back() != '\n' || !std::all_of(line.begin(), line.end() - 1, printable))
             return device_error(
-                Text("line {} of a message is not 79 printable characters and a line feed", i + 1),
-                where, "the controller's module and this program must speak the same version");
+                Text("line {} of a message is not 79 printable characters and a line feed", i + 1), where,
+                "the controller's module and this program must speak the same version");
         lines[i] = trimmed(line.substr(0, kLineBytes - 1));
     }
     auto fields = words(lines[0]);
     Message message;
     const auto number = fields.size() < 2 ? std::nullopt : parse_count(fields[0]);
     if (!number)
-        return device_error(Text("\"{}\" is no message: number and word are missing", lines[0]),
-                            where);
+        return device_error(Text("\"{}\" is no message: number and word are missing", lines[0]), where);
     message.number = *number;
     message.word = fields[1];
     message.fields.assign(fields.begin() + 2, fields.end());
@@ -100,11 +99,9 @@ Expected<Pose> parse_pose_lines(const Message& message, const std::string& where
     std::array<double, 3> t{};
     std::array<double, 4> q{};
     if (!numbers(message.line2, t))
-        return device_error(Text("\"{}\" is no position of three finite numbers", message.line2),
-                            where);
+        return device_error(Text("\"{}\" is no position of three finite numbers", message.line2), where);
     if (!numbers(message.line3, q))
-        return device_error(Text("\"{}\" is no quaternion of four finite numbers", message.line3),
-                            where);
+        return device_error(Text("\"{}\" is no quaternion of four finite numbers", message.line3), where);
     for (const double value : t)
         if (std::abs(value) > 1e5)
             return device_error(Text("{} mm is no position of a robot", value), where,

@@ -82,7 +82,7 @@ std::array<double, 12> pose_numbers(const Pose& pose) {
     return out;
 }
 
-tl::unexpected<Error> damaged(const fs::path& path, const std::string& finding) {
+tl::unexpected<Error> damaged(const fs::path& path, const Text& finding) {
     return file_error(Text("the capture is damaged ({})", finding), path.string(),
                       "record it again, or take a copy from the backup");
 }
@@ -144,7 +144,8 @@ Expected<std::int64_t> CaptureWriter::add_source(const CaptureSource& s) {
     auto found = twice->step();
     if (!found) return tl::unexpected(found.error());
     if (s.name.empty() || twice->integer(0) != 0)
-        return input_error("every source of a capture needs a name of its own", Text("source \"{}\"", s.name));
+        return input_error("every source of a capture needs a name of its own",
+                           Text("source \"{}\"", s.name));
     twice->reset();
     row->bind(1, s.kind == SourceKind::sensor ? "sensor" : "robot");
     row->bind(2, s.name);
@@ -407,8 +408,7 @@ Expected<void> CaptureReader::decode(const BlockRow& row, std::vector<Capture>& 
 }
 
 Expected<const Capture*> CaptureReader::frame(std::int64_t source, std::uint64_t number) {
-    if (number >= frames(source))
-        return input_error(Text("there is no frame {}", number), path_.string());
+    if (number >= frames(source)) return input_error(Text("there is no frame {}", number), path_.string());
     const std::vector<BlockRow>& rows = blocks_[source];
     const BlockRow& row = *std::prev(std::upper_bound(
         rows.begin(), rows.end(), number, [](std::uint64_t n, const BlockRow& b) { return n < b.first; }));

@@ -281,8 +281,8 @@ Expected<std::pair<std::span<const std::byte>, std::uint32_t>> checked(std::span
     const auto crc = r.value<std::uint32_t>();
     if (!r.ok() || magic != kMagic) return file_error("this is no block of profiles", where);
     if (version > kVersion)
-        return file_error(Text("the block of profiles has version {}, known is {}", version, kVersion),
-                          where, "open it with a newer Seamwright");
+        return file_error(Text("the block of profiles has version {}, known is {}", version, kVersion), where,
+                          "open it with a newer Seamwright");
     if (version != kVersion || found != kind) return file_error("this is another kind of block", where);
     const auto payload = blob.subspan(kHeaderBytes);
     if (checksum(payload) != crc)

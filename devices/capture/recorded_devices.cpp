@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "devices/capture/recorder.h"
+#include "devices/host_time.h"
 #include "devices/silence.h"
 
 namespace seamwright {
@@ -13,15 +14,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kSlice{100};
 
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-}
-
 CaptureEvent make_event(std::int64_t source, CaptureEventKind kind) {
     CaptureEvent event;
     event.source = source;
     event.kind = kind;
-    event.host_time_ns = now_ns();
+    event.host_time_ns = host_now_ns();
     return event;
 }
 
@@ -132,9 +129,9 @@ class RecordedRobot final : public RobotLink {
     Expected<void> move_to(const Pose& base_from_flange) override {
         return robot_->move_to(base_from_flange);
     }
-    std::vector<std::string> take_notices() override {
+    std::vector<Text> take_notices() override {
         auto notices = robot_->take_notices();
-        for (const std::string& text : notices) note(text);
+        for (const Text& text : notices) note(text.english());
         return notices;
     }
 

@@ -33,8 +33,7 @@ tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& pat
         case SQLITE_PERM:
             return file_error(Text("the {} cannot be written", kind), path, "check its permissions");
         case SQLITE_CANTOPEN:
-            return file_error(Text("the {} cannot be opened", kind), path,
-                              "check name and permissions");
+            return file_error(Text("the {} cannot be opened", kind), path, "check name and permissions");
         case SQLITE_FULL:
             return file_error("the disk is full", path, "make room and try again");
         case SQLITE_NOMEM:
@@ -43,8 +42,7 @@ tl::unexpected<Error> sqlite_error(sqlite3* db, int code, const std::string& pat
             return file_error(Text("a value is larger than a {} holds (512 MiB)", kind), path);
         default:
             return file_error(
-                Text("the {} failed ({})", kind, db ? sqlite3_errmsg(db) : sqlite3_errstr(code)),
-                path);
+                Text("the {} failed ({})", kind, db ? sqlite3_errmsg(db) : sqlite3_errstr(code)), path);
     }
 }
 

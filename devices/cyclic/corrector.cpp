@@ -53,7 +53,7 @@ bool CyclicCorrector::at_zero() const {
            ramp_.target_is_zero() && sent_ramp_.target_is_zero();
 }
 
-void CyclicCorrector::raise(std::string reason) {
+void CyclicCorrector::raise(Text reason) {
     if (!alarm_) alarm_ = std::move(reason);
     lead_back();
     steady_ = 0;
@@ -81,7 +81,7 @@ void CyclicCorrector::withdraw() {
     revoke();
 }
 
-std::optional<std::string> CyclicCorrector::take_alarm() {
+std::optional<Text> CyclicCorrector::take_alarm() {
     return std::exchange(alarm_, std::nullopt);
 }
 

@@ -91,8 +91,8 @@ class CyclicCorrector {
     State state() const;
     const CyclicCounters& counters() const { return counters_; }
     CyclicCounters& counters() { return counters_; }
-    const std::optional<std::string>& alarm() const { return alarm_; }
-    std::optional<std::string> take_alarm();
+    const std::optional<Text>& alarm() const { return alarm_; }
+    std::optional<Text> take_alarm();
     bool at_zero() const;  // nothing is in force and nothing wanted
     const char* why_not_told() const { return protocol_->why_not_told(); }
 
@@ -108,7 +108,7 @@ class CyclicCorrector {
     void watch_follow(const std::optional<CyclicTold>& shown);
     void watch_path(const CyclicPacket& packet, double speed_mm_s);
     void restart_from(const CyclicTold& found);
-    void raise(std::string reason);
+    void raise(Text reason);
     void lead_back();
     void revoke();
     void path_is_over();
@@ -144,7 +144,7 @@ class CyclicCorrector {
     bool run_before_ = false;  // what is under way is no path of this permission
     Eigen::Vector3d path_begin_ = Eigen::Vector3d::Zero();
     int standing_ = 0;  // packets in a row
-    std::optional<std::string> alarm_;
+    std::optional<Text> alarm_;
     CyclicCounters counters_;
 };
 

@@ -152,8 +152,7 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
         }
         if (Clock::now() >= deadline)
             return device_error(
-                ErrorCode::silence,
-                Text("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
+                ErrorCode::silence, Text("{}: no cyclic packet came to port {}", kNoAnswer, server_->port()),
                 settings_.driver, "check that the robot's program has switched the correction on");
         std::this_thread::sleep_for(milliseconds(2));
     }
@@ -183,9 +182,8 @@ Expected<void> CyclicLink::same_robot() {
     if (*now == before.identity && (before.address.empty() || identified_->address == before.address))
         return {};
     identified_ = before;
-    return device_error(
-        Text("the robot at {} is another one than at {}", server_->robot(), before.address),
-        settings_.driver, "open the project's robot again");
+    return device_error(Text("the robot at {} is another one than at {}", server_->robot(), before.address),
+                        settings_.driver, "open the project's robot again");
 }
 
 Expected<Permission> CyclicLink::permission() {
@@ -265,15 +263,13 @@ Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base
     const double turn = deg_from_rad(rotation_log(b.linear()).norm());
     const CyclicSettings& s = settings_.server;
     if (offset > s.max_translation_mm)
-        return device_error(
-            Text("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm", offset,
-                        s.max_translation_mm),
-            name);
+        return device_error(Text("refused: the correction of {:.3f} mm is beyond the limit of {:.3f} mm",
+                                 offset, s.max_translation_mm),
+                            name);
     if (turn > s.max_rotation_deg)
-        return device_error(
-            Text("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}", turn,
-                        s.max_rotation_deg),
-            name);
+        return device_error(Text("refused: the correction of {:.4f} degrees is beyond the limit of {:.4f}",
+                                 turn, s.max_rotation_deg),
+                            name);
     written_[name] = base_from_frame;
     return {};
 }
@@ -297,8 +293,8 @@ Expected<void> CyclicLink::apply() {
     auto state = fresh_state();
     if (!state) return tl::unexpected(state.error());
     if (state->packet.missing)
-        return device_error(Text("the robot's packets carry no {}", state->packet.missing),
-                            settings_.driver, "without it nobody knows what the robot does; send it too");
+        return device_error(Text("the robot's packets carry no {}", state->packet.missing), settings_.driver,
+                            "without it nobody knows what the robot does; send it too");
     if (!state->packet.running)
         return device_error("the controller does not take corrections: it is not running", settings_.driver,
                             "start its program");
@@ -317,8 +313,7 @@ Expected<void> CyclicLink::apply() {
         if (Clock::now() >= deadline) {
             if (const char* why = server_->why_not_told())
                 return device_error(Text("the correction is not in force: {}", why), settings_.driver);
-            return device_error(ErrorCode::silence,
-                                Text("{}: the correction is not in force", std::string(kNoAnswer)),
+            return device_error(ErrorCode::silence, Text("{}: the correction is not in force", kNoAnswer),
                                 settings_.driver);
         }
         std::this_thread::sleep_for(milliseconds(2));
@@ -335,7 +330,7 @@ Expected<void> CyclicLink::back_to_zero() {
         if (auto ok = no_alarm(); !ok) return ok;
         if (Clock::now() >= deadline)
             return device_error(ErrorCode::silence,
-                                Text("{}: the correction could not be led back to zero", std::string(kNoAnswer)),
+                                Text("{}: the correction could not be led back to zero", kNoAnswer),
                                 settings_.driver, "stop the robot's program");
         std::this_thread::sleep_for(milliseconds(2));
     }
@@ -364,15 +359,15 @@ Expected<void> CyclicLink::move_to(const Pose& base_from_flange) {
     return measuring_ ? measuring_->move_to(base_from_flange) : RobotLink::move_to(base_from_flange);
 }
 
-std::vector<std::string> CyclicLink::take_notices() {
-    std::vector<std::string> notices;
+std::vector<Text> CyclicLink::take_notices() {
+    std::vector<Text> notices;
     if (measuring_) notices = measuring_->take_notices();
     const std::uint64_t strangers = server_->counters().strangers;
     if (strangers > strangers_told_)
-        notices.push_back(fmt::format("{} datagrams of an unknown peer were refused, the last of {}",
-                                      strangers - strangers_told_, server_->last_stranger()));
+        notices.push_back(Text("{} datagrams of an unknown peer were refused, the last of {}",
+                               strangers - strangers_told_, server_->last_stranger()));
     strangers_told_ = strangers;
-    for (std::string& takeover : server_->take_takeovers()) notices.push_back(std::move(takeover));
+    for (Text& takeover : server_->take_takeovers()) notices.push_back(std::move(takeover));
     return notices;
 }
 

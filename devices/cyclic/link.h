@@ -76,7 +76,7 @@ class CyclicLink : public RobotLink {
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override;
     Expected<Permission> permission() override;
     Expected<void> move_to(const Pose& base_from_flange) override;
-    std::vector<std::string> take_notices() override;
+    std::vector<Text> take_notices() override;
 
     const CyclicServer& server() const { return *server_; }
 

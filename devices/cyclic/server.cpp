@@ -105,7 +105,7 @@ bool CyclicServer::book(std::span<const std::byte> datagram, const Endpoint& fro
     if (!corrector_.handle(datagram, {.gap = gap, .other_peer = other})) return false;
     if (other && takeovers_.size() < kMostTakeovers)
         takeovers_.push_back(
-            fmt::format("the robot at {} fell silent, and {} took its place", text(*robot_), text(from)));
+            Text("the robot at {} fell silent, and {} took its place", text(*robot_), text(from)));
     robot_ = from;
     silent_ = false;
     last_ = now;
@@ -150,7 +150,7 @@ std::string CyclicServer::last_stranger() const {
     return stranger_ ? text(*stranger_) : std::string();
 }
 
-std::vector<std::string> CyclicServer::take_takeovers() {
+std::vector<Text> CyclicServer::take_takeovers() {
     const std::lock_guard lock(mutex_);
     return std::exchange(takeovers_, {});
 }
@@ -175,12 +175,12 @@ CyclicCounters CyclicServer::counters() const {
     return counters;
 }
 
-std::optional<std::string> CyclicServer::alarm() const {
+std::optional<Text> CyclicServer::alarm() const {
     const std::lock_guard lock(mutex_);
     return corrector_.alarm();
 }
 
-std::optional<std::string> CyclicServer::take_alarm() {
+std::optional<Text> CyclicServer::take_alarm() {
     const std::lock_guard lock(mutex_);
     return corrector_.take_alarm();
 }

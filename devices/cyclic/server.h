@@ -41,13 +41,13 @@ class CyclicServer {
     void withdraw();
     void await_path();
     void forget_path();
-    std::optional<std::string> alarm() const;
-    std::optional<std::string> take_alarm();
+    std::optional<Text> alarm() const;
+    std::optional<Text> take_alarm();
     CyclicCounters counters() const;
     const char* why_not_told() const;
-    std::string robot() const;                  // "192.168.1.5:59152"; empty before the first packet
-    std::string last_stranger() const;          // empty when there was none
-    std::vector<std::string> take_takeovers();  // a sentence each
+    std::string robot() const;           // "192.168.1.5:59152"; empty before the first packet
+    std::string last_stranger() const;   // empty when there was none
+    std::vector<Text> take_takeovers();  // a sentence each
 
   private:
     CyclicServer(const CyclicSettings& settings, std::unique_ptr<CyclicProtocol> protocol, UdpSocket socket);
@@ -64,7 +64,7 @@ class CyclicServer {
     std::uint64_t strangers_ = 0, answers_ = 0, unreadable_ = 0;
     std::optional<Endpoint> stranger_, robot_;
     bool silent_ = true;  // whoever comes next is the robot
-    std::vector<std::string> takeovers_;
+    std::vector<Text> takeovers_;
     std::chrono::steady_clock::time_point last_;
     std::atomic<bool> stop_ = false;
     std::thread thread_;

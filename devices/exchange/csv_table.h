@@ -107,8 +107,8 @@ class CsvTable {
         }
         for (std::size_t w = 0; w < required; ++w) {
             if (columns_[w] >= 0) continue;
-            return input_error(Text("the header \"{}\" has no column {}", csv::shown(line), wanted[w]),
-                               at(), Text("the first line must be {}", example(wanted, required)));
+            return input_error(Text("the header \"{}\" has no column {}", csv::shown(line), wanted[w]), at(),
+                               Text("the first line must be {}", example(wanted, required)));
         }
         return {};
     }
@@ -129,8 +129,8 @@ class CsvTable {
         } else if (fields_.size() == 2 * width_) {
             mend = "these look like decimal commas: write decimal points";
         }
-        return input_error(Text("has {} fields where the header names {}", fields_.size(), width_),
-                           at(), mend);
+        return input_error(Text("has {} fields where the header names {}", fields_.size(), width_), at(),
+                           mend);
     }
 
     bool has(std::size_t wanted) const { return columns_[wanted] >= 0; }
@@ -152,8 +152,7 @@ class CsvTable {
         double value = 0;
         const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
         if (problem == std::errc::result_out_of_range) {
-            return input_error(Text("{} = \"{}\" does not fit a number", name, csv::shown(field)),
-                               at());
+            return input_error(Text("{} = \"{}\" does not fit a number", name, csv::shown(field)), at());
         }
         if (problem != std::errc() || end != digits.data() + digits.size()) {
             const bool comma = field.find(';') != std::string_view::npos;
@@ -167,8 +166,7 @@ class CsvTable {
     Expected<double> millimetres(std::size_t wanted, std::string_view name) const {
         auto value = number(wanted, name);
         if (value && std::abs(*value) > 1e6) {
-            return input_error(Text("{} = {} mm is beyond 1 km", name, *value), at(),
-                               "give millimetres");
+            return input_error(Text("{} = {} mm is beyond 1 km", name, *value), at(), "give millimetres");
         }
         return value;
     }

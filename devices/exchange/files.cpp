@@ -98,7 +98,7 @@ std::filesystem::path behind_links(const std::filesystem::path& path) {
 
 Expected<void> write_text_file(const std::filesystem::path& path, std::string_view text) {
     if (path.filename().empty()) return file_error("names no file", path.string(), "give the path of a file");
-    const auto failed = [&](const std::string& message) {
+    const auto failed = [&](const Text& message) {
         return file_error(Text("cannot be written ({})", message), path.string());
     };
     struct stat old {};

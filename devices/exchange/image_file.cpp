@@ -153,8 +153,8 @@ Expected<void> subtract_image(Frame& on, const Frame& off) {
     const StripeImage& a = on.image;
     const StripeImage& b = off.image;
     if (a.width != b.width || a.height != b.height || a.bit_depth != b.bit_depth || a.empty())
-        return input_error(Text("{} x {} of {} bit and {} x {} of {} bit are no pair", a.width,
-                                       a.height, a.bit_depth, b.width, b.height, b.bit_depth));
+        return input_error(Text("{} x {} of {} bit and {} x {} of {} bit are no pair", a.width, a.height,
+                                a.bit_depth, b.width, b.height, b.bit_depth));
     const int type = a.bit_depth > 8 ? CV_16U : CV_8U;
     cv::Mat lit(a.height, a.width, type, on.pixels.data(), a.row_bytes);
     const cv::Mat dark(b.height, b.width, type, const_cast<std::byte*>(b.pixels), b.row_bytes);
@@ -201,8 +201,7 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
             double largest = 0;
             cv::minMaxLoc(image, nullptr, &largest);
             if (largest >= (1 << depth)) {
-                return file_error(Text("the value {} does not fit {} bit", largest, depth),
-                                  path.string());
+                return file_error(Text("the value {} does not fit {} bit", largest, depth), path.string());
             }
         }
         const std::size_t row = static_cast<std::size_t>(image.cols) * image.elemSize();

@@ -93,8 +93,7 @@ Expected<nlohmann::json> parse_json(std::string_view text, const std::string& wh
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     DocumentBuilder builder;
     const bool whole = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
-    if (builder.too_deep)
-        return input_error(Text("the JSON is nested deeper than {}", kDeepestJson), where);
+    if (builder.too_deep) return input_error(Text("the JSON is nested deeper than {}", kDeepestJson), where);
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) builder.syntax = "the text is empty";
     if (!whole) return input_error(Text("is no JSON ({})", builder.syntax), where);
     if (!builder.twice.empty())
@@ -132,8 +131,7 @@ Expected<void> only_fields(const nlohmann::json& json, std::initializer_list<std
 
 Expected<void> only_fields(const nlohmann::json& json, const std::vector<std::string_view>& known,
                            const std::string& where) {
-    if (!json.is_object())
-        return input_error(Text("must be an object, not {}", type_name(json)), where);
+    if (!json.is_object()) return input_error(Text("must be an object, not {}", type_name(json)), where);
     if (known.size() == 0) return {};
     for (const auto& [key, value] : json.items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
@@ -145,8 +143,7 @@ Expected<void> only_fields(const nlohmann::json& json, const std::vector<std::st
 }
 
 Expected<double> as_number(const nlohmann::json& value, const std::string& where) {
-    if (!value.is_number())
-        return input_error(Text("must be a number, not {}", type_name(value)), where);
+    if (!value.is_number()) return input_error(Text("must be a number, not {}", type_name(value)), where);
     const double number = value.get<double>();
     if (!std::isfinite(number)) return input_error("must be finite", where);
     return number;
@@ -154,8 +151,7 @@ Expected<double> as_number(const nlohmann::json& value, const std::string& where
 
 Expected<const nlohmann::json*> json_field(const nlohmann::json& json, const std::string& key,
                                            const std::string& where) {
-    if (!json.is_object())
-        return input_error(Text("must be an object, not {}", type_name(json)), where);
+    if (!json.is_object()) return input_error(Text("must be an object, not {}", type_name(json)), where);
     const auto it = json.find(key);
     if (it == json.end()) return input_error("is missing", json_path(where, key));
     return &*it;
@@ -196,8 +192,7 @@ Expected<bool> json_bool_or(const nlohmann::json& json, const std::string& key, 
     const auto field = json_field(json, key, where);
     if (!field) return tl::unexpected(field.error());
     if (!(*field)->is_boolean()) {
-        return input_error(Text("must be true or false, not {}", type_name(**field)),
-                           json_path(where, key));
+        return input_error(Text("must be true or false, not {}", type_name(**field)), json_path(where, key));
     }
     return (*field)->get<bool>();
 }

@@ -43,15 +43,14 @@ Expected<void> check(const LookupTable& t, const std::string& where) {
         return input_error("the table's grid is not made of finite numbers with steps above 0", where);
     const auto nodes = static_cast<std::size_t>(t.columns) * static_cast<std::size_t>(t.rows);
     if (t.x_mm.size() != nodes || t.z_mm.size() != nodes)
-        return input_error(Text("the table holds {} and {} numbers for {} nodes", t.x_mm.size(),
-                                       t.z_mm.size(), nodes),
-                           where);
+        return input_error(
+            Text("the table holds {} and {} numbers for {} nodes", t.x_mm.size(), t.z_mm.size(), nodes),
+            where);
     for (std::size_t i = 0; i < nodes; ++i) {
         if (std::isinf(t.x_mm[i]) || std::isinf(t.z_mm[i]))
             return input_error(Text("node {} is infinite", i), where);
         if (std::isnan(t.x_mm[i]) != std::isnan(t.z_mm[i]))
-            return input_error(Text("node {} is half a hole: only one of x and z is a number", i),
-                               where);
+            return input_error(Text("node {} is half a hole: only one of x and z is a number", i), where);
     }
     return {};
 }

@@ -83,8 +83,7 @@ Expected<void> read_ascii(std::string_view text, std::size_t line_number, std::s
         const auto fields = text_fields(line, ' ');
         if (fields.size() != table.columns.size())
             return input_error(
-                Text("has {} numbers where the header names {}", fields.size(), table.columns.size()),
-                at);
+                Text("has {} numbers where the header names {}", fields.size(), table.columns.size()), at);
         for (std::size_t c = 0; c < fields.size(); ++c) {
             double value = 0;
             if (!text_number(fields[c], false, value))
@@ -94,9 +93,8 @@ Expected<void> read_ascii(std::string_view text, std::size_t line_number, std::s
         table.lines.push_back(static_cast<std::uint32_t>(line_number + lines.number()));
     }
     if (table.lines.size() < count)
-        return input_error(
-            Text("holds {} points where its header names {}", table.lines.size(), count), where,
-            "the file is cut short");
+        return input_error(Text("holds {} points where its header names {}", table.lines.size(), count),
+                           where, "the file is cut short");
     return {};
 }
 
@@ -104,9 +102,9 @@ Expected<void> read_binary(std::string_view bytes, std::size_t count, std::size_
                            const std::vector<Property>& properties, PointTable& table,
                            const std::string& where) {
     if (stride == 0 || bytes.size() / stride < count)
-        return input_error(Text("holds {} bytes of points where its header names {} of {}",
-                                       bytes.size(), count, stride),
-                           where, "the file is cut short");
+        return input_error(
+            Text("holds {} bytes of points where its header names {} of {}", bytes.size(), count, stride),
+            where, "the file is cut short");
     for (std::size_t c = 0; c < properties.size(); ++c) {
         table.columns[c].resize(count);
         for (std::size_t i = 0; i < count; ++i)
@@ -184,8 +182,7 @@ Expected<PointTable> parse_npy(std::string_view bytes, const std::string& where,
     if (columns != 2 && columns != 3)
         return input_error(Text("has {} columns", columns), where,
                            "give (n, 2) with x and z, (n, 3) with x, y and z, or (profiles, n, 2)");
-    if (profiles * points > limit)
-        return input_error(Text("there are more than {} points", limit), where);
+    if (profiles * points > limit) return input_error(Text("there are more than {} points", limit), where);
     PointTable table;
     table.names = columns == 2 ? std::vector<std::string>{"x", "z"} : std::vector<std::string>{"x", "y", "z"};
     table.columns.assign(columns, {});
@@ -281,8 +278,8 @@ Expected<PointTable> parse_pcd_points(std::string_view bytes, const std::string&
         if (values.empty() || values.size() > 4096) return input_error("is no line of a PCD header", at);
         const bool per_field = fields[0] == "SIZE" || fields[0] == "TYPE" || fields[0] == "COUNT";
         if (per_field && values.size() != properties.size())
-            return input_error(Text("{} has {} entries for {} fields", csv::shown(fields[0]),
-                                           values.size(), properties.size()),
+            return input_error(Text("{} has {} entries for {} fields", csv::shown(fields[0]), values.size(),
+                                    properties.size()),
                                at);
         if (fields[0] == "FIELDS") {
             for (const auto& name : values) properties.push_back({std::string(name), {'f', 4}, 0});

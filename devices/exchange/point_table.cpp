@@ -190,8 +190,7 @@ Expected<PointTable> parse_text_points(std::string_view text, const std::string&
         if (fields.size() != seen.width)
             return input_error(
                 Text("has {} columns where the other lines have {}", fields.size(), seen.width), at);
-        if (table.lines.size() >= limit)
-            return input_error(Text("there are more than {} points", limit), at);
+        if (table.lines.size() >= limit) return input_error(Text("there are more than {} points", limit), at);
         table.columns.resize(seen.width);
         for (std::size_t c = 0; c < seen.width; ++c) {
             double value = 0;

@@ -47,9 +47,8 @@ Expected<Pose> pose_from_metres(const Eigen::Vector3d& t, const Eigen::Vector4d&
                                 const std::string& where) {
     if (!t.allFinite() || !q_xyzw.allFinite()) return input_error("a number is not finite", where);
     if (t.norm() > kFarthest_m) {
-        return input_error(
-            Text("the translation is {} m long, but this format is in metres", t.norm()), where,
-            "convert millimetres to metres or use a .json pose file");
+        return input_error(Text("the translation is {} m long, but this format is in metres", t.norm()),
+                           where, "convert millimetres to metres or use a .json pose file");
     }
     const auto rotation = rotation_from_abb({q_xyzw[3], q_xyzw[0], q_xyzw[1], q_xyzw[2]}, where);
     if (!rotation) return tl::unexpected(rotation.error());

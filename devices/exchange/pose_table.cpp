@@ -90,21 +90,20 @@ Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, co
     if (form.mm == 0) {
         if (farthest > 0 && farthest < kNearForMillimetres)
             return input_error(
-                Text("no position is farther than {:.4g}, which looks like metres or inches",
-                            farthest),
+                Text("no position is farther than {:.4g}, which looks like metres or inches", farthest),
                 where, "say the unit with --pose-unit mm, m or in");
         if (farthest > kFarthestPose_mm)
-            return input_error(Text("positions reach {:.4g}, which looks like micrometres", farthest),
-                               where, "say the unit with --pose-unit mm or um");
+            return input_error(Text("positions reach {:.4g}, which looks like micrometres", farthest), where,
+                               "say the unit with --pose-unit mm or um");
         form.mm = 1;
     }
     const bool angles = !matrix && !form.convention.starts_with("quat");
     if (angles && form.rad == 0) {
         const bool radian = form.convention == "ur-rotvec";
         if (radian ? widest > 2 * kPi + 1e-6 : widest > 0 && widest <= 2 * kPi)
-            return input_error(Text("no angle exceeds {:.4g}, which looks like {}", widest,
-                                           radian ? "degrees" : "radian"),
-                               where, "say the unit with --pose-angle deg or rad");
+            return input_error(
+                Text("no angle exceeds {:.4g}, which looks like {}", widest, radian ? "degrees" : "radian"),
+                where, "say the unit with --pose-angle deg or rad");
         form.rad = radian ? 1 : kPi / 180;
     }
     return {};
@@ -126,8 +125,9 @@ Expected<void> check_width(PoseForm& form, std::size_t width, const std::string&
                       : form.convention.starts_with("quat") ? width == 7
                                                             : width == 6;
     if (!fits)
-        return input_error(Text("{} numbers are no pose{}", width,
-                                       form.convention.empty() ? "" : " of the form " + form.convention),
+        return input_error(form.convention.empty()
+                               ? Text("{} numbers are no pose", width)
+                               : Text("{} numbers are no pose of the form {}", width, form.convention),
                            where, "give x, y, z and a rotation, or a 4x4 matrix");
     return {};
 }
@@ -173,8 +173,8 @@ Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, Po
         header.numbers.insert(header.numbers.end(), found.begin(), found.end());
         const bool same = convention == std::string("fanuc-wpr") && form.convention == "rpy";
         if (!form.convention.empty() && *convention && form.convention != convention && !same)
-            return input_error(
-                Text("the header names {}, --pose-convention {}", convention, form.convention), at);
+            return input_error(Text("the header names {}, --pose-convention {}", convention, form.convention),
+                               at);
         if (form.convention.empty()) form.convention = convention;
         break;
     }
@@ -266,8 +266,7 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
             const auto value = after(keys[i], '=');
             double number = 0;
             if (!value || !text_number(*value, false, number) || std::isnan(number))
-                return input_error(Text("{} is {}", keys[i], value ? "no number" : "missing"),
-                                   pose.at);
+                return input_error(Text("{} is {}", keys[i], value ? "no number" : "missing"), pose.at);
             values[i] = number;
         }
         const std::string here = fmt::format("UF {}, UT {}", csv::shown(after("UF", ':').value_or("?")),
@@ -355,8 +354,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         if (comment) continue;
         if (width == 0) width = fields.size();
         if (fields.size() != width)
-            return input_error(
-                Text("has {} fields where the other lines have {}", fields.size(), width), at);
+            return input_error(Text("has {} fields where the other lines have {}", fields.size(), width), at);
         PoseRow row;
         row.at = at;
         std::vector<std::size_t> order;
@@ -384,8 +382,7 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
     if (rows.empty()) return input_error("there are no poses", where);
     if (width == 4 && !header) {  // stacked 4x4
         if (rows.size() % 4 != 0)
-            return input_error(Text("{} rows of four numbers are no 4x4 matrices", rows.size()),
-                               where);
+            return input_error(Text("{} rows of four numbers are no 4x4 matrices", rows.size()), where);
         std::vector<PoseRow> stacked;
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (rows[i].numbers.size() != 4) return input_error("is no row of a 4x4 matrix", rows[i].at);
@@ -437,8 +434,7 @@ Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayo
     auto table = parse_pose_table(*text, path.string(), layout);
     if (!table) return tl::unexpected(table.error());
     if (table->poses.size() != 1)
-        return input_error(Text("holds {} poses beside one frame", table->poses.size()),
-                           path.string());
+        return input_error(Text("holds {} poses beside one frame", table->poses.size()), path.string());
     return table->poses.front().pose;
 }
 
@@ -474,8 +470,8 @@ Expected<std::vector<Pose>> poses_of_frames(const PoseTable& table, std::span<co
         return input_error(Text("names no pose of {}", missing), where,
                            "name the poses as the frames' files, or leave the names out");
     if (table.poses.size() != frames.size())
-        return input_error(Text("holds {} poses for {} frames", table.poses.size(), frames.size()),
-                           where, "give one pose a frame in the frames' order, or name them as the files");
+        return input_error(Text("holds {} poses for {} frames", table.poses.size(), frames.size()), where,
+                           "give one pose a frame in the frames' order, or name them as the files");
     poses.clear();
     for (const NamedPose& pose : table.poses) poses.push_back(pose.pose);
     return poses;

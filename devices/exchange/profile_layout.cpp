@@ -74,8 +74,8 @@ Expected<std::size_t> column_called(const PointTable& table, std::string_view wo
     std::string there;
     for (const std::string& name : table.names) there += (there.empty() ? "" : ", ") + csv::shown(name);
     return input_error(Text("there is no column \"{}\"", csv::shown(word)), where,
-                       there.empty() ? fmt::format("the columns are 1 to {}", table.columns.size())
-                                     : "the columns are " + there);
+                       there.empty() ? Text("the columns are 1 to {}", table.columns.size())
+                                     : Text("the columns are {}", there));
 }
 
 std::string named_columns(const PointTable& table) {
@@ -120,8 +120,8 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
             std::swap(found.y, found.z);  // drawn in the plane: y is the height
         if (found.x && found.z) return found;
         return input_error(
-            Text("the header \"{}\" names no column {}", named_columns(table), found.x ? "z" : "x"),
-            where, "say which with --columns-xz X,Z (names, or numbers from 1)");
+            Text("the header \"{}\" names no column {}", named_columns(table), found.x ? "z" : "x"), where,
+            "say which with --columns-xz X,Z (names, or numbers from 1)");
     }
     const std::size_t width = table.columns.size();
     if (width == 2) {

@@ -115,7 +115,7 @@ SettingsReader::SettingsReader(const nlohmann::json& json, std::string where, co
         known.push_back(s.name);
         if (s.former.empty() || !json_.contains(s.former)) continue;
         if (json_.contains(s.name)) {
-            keep(input_error(fmt::format("{} is given under its former name too", s.name), path(s.former),
+            keep(input_error(Text("{} is given under its former name too", s.name), path(s.former),
                              "give one of them"));
             return;
         }
@@ -152,7 +152,7 @@ void SettingsReader::number(const char* key, double& value, double low, double h
     const auto read = json_number(json_, key, where_);
     if (!read) return keep(tl::make_unexpected(read.error()));
     if (!(*read >= low && *read <= high))
-        return keep(input_error(fmt::format("{} is out of range {} to {}", *read, low, high), path(key)));
+        return keep(input_error(Text("{} is out of range {} to {}", *read, low, high), path(key)));
     value = *read;
 }
 
@@ -186,8 +186,8 @@ void SettingsReader::text(const char* key, std::string& value) {
     if (!read) return keep(tl::make_unexpected(read.error()));
     if (s && s->kind == SettingKind::choice &&
         std::find(s->choices.begin(), s->choices.end(), *read) == s->choices.end())
-        return keep(input_error(fmt::format("\"{}\" is not known", *read), path(key),
-                                fmt::format("known are {}", fmt::join(s->choices, ", "))));
+        return keep(input_error(Text("\"{}\" is not known", *read), path(key),
+                                Text("known are {}", fmt::join(s->choices, ", "))));
     value = *read;
 }
 

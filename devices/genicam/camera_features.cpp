@@ -14,12 +14,11 @@
 namespace seamwright {
 namespace {
 
-tl::unexpected<Error> failure(ArvCamera* camera, const std::string& what, const GFailure& g,
-                              const std::string& mend = {}) {
+tl::unexpected<Error> failure(ArvCamera* camera, const Text& what, const GFailure& g, const Text& mend = {}) {
     GFailure ignored;
     const char* serial = arv_camera_get_device_serial_number(camera, ignored.out());
-    return device_error(what + (g ? " (" + g.text() + ")" : ""),
-                        Text("camera {}", serial ? serial : "?"), mend);
+    return device_error(g ? Text("{} ({})", what, g.text()) : what, Text("camera {}", serial ? serial : "?"),
+                        mend);
 }
 
 bool has(ArvCamera* camera, const char* feature) {
@@ -71,8 +70,8 @@ std::string present_trigger(ArvCamera* camera) {
 Expected<void> set_trigger(ArvCamera* camera, const std::string& trigger) {
     const auto known = triggers(camera);
     if (std::find(known.begin(), known.end(), trigger) == known.end())
-        return failure(camera, fmt::format("it has no trigger \"{}\"", trigger), {},
-                       "it offers " + join_names(known));
+        return failure(camera, Text("it has no trigger \"{}\"", trigger), {},
+                       Text("it offers {}", join_names(known)));
     GFailure g;
     if (trigger == "free") {
         if (!has(camera, "TriggerMode")) return {};
@@ -81,7 +80,7 @@ Expected<void> set_trigger(ArvCamera* camera, const std::string& trigger) {
         return {};
     }
     arv_camera_set_trigger(camera, trigger == "software" ? "Software" : trigger.c_str(), g.out());
-    if (g) return failure(camera, fmt::format("the trigger \"{}\" cannot be set", trigger), g);
+    if (g) return failure(camera, Text("the trigger \"{}\" cannot be set", trigger), g);
     return {};
 }
 
@@ -109,15 +108,15 @@ Expected<GPtr<ArvDevice>> open_address(const std::string& address, const Genicam
     const auto camera = ask_camera(address, std::min(s.timeout, std::chrono::milliseconds(1000)));
     if (!camera) return tl::unexpected(camera.error());
     if (!s.serial.empty() && camera->serial != s.serial) {
-        return device_error(
-            Text("the camera there has serial number {}, not {}", camera->serial, s.serial),
-            Text("camera {}", address), "correct the serial number or the address");
+        return device_error(Text("the camera there has serial number {}, not {}", camera->serial, s.serial),
+                            Text("camera {}", address), "correct the serial number or the address");
     }
     GPtr<GInetAddress> here(g_inet_address_new_from_string(local_address_for(address).c_str()));
     if (!here) return device_error("no network interface leads to it", Text("camera {}", address));
     GFailure g;
     GPtr<ArvDevice> device(arv_gv_device_new(here.get(), there.get(), g.out()));
-    if (g || !device) return device_error(Text("it cannot be opened ({})", g.text()), Text("camera {}", address));
+    if (g || !device)
+        return device_error(Text("it cannot be opened ({})", g.text()), Text("camera {}", address));
     return device;
 }
 
@@ -142,9 +141,9 @@ Expected<GPtr<ArvDevice>> open_device(const GenicamSettings& s) {
         }
     }
     if (id.empty())
-        return device_error(
-            Text("there is no camera with serial number {}", s.serial), "genicam",
-            list.empty() ? "no camera answers: check power, cable and network" : "these answer: " + list);
+        return device_error(Text("there is no camera with serial number {}", s.serial), "genicam",
+                            list.empty() ? Text("no camera answers: check power, cable and network")
+                                         : Text("these answer: {}", list));
     GFailure g;
     GPtr<ArvDevice> device(arv_open_device(id.c_str(), g.out()));
     if (!device) return device_error(Text("it cannot be opened ({})", g.text()), Text("camera {}", id));
@@ -152,7 +151,7 @@ Expected<GPtr<ArvDevice>> open_device(const GenicamSettings& s) {
 }
 
 Expected<void> set_feature(ArvCamera* camera, const std::string& name, const nlohmann::json& value) {
-    if (!has(camera, name.c_str())) return failure(camera, "it has no feature " + name, {});
+    if (!has(camera, name.c_str())) return failure(camera, Text("it has no feature {}", name), {});
     GFailure g;
     if (value.is_null())
         arv_camera_execute_command(camera, name.c_str(), g.out());
@@ -168,7 +167,7 @@ Expected<void> set_feature(ArvCamera* camera, const std::string& name, const nlo
             arv_camera_set_integer(camera, name.c_str(),
                                    static_cast<gint64>(std::llround(value.get<double>())), g.out());
     }
-    if (g) return failure(camera, fmt::format("the feature {} cannot be set to {}", name, value.dump()), g);
+    if (g) return failure(camera, Text("the feature {} cannot be set to {}", name, value.dump()), g);
     return {};
 }
 
@@ -260,18 +259,17 @@ Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& s) {
         const auto offered = offered_formats(camera);
         if (std::find(offered.begin(), offered.end(), s.pixel_format) == offered.end() ||
             !pixel_format_by_name(s.pixel_format)) {
-            return failure(
-                camera,
-                fmt::format("the pixel format \"{}\" is not offered or cannot be read", s.pixel_format), {},
-                "these can be read: " + join_names(readable(offered)));
+            return failure(camera,
+                           Text("the pixel format \"{}\" is not offered or cannot be read", s.pixel_format),
+                           {}, Text("these can be read: {}", join_names(readable(offered))));
         }
         arv_camera_set_pixel_format_from_string(camera, s.pixel_format.c_str(), g.out());
         if (g) return failure(camera, "the pixel format cannot be set", g);
     }
     const char* present = arv_camera_get_pixel_format_as_string(camera, g.out());
     if (g || !present || !pixel_format_by_name(present))
-        return failure(camera, fmt::format("its pixel format \"{}\" cannot be read", present ? present : "?"),
-                       g, "set pixel_format to one of " + join_names(readable(offered_formats(camera))));
+        return failure(camera, Text("its pixel format \"{}\" cannot be read", present ? present : "?"), g,
+                       Text("set pixel_format to one of {}", join_names(readable(offered_formats(camera)))));
     // A region that is to grow needs its offset gone first.
     if (s.x || s.y || s.width || s.height) {
         if (s.x || s.width) {
@@ -299,7 +297,7 @@ Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& s) {
         std::string list;
         for (const std::string& chunk : s.chunks) list += (list.empty() ? "" : ",") + chunk;
         arv_camera_set_chunks(camera, list.c_str(), g.out());
-        if (g) return failure(camera, "the chunks " + list + " cannot be switched on", g);
+        if (g) return failure(camera, Text("the chunks {} cannot be switched on", list), g);
     }
     for (const auto& [name, value] : s.features.items())
         if (auto done = set_feature(camera, name, value); !done) return done;
@@ -366,7 +364,8 @@ Expected<ParameterInfo> described(ArvCamera* camera, const std::string& name) {
         if (info.name == name) return info;
         known += (known.empty() ? "" : ", ") + info.name;
     }
-    return input_error(Text("\"{}\" is no parameter of this camera", name), "camera", Text("it has {}", known));
+    return input_error(Text("\"{}\" is no parameter of this camera", name), "camera",
+                       Text("it has {}", known));
 }
 }  // namespace
 
@@ -410,7 +409,7 @@ Expected<void> set_parameter(ArvCamera* camera, const std::string& name, double 
                                                        : "Height";
         arv_camera_set_integer(camera, feature, whole, g.out());
     }
-    if (g) return failure(camera, fmt::format("{} cannot be set to {}", name, value), g);
+    if (g) return failure(camera, Text("{} cannot be set to {}", name, value), g);
     return {};
 }
 
@@ -424,7 +423,7 @@ Expected<RangeMapping> range_mapping(ArvCamera* camera) {
         if (name == "Inch")
             unit_mm = 25.4;
         else if (name != "Millimeter")
-            return failure(camera, "its distance unit \"" + name + "\" is no length", g,
+            return failure(camera, Text("its distance unit \"{}\" is no length", name), g,
                            "give the scale in the settings under \"range\"");
     }
     if (has(camera, "Scan3dCoordinateSelector")) {

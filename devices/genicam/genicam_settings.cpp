@@ -105,7 +105,7 @@ Expected<GenicamSettings> parse_genicam_settings(const nlohmann::json& json) {
     r.text("trigger", s.trigger);
     if (hardware && !r.has("trigger")) s.trigger = "Line1";
     if (hardware && (s.trigger == "software" || s.trigger == "free"))
-        r.keep(input_error("\"" + s.trigger + "\" contradicts hardware_trigger", "settings.trigger",
+        r.keep(input_error(Text("\"{}\" contradicts hardware_trigger", s.trigger), "settings.trigger",
                            "name the camera's input, e.g. \"Line1\""));
     r.object("features", [&](SettingsReader& features) {
         s.features = features.json();

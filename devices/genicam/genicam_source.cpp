@@ -21,6 +21,7 @@
 #include "devices/genicam/frame_order.h"
 #include "devices/genicam/genicam.h"
 #include "devices/genicam/gvcp.h"
+#include "devices/host_time.h"
 #include "devices/silence.h"
 
 namespace seamwright {
@@ -54,10 +55,6 @@ void release(ArvCamera* camera) {
     g_object_unref(camera);
     for (int i = 0; i < 1000 && g_atomic_int_get(&G_OBJECT(device.get())->ref_count) > 1; ++i)
         std::this_thread::sleep_for(milliseconds(10));
-}
-
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
 }
 
 // Aravis learns a frame's number from its first packet; without that the buffer keeps this one.
@@ -125,9 +122,8 @@ class GenicamSource final : public ProfileSource {
     }
     void fill_payload(ArvBuffer* buffer, Frame& frame);
     Error gone() const {
-        return {ErrorKind::device, std::string(kDisconnected) + ": the camera is gone",
-                settings_.camera_name(), "check its power and cable; it is connected again by itself",
-                ErrorCode::disconnected};
+        return {ErrorKind::device, Text("{}: the camera is gone", kDisconnected), settings_.camera_name(),
+                "check its power and cable; it is connected again by itself", ErrorCode::disconnected};
     }
     Error not_started() const {
         return {ErrorKind::device, "the sensor is not started", settings_.camera_name(), ""};
@@ -191,7 +187,7 @@ void GenicamSource::arrived(ArvBuffer* buffer) {
         const std::lock_guard lock(arrivals_);
         Arrival a;
         a.buffer = buffer;
-        a.host_ns = now_ns();
+        a.host_ns = host_now_ns();
         a.numbered = arv_buffer_get_frame_id(buffer) != kNoNumber;
         if (a.numbered && status != ARV_BUFFER_STATUS_ABORTED && status != ARV_BUFFER_STATUS_CLEARED) {
             a.sequence = counter_.sequence(arv_buffer_get_frame_id(buffer));
@@ -319,7 +315,7 @@ void GenicamSource::bury() {
 
 Expected<void> GenicamSource::reconnect(milliseconds most) {
     if (Clock::now() < next_attempt_)
-        return device_error(ErrorCode::silence, Text("{}: the camera is gone", std::string(kNoAnswer)),
+        return device_error(ErrorCode::silence, Text("{}: the camera is gone", kNoAnswer),
                             settings_.camera_name(),
                             "check its power and cable; it is connected again by itself");
     ++attempts_;
@@ -391,7 +387,8 @@ Expected<void> GenicamSource::start_stream() {
     stream_.reset(arv_camera_create_stream_full(
         camera, &GenicamSource::on_stream, new std::shared_ptr<Context>(context_),
         [](gpointer c) { delete static_cast<std::shared_ptr<Context>*>(c); }, g.out()));
-    if (!stream_) return device_error(Text("no stream can be opened ({})", g.text()), settings_.camera_name());
+    if (!stream_)
+        return device_error(Text("no stream can be opened ({})", g.text()), settings_.camera_name());
     if (ARV_IS_GV_STREAM(stream_.get())) {
         const std::size_t automatic =
             std::clamp<std::size_t>(std::size_t{payload} * 8, std::size_t{1} << 20, std::size_t{32} << 20);
@@ -519,7 +516,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
             if (auto done = reconnect(settings_.timeout); !done) return done;
             continue;
         }
-        pairing_.expire(now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
+        pairing_.expire(host_now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
         if (pairing_.lost_track()) {
             arrivals.unlock();
             stop_stream();
@@ -529,7 +526,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
         if (pairing_.ready()) break;
         if (Clock::now() >= until)
             return device_error(ErrorCode::silence,
-                                Text("{}: the trigger before this one has no frame yet", std::string(kNoAnswer)),
+                                Text("{}: the trigger before this one has no frame yet", kNoAnswer),
                                 settings_.camera_name());
         control.unlock();  // frames are delivered meanwhile
         something_.wait_for(arrivals, milliseconds(20));
@@ -539,7 +536,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
     }
     {
         const std::lock_guard arrivals(arrivals_);
-        pairing_.begin(spot_id, now_ns());
+        pairing_.begin(spot_id, host_now_ns());
     }
     GFailure g;
     arv_camera_software_trigger(camera_.get(), g.out());
@@ -548,7 +545,7 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
         pairing_.cancel();
         return device_error(Text("the trigger was refused ({})", g.text()), settings_.camera_name());
     }
-    pairing_.sent(now_ns());
+    pairing_.sent(host_now_ns());
     return {};
 }
 
@@ -592,7 +589,7 @@ Expected<FramePtr> GenicamSource::wait_next(milliseconds timeout) {
         }
         std::unique_lock arrivals(arrivals_);
         if (Clock::now() >= until) {
-            pairing_.expire(now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
+            pairing_.expire(host_now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
             return device_error(ErrorCode::silence,
                                 Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                 settings_.camera_name(), "let the robot measure or trigger the sensor");

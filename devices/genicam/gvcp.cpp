@@ -84,7 +84,8 @@ Expected<DiscoveredCamera> ask_camera(const std::string& address, std::chrono::m
         if (from.address != address) continue;
         if (auto camera = parse_discovery_ack(std::span(datagram).first(*size), request)) return camera;
     }
-    return device_error(ErrorCode::silence, kNoAnswer, Text("camera {}", address), "check its power and cable");
+    return device_error(ErrorCode::silence, kNoAnswer, Text("camera {}", address),
+                        "check its power and cable");
 }
 
 }  // namespace seamwright

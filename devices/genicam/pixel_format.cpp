@@ -90,8 +90,7 @@ Expected<StripeImage> unpack_image(const PixelFormat& format, std::span<const st
     // The last row may come without its padding.
     if (payload.size() + row_padding < need) {
         return device_error(
-            Text("{} x {} pixels need {} bytes, only {} came", width, height, need, payload.size()),
-            where);
+            Text("{} x {} pixels need {} bytes, only {} came", width, height, need, payload.size()), where);
     }
     if (!format.colour.empty())
         return unpack_colour(format, payload, width, height, row_padding, channel, pixels);

@@ -53,8 +53,7 @@ Expected<void> range_row(const PixelFormat& format, std::span<const std::byte> p
     const std::size_t need = (format.planar ? plane * axes : plane) - row_padding;
     if (payload.size() < need) {
         return device_error(
-            Text("{} x {} points need {} bytes, only {} came", width, height, need, payload.size()),
-            where);
+            Text("{} x {} points need {} bytes, only {} came", width, height, need, payload.size()), where);
     }
     const auto at = [&](std::size_t axis) {
         return payload.data() + r * row_bytes + (format.planar ? axis * plane : axis * unit);

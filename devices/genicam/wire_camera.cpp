@@ -260,7 +260,7 @@ WireCamera::WireCamera(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Expected<std::unique_ptr<WireCamera>> WireCamera::open(const WireCameraSettings& settings,
                                                        std::function<void()> software_trigger) {
-    const std::string where = "served camera " + settings.address;
+    const Text where("served camera {}", settings.address);
     if (settings.serial.empty() || settings.serial.size() > 15)
         return input_error("the serial number must have 1 to 15 signs", "serial");
     if (settings.width < 1 || settings.height < 1 || settings.width > 16384 || settings.height > 16384)

@@ -31,8 +31,7 @@ T at(std::string_view bytes, std::size_t offset) {  // precondition: long enough
 }
 
 tl::unexpected<Error> too_short(std::string_view what, std::size_t got) {
-    return device_error(Text("a {} message of {} bytes is too short for what it says", what, got),
-                        kWhere);
+    return device_error(Text("a {} message of {} bytes is too short for what it says", what, got), kWhere);
 }
 
 // The first whole message without its size; nullopt while it is not whole.

@@ -113,8 +113,8 @@ class GocatorSource final : public ProfileSource {
         const std::string& wanted = identity_.serial.empty() ? s_.serial : identity_.serial;
         if (!wanted.empty() && wanted != info->serial)
             return device_error(
-                Text("the sensor with the serial number {} answers, not {}", info->serial, wanted),
-                where(), "check address and cabling");
+                Text("the sensor with the serial number {} answers, not {}", info->serial, wanted), where(),
+                "check address and cabling");
         const std::lock_guard lock(mutex_);
         identity_ = {"gocator", "LMI Technologies", info->model, info->serial};
         return {};
@@ -190,9 +190,8 @@ class GocatorSource final : public ProfileSource {
             next_ping_ = Clock::now() + kPingPeriod;
             if (!ask(gdp::Command::ping, std::string(8, '\0'))) {
                 lost();
-                return device_error(ErrorCode::disconnected,
-                                    Text("{}: it does not answer", kDisconnected), where(),
-                                    kLookAtSensor);
+                return device_error(ErrorCode::disconnected, Text("{}: it does not answer", kDisconnected),
+                                    where(), kLookAtSensor);
             }
         }
         return device_error(
@@ -225,12 +224,12 @@ class GocatorSource final : public ProfileSource {
         waiting_spots_.clear();
     }
 
-    std::string where() const { return fmt::format("Gocator {}:{}", s_.address, s_.control_port); }
+    Text where() const { return Text("Gocator {}:{}", s_.address, s_.control_port); }
     tl::unexpected<Error> no_parameter(const std::string& name) const {
         return usage_error(Text("there is no parameter \"{}\"", name), where(),
                            "set it on the sensor's own page");
     }
-    tl::unexpected<Error> refused(const std::string& what, std::int32_t status) const {
+    tl::unexpected<Error> refused(const Text& what, std::int32_t status) const {
         return device_error(Text("the sensor refuses to {} (status {})", what, status), where());
     }
 
@@ -288,8 +287,8 @@ class GocatorSource final : public ProfileSource {
         if (!answer && is_silence(answer.error()))
             return device_error(ErrorCode::silence,
                                 Text("{}: the sensor did not {} its job within {:g} s", kNoAnswer,
-                                            command == gdp::Command::start ? "start" : "stop",
-                                            static_cast<double>(s_.start_timeout.count()) / 1000),
+                                     command == gdp::Command::start ? "start" : "stop",
+                                     static_cast<double>(s_.start_timeout.count()) / 1000),
                                 where(),
                                 "look on the sensor's own page; start_timeout_ms is how long to wait");
         return answer;

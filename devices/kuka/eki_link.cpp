@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "devices/exchange/settings.h"
+#include "devices/host_time.h"
 #include "devices/kuka/eki.h"
 #include "devices/kuka/eki_telegram.h"
 #include "devices/kuka/move_time.h"
@@ -27,10 +28,6 @@ constexpr Timeout kEkiReadyPoll{30};
 
 constexpr std::size_t kMostNewcomers = 8;
 constexpr Timeout kHelloTime{1000}, kLook{10};
-
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-}
 
 class EkiLink final : public RobotLink {
   public:
@@ -133,11 +130,11 @@ class EkiLink final : public RobotLink {
                               timeout_ + kuka_move_time(*from, base_from_flange)));
     }
 
-    std::vector<std::string> take_notices() override {
+    std::vector<Text> take_notices() override {
         auto notices = std::exchange(notices_, {});
         if (strangers_ > 0)
-            notices.push_back(fmt::format("{} connections of an unknown peer were refused, the last of {}",
-                                          std::exchange(strangers_, 0), stranger_));
+            notices.push_back(Text("{} connections of an unknown peer were refused, the last of {}",
+                                   std::exchange(strangers_, 0), stranger_));
         return notices;
     }
 
@@ -233,13 +230,12 @@ class EkiLink final : public RobotLink {
             if (said == Said::nonsense) {
                 refuse(peer);
             } else if (connection_ && still_answers()) {
-                notices_.push_back(fmt::format("a second robot was refused, {}: the first one answers",
-                                               who(hello, newcomer->connection)));
+                notices_.push_back(Text("a second robot was refused, {}: the first one answers",
+                                        who(hello, newcomer->connection)));
             } else {
                 if (connection_)
-                    notices_.push_back(fmt::format("{} has taken over from {}, which answers no more",
-                                                   who(hello, newcomer->connection),
-                                                   who(hello_, *connection_)));
+                    notices_.push_back(Text("{} has taken over from {}, which answers no more",
+                                            who(hello, newcomer->connection), who(hello_, *connection_)));
                 drop();
                 hello_ = std::move(hello);
                 connection_.emplace(std::move(newcomer->connection));
@@ -261,8 +257,8 @@ class EkiLink final : public RobotLink {
             meet();
             if (connection_ && connection_->is_open()) return {};
             if (Clock::now() >= until)
-                return device_error(ErrorCode::silence, Text("{}: no robot has connected", std::string(kNoAnswer)),
-                                    where_, "start SEAMWRIGHT_SUB in the controller's submit interpreter");
+                return device_error(ErrorCode::silence, Text("{}: no robot has connected", kNoAnswer), where_,
+                                    "start SEAMWRIGHT_SUB in the controller's submit interpreter");
         }
     }
 
@@ -276,10 +272,9 @@ class EkiLink final : public RobotLink {
             if (!got) {
                 if (!is_silence(got.error())) return fail(got.error());
                 if (splitter_.in_the_middle())
-                    return fail({ErrorKind::device,
-                                 std::string(kNoAnswer) + ": a telegram broke off in the middle", where_,
-                                 "check the connection to the controller", ErrorCode::silence});
-                quiet_ns_ = now_ns();
+                    return fail({ErrorKind::device, Text("{}: a telegram broke off in the middle", kNoAnswer),
+                                 where_, "check the connection to the controller", ErrorCode::silence});
+                quiet_ns_ = host_now_ns();
                 return tl::unexpected(got.error());
             }
             if (auto added = splitter_.add({buffer.data(), *got}); !added) return fail(added.error());
@@ -294,7 +289,7 @@ class EkiLink final : public RobotLink {
         if (telegram.kind != "start" && telegram.kind != "trigger") return false;
         auto& events = telegram.kind == "start" ? starts_ : triggers_;
         if (events.size() >= 1000) return fail({ErrorKind::device, "1000 events wait unread", where_, ""});
-        const std::int64_t now = now_ns();
+        const std::int64_t now = host_now_ns();
         events.push_back({std::move(telegram), now, quiet_ns_ == 0 ? now : quiet_ns_});
         return true;
     }
@@ -359,10 +354,9 @@ class EkiLink final : public RobotLink {
                 return device_error(
                     telegram->text.starts_with(kEkiNotReady) ? ErrorCode::not_ready : ErrorCode::none,
                     Text("the controller refuses \"{}\": {}",
-                                command.kind == "read" || command.kind == "write"
-                                    ? command.kind + " " + command.name
-                                    : command.kind,
-                                telegram->text),
+                         command.kind == "read" || command.kind == "write" ? command.kind + " " + command.name
+                                                                           : command.kind,
+                         telegram->text),
                     where_);
             if (telegram->kind != "answer" || telegram->id != command.id || telegram->name != command.name)
                 return fail(
@@ -370,7 +364,7 @@ class EkiLink final : public RobotLink {
                      fmt::format("the controller answered \"{} {} {}\" to \"{} {} {}\"", telegram->kind,
                                  telegram->id, telegram->name, command.kind, command.id, command.name),
                      where_, "load seamwright_sub.sub of this version on the controller"});
-            quiet_ns_ = now_ns();
+            quiet_ns_ = host_now_ns();
             return telegram;
         }
     }
@@ -381,7 +375,7 @@ class EkiLink final : public RobotLink {
     const Timeout timeout_;
     std::uint64_t strangers_ = 0;  // since they were told
     std::string stranger_;
-    std::vector<std::string> notices_;
+    std::vector<Text> notices_;
     std::vector<Newcomer> newcomers_;
     std::optional<TcpConnection> connection_;  // has said hello
     EkiSplitter splitter_{"Robot"};

@@ -56,8 +56,7 @@ Expected<EkiTelegram> parse(std::string_view document, std::string_view root_nam
         if (!number) return device_error(Text("has no number Pos/{}", kPos[i]), kEkiWhere);
         v[i] = *number;
         if (!(std::abs(v[i]) <= (i < 3 ? 1e5 : 360.0)))
-            return device_error(Text("Pos/{} = {} is no position of a robot", kPos[i], value),
-                                kEkiWhere);
+            return device_error(Text("Pos/{} = {} is no position of a robot", kPos[i], value), kEkiWhere);
     }
     t.pose = make_pose(rotation_from_kuka({v[3], v[4], v[5]}), {v[0], v[1], v[2]});
     return t;

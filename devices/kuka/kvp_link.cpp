@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "devices/exchange/settings.h"
+#include "devices/host_time.h"
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/kvp_message.h"
 #include "devices/kuka/move_time.h"
@@ -100,7 +101,7 @@ class KvpLink final : public RobotLink {
             return tl::unexpected(noted.error());
         call_taken_here_ = true;
         const std::string id = string_from_krl((*part)[0]);
-        const std::int64_t now = now_ns();
+        const std::int64_t now = host_now_ns();
         return StartSignal{id == "-" ? "" : id, now, std::exchange(quiet_ns_, now)};
     }
 
@@ -168,7 +169,7 @@ class KvpLink final : public RobotLink {
         if (!values) return tl::unexpected(values.error());
         auto pose = frame_from_krl((*values)[1]);
         if (!pose) return fail(pose.error());
-        return TriggerEvent{string_from_krl((*values)[0]), now_ns(), *pose};
+        return TriggerEvent{string_from_krl((*values)[0]), host_now_ns(), *pose};
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
@@ -279,14 +280,11 @@ class KvpLink final : public RobotLink {
             auto before = truth("SW_CALLED", (*answers)[2]);
             if (before && *before) called = true;
         }
-        if (called && !*called) quiet_ns_ = now_ns();
+        if (called && !*called) quiet_ns_ = host_now_ns();
         if (!called || !*called || !(*answers)[1].done) return called;
         return truth("SW_WAITS", (*answers)[1]);  // the program is there to measure it
     }
 
-    static std::int64_t now_ns() {
-        return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-    }
     static Timeout left(Clock::time_point until) {
         return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - Clock::now()));
     }
@@ -306,7 +304,7 @@ class KvpLink final : public RobotLink {
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
             return device_error(ErrorCode::disconnected,
-                                Text("{}, the next attempt is due soon", std::string(kDisconnected)), where_,
+                                Text("{}, the next attempt is due soon", kDisconnected), where_,
                                 "check that KUKAVARPROXY runs on the controller");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);

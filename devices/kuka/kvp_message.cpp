@@ -22,7 +22,7 @@ std::size_t get16(std::string_view bytes, std::size_t at) {
     return static_cast<std::size_t>(static_cast<unsigned char>(bytes[at]) << 8 |
                                     static_cast<unsigned char>(bytes[at + 1]));
 }
-tl::unexpected<Error> broken(const std::string& why) {
+tl::unexpected<Error> broken(const Text& why) {
     return device_error(why, kKvpWhere, "check that KUKAVARPROXY answers on this port");
 }
 
@@ -128,8 +128,7 @@ Expected<Pose> frame_from_krl(std::string_view text) {
         if (read.ec != std::errc() || read.ptr != digits.data() + digits.size() || v[which])
             return device_error(Text("\"{}\" is no number of a frame", part.substr(0, 40)), kKvpWhere);
         if (!(std::abs(number) <= (which < 3 ? 1e5 : 360.0)))
-            return device_error(Text("\"{}\" is no position of a robot", part.substr(0, 40)),
-                                kKvpWhere);
+            return device_error(Text("\"{}\" is no position of a robot", part.substr(0, 40)), kKvpWhere);
         v[which] = number;
     }
     for (std::size_t i = 0; i < 6; ++i)

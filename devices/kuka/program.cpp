@@ -64,8 +64,8 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
         return input_error(Text("{} spots are more than the module holds", request.moves.size()),
                            request.project, Text("measure at most {} in one program", kMostSpots));
     if (request.frames.size() > kMostFrames)
-        return input_error(fmt::format("{} frames are more than the module holds", request.frames.size()),
-                           request.project, fmt::format("give at most {}", kMostFrames));
+        return input_error(Text("{} frames are more than the module holds", request.frames.size()),
+                           request.project, Text("give at most {}", kMostFrames));
     std::string listen;
     int port = 0, output = 0, alive = 0, command = 0;
     SettingsReader f(request.settings, "settings", kuka_eki_settings(), UnknownSettings::passed_over);

@@ -153,7 +153,8 @@ bool is_loopback(const std::string& address) {
 
 Expected<void> check_robot_address(const std::string& listen, const std::string& robot_address) {
     if (!robot_address.empty() || is_loopback(listen)) return {};
-    return input_error("it would be open to every computer of the network", Text("settings.listen {}", listen),
+    return input_error("it would be open to every computer of the network",
+                       Text("settings.listen {}", listen),
                        "name the controller's address in \"robot_address\"");
 }
 
@@ -248,7 +249,8 @@ Expected<UdpSocket> UdpSocket::bind(const std::string& address, std::uint16_t po
     if (!e && shared == Shared::yes) impl->socket.set_option(udp::socket::reuse_address(true), e);
     if (!e) impl->socket.bind(endpoint, e);
     if (e)
-        return device_error(Text("cannot bind: {}", e.message()), impl->where, "another program may use this port");
+        return device_error(Text("cannot bind: {}", e.message()), impl->where,
+                            "another program may use this port");
     impl->where = text(impl->socket.local_endpoint());
     return UdpSocket(std::move(impl));
 }

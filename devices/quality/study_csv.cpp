@@ -41,12 +41,12 @@ Expected<StudyTable> header_of(std::string_view line, const std::string& at) {
         for (std::size_t w = 0; w < kColumns; ++w) {
             if (name.name != kStudyColumns[w]) continue;
             if (table.columns[w] >= 0)
-                return input_error(fmt::format("the column {} is named twice", kStudyColumns[w]), at);
+                return input_error(Text("the column {} is named twice", kStudyColumns[w]), at);
             table.columns[w] = static_cast<int>(c);
             if (name.unit.empty() || w < kValue) continue;
             const auto mm = mm_of_unit(name.unit);
             if (!mm)
-                return input_error(fmt::format("\"{}\" is no unit of length", csv::shown(name.unit)), at,
+                return input_error(Text("\"{}\" is no unit of length", csv::shown(name.unit)), at,
                                    "give millimetres");
             table.mm[w] = *mm;
         }
@@ -54,8 +54,8 @@ Expected<StudyTable> header_of(std::string_view line, const std::string& at) {
     for (const Column needed : {kPart, kRun, kValue})
         if (table.columns[needed] < 0)
             return input_error(
-                fmt::format("the header \"{}\" has no column {}", csv::shown(line), kStudyColumns[needed]),
-                at, kHeader);
+                Text("the header \"{}\" has no column {}", csv::shown(line), kStudyColumns[needed]), at,
+                kHeader);
     return table;
 }
 
@@ -79,16 +79,15 @@ class StudyReader {
         double value = 0;
         if (!text_number(text, table_.decimal_comma, value)) {
             const bool comma = !table_.decimal_comma && text.find(',') != std::string_view::npos;
-            return input_error(fmt::format("{} = \"{}\" is no number", name, csv::shown(text)), at_,
+            return input_error(Text("{} = \"{}\" is no number", name, csv::shown(text)), at_,
                                comma ? "separate the columns by semicolons, or write decimal points"
                                : table_.decimal_comma ? "write all numbers with a decimal comma, or none"
                                                       : "");
         }
         value *= table_.mm[column];
-        if (!std::isfinite(value)) return input_error(fmt::format("{} is missing", name), at_);
+        if (!std::isfinite(value)) return input_error(Text("{} is missing", name), at_);
         if (std::abs(value) > 1e6)
-            return input_error(fmt::format("{} = {} mm is beyond 1 km", name, value), at_,
-                               "give millimetres");
+            return input_error(Text("{} = {} mm is beyond 1 km", name, value), at_, "give millimetres");
         return value;
     }
     Expected<StudyValue> value() const {
@@ -98,8 +97,7 @@ class StudyReader {
         v.rehang = name_of_field(field(kRehang));
         if (v.rehang.empty()) v.rehang = "1";
         const auto run = number_from<long>(field(kRun));
-        if (!run)
-            return input_error(fmt::format("run = \"{}\" is no whole number", csv::shown(field(kRun))), at_);
+        if (!run) return input_error(Text("run = \"{}\" is no whole number", csv::shown(field(kRun))), at_);
         v.run = *run;
         const auto mm = millimetres(kValue);
         if (!mm) return tl::unexpected(mm.error());
@@ -149,21 +147,21 @@ Expected<std::vector<StudyValue>> parse_study_csv(std::string_view text, const s
         if (csv::blanks_off(line).empty()) continue;
         const auto fields = text_fields(line, table->separator);
         if (fields.size() != table->width)
-            return input_error(
-                fmt::format("has {} fields where the header names {}", fields.size(), table->width), at(),
-                table->separator == ',' && fields.size() > table->width
-                    ? "write decimal points, or separate the columns by semicolons"
-                    : "");
+            return input_error(Text("has {} fields where the header names {}", fields.size(), table->width),
+                               at(),
+                               table->separator == ',' && fields.size() > table->width
+                                   ? "write decimal points, or separate the columns by semicolons"
+                                   : "");
         if (values.size() >= kStudyValueLimit)
-            return input_error(fmt::format("there are more than {} values", kStudyValueLimit), at());
+            return input_error(Text("there are more than {} values", kStudyValueLimit), at());
         auto value = StudyReader(*table, fields, at()).value();
         if (!value) return tl::unexpected(value.error());
         const auto [first, fresh] =
             seen.emplace(std::tuple(value->part, value->rehang, value->run), lines.number());
         if (!fresh)
             return input_error(
-                fmt::format("part {}, rehang {}, run {} stands in line {} already", csv::shown(value->part),
-                            csv::shown(value->rehang), value->run, first->second),
+                Text("part {}, rehang {}, run {} stands in line {} already", csv::shown(value->part),
+                     csv::shown(value->rehang), value->run, first->second),
                 at());
         values.push_back(std::move(*value));
     }

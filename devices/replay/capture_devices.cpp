@@ -46,8 +46,8 @@ class CaptureSensor final : public ProfileSource {
         if (!frame) {
             const std::lock_guard lock(mutex_);
             ++counters_.underrun;
-            return device_error(Text("all {} frame buffers are in use", pool_.size()),
-                                replay_->where(), "let go of frames that are no longer needed");
+            return device_error(Text("all {} frame buffers are in use", pool_.size()), replay_->where(),
+                                "let go of frames that are no longer needed");
         }
         for (;;) {
             if (!running_) return device_error("the sensor is not started", replay_->where());

@@ -164,8 +164,7 @@ Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const
             continue;
         }
         if (fields.size() != width) {
-            return input_error(Text("has {} fields where the header names {}", fields.size(), width),
-                               at);
+            return input_error(Text("has {} fields where the header names {}", fields.size(), width), at);
         }
         auto frame = manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at);
         if (!frame) return tl::unexpected(frame.error());

@@ -45,9 +45,9 @@ Expected<Profile> into_plane(const ReadProfile& points, const Pose& base_from_se
         if (p.allFinite()) worst = std::max(worst, std::abs(p.y()));
     }
     if (worst > kFarFromPlane_mm)
-        return input_error(
-            Text("its points in space lie up to {:.3g} mm beside the sensor's plane", worst), where,
-            "give points in the robot's base with the pose they were taken at, or x and z");
+        return input_error(Text("its points in space lie up to {:.3g} mm beside the sensor's plane", worst),
+                           where,
+                           "give points in the robot's base with the pose they were taken at, or x and z");
     return profile;
 }
 

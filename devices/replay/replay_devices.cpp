@@ -8,6 +8,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/settings.h"
+#include "devices/host_time.h"
 #include "devices/replay/capture_replay.h"
 #include "devices/replay/recording.h"
 #include "devices/silence.h"
@@ -16,10 +17,6 @@ namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-}
 
 // Fields that sensor and robot have in common.
 struct ReplaySettings {
@@ -174,7 +171,7 @@ class ReplaySensor final : public ProfileSource {
         fill(*recorded, *frame);
         const std::lock_guard lock(mutex_);
         frame->sequence = sequence_++;
-        frame->host_time_ns = now_ns();
+        frame->host_time_ns = host_now_ns();
         ++(frame->status == FrameStatus::ok ? counters_.completed : counters_.damaged);
         latest_ = frame;
         return frame;
@@ -278,7 +275,7 @@ class ReplayRobot final : public RobotLink {
         const RecordedFrame* frame = recording_->fire();
         if (!frame) return device_error("the measuring program has ended", where());
         pose_ = frame->base_from_flange;
-        return TriggerEvent{frame->spot_id, now_ns(), frame->base_from_flange};
+        return TriggerEvent{frame->spot_id, host_now_ns(), frame->base_from_flange};
     }
     Expected<Pose> read_frame(const std::string& name) override {
         const auto it = frames_.find(name);
@@ -360,7 +357,7 @@ Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& set
     if (f.failed()) return tl::unexpected(f.error());
     const auto mode = robot_mode_from_string(mode_name);
     if (!mode)
-        return input_error("\"" + mode_name + "\" is no mode", "settings.mode", "give e.g. \"automatic\"");
+        return input_error(Text("\"{}\" is no mode", mode_name), "settings.mode", "give e.g. \"automatic\"");
     auto recording = shared_recording(*common, session);
     if (!recording) return tl::unexpected(recording.error());
     return std::make_unique<ReplayRobot>(*recording, RobotIdentity{"replay", brand, model, common->serial},

@@ -6,16 +6,11 @@
 #include <chrono>
 
 #include "devices/exchange/pose_json.h"
+#include "devices/host_time.h"
 #include "devices/simulated/mesh_file.h"
 
 namespace seamwright {
 namespace {
-
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 // Random streams of a cell's seed.
 enum Stream : std::uint64_t { kArrival = 1, kJitter = 2, kFrame = 3, kSurface = 4, kDamage = 5 };
@@ -232,7 +227,7 @@ std::optional<TriggerEvent> SimulatedCell::next_trigger() {
         at.translation() += trigger_error(way.normalized() * move.speed_mm_s);
     true_ = at;
     if (armed_) expose(move.spot_id, at);
-    return TriggerEvent{move.spot_id, now_ns(), move.trigger};
+    return TriggerEvent{move.spot_id, host_now_ns(), move.trigger};
 }
 
 Eigen::Vector3d SimulatedCell::trigger_error(const Eigen::Vector3d& velocity_mm_s) {
@@ -306,7 +301,7 @@ void SimulatedCell::expose(const std::string& spot_id, const Pose& base_from_fla
         ++lost_;
         return;
     }
-    waiting_.push_back({spot_id, base_from_flange, number, now_ns()});
+    waiting_.push_back({spot_id, base_from_flange, number, host_now_ns()});
 }
 
 Expected<void> SimulatedCell::software_trigger(const std::string& spot_id) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "devices/exchange/settings.h"
+#include "devices/host_time.h"
 
 namespace seamwright {
 namespace {
@@ -16,12 +17,6 @@ constexpr double kHeadTilt_deg = 20;
 enum Stream : std::uint64_t { kArrival = 1, kFrame = 2, kSurface = 3 };
 std::uint64_t stream_seed(std::uint64_t seed, Stream stream, std::uint64_t number) {
     return hash64(hash64(seed, stream), number);
-}
-
-std::int64_t now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
 }
 
 struct SectionPoint {
@@ -293,7 +288,7 @@ std::optional<TriggerEvent> GripperCell::next_trigger() {
     moves_.pop_front();
     commanded_ = move.trigger;
     true_ = arrived(move.trigger);
-    return TriggerEvent{move.spot_id, now_ns(), move.trigger};
+    return TriggerEvent{move.spot_id, host_now_ns(), move.trigger};
 }
 
 RobotMode GripperCell::mode() const {

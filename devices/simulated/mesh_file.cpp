@@ -113,8 +113,8 @@ Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::s
     if (unit == "m") {
         for (auto& v : mesh->vertices) v *= 1000;
     } else if (unit.empty() && longest < 10) {
-        return input_error(Text("the part is only {:.4g} long: metres suspected", longest),
-                           path.string(), "say the unit: \"mm\" or \"m\"");
+        return input_error(Text("the part is only {:.4g} long: metres suspected", longest), path.string(),
+                           "say the unit: \"mm\" or \"m\"");
     }
     return mesh;
 }

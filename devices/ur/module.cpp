@@ -96,8 +96,7 @@ std::array<double, 6> ur_pose(const Pose& pose) {
 Expected<Pose> pose_from_ur(const std::array<double, 6>& pose, const std::string& where) {
     for (std::size_t i = 0; i < 6; ++i)
         if (!(std::abs(pose[i]) <= (i < 3 ? 100.0 : 4 * kPi)))
-            return device_error(Text("{} {} is no position of a robot", pose[i], i < 3 ? "m" : "rad"),
-                                where);
+            return device_error(Text("{} {} is no position of a robot", pose[i], i < 3 ? "m" : "rad"), where);
     return make_pose(rotation_from_ur({pose[3], pose[4], pose[5]}),
                      {1000 * pose[0], 1000 * pose[1], 1000 * pose[2]});
 }

@@ -32,7 +32,7 @@ std::string script_pose(const Pose& pose) {
                        v[5]);
 }
 
-Expected<void> check_pose(const Pose& pose, const std::string& where) {
+Expected<void> check_pose(const Pose& pose, const Text& where) {
     if (pose.matrix().allFinite() && pose.translation().cwiseAbs().maxCoeff() <= 1e5) return {};
     return input_error("a pose is not finite or beyond 100 m", where);
 }
@@ -73,7 +73,7 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     int n = 0;
     const Pose* last = nullptr;  // where the robot comes from; unknown before the first spot
     for (const MeasuringMove& move : request.moves) {
-        const std::string where = "spot " + move.spot_id;
+        const Text where("spot {}", move.spot_id);
         if (!(move.speed_mm_s > 0 && move.speed_mm_s <= 1000 * kFastest_m_s))
             return input_error(Text("{} mm/s is no speed for measuring", move.speed_mm_s), where,
                                "give up to 2000 mm/s");
@@ -102,13 +102,13 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     std::vector<std::string> numbers, frames;
     std::string list;
     for (const ApplicationFrame& frame : request.frames) {
-        const std::string where = "frame of region " + frame.region_id;
+        const Text where("frame of region {}", frame.region_id);
         if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
         const auto [at, fresh] = names.emplace(ur::frame_number(frame.name), frame.name);
         if (!fresh)
             return input_error(
-                Text("\"{}\" and \"{}\" are one frame to the controller", at->second, frame.name),
-                where, "name one of them otherwise");
+                Text("\"{}\" and \"{}\" are one frame to the controller", at->second, frame.name), where,
+                "name one of them otherwise");
         numbers.push_back(std::to_string(at->first));
         frames.push_back(script_pose(frame.base_from_frame));
         list += fmt::format("# sw_activate({}): region {}, frame {}\n", frames.size(),

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "devices/exchange/settings.h"
+#include "devices/host_time.h"
 #include "devices/net/socket.h"
 #include "devices/robot_program.h"
 #include "devices/same_robot.h"
@@ -125,7 +126,7 @@ class RtdeLink final : public RobotLink {
         std::array<std::int32_t, 4> part{};
         std::copy_n(state_->numbers.begin() + ur::kPart, 4, part.begin());
         if (auto taken = ask(Command::taken, call); !taken) return tl::unexpected(taken.error());
-        return StartSignal{ur::part_from_registers(part), now_ns(), not_before};
+        return StartSignal{ur::part_from_registers(part), host_now_ns(), not_before};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
@@ -154,7 +155,7 @@ class RtdeLink final : public RobotLink {
             return s.numbers[ur::kFired] != static_cast<std::int32_t>(told_) || measuring_ended(s);
         });
         if (!fired) return tl::unexpected(fired.error());
-        const std::int64_t heard_ns = now_ns();
+        const std::int64_t heard_ns = host_now_ns();
         const std::int32_t count = state_->numbers[ur::kFired];
         if (count == static_cast<std::int32_t>(told_) || measuring_ended(*state_))
             return device_error("the controller's program was stopped while it measured", where_,
@@ -252,9 +253,6 @@ class RtdeLink final : public RobotLink {
         return robot_.check([this] { return ask_identity(); }, where_);
     }
 
-    static std::int64_t now_ns() {
-        return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
-    }
     static Timeout left(Clock::time_point until) {
         return std::max(Timeout(0), std::chrono::ceil<Timeout>(until - Clock::now()));
     }
@@ -422,11 +420,11 @@ class RtdeLink final : public RobotLink {
         auto started = accepted({rtde::Type::start, {}}, until);
         if (!started) return tl::unexpected(started.error());
         if (!*started)
-            return fail({ErrorKind::device, "the controller refuses to start RTDE" + heard(), {}, {}});
+            return fail({ErrorKind::device, Text("the controller refuses to start RTDE{}", heard()), {}, {}});
         return {};
     }
 
-    std::string heard() const { return said_.empty() ? "" : ", saying: " + said_; }
+    Text heard() const { return said_.empty() ? Text() : Text(", saying: {}", said_); }
 
     Expected<void> connected() {
         // Whoever asks next learns that the connection was lost meanwhile, before another is made.
@@ -434,7 +432,7 @@ class RtdeLink final : public RobotLink {
         if (connection_ && connection_->is_open()) return {};
         if (Clock::now() < not_before_)
             return device_error(ErrorCode::disconnected,
-                                Text("{}, the next attempt is due soon", std::string(kDisconnected)), where_,
+                                Text("{}, the next attempt is due soon", kDisconnected), where_,
                                 "check that the controller is on");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
@@ -443,7 +441,7 @@ class RtdeLink final : public RobotLink {
             stream_.clear();
             said_.clear();
             // Far from the numbers of a connection that the module may still hold an unanswered request of.
-            number_ = static_cast<std::int32_t>(now_ns() / 1000 % 1'000'000'000) + 1;
+            number_ = static_cast<std::int32_t>(host_now_ns() / 1000 % 1'000'000'000) + 1;
             session_ = number_;
             last_request_.clear();
             if (auto ready = negotiate(Clock::now() + timeout_); ready) {
@@ -488,7 +486,7 @@ class RtdeLink final : public RobotLink {
                 s.bad_pose = offset.error();
         }
         s.at = Clock::now();
-        if (s.numbers[ur::kCall] == 0) quiet_ns_ = now_ns();
+        if (s.numbers[ur::kCall] == 0) quiet_ns_ = host_now_ns();
         state_ = s;
         return {};
     }
@@ -582,11 +580,8 @@ class RtdeLink final : public RobotLink {
                 return fail(
                     {ErrorKind::device, "the controller's program was stopped before it answered", {}, {}});
             if (Clock::now() >= until)
-                return fail({ErrorKind::device,
-                             std::string(kNoAnswer) + " of the module",
-                             {},
-                             {},
-                             ErrorCode::silence});
+                return fail(
+                    {ErrorKind::device, Text("{} of the module", kNoAnswer), {}, {}, ErrorCode::silence});
         }
         if (const auto why = ur::refusal(state_->numbers[ur::kStatus]); !why.empty())
             return device_error(

@@ -96,8 +96,8 @@ Expected<std::optional<Package>> take_package(std::string& stream) {
         case Type::pause:
             break;
         default:
-            return device_error(
-                Text("a package of type {} is no answer of RTDE", static_cast<int>(type)), kWhere);
+            return device_error(Text("a package of type {} is no answer of RTDE", static_cast<int>(type)),
+                                kWhere);
     }
     if (stream.size() < size) return std::nullopt;
     Package package{type, stream.substr(kHeaderBytes, size - kHeaderBytes)};
@@ -178,8 +178,7 @@ Expected<Recipe> recipe_of(std::string_view payload, const std::vector<std::stri
             recipe.kinds.push_back(*kind);
         } else {
             return device_error(
-                Text("the answer names an unknown type \"{}\" for {}", printable(type), names[n]),
-                kWhere);
+                Text("the answer names an unknown type \"{}\" for {}", printable(type), names[n]), kWhere);
         }
     }
     if (n != names.size())
@@ -194,20 +193,11 @@ Expected<Recipe> recipe_of(std::string_view payload, const std::vector<std::stri
     return recipe;
 }
 
-std::string recipe_payload(const Recipe& recipe) {
-    std::string out;
-    if (recipe.numbered) put(out, recipe.id);
-    std::vector<std::string_view> types;
-    for (const Kind k : recipe.kinds) types.push_back(kind_name(k));
-    return out + fmt::format("{}", fmt::join(types, ","));
-}
-
 Expected<std::vector<Value>> values_of(std::string_view payload, const Recipe& recipe) {
     std::size_t size = recipe.numbered ? 1 : 0;
     for (const Kind k : recipe.kinds) size += kind_bytes(k);
     if (payload.size() != size)
-        return device_error(Text("data of {} bytes came for a recipe of {}", payload.size(), size),
-                            kWhere);
+        return device_error(Text("data of {} bytes came for a recipe of {}", payload.size(), size), kWhere);
     if (recipe.numbered && get<std::uint8_t>(payload) != recipe.id)
         return device_error("data of another recipe came", kWhere);
     std::vector<Value> values;

@@ -82,7 +82,6 @@ std::string inputs_request(const std::vector<std::string>& names);
 // The answer to either request. Error (device): NOT_FOUND and IN_USE, naming the variables; another number of
 // types than of names; an unknown type.
 Expected<Recipe> recipe_of(std::string_view payload, const std::vector<std::string>& names, bool numbered);
-std::string recipe_payload(const Recipe& recipe);
 
 // Values in the recipe's order. The reader refuses another length or number, and a boolean that is neither 0
 // nor 1.

@@ -138,7 +138,7 @@ json vda5_json(const ProcessUncertainty& r) {
 json acceptance_json(const Acceptance& a) {
     const AcceptanceSettings& s = a.settings;
     json remarks = json::array();
-    for (const Phrase& remark : a.source.remarks) remarks.push_back(remark.in(Language::english));
+    for (const Text& remark : a.source.remarks) remarks.push_back(remark.in(Language::english));
     json answer = {
         {"status", to_string(a.verdict())},
         {"tolerance_mm", s.tolerance_mm},
@@ -169,7 +169,7 @@ json acceptance_json(const Acceptance& a) {
     if (a.correlation) answer["correlation"] = correlation_json(*a.correlation);
     if (a.vda5) answer["vda5"] = vda5_json(*a.vda5);
     for (const Study study : kStudies)
-        if (const std::string why = what_lacks(a, study).in(Language::english); !why.empty())
+        if (const std::string why = what_lacks(a, study).english(); !why.empty())
             answer[std::string(to_string(study))]["message"] = why;
     for (const auto& [study, error] : a.not_done)
         answer[std::string(to_string(study))] = {{"verdict", "not_done"}, {"message", error.sentence()}};

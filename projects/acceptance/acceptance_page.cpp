@@ -24,7 +24,7 @@ struct AcceptanceWriter {
 
     template <class... A>
     std::string t(const char* english, const A&... arguments) const {
-        return Phrase(english, arguments...).in(language);
+        return Text::chosen(english, arguments...).in(language);
     }
     std::string number(double value, int decimals) const {
         return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
@@ -39,7 +39,7 @@ struct AcceptanceWriter {
         page.verdict(name_of(v).in(language), tone_of(v), why);
     }
     void verdict(Study study, AcceptanceVerdict v, const std::string& why) const {
-        const Phrase lacks = what_lacks(a, study);
+        const Text lacks = what_lacks(a, study);
         verdict(v, lacks.empty() ? why : lacks.in(language));
     }
     double lower() const { return a.settings.nominal_mm - a.settings.tolerance_mm / 2; }
@@ -322,21 +322,21 @@ void source_chapter(AcceptanceWriter& w) {
     if (!s.robot.empty()) rows.push_back({w.t("Robot"), s.robot + ", " + w.t("serial {}", s.robot_serial)});
     if (s.runs > 0) rows.push_back({w.t("stored runs"), std::to_string(s.runs)});
     w.page.table(rows);
-    for (const Phrase& remark : s.remarks) w.page.paragraph(remark.in(w.language));
+    for (const Text& remark : s.remarks) w.page.paragraph(remark.in(w.language));
 }
 
 }  // namespace
 
-Phrase name_of(AcceptanceVerdict verdict) {
+Text name_of(AcceptanceVerdict verdict) {
     switch (verdict) {
         case AcceptanceVerdict::ok:
-            return Phrase("accepted");
+            return Text("accepted");
         case AcceptanceVerdict::conditional:
-            return Phrase("conditional");
+            return Text("conditional");
         case AcceptanceVerdict::not_ok:
-            return Phrase("not accepted");
+            return Text("not accepted");
         default:
-            return Phrase("too little data");
+            return Text("too little data");
     }
 }
 
@@ -347,7 +347,7 @@ report::Tone tone_of(AcceptanceVerdict verdict) {
 }
 
 report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& options) {
-    report::Page page(Phrase("Acceptance of the measuring process: {}", a.source.file).in(options.language),
+    report::Page page(Text("Acceptance of the measuring process: {}", a.source.file).in(options.language),
                       std::string(code_of(options.language)));
     AcceptanceWriter w{a, options.language, page};
     const std::string now = options.now_utc.empty() ? utc_now() : options.now_utc;

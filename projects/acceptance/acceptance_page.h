@@ -22,7 +22,7 @@ report::Page acceptance_page(const Acceptance& acceptance, const AcceptancePageO
 std::string page_text(const report::Page& page);
 
 // The word of a verdict and its colour.
-Phrase name_of(AcceptanceVerdict verdict);
+Text name_of(AcceptanceVerdict verdict);
 report::Tone tone_of(AcceptanceVerdict verdict);
 
 }  // namespace seamwright

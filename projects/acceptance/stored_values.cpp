@@ -80,7 +80,7 @@ double mean_square(const std::vector<UsedRun>& runs, const PathDirection& at) {
 }
 
 // Type 3 needs as many runs of every part.
-void balance(std::vector<StudyValue>& values, std::vector<Phrase>& remarks) {
+void balance(std::vector<StudyValue>& values, std::vector<Text>& remarks) {
     std::map<std::string, std::size_t> counts;
     for (const StudyValue& v : values) ++counts[v.part];
     std::size_t least = 0, once = 0, dropped = 0;
@@ -100,11 +100,11 @@ void balance(std::vector<StudyValue>& values, std::vector<Phrase>& remarks) {
     std::reverse(kept.begin(), kept.end());
     values = std::move(kept);
     if (once > 0)
-        remarks.push_back(Phrase("Parts left out of type 3 because they were measured once: {}.", once));
+        remarks.push_back(Text("Parts left out of type 3 because they were measured once: {}.", once));
     if (dropped > 0)
         remarks.push_back(
-            Phrase("Older runs left out of type 3 because the other parts were not measured as often: {}.",
-                   dropped));
+            Text("Older runs left out of type 3 because the other parts were not measured as often: {}.",
+                 dropped));
 }
 
 }  // namespace
@@ -114,8 +114,8 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
     if (!project) return tl::unexpected(project.error());
     if (project->regions.empty()) return input_error("the project has no region", file.path().string());
     if (region_id.empty() && project->regions.size() > 1)
-        return usage_error(fmt::format("the project has {} regions", project->regions.size()),
-                           file.path().string(), "name one with --region");
+        return usage_error(Text("the project has {} regions", project->regions.size()), file.path().string(),
+                           "name one with --region");
     const std::string id = region_id.empty() ? project->regions.front().id : region_id;
     auto summaries = file.runs();
     if (!summaries) return tl::unexpected(summaries.error());
@@ -166,7 +166,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
     }
     if (used.empty())
         return input_error(
-            fmt::format("no stored run holds a correction of region \"{}\" that the gate let pass", id),
+            Text("no stored run holds a correction of region \"{}\" that the gate let pass", id),
             file.path().string(), "measure first, or name another region with --region");
     int other_setup = 0;
     for (const RunKind kind : {RunKind::unmoved, RunKind::part}) {
@@ -183,7 +183,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
     std::vector<PathDirection> directions;
     if (region != setup->regions.end()) directions = directions_of(*setup, *region);
     if (directions.empty())
-        return input_error(fmt::format("region \"{}\" has no calibrated spot", id), file.path().string());
+        return input_error(Text("region \"{}\" has no calibrated spot", id), file.path().string());
     const PathDirection* worst = &directions.front();
     double largest = -1;
     for (const PathDirection& d : directions)
@@ -205,8 +205,8 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
         }
     }
     source.file = file.path().filename().string();
-    source.measurand = Phrase("region {}, spot {}, {}", id, worst->spot_id,
-                              worst->normal ? Phrase("normal") : Phrase("binormal"));
+    source.measurand =
+        Text("region {}, spot {}, {}", id, worst->spot_id, worst->normal ? Text("normal") : Text("binormal"));
     source.part_name = project->part.name;
     source.runs = static_cast<int>(used.size());
     if (const Spot* spot = find_spot(*setup, worst->spot_id)) {
@@ -223,12 +223,12 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
         }
     }
     if (refused > 0)
-        source.remarks.push_back(Phrase("Runs left out because the gate refused them: {}.", refused));
+        source.remarks.push_back(Text("Runs left out because the gate refused them: {}.", refused));
     if (of_older_proofs > 0)
         source.remarks.push_back(
-            Phrase("Runs left out because they belong to an older known shift: {}.", of_older_proofs));
+            Text("Runs left out because they belong to an older known shift: {}.", of_older_proofs));
     if (other_setup > 0)
-        source.remarks.push_back(Phrase(
+        source.remarks.push_back(Text(
             "Runs left out because they were made with another setup than the newest: {}.", other_setup));
     balance(study.values.type3, source.remarks);
     return study;

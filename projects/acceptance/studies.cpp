@@ -23,7 +23,7 @@ Expected<std::string> reference_part(const std::vector<StudyValue>& values, cons
     const auto parts = counts(values);
     if (!wanted.empty()) {
         if (!parts.contains(wanted))
-            return input_error("there are no values of part \"" + wanted + "\"", "--part");
+            return input_error(Text("there are no values of part \"{}\"", wanted), "--part");
         return wanted;
     }
     if (parts.empty()) return input_error("there are no values of a reference part");
@@ -31,8 +31,8 @@ Expected<std::string> reference_part(const std::vector<StudyValue>& values, cons
     for (const auto& [part, n] : parts)
         if (parts.size() == 1 || n >= kType1Values) often.push_back(part);
     if (often.size() != 1)
-        return input_error(fmt::format("the values are of {} parts, {} of them measured {} times or more",
-                                       parts.size(), often.size(), kType1Values),
+        return input_error(Text("the values are of {} parts, {} of them measured {} times or more",
+                                parts.size(), often.size(), kType1Values),
                            "reference part", "name it with --part");
     return often.front();
 }
@@ -59,12 +59,12 @@ class Judge {
             if (a_.settings.reference_mm || !v.reference_mm) continue;
             if (reference && *reference != *v.reference_mm)
                 return input_error(
-                    fmt::format("part {} has the references {} and {}", *part, *reference, *v.reference_mm),
+                    Text("part {} has the references {} and {}", *part, *reference, *v.reference_mm),
                     "type 1", "one part has one reference; give it with --reference");
             reference = v.reference_mm;
         }
         if (!reference)
-            return input_error("the reference of part " + *part + " is not known", "type 1",
+            return input_error(Text("the reference of part {} is not known", *part), "type 1",
                                "give it with --reference, or in a column reference");
         const AcceptanceSettings& s = a_.settings;
         auto made = type1_study(mm, *reference, {s.tolerance_mm, s.share, s.width, s.required});
@@ -204,26 +204,26 @@ AcceptanceVerdict Acceptance::verdict() const {
     return made.empty() ? too_little_data : ok;
 }
 
-Phrase what_lacks(const Acceptance& a, Study study) {
+Text what_lacks(const Acceptance& a, Study study) {
     const auto lacks = [](const auto& made) {
         return made && made->verdict == AcceptanceVerdict::too_little_data;
     };
     if (study == Study::type1 && lacks(a.type1))
-        return Phrase("{} values; {} are needed at least", a.type1->n, kType1Values);
+        return Text("{} values; {} are needed at least", a.type1->n, kType1Values);
     if (study == Study::type3 && lacks(a.type3))
-        return Phrase("{} parts; {} are needed at least", a.type3->parts, kType3Parts);
+        return Text("{} parts; {} are needed at least", a.type3->parts, kType3Parts);
     if (study == Study::linearity && lacks(a.linearity))
-        return Phrase(
+        return Text(
             "{} values at {} levels; needed are 5 levels and 50 values, none of the levels with more than "
             "half of them",
             a.linearity->line.n, a.linearity->levels.size());
     if (study == Study::stability && lacks(a.stability))
-        return Phrase("{} subgroups; {} are needed at least", a.stability->means_mm.size(),
-                      kStabilitySubgroups);
+        return Text("{} subgroups; {} are needed at least", a.stability->means_mm.size(),
+                    kStabilitySubgroups);
     if (study == Study::correlation && lacks(a.correlation))
-        return Phrase("{} parts; {} are needed at least", a.correlation->pairs.size(), kCorrelationPairs);
+        return Text("{} parts; {} are needed at least", a.correlation->pairs.size(), kCorrelationPairs);
     if (study == Study::vda5 && lacks(a.vda5))
-        return Phrase("{} values; {} are needed at least", a.vda5->reference_values, kProcessValues);
+        return Text("{} values; {} are needed at least", a.vda5->reference_values, kProcessValues);
     return {};
 }
 

@@ -15,7 +15,7 @@
 #include "core/acceptance/stability.h"
 #include "core/acceptance/type1.h"
 #include "core/acceptance/type3.h"
-#include "projects/report/phrase.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -38,11 +38,11 @@ struct StudyValues {
 
 struct StudySource {
     std::string file;  // where the values are from
-    Phrase measurand;  // "region left, spot S3, binormal"; empty: not known
+    Text measurand;    // "region left, spot S3, binormal"; empty: not known
     std::string part_name, sensor, sensor_serial, robot, robot_serial;
     bool simulated = false;
-    int runs = 0;                 // stored runs that entered; 0: a table
-    std::vector<Phrase> remarks;  // what was left out and why
+    int runs = 0;               // stored runs that entered; 0: a table
+    std::vector<Text> remarks;  // what was left out and why
 };
 
 struct AcceptanceSettings {
@@ -76,7 +76,7 @@ struct Acceptance {
 };
 
 // Of a study with too little data, what it has and what it needs; empty otherwise.
-Phrase what_lacks(const Acceptance& acceptance, Study study);
+Text what_lacks(const Acceptance& acceptance, Study study);
 
 // Error (input, usage): the settings are none; of one study: what that study refuses; of several: the data allow
 // none of them (the first one's sentence).

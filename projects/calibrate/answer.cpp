@@ -10,6 +10,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/camera_json.h"
+#include "projects/file/stored_text.h"
 #include "projects/station/measure.h"
 
 namespace seamwright {
@@ -35,8 +36,7 @@ Expected<Pose> pose_at(const json& result, const char* key) {
 }
 
 tl::unexpected<Error> needs_base(const CalibrationMethod& method, const char* what) {
-    return input_error(Text("{} is not known", what), method.id,
-                       "calibrate camera and laser plane first");
+    return input_error(Text("{} is not known", what), method.id, "calibrate camera and laser plane first");
 }
 
 // The table itself is not in the result (it may hold millions of nodes): the data give it again, bit for bit.
@@ -67,8 +67,8 @@ Expected<Calibration> calibration_of_result(const CalibrationMethod& method, con
                                             const Calibration* base) {
     const Verdict verdict = verdict_of(result);
     if (verdict == Verdict::undetermined && method.use == AnswerUse::sensor)
-        return input_error(Text("the solution is undetermined: {}", result.value("reason", "")), method.id,
-                           result.value("cure", ""));
+        return input_error(Text("the solution is undetermined: {}", text_in(result, "reason")), method.id,
+                           text_in(result, "cure"));
     Calibration c;
     if (base) {
         c.model = base->model;
@@ -86,7 +86,7 @@ Expected<Calibration> calibration_of_result(const CalibrationMethod& method, con
         c.covariance = parse_covariance(result, "covariance_pose");
     } else if (method.id == "stripe-camera") {
         if (!result["camera_from_laser"].is_object())
-            return input_error("the frames give no laser plane", method.id, result.value("cure", ""));
+            return input_error("the frames give no laser plane", method.id, text_in(result, "cure"));
         auto camera = parse_camera(result["camera"], "camera");
         if (!camera) return tl::unexpected(camera.error());
         auto laser = pose_at(result, "camera_from_laser");
@@ -149,13 +149,15 @@ Expected<std::vector<SensorAnswer>> answers_of_chains(const CalibrationSession& 
             SensorAnswer one{sensor_of_chain(*c.taken), session.state().settings, result, {}};
             one.data[entries] = json::array({c.taken->entry});
             one.result["sensors"] = json::array({chain});
-            for (const char* word : {"verdict", "reason", "cure"}) one.result[word] = chain.value(word, "");
+            one.result["verdict"] = chain.value("verdict", "");
+            for (const char* word : {"reason", "cure"}) put_text(one.result, word, text_in(chain, word));
             if (!find_sensor(project, one.sensor_id))
                 unknown += (unknown.empty() ? "" : ", ") + one.sensor_id;
             answers.push_back(std::move(one));
         }
     if (!unknown.empty())
-        return input_error(Text("the project does not know the sensors of these chains: {}", unknown), "static",
+        return input_error(Text("the project does not know the sensors of these chains: {}", unknown),
+                           "static",
                            "take their ticks away, or name the sensors in the data as in the project");
     return answers;
 }
@@ -212,9 +214,9 @@ Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSess
             c->id = fmt::format("{}-{}", session.method().id, ++number);
         } while (std::any_of(project.calibrations.begin(), project.calibrations.end(),
                              [&](const Calibration& other) { return other.id == c->id; }));
-        c->source = answers.size() > 1 ? fmt::format("one shot of {} sensors", answers.size())
-                                       : fmt::format("{} captures, {} for verification",
-                                                     session.solving_captures(), v.poses);
+        c->source = answers.size() > 1
+                        ? Text("one shot of {} sensors", answers.size())
+                        : Text("{} captures, {} for verification", session.solving_captures(), v.poses);
         if (v.poses > 0 && session.method().capture != CaptureKind::board_chain)
             c->result["verification"] = {{"poses", v.poses},
                                          {"confirmed", v.confirmed},

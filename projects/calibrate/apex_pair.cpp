@@ -21,14 +21,14 @@ json pair_json(const Eigen::Vector2d& p) {
 }
 
 Error no_apex(const SensorSetup& sensor) {
-    return {ErrorKind::input, "no apex of a triangular body is seen", "sensor " + sensor.id,
+    return {ErrorKind::input, "no apex of a triangular body is seen", Text("sensor {}", sensor.id),
             "bring the stripe across the body, both flanks in the picture, less gloss"};
 }
 
 Expected<Eigen::Vector2d> by_travel(json& settings, const SensorSetup& sensor, const Calibration* base,
                                     const Eigen::Vector2d& pixel,
                                     const std::optional<Pose>& base_from_flange) {
-    const std::string where = "sensor " + sensor.id;
+    const Text where("sensor {}", sensor.id);
     if (!base_from_flange)
         return input_error("how far the body has moved is not known", where,
                            "connect the robot that shifts the sensor, or load measured pairs");
@@ -58,9 +58,8 @@ Expected<Eigen::Vector2d> by_travel(json& settings, const SensorSetup& sensor, c
             Text("the sensor was turned by {:.2f} degrees since the first capture", turned_deg), where,
             "only shift it, along its own X and Z");
     if (std::abs(moved.translation().y()) > kAsideMm)
-        return input_error(
-            Text("the sensor was shifted by {:.1f} mm along its Y", moved.translation().y()), where,
-            "only shift it along its own X and Z");
+        return input_error(Text("the sensor was shifted by {:.1f} mm along its Y", moved.translation().y()),
+                           where, "only shift it along its own X and Z");
     return Eigen::Vector2d(*start - Eigen::Vector2d(moved.translation().x(), moved.translation().z()));
 }
 

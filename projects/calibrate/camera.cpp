@@ -139,7 +139,8 @@ Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory,
             missed.push_back(path.stem().string());
     }
     if (data.views.empty())
-        return input_error(Text("no board of {} points was found in any of {} images", board, std::to_string(images->size())),
+        return input_error(Text("no board of {} points was found in any of {} images", board,
+                                std::to_string(images->size())),
                            directory, "check --board, --pattern, light and focus");
     json result{
         {"images", images->size()}, {"boards_found", data.views.size()}, {"not_found", std::move(missed)}};

@@ -47,7 +47,7 @@ Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, con
                             const Frame& frame, const Pose& base_from_flange) {
     StripePeaks peaks;
     Capture capture;
-    std::string reason;
+    Text reason;
     if (capture_frame(frame, sensor.peaks, base && base->model ? &*base->model : nullptr, peaks, capture,
                       reason) != SpotStatus::measured)
         return input_error(
@@ -66,10 +66,9 @@ Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, con
     return json{{"base_from_flange", pose_json(base_from_flange)}, {"profile", std::move(points)}};
 }
 
-Error no_board(const BoardSpec& spec, const std::string& where) {
-    return {ErrorKind::input,
-            fmt::format("no complete board of {} x {} corners is seen", spec.columns, spec.rows), where,
-            "bring the whole board into the picture, more light, less gloss, and check its counts"};
+Error no_board(const BoardSpec& spec, const Text& where) {
+    return {ErrorKind::input, Text("no complete board of {} x {} corners is seen", spec.columns, spec.rows),
+            where, "bring the whole board into the picture, more light, less gloss, and check its counts"};
 }
 
 Expected<BoardSpec> board_of(const json& settings) {
@@ -96,7 +95,7 @@ Expected<json> stripe_entry(const json& settings, const SensorSetup& sensor, con
         o = observe({"", stripe.image, base_from_flange}, *spec, BoardEffort::quick);
     }
     o.base_from_flange = base_from_flange;
-    if (!o.board) return tl::unexpected(no_board(*spec, "sensor " + sensor.id));
+    if (!o.board) return tl::unexpected(no_board(*spec, Text("sensor {}", sensor.id)));
     return stripe_frame_json(o);
 }
 
@@ -107,9 +106,8 @@ void note_outline(json& entry, const Calibration& base, const FoundBoard& board,
     for (const Eigen::Vector2d& p : outline(board, spec)) entry["outline"].push_back({p.x(), p.y()});
 }
 
-Expected<json> board_entry(const std::string& where, const Calibration* base,
-                           const std::optional<FoundBoard>& board, const BoardSpec& spec,
-                           const std::optional<Pose>& base_from_flange) {
+Expected<json> board_entry(const Text& where, const Calibration* base, const std::optional<FoundBoard>& board,
+                           const BoardSpec& spec, const std::optional<Pose>& base_from_flange) {
     if (!base || !base->model)
         return input_error("the camera is not known", where, "calibrate camera and laser plane first");
     if (!board) return tl::unexpected(no_board(spec, where));
@@ -125,9 +123,8 @@ Expected<json> board_entry(const std::string& where, const Calibration* base,
 }
 
 // Outer corners of the board, on it and in the robot's base.
-Expected<json> plate_entry(const std::string& where, const Calibration* base,
-                           const std::optional<FoundBoard>& board, const BoardSpec& spec,
-                           const std::optional<Pose>& base_from_flange) {
+Expected<json> plate_entry(const Text& where, const Calibration* base, const std::optional<FoundBoard>& board,
+                           const BoardSpec& spec, const std::optional<Pose>& base_from_flange) {
     auto seen = board_entry(where, base, board, spec, base_from_flange);
     if (!seen) return seen;
     if (base->flange_from_sensor.isApprox(Pose::Identity()))
@@ -147,7 +144,7 @@ Expected<json> plate_entry(const std::string& where, const Calibration* base,
 }
 
 // One shot: the chain ends on the flange, where it stood when the first sensor was shot.
-Expected<json> chain_entry(json& settings, const std::string& where, const Calibration* base,
+Expected<json> chain_entry(json& settings, const Text& where, const Calibration* base,
                            const std::optional<FoundBoard>& board, const BoardSpec& spec,
                            const std::optional<Pose>& base_from_flange) {
     if (!settings.contains("world_from_plate"))
@@ -193,7 +190,8 @@ Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame
     const auto line = on_the_plate(std::move(*points));
     if (line.size() < kLeastLinePoints)
         return input_error(Text("only {} points of the stripe lie on one line", line.size()),
-                           Text("sensor {}", sensor.id), "hold the sensor over a flat plate that fills the view");
+                           Text("sensor {}", sensor.id),
+                           "hold the sensor over a flat plate that fills the view");
     json entry = json::array();
     for (const auto& p : line) entry.push_back({p.x(), p.y()});
     return entry;
@@ -227,11 +225,10 @@ Expected<json> prepared_settings(const CalibrationMethod& method, json settings,
 Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json& settings,
                                     const SensorSetup& sensor, const Calibration* base, const Frame& stripe,
                                     const Frame* board, const std::optional<Pose>& base_from_flange) {
-    const std::string where = "sensor " + sensor.id;
+    const Text where("sensor {}", sensor.id);
     for (const Frame* frame : {&stripe, board})
         if (frame && frame->status != FrameStatus::ok)
-            return input_error(Text("the frame is {}", to_string(frame->status)), where,
-                               "take it again");
+            return input_error(Text("the frame is {}", to_string(frame->status)), where, "take it again");
     const bool image = method.capture != CaptureKind::sphere_profile;
     if (image && stripe.image.empty())
         return input_error("the sensor gives no image", where, "switch its raw image on");
@@ -366,12 +363,13 @@ Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json
             c.entry = std::move(*entry);
             read.captures.push_back(std::move(c));
         } else {
-            read.skipped.push_back(entry.error().sentence());
+            read.skipped.push_back(entry.error().text());
         }
         if (progress) progress(static_cast<int>(i) + 1, static_cast<int>(images->size()));
     }
     if (read.captures.empty())
-        return input_error(read.skipped.empty() ? "nothing was read" : read.skipped.front(), path.string());
+        return input_error(read.skipped.empty() ? Text("nothing was read") : read.skipped.front(),
+                           path.string());
     return read;
 }
 

@@ -30,7 +30,7 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const nlohm
 struct ReadCaptures {
     std::vector<CalibrationCapture> captures;
     nlohmann::json settings;
-    std::vector<std::string> skipped;  // sentences: images without a board
+    std::vector<Text> skipped;  // sentences: images without a board
 };
 using ReadProgress = std::function<void(int done, int total)>;
 // A JSON file as the command line takes it, or, for stripe-camera and hand-eye, a folder of images with their

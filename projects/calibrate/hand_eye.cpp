@@ -2,6 +2,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -57,8 +58,8 @@ Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
         result["noise"] = {{"sigma_mm", solved->sigma_mm}, {"sigma_deg", solved->sigma_deg}};
     }
     result["start"] = solved->start;
-    result["degenerate"] = solved->degenerate;
-    result["notices"] = solved->notices;
+    put_texts(result, "degenerate", solved->degenerate);
+    put_texts(result, "notices", solved->notices);
     add_report(solved->report, result);
     outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
     return outcome;

@@ -6,6 +6,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -98,7 +99,7 @@ Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vec
         result["scale"] = number_json(solved->scale);
         result["mirrored"] = solved->mirrored;
     }
-    result["notices"] = solved->notices;
+    put_texts(result, "notices", solved->notices);
     CalibrationReport report = solved->report;
     if (!stands.empty()) {  // people left stands out, not means
         report.poses.resize(single);

@@ -3,6 +3,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/calibrate/methods.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -36,8 +37,8 @@ json matrix_json(const Eigen::MatrixXd& matrix) {
 
 void add_report(const CalibrationReport& report, json& result) {
     result["verdict"] = std::string(name_of(report.judgement.verdict));
-    result["reason"] = report.judgement.reason;
-    result["cure"] = report.judgement.cure;
+    put_text(result, "reason", report.judgement.reason);
+    put_text(result, "cure", report.judgement.cure);
     json parameters = json::array();
     for (const auto& p : report.parameters)
         parameters.push_back({{"name", p.name},
@@ -52,14 +53,15 @@ void add_report(const CalibrationReport& report, json& result) {
             {{"first", c.first}, {"second", c.second}, {"correlation", number_json(c.correlation)}});
     result["correlations"] = std::move(correlations);
     json poses = json::array();
-    for (const auto& p : report.poses)
+    for (const auto& p : report.poses) {
         poses.push_back({{"id", p.id},
                          {"rms_mm", number_json(p.rms_mm)},
                          {"deg", number_json(p.deg)},
                          {"rms_px", number_json(p.rms_px)},
                          {"used", p.used},
-                         {"contradicts", p.contradicts},
-                         {"note", p.note}});
+                         {"contradicts", p.contradicts}});
+        put_text(poses.back(), "note", p.note);
+    }
     result["per_pose"] = std::move(poses);
     const auto& h = report.hold_out;
     result["hold_out"] = {{"folds", h.folds},

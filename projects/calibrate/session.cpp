@@ -11,6 +11,7 @@
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 namespace {
@@ -128,7 +129,8 @@ Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const 
     const fs::path from = folder_of(from_project), to = folder_of(to_project);
     if (!fs::exists(from, code)) return {};
     fs::copy(from, to, fs::copy_options::recursive, code);
-    if (code) return file_error(Text("the calibration sessions cannot be copied: {}", code.message()), to.string());
+    if (code)
+        return file_error(Text("the calibration sessions cannot be copied: {}", code.message()), to.string());
     return {};
 }
 
@@ -160,14 +162,14 @@ Expected<void> CalibrationSession::read() {
     const auto mend = "move the folder away to begin anew";
     if (!data) return file_error(data.error().what, list_file.string(), mend);
     if (data->value("format", "") != kFormat || data->value("method", "") != method_->id)
-        return file_error(Text("this is no calibration session of {}", method_->id), list_file.string(), mend);
+        return file_error(Text("this is no calibration session of {}", method_->id), list_file.string(),
+                          mend);
     if (data->value("version", 0) > kVersion)
         return file_error("a newer Seamwright has written this session", list_file.string(), "use that one");
     auto settings = json_field(*data, "settings", "");
     auto captures = json_array(*data, "captures", "");
     if (!settings || !captures)
-        return file_error((!settings ? settings.error() : captures.error()).sentence(), list_file.string(),
-                          mend);
+        return file_error((!settings ? settings.error() : captures.error()).text(), list_file.string(), mend);
     state_.settings = **settings;
     if (const auto used = data->find("used_as"); used != data->end()) {
         for (const json& id : used->is_array() ? *used : json::array({*used}))
@@ -180,7 +182,7 @@ Expected<void> CalibrationSession::read() {
         auto stored = read_json_file(file);
         auto capture = stored ? parse_capture(*stored, id) : tl::unexpected(stored.error());
         if (!capture) {
-            notices_.push_back("capture " + id + " is lost: " + capture.error().sentence());
+            notices_.push_back(Text("capture {} is lost: {}", id, capture.error().text()));
             continue;
         }
         last_number_ = std::max(last_number_, number_of(id));
@@ -355,9 +357,9 @@ int CalibrationSession::verification_captures() const {
 
 Expected<CalibrateOutcome> CalibrationSession::solve() const {
     if (solving_captures() < method_->fewest)
-        return input_error(Text("{} captures are too few, at least {} are needed", solving_captures(),
-                                       method_->fewest),
-                           method_->id, "take more");
+        return input_error(
+            Text("{} captures are too few, at least {} are needed", solving_captures(), method_->fewest),
+            method_->id, "take more");
     return method_->solve(data(), exclude());
 }
 
@@ -394,7 +396,7 @@ std::vector<PoseRow> CalibrationSession::rows() const {
             row.rms_px = at_most(p, "rms_px");
             if (c.left_out || c.verification) break;
             row.contradicts = !p.value("used", true) || p.value("contradicts", false);
-            row.note = p.value("note", "");
+            row.note = text_in(p, "note");
         }
         rows.push_back(std::move(row));
     }

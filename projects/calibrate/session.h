@@ -96,7 +96,7 @@ class CalibrationSession {
     const std::string& robot_id() const { return robot_id_; }
     const std::filesystem::path& folder() const { return folder_; }
     const SessionState& state() const { return state_; }
-    const std::vector<std::string>& notices() const { return notices_; }
+    const std::vector<Text>& notices() const { return notices_; }
 
     // Every edit is on disk when it returns; an Error changes nothing.
     Expected<void> set_state(SessionState state);
@@ -147,7 +147,7 @@ class CalibrationSession {
     int last_number_ = 0;  // of the newest "P<n>" ever
     std::optional<nlohmann::json> result_;
     SessionState solved_from_;
-    std::vector<std::string> notices_;
+    std::vector<Text> notices_;
 };
 
 }  // namespace seamwright

@@ -4,6 +4,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 namespace {
@@ -115,8 +116,8 @@ Expected<CalibrateOutcome> calibrate_static_json(const json& data, const std::ve
     result["method"] = "static";
     result["status"] = "ok";
     result["verdict"] = std::string(name_of(solved->judgement.verdict));
-    result["reason"] = solved->judgement.reason;
-    result["cure"] = solved->judgement.cure;
+    put_text(result, "reason", solved->judgement.reason);
+    put_text(result, "cure", solved->judgement.cure);
     json list = json::array();
     for (const auto& s : solved->sensors) {
         json one;
@@ -130,8 +131,8 @@ Expected<CalibrateOutcome> calibrate_static_json(const json& data, const std::ve
                          {"plate_from_camera", s.shares[2]},
                          {"camera_from_laser", s.shares[3]}};
         one["verdict"] = std::string(name_of(s.judgement.verdict));
-        one["reason"] = s.judgement.reason;
-        one["cure"] = s.judgement.cure;
+        put_text(one, "reason", s.judgement.reason);
+        put_text(one, "cure", s.judgement.cure);
         list.push_back(std::move(one));
     }
     if (!data.contains("sensors")) result[frame] = list[0][frame];

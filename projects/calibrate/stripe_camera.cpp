@@ -15,6 +15,7 @@
 #include "projects/calibrate/methods.h"
 #include "projects/calibrate/plate_images.h"
 #include "projects/calibrate/stripe_frames.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -368,8 +369,8 @@ Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObser
              {"rows_on_board", f.rows_on_board},
              {"rows_on_plane", f.rows_on_plane},
              {"off_plane_mm", number_json(f.median_off_plane_mm)},
-             {"camera_from_target", f.used ? pose_json(f.camera_from_target) : json(nullptr)},
-             {"note", f.note}});
+             {"camera_from_target", f.used ? pose_json(f.camera_from_target) : json(nullptr)}});
+        put_text(frames.back(), "note", f.note);
     }
     result["frames"] = std::move(frames);
     for (std::size_t i = 0; known && i < observations.size(); ++i)

@@ -5,6 +5,7 @@
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
 #include "projects/calibrate/sphere_profile_json.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -98,8 +99,8 @@ Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
         result["sigma"] = nullptr;
     }
     result["mirrored"] = std::string(name_of(solved->mirrored));
-    result["notices"] = solved->notices;
-    result["degenerate"] = solved->degenerate;
+    put_texts(result, "notices", solved->notices);
+    put_texts(result, "degenerate", solved->degenerate);
     json proposals = json::array();
     for (const auto& p : solved->proposals)
         proposals.push_back({{"words", p.words},

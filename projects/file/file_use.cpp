@@ -86,8 +86,8 @@ Expected<FileUse> FileUse::take(const std::filesystem::path& file, For what) {
             if (what == For::desk)
                 return usage_error(Text("the project is open already ({})", who), file.string(),
                                    "go on there, or close it there first");
-            return usage_error(Text("the devices of the project are in use already ({})", who),
-                               file.string(), "disconnect them there, or end it, first");
+            return usage_error(Text("the devices of the project are in use already ({})", who), file.string(),
+                               "disconnect them there, or end it, first");
         }
         const std::string line = holder_line();
         if (::ftruncate(fd, 0) != 0 || ::pwrite(fd, line.data(), line.size(), 0) < 0) {

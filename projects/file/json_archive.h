@@ -24,6 +24,7 @@
 
 #include "core/error.h"
 #include "core/geometry/pose.h"
+#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -31,6 +32,7 @@ namespace seamwright {
 struct ArchiveOptions {
     bool profiles = true;     // reference and template profiles as number lists
     bool rigid_poses = true;  // poses must be rigid; results of a failed computation need not be
+    bool patterns = true;     // sentences as stored_text.h has them, to be read back; without, in English
 };
 
 // Words of an enum in the order of its values; specialised beside describe().
@@ -60,6 +62,9 @@ class JsonWriter {
     static nlohmann::json encode(float v) { return encode(static_cast<double>(v)); }
     static nlohmann::json encode(bool v) { return v; }
     static nlohmann::json encode(const std::string& v) { return v; }
+    nlohmann::json encode(const Text& v) {
+        return options_.patterns ? text_json(v) : nlohmann::json(v.english());
+    }
     static nlohmann::json encode(const nlohmann::json& v) { return v; }
     static nlohmann::json encode(const Pose& pose);
     nlohmann::json encode(const std::vector<bool>&) = delete;
@@ -138,7 +143,7 @@ class JsonReader {
         At at(*this, path_.empty() ? name : "." + std::string(name));
         decode(*it, value);
     }
-    void fail(std::string what, std::string mend = {}) {
+    void fail(Text what, Text mend = {}) {
         if (!error_) error_ = Error{ErrorKind::input, std::move(what), path_, std::move(mend)};
     }
 
@@ -154,7 +159,7 @@ class JsonReader {
         std::size_t length;
     };
     void expected(const char* what, const nlohmann::json& json) {
-        fail(fmt::format("{} was expected, this is {}", what, json.type_name()));
+        fail(Text("{} was expected, this is {}", what, json.type_name()));
     }
     void decode(const nlohmann::json& json, double& v) {
         if (json.is_number()) {
@@ -193,7 +198,7 @@ class JsonReader {
         if (!json.is_array())
             expected("a list", json);
         else if (size && json.size() != size)
-            fail(fmt::format("{} entries were expected, there are {}", size, json.size()));
+            fail(Text("{} entries were expected, there are {}", size, json.size()));
         return !error_;
     }
     template <class T>
@@ -205,6 +210,11 @@ class JsonReader {
             At at(*this, "[" + std::to_string(i) + "]");
             decode(json[i], v[i]);
         }
+    }
+    void decode(const nlohmann::json& json, Text& v) {
+        auto text = text_from_json(json);
+        if (!text) return fail(text.error().what);
+        v = *std::move(text);
     }
     template <class T, std::size_t N>
     void decode(const nlohmann::json& json, std::array<T, N>& v) {
@@ -248,7 +258,7 @@ class JsonReader {
                 }
             std::string known;
             for (const char* word : words) known += (known.empty() ? "" : ", ") + std::string(word);
-            fail("the word is not known here", "known are: " + known);
+            fail("the word is not known here", Text("known are: {}", known));
         } else if constexpr (std::is_integral_v<T>) {
             const bool fits = json.is_number_unsigned()
                                   ? std::in_range<T>(json.get<std::uint64_t>())

@@ -47,8 +47,7 @@ Expected<std::string> row_text(const T& value, const std::string& where, const R
     // limit.
     constexpr std::size_t kAroundRow = 4;
     if (json_depth(document) > kDeepestJson - (form.of_a_run ? 0 : kAroundRow))
-        return input_error(Text("the JSON is nested deeper than {}", kDeepestJson - kAroundRow),
-                           where);
+        return input_error(Text("the JSON is nested deeper than {}", kDeepestJson - kAroundRow), where);
     auto text =
         form.of_a_run ? Expected<std::string>(dump_messages(document)) : dump_document(document, where);
     if (text && text->size() > kTextFileLimit)
@@ -57,15 +56,16 @@ Expected<std::string> row_text(const T& value, const std::string& where, const R
 }
 
 template <class T>
-Expected<T> row_value(const std::string& text, const std::string& where, const std::string& path,
+Expected<T> row_value(const std::string& text, const Text& where, const std::string& path,
                       const RowForm& form) {
-    const auto document = parse_json(text, where);
-    if (!document) return file_error("an entry of the project file cannot be read", path + ": " + where);
-    auto value = from_json_document<T>(*document, where, form.archive);
+    const auto document = parse_json(text, where.english());
+    if (!document)
+        return file_error("an entry of the project file cannot be read", joined(path, ": ", where));
+    auto value = from_json_document<T>(*document, where.english(), form.archive);
     if (!value) {
         Error error = value.error();
         error.kind = ErrorKind::file;
-        error.where = error.where.empty() ? path : path + ": " + error.where;
+        error.within(path);
         return tl::unexpected(std::move(error));
     }
     return value;

@@ -17,7 +17,7 @@ Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t
     s->bind(2, run);
     s->bind(3, to_string(event.kind));
     s->bind(4, utf8_text(event.subject));
-    s->bind(5, utf8_text(event.text));
+    s->bind(5, stored_text(event.text));
     if (auto done = s->run(); !done) return done;
     return seal_row(db, "events", "id", db.last_rowid());
 }
@@ -176,8 +176,7 @@ Expected<void> load_results(Database& db, const char* sql, std::int64_t number, 
     if (!s) return tl::unexpected(s.error());
     s->bind(1, number);
     return for_each_row(*s, [&](Statement& row) -> Expected<void> {
-        auto value =
-            row_value<T>(row.text(1), fmt::format("run {}: {}", number, row.text(0)), db.path(), kResult);
+        auto value = row_value<T>(row.text(1), Text("run {}: {}", number, row.text(0)), db.path(), kResult);
         if (!value) return tl::unexpected(value.error());
         items.push_back(std::move(*value));
         return {};
@@ -238,7 +237,7 @@ Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSe
     s->bind(3, utf8_text(run.finished_utc));
     s->bind(4, std::int64_t{run.push});
     s->bind(5, to_string(run.status));
-    s->bind(6, utf8_text(run.message));
+    s->bind(6, stored_text(run.message));
     s->bind(7, *setup_number);
     if (auto done = s->run(); !done) return tl::unexpected(done.error());
     const std::int64_t number = impl_->db.last_rowid();
@@ -295,7 +294,7 @@ Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasure
     s->bind(1, utf8_text(run.part_id));
     s->bind(2, utf8_text(run.finished_utc));
     s->bind(3, to_string(run.status));
-    s->bind(4, utf8_text(run.message));
+    s->bind(4, stored_text(run.message));
     s->bind(5, run.number);
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
@@ -315,7 +314,7 @@ Expected<void> ProjectFile::update_run(const RunRecord& run) {
     if (!s) return tl::unexpected(s.error());
     s->bind(1, utf8_text(run.finished_utc));
     s->bind(2, to_string(run.status));
-    s->bind(3, utf8_text(run.message));
+    s->bind(3, stored_text(run.message));
     s->bind(4, run.number);
     auto row = s->step();
     if (!row) return tl::unexpected(row.error());
@@ -381,7 +380,8 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
         e.id = row.integer(0);
         e.utc = row.text(1);
         e.setup = row.integer(3);
-        const std::string kind = row.text(2), body = row.text(4), where = fmt::format("evidence {}", e.id);
+        const std::string kind = row.text(2), body = row.text(4);
+        const Text where("evidence {}", e.id);
         const auto read_as = [&]<class T>(T*) -> Expected<void> {
             auto value = row_value<T>(body, where, impl_->path.string(), kResult);
             if (!value) return tl::unexpected(value.error());
@@ -393,7 +393,7 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
                               : kind == kKnownShift  ? read_as(static_cast<KnownShift*>(nullptr))
                               : kind == kHeadlessRun ? read_as(static_cast<HeadlessRun*>(nullptr))
                                                      : file_error("an evidence is of unknown kind",
-                                                                  impl_->path.string() + ": " + where);
+                                                                  joined(impl_->path.string(), ": ", where));
         if (done) list.push_back(std::move(e));
         return done;
     });
@@ -421,7 +421,7 @@ Expected<std::vector<RunSummary>> ProjectFile::runs() const {
             return file_error("a run has an unknown status",
                               Text("{}: run {}", impl_->path.string(), run.number));
         run.status = *status;
-        run.message = row.text(6);
+        run.message = text_from_stored(row.text(6));
         run.setup = row.integer(7);
         run.spots = static_cast<int>(row.integer(8));
         run.captures = static_cast<int>(row.integer(9));
@@ -453,7 +453,7 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
             return file_error("the run has an unknown status",
                               Text("{}: run {}", impl_->path.string(), number));
         run.status = *status;
-        run.message = row.text(5);
+        run.message = text_from_stored(row.text(5));
         return {};
     });
     if (!read) return tl::unexpected(read.error());
@@ -492,7 +492,7 @@ Expected<Project> ProjectFile::load_setup(std::int64_t setup) const {
     if (!*row) return file_error(Text("setup {} is missing", setup), impl_->path.string());
     const std::string text = s->text(0);
     s->reset();
-    return row_value<Project>(text, fmt::format("setup {}", setup), impl_->path.string(), kSetup);
+    return row_value<Project>(text, Text("setup {}", setup), impl_->path.string(), kSetup);
 }
 
 Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
@@ -527,7 +527,7 @@ Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
         if (!kind) return file_error("an event has an unknown kind", impl_->path.string());
         event.kind = *kind;
         event.subject = row.text(4);
-        event.text = row.text(5);
+        event.text = text_from_stored(row.text(5));
         list.push_back(std::move(event));
         return {};
     });

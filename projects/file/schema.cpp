@@ -247,15 +247,15 @@ Expected<std::int32_t> check_identity(Database& db) {
     auto version = db.integer("PRAGMA user_version");
     if (!version) return tl::unexpected(version.error());
     if (*version > current_version())
-        return file_error(Text("the project file has version {}, this program knows up to {}",
-                                      *version, current_version()),
-                          db.path(), "open it with a newer Seamwright");
+        return file_error(
+            Text("the project file has version {}, this program knows up to {}", *version, current_version()),
+            db.path(), "open it with a newer Seamwright");
     if (*version < 1) return file_error("the project file has no valid version", db.path());
     return static_cast<std::int32_t>(*version);
 }
 
 Expected<void> check_structure(Database& db, std::int32_t version) {
-    const auto damaged = [&](const std::string& finding) {
+    const auto damaged = [&](const Text& finding) {
         return file_error(Text("the project file is damaged ({})", finding), db.path(),
                           "take the last good copy from the backup");
     };

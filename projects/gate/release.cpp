@@ -20,11 +20,12 @@ class Waiting {
     // Nothing = it still waits.
     std::optional<RobotRelease> look(bool time_over, bool next_part) {
         const Expected<Permission> now = robot_.permission();
-        trouble_ = now ? std::string() : now.error().sentence();
+        trouble_ = now ? Text() : now.error().text();
         if (now && *now == Permission::taken) return taken();
         if (now && *now == Permission::none)
-            return RobotRelease{Release::withdrawn, ran_ ? "the application was stopped before its end"
-                                                         : "the robot took the permission back by itself"};
+            return RobotRelease{Release::withdrawn,
+                                ran_ ? Text("the application was stopped before its end")
+                                     : Text("the robot took the permission back by itself")};
         if (now) ran_ = ran_ || *now == Permission::running;
         const bool running = now && *now == Permission::running;
         if (options_.cancel.stop_requested())
@@ -34,50 +35,49 @@ class Waiting {
             return give_up(Release::not_taken,
                            "the line called for the next part before the application began");
         if (time_over)
-            return give_up(
-                Release::not_taken,
-                fmt::format("the application did not begin within {} s",
-                            std::chrono::duration_cast<std::chrono::seconds>(options_.hold).count()));
+            return give_up(Release::not_taken,
+                           Text("the application did not begin within {} s",
+                                std::chrono::duration_cast<std::chrono::seconds>(options_.hold).count()));
         return std::nullopt;
     }
-    std::string state(std::optional<Clock::duration> left) const {
-        if (!trouble_.empty()) return "does not say whether the application began: " + trouble_;
+    Text state(std::optional<Clock::duration> left) const {
+        if (!trouble_.empty()) return Text("does not say whether the application began: {}", trouble_);
         if (ran_) return "the application runs in the frames";
         if (!left) return "released, waiting for the application";
-        return fmt::format("released, waiting for the application, {} s left",
-                           std::chrono::ceil<std::chrono::seconds>(*left).count());
+        return Text("released, waiting for the application, {} s left",
+                    std::chrono::ceil<std::chrono::seconds>(*left).count());
     }
 
   private:
     static RobotRelease taken() { return {Release::taken, "the application runs in the frames"}; }
-    RobotRelease give_up(Release as, const std::string& why) {
-        RobotRelease back = take_back(robot_, PartVerdict::failed, "not released: " + why, true);
+    RobotRelease give_up(Release as, const Text& why) {
+        RobotRelease back = take_back(robot_, PartVerdict::failed, Text("not released: {}", why), true);
         if (back.release == Release::withdrawn) return {as, why};
-        if (back.release == Release::given) back.text = why + "; " + back.text;
+        if (back.release == Release::given) back.text = joined(why, "; ", back.text);
         return back;
     }
     RobotLink& robot_;
     const HoldOptions& options_;
     bool ran_ = false;
-    std::string trouble_;
+    Text trouble_;
 };
 
 }  // namespace
 
-RobotRelease take_back(RobotLink& robot, PartVerdict verdict, const std::string& text, bool running) {
+RobotRelease take_back(RobotLink& robot, PartVerdict verdict, const Text& text, bool running) {
     const auto has_it = [&](const Expected<Permission>& now) {
         return now && (*now == Permission::taken || (*now == Permission::running && !running));
     };
     const RobotRelease taken{Release::taken, "the application runs in the frames"};
     if (has_it(robot.permission())) return taken;
-    const Expected<void> told = robot.confirm(verdict, text);
+    const Expected<void> told = robot.confirm(verdict, text.english());
     const Expected<Permission> now = robot.permission();
     if (now && *now == Permission::taken) return taken;
     if (now && *now == Permission::none) return {Release::withdrawn, "the permission is taken back"};
-    const std::string why = !told ? told.error().sentence()
-                            : now ? fmt::format("it says \"{}\" all the same", to_string(*now))
-                                  : now.error().sentence();
-    return {Release::given, fmt::format("it is not sure that the permission was taken back: {}", why)};
+    const Text why = !told ? told.error().text()
+                     : now ? Text("it says \"{}\" all the same", to_string(*now))
+                           : now.error().text();
+    return {Release::given, Text("it is not sure that the permission was taken back: {}", why)};
 }
 
 std::map<std::string, RobotRelease> await_release(const std::map<std::string, RobotLink*>& robots,
@@ -101,8 +101,8 @@ std::map<std::string, RobotRelease> await_release(const std::map<std::string, Ro
                                                                         : EventKind::refusal;
             const bool released = outcome->release == Release::taken;
             // The outcome is in the run's record in any case; the log is the second place.
-            (void)record(kind, it->first, (released ? "" : "not released: ") + outcome->text);
-            if (options.progress) options.progress("robot " + it->first + ": " + outcome->text);
+            (void)record(kind, it->first, released ? outcome->text : Text("not released: {}", outcome->text));
+            if (options.progress) options.progress(Text("robot {}: {}", it->first, outcome->text));
             ended[it->first] = std::move(*outcome);
             it = open.erase(it);
         }
@@ -112,7 +112,7 @@ std::map<std::string, RobotRelease> await_release(const std::map<std::string, Ro
             std::optional<Clock::duration> left;
             if (until) left = std::max(*until - Clock::now(), Clock::duration::zero());
             for (const auto& [id, waiting] : open)
-                options.progress("robot " + id + ": " + waiting.state(left));
+                options.progress(Text("robot {}: {}", id, waiting.state(left)));
         }
         // Asked last: who has begun needs no more than that.
         next_part = options.part_over && options.part_over();

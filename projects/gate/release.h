@@ -25,18 +25,18 @@ struct HoldOptions {
     std::chrono::milliseconds hold = kHold;
     std::stop_token cancel;
     std::function<bool()> part_over;  // the line calls for the next part: nobody will begin any more
-    std::function<void(const std::string& text)> progress;
+    std::function<void(const Text& text)> progress;
 };
 
 struct RobotRelease {
     Release release = Release::given;  // `given`: it could not be made sure of, an alarm
-    Text text;                  // one sentence
+    Text text;                         // one sentence
 };
 
 // Tells a robot that may have its permission already that it has none. Release::withdrawn: it is told and
 // says so; taken: the application was quicker, frames and permission are its own; given: it does not answer.
 // `running` too: an application that needs the link is stopped by it.
-RobotRelease take_back(RobotLink& robot, PartVerdict verdict, const std::string& text, bool running);
+RobotRelease take_back(RobotLink& robot, PartVerdict verdict, const Text& text, bool running);
 
 // After confirm(corrected): waits until the controllers say that their application has taken the permission.
 // By robot: taken, not_taken (time or the next part), withdrawn (cancelled, or by the robot itself), given.

@@ -29,14 +29,18 @@ namespace {
 
 class Reasons {
   public:
-    explicit Reasons(std::vector<std::string>& list) : list_(list) {}
+    explicit Reasons(std::vector<Text>& list) : list_(list) {}
+    void refuse_unless(bool ok, const char* text) {
+        if (!ok) list_.emplace_back(text);
+    }
     template <class... Args>
-    void refuse_unless(bool ok, fmt::format_string<Args...> text, Args&&... args) {
-        if (!ok) list_.push_back(fmt::format(text, std::forward<Args>(args)...));
+    requires(sizeof...(Args) > 0) void refuse_unless(bool ok, fmt::format_string<Args...> text,
+                                                     Args&&... args) {
+        if (!ok) list_.push_back(Text(text, std::forward<Args>(args)...));
     }
 
   private:
-    std::vector<std::string>& list_;
+    std::vector<Text>& list_;
 };
 
 bool rigid(const Pose& pose) {
@@ -65,7 +69,7 @@ void judge_age(const GateRequest& request, const GateSpot& spot, Reasons& reason
         reasons.refuse_unless(now.has_value(), "what time it is now is not known");
         reasons.refuse_unless(made.has_value(), "calibration {} at spot {} has no date ({})",
                               spot.calibration_id, spot.id,
-                              spot.calibrated_utc.empty() ? "none" : spot.calibrated_utc);
+                              spot.calibrated_utc.empty() ? Text("none") : Text(spot.calibrated_utc));
         return;
     }
     const double age_days = static_cast<double>(*now - *made) / 86400;
@@ -162,8 +166,7 @@ bool is_covariance(const Matrix6& c) {
 
 void judge_limits(const GateRequest& request, Reasons& reasons) {
     const Region& region = request.region;
-    for (const std::string& finding : limits_that_are_none(region))
-        reasons.refuse_unless(false, "{}", finding);
+    for (const Text& finding : limits_that_are_none(region)) reasons.refuse_unless(false, "{}", finding);
     reasons.refuse_unless(request.calibration_age_days > 0 && std::isfinite(request.calibration_age_days),
                           "the age that a calibration may have, {} days, is no limit",
                           request.calibration_age_days);
@@ -276,21 +279,21 @@ FrameDistance distance(const Pose& a, const Pose& b) {
     return {distance_mm(a, b), deg_from_rad(angle_rad(a, b))};
 }
 
-std::string text_of(const Pose& pose) {
+Text text_of(const Pose& pose) {
     const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear());
-    return fmt::format("({:.4f}, {:.4f}, {:.4f}) mm, turned {:.5f} degrees", t.x(), t.y(), t.z(),
-                       deg_from_rad(w.norm()));
+    return Text("({:.4f}, {:.4f}, {:.4f}) mm, turned {:.5f} degrees", t.x(), t.y(), t.z(),
+                deg_from_rad(w.norm()));
 }
 
 // Writes the frame of before and makes sure that it stands there.
-std::pair<PushStatus, std::string> put_back(const Pose& before, const std::string& name, RobotLink& robot) {
+std::pair<PushStatus, Text> put_back(const Pose& before, const std::string& name, RobotLink& robot) {
     if (auto written = robot.write_frame(name, before); !written)
         return {PushStatus::not_restored,
-                "the old frame could not be restored: " + written.error().sentence()};
+                Text("the old frame could not be restored: {}", written.error().text())};
     const Expected<Pose> back = robot.read_frame(name);
     if (!back)
         return {PushStatus::not_restored,
-                "the old frame was written but cannot be read back: " + back.error().sentence()};
+                Text("the old frame was written but cannot be read back: {}", back.error().text())};
     if (!distance(*back, before).equal())
         return {PushStatus::not_restored, "the old frame was written but does not read back"};
     return {PushStatus::restored, "the old frame is restored"};
@@ -310,12 +313,12 @@ bool same_frame(const std::string& a, const std::string& b) {
                       [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-std::vector<std::string> limits_that_are_none(const Region& region) {
-    std::vector<std::string> findings;
+std::vector<Text> limits_that_are_none(const Region& region) {
+    std::vector<Text> findings;
     const auto judge = [&](double value, double most, const char* what, const char* unit) {
         if (!(value > 0 && value <= most))
             findings.push_back(
-                fmt::format("the limit of {}, {} {}, is none (above 0, up to {})", what, value, unit, most));
+                Text("the limit of {}, {} {}, is none (above 0, up to {})", what, value, unit, most));
     };
     judge(region.limits.translation_mm, kMostTranslationMm, "translation", "mm");
     judge(region.limits.rotation_deg, kMostRotationDeg, "rotation", "degrees");
@@ -361,12 +364,13 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
     PushRecord push;
     push.frame_name = pass.frame_name();
     const Pose& target = pass.base_from_frame();
-    const auto give_up = [&](PushStatus status, EventKind kind, std::string message) {
+    const auto give_up = [&](PushStatus status, EventKind kind, Text message) {
         push.status = status;
         push.message = std::move(message);
         // The outcome is in the returned record in any case; the log is the second place.
         if (auto logged = record(kind, pass.frame_name(), push.message); !logged)
-            push.message += "; the event could not be recorded: " + logged.error().sentence();
+            push.message =
+                Text("{}; the event could not be recorded: {}", push.message, logged.error().text());
         return push;
     };
     if (pass.spent())
@@ -375,7 +379,7 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
     const Expected<Pose> before = robot.read_frame(pass.frame_name());
     if (!before)
         return give_up(PushStatus::failed, EventKind::device,
-                       "the old frame cannot be read: " + before.error().sentence());
+                       Text("the old frame cannot be read: {}", before.error().text()));
     if (!rigid(*before))
         return give_up(PushStatus::failed, EventKind::device,
                        "the robot answered an old frame that is no rigid pose");
@@ -385,30 +389,30 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
                        "the pass was given without the frame that the controller holds");
     if (const FrameDistance moved = distance(*before, *pass.base_from_frame_now()); !moved.equal())
         return give_up(PushStatus::failed, EventKind::refusal,
-                       fmt::format("somebody changed the frame on the controller by {:.4f} mm and {:.5f} "
-                                   "degrees since it was judged",
-                                   moved.mm, moved.deg));
-    if (auto logged = record(
-            EventKind::push_attempt, pass.frame_name(),
-            fmt::format("region {}: from {} to {}", pass.region_id(), text_of(*before), text_of(target)));
+                       Text("somebody changed the frame on the controller by {:.4f} mm and {:.5f} "
+                            "degrees since it was judged",
+                            moved.mm, moved.deg));
+    if (auto logged =
+            record(EventKind::push_attempt, pass.frame_name(),
+                   Text("region {}: from {} to {}", pass.region_id(), text_of(*before), text_of(target)));
         !logged) {
         push.status = PushStatus::failed;
-        push.message = Text("the attempt cannot be recorded, so nothing was sent: {}", logged.error().sentence());
+        push.message = Text("the attempt cannot be recorded, so nothing was sent: {}", logged.error().text());
         return push;
     }
 
-    std::string trouble;
+    Text trouble;
     if (auto written = robot.write_frame(pass.frame_name(), target); !written) {
-        trouble = "writing failed: " + written.error().sentence();
+        trouble = Text("writing failed: {}", written.error().text());
     } else if (const Expected<Pose> back = robot.read_frame(pass.frame_name()); !back) {
-        trouble = "reading back failed: " + back.error().sentence();
+        trouble = Text("reading back failed: {}", back.error().text());
     } else {
         push.read_back = *back;
         const FrameDistance off = distance(*back, target);
         if (!off.equal()) {
-            trouble = fmt::format(
-                "the robot holds another frame than was written (off by {:.4f} mm, {:.5f} degrees)", off.mm,
-                off.deg);
+            trouble =
+                Text("the robot holds another frame than was written (off by {:.4f} mm, {:.5f} degrees)",
+                     off.mm, off.deg);
         } else {
             push.message = Text("region {}: frame written and read back", pass.region_id());
             auto logged = record(EventKind::push, pass.frame_name(), push.message);
@@ -416,13 +420,13 @@ PushRecord push_region(GatePass&& given, RobotLink& robot, const EventSink& reco
                 push.status = PushStatus::written;
                 return push;
             }
-            trouble = "the push cannot be recorded: " + logged.error().sentence();
+            trouble = Text("the push cannot be recorded: {}", logged.error().text());
         }
     }
 
     // What the controller holds is not known any more: the old frame goes back.
     const auto [status, outcome] = put_back(*before, pass.frame_name(), robot);
-    return give_up(status, EventKind::alarm, trouble + "; " + outcome);
+    return give_up(status, EventKind::alarm, joined(trouble, "; ", outcome));
 }
 
 void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record, EventKind kind) {
@@ -432,7 +436,7 @@ void withdraw_push(PushRecord& push, RobotLink& robot, const EventSink& record, 
     push.message = Text("withdrawn: {}", outcome);
     if (status == PushStatus::not_restored) kind = EventKind::alarm;
     if (auto logged = record(kind, push.frame_name, push.message); !logged)
-        push.message += "; the event could not be recorded: " + logged.error().sentence();
+        push.message = Text("{}; the event could not be recorded: {}", push.message, logged.error().text());
 }
 
 }  // namespace seamwright

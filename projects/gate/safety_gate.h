@@ -66,7 +66,7 @@ struct GateRequest {
     // What the controller holds under region.frame_name now. Absent: nothing is to be pushed, and the pass
     // is good for none; or it could not be read, then `frame_trouble` says why and the gate refuses.
     std::optional<Pose> base_from_frame_now;
-    std::string frame_trouble;
+    Text frame_trouble;
 };
 
 // Limits beyond these are none.
@@ -98,7 +98,7 @@ bool same_frame(const std::string& a, const std::string& b);
 
 // Limits of a region that limit nothing, one sentence each: not above 0, not finite, or beyond the ones
 // above.
-std::vector<std::string> limits_that_are_none(const Region& region);
+std::vector<Text> limits_that_are_none(const Region& region);
 
 struct GateVerdict {
     std::optional<GatePass> pass;
@@ -111,8 +111,7 @@ inline constexpr double kReadBackToleranceMm = 1e-3;
 inline constexpr double kReadBackToleranceDeg = 1e-4;
 
 // Records an event durably; an Error means that it is not recorded.
-using EventSink =
-    std::function<Expected<void>(EventKind kind, const std::string& subject, const std::string& text)>;
+using EventSink = std::function<Expected<void>(EventKind kind, const std::string& subject, const Text& text)>;
 
 // Reads the old frame, records the attempt, writes, reads back and compares, and records that. If anything
 // after the first byte sent goes wrong, the record included, that is an alarm: the old frame is written again

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/geometry/notation.h"
+#include "projects/file/stored_text.h"
 #include "projects/hand_over/hand_over_detail.h"
 #include "projects/station/measure.h"
 
@@ -110,16 +111,17 @@ void one_calibration(HandOverWriter& w, const Calibration& c) {
     w.page.heading(in_use ? w.t("{}, in use at sensor {}", c.id, c.sensor_id)
                           : w.t("{} of sensor {}, not in use", c.id, c.sensor_id),
                    3);
-    w.page.verdict(w.t(name_of(c.verdict).data()), report::tone_of(c.verdict), text_in(c.result, "reason"));
+    w.page.verdict(w.t(name_of(c.verdict).data()), report::tone_of(c.verdict),
+                   seamwright::text_in(c.result, "reason").in(w.options.language));
     const KukaAbc abc = kuka_from_rotation(c.flange_from_sensor.linear());
     const Eigen::Vector3d at = c.flange_from_sensor.translation();
     const auto sigma = [&](int i, bool angle) {
         const double v = c.covariance(i, i);
         return v > 0 ? w.number(std::sqrt(v) * (angle ? 180 / kPi : 1), angle ? 4 : 3) : "-";
     };
-    w.page.table(
-        {{w.t("Method"), w.t("Date"), w.t("Sensor serial"), w.t("Robot serial"), w.t("Source")},
-         {c.method, w.time_of(c.created_utc), c.sensor_identity.serial, c.robot_identity.serial, c.source}});
+    w.page.table({{w.t("Method"), w.t("Date"), w.t("Sensor serial"), w.t("Robot serial"), w.t("Source")},
+                  {c.method, w.time_of(c.created_utc), c.sensor_identity.serial, c.robot_identity.serial,
+                   c.source.in(w.options.language)}});
     w.page.table({{w.t("Sensor on the flange"), "X mm", "Y mm", "Z mm", "A °", "B °", "C °"},
                   {w.t("value"), w.number(at.x(), 3), w.number(at.y(), 3), w.number(at.z(), 3),
                    w.number(abc.a_deg, 4), w.number(abc.b_deg, 4), w.number(abc.c_deg, 4)},
@@ -255,7 +257,7 @@ Expected<void> events_chapter(HandOverWriter& w, const ProjectFile& file) {
     for (std::size_t i = events->size() - shown; i < events->size(); ++i) {
         const EventRecord& e = (*events)[i];
         rows.push_back({w.time_of(e.utc), e.run ? fmt::format("{}", e.run) : "-",
-                        std::string(to_string(e.kind)), e.subject, e.text});
+                        std::string(to_string(e.kind)), e.subject, e.text.in(w.options.language)});
     }
     if (shown) w.page.table(rows);
     return {};

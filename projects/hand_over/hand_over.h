@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "projects/file/project_file.h"
 #include "projects/proof/checklist.h"
 #include "projects/report/html.h"
-#include "core/text.h"
 
 namespace seamwright {
 

@@ -16,7 +16,7 @@ struct HandOverWriter {
 
     template <class... A>
     std::string t(const char* english, const A&... arguments) const {
-        return Text(english, arguments...).in(options.language);
+        return Text::chosen(english, arguments...).in(options.language);
     }
     std::string number(double value, int decimals) const {
         return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";

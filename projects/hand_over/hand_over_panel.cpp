@@ -123,13 +123,13 @@ void one_job(HandOverWriter& w, const PanelJob& job, const std::optional<LastPan
                        w.t("the project was changed since {}", w.time_of(run.started_utc)));
     switch (panel.verdict) {
         case PanelVerdict::in_tolerance:
-            w.page.verdict(w.t("in tolerance"), Tone::good, run.message);
+            w.page.verdict(w.t("in tolerance"), Tone::good, run.message.in(w.options.language));
             break;
         case PanelVerdict::out_of_tolerance:
-            w.page.verdict(w.t("out of tolerance"), Tone::alarm, run.message);
+            w.page.verdict(w.t("out of tolerance"), Tone::alarm, run.message.in(w.options.language));
             break;
         case PanelVerdict::not_verified:
-            w.page.verdict(w.t("not proven"), Tone::attention, run.message);
+            w.page.verdict(w.t("not proven"), Tone::attention, run.message.in(w.options.language));
             break;
     }
     w.page.paragraph(
@@ -145,7 +145,7 @@ void one_job(HandOverWriter& w, const PanelJob& job, const std::optional<LastPan
             w.number(panel.fit->rms_mm, 3), w.number(panel.fit->sigma_at_spots_mm, 3)));
     }
     last_panel_table(w, *last, then ? *then : job);
-    for (const std::string& reason : panel.refusals) w.page.paragraph(reason);
+    for (const Text& reason : panel.refusals) w.page.paragraph(reason.in(w.options.language));
 }
 
 }  // namespace

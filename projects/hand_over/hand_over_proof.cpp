@@ -112,7 +112,7 @@ void regions_chapter(HandOverWriter& w) {
                         proven.tests ? w.number(proven.worst_mm, 3) : "-",
                         w.number(w.project.requirements.sigma3_mm, 3),
                         forecast ? fmt::format("{}", forecast->plan.redundancy) : "-",
-                        forecast ? forecast->plan.weakest : forecast.error().what});
+                        (forecast ? forecast->plan.weakest : forecast.error().what).in(w.options.language)});
     }
     w.page.table(rows);
     w.page.paragraph(w.t(

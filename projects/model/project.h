@@ -63,7 +63,7 @@ struct Calibration {
     SensorIdentity sensor_identity;  // compared before every push
     RobotIdentity robot_identity;
     std::string created_utc;           // ISO 8601
-    std::string source;                // from which data
+    Text source;                       // from which data
     std::optional<SensorModel> model;  // absent for sensors that deliver millimetres themselves
     Pose flange_from_sensor = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();

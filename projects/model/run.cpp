@@ -51,12 +51,6 @@ std::string_view to_string(PanelVerdict verdict) {
     return kPanelVerdict.at(static_cast<std::size_t>(verdict));
 }
 
-std::optional<SpotStatus> spot_status_from(std::string_view name) {
-    return find_word<SpotStatus>(kSpotStatus, name);
-}
-std::optional<PushStatus> push_status_from(std::string_view name) {
-    return find_word<PushStatus>(kPushStatus, name);
-}
 std::optional<EventKind> event_kind_from(std::string_view name) {
     return find_word<EventKind>(kEventKind, name);
 }

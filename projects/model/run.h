@@ -27,12 +27,11 @@ enum class SpotStatus {
     no_feature       // feature.status says why
 };
 std::string_view to_string(SpotStatus status);
-std::optional<SpotStatus> spot_status_from(std::string_view name);
 
 struct SpotMeasurement {
     std::string spot_id;
     SpotStatus status = SpotStatus::not_measured;
-    Text message;                                    // empty when measured, else why, in plain words
+    Text message;                                           // empty when measured, else why, in plain words
     Feature feature;                                        // sensor frame at the pose of the exposure
     Eigen::Vector3d measured_mm = Eigen::Vector3d::Zero();  // in the taught sensor frame, see measure.h
     double sigma_mm = 0;            // of an observed coordinate: spot's own and the feature's
@@ -51,7 +50,6 @@ enum class PushStatus {
     not_restored  // alarm: and the old frame could not be put back either
 };
 std::string_view to_string(PushStatus status);
-std::optional<PushStatus> push_status_from(std::string_view name);
 
 // What became of a robot's permission to run its application in the frames of a run.
 enum class Release {
@@ -154,7 +152,7 @@ struct RunRecord {
     std::string started_utc, finished_utc;
     bool push = false;  // false = dry run
     RunStatus status = RunStatus::ok;
-    Text message;                 // one sentence
+    Text message;                        // one sentence
     std::vector<SpotMeasurement> spots;  // enabled spots, in the order of the project
     std::vector<RegionRecord> regions;
     std::optional<PanelRecord> panel;  // of a panel job's run, which has no spots and regions

@@ -53,7 +53,7 @@ class Sections {
     const Calibration& calibration() const { return calibration_; }
 
     void add(const Frame& frame, const Pose& base_from_flange) {
-        std::string message;
+        Text message;
         const auto status =
             capture_frame(frame, sensor_.peaks, calibration_.model ? &*calibration_.model : nullptr, peaks_,
                           capture_, message);
@@ -108,9 +108,8 @@ Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options
         if (!spot) return input_error(Text("there is no spot \"{}\"", id), project.name);
         if (!spots.empty() &&
             (spot->sensor_id != spots[0]->sensor_id || spot->robot_id != spots[0]->robot_id))
-            return input_error(
-                Text("spots {} and {} have different sensors or robots", spots[0]->id, id),
-                project.name, "check one sensor's stretch at a time");
+            return input_error(Text("spots {} and {} have different sensors or robots", spots[0]->id, id),
+                               project.name, "check one sensor's stretch at a time");
         spots.push_back(spot);
     }
     const Calibration* calibration = calibration_of(project, spots[0]->sensor_id);
@@ -125,8 +124,7 @@ Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options
                    end = spots[k]->base_from_flange * mounting;
         const double steps = std::ceil(distance_mm(start, end) / options.step_mm - 1e-9);
         if (!(steps + static_cast<double>(drive.base_from_flange.size()) <= kMostSteps))
-            return usage_error(Text("more than {} profiles", kMostSteps), "step",
-                               "give a longer step");
+            return usage_error(Text("more than {} profiles", kMostSteps), "step", "give a longer step");
         for (int i = 1; i <= static_cast<int>(steps); ++i)
             drive.base_from_flange.push_back(interpolate(start, end, i / steps) * mounting.inverse());
     }
@@ -138,8 +136,8 @@ Expected<Drive> drive_along(const Project& project, const DrivenGapPass& options
 Expected<GapPass> gap_pass(const Project& project, CaptureReader& capture, const RecordedGapPass& options) {
     const CaptureSource* source = capture.find(options.sensor_id, SourceKind::sensor);
     if (!source)
-        return input_error(options.sensor_id.empty() ? "it does not hold exactly one sensor"
-                                                     : "it holds no sensor \"" + options.sensor_id + "\"",
+        return input_error(options.sensor_id.empty() ? Text("it does not hold exactly one sensor")
+                                                     : Text("it holds no sensor \"{}\"", options.sensor_id),
                            capture.path().string(), "name one that it holds");
     auto sections = Sections::make(project, source->name);
     if (!sections) return tl::unexpected(sections.error());
@@ -203,24 +201,24 @@ Expected<GapPass> gap_pass(Station& station, const DrivenGapPass& options) {
         auto still = robot->base_from_flange();
         if (!still) return tl::unexpected(still.error());
         if (const double moved = distance_mm(*at, *still); moved > kStillMm)
-            return device_error(Text("the robot moved {:.2f} mm while the sensor exposed", moved),
-                                name, "let it stand at every step");
+            return device_error(Text("the robot moved {:.2f} mm while the sensor exposed", moved), name,
+                                "let it stand at every step");
         ++sections->pass.frames;
         sections->add(**frame, *at);
-        if (options.progress) options.progress({i + 1, n, fmt::format("profile {} of {}", i + 1, n)});
+        if (options.progress) options.progress({i + 1, n, Text("profile {} of {}", i + 1, n)});
     }
     return std::move(sections->pass);
 }
 
-std::string GapCheck::where(double path_mm) const {
+Text GapCheck::where(double path_mm) const {
     constexpr double kAtMm = 1;
     const auto next =
         std::find_if(spots.begin(), spots.end(), [&](const auto& s) { return s.second >= path_mm - kAtMm; });
     if (spots.empty()) return {};
-    if (next == spots.end()) return "behind " + spots.back().first;
-    if (std::abs(next->second - path_mm) <= kAtMm) return "at " + next->first;
-    if (next == spots.begin()) return "before " + next->first;
-    return "between " + std::prev(next)->first + " and " + next->first;
+    if (next == spots.end()) return Text("behind {}", spots.back().first);
+    if (std::abs(next->second - path_mm) <= kAtMm) return Text("at {}", next->first);
+    if (next == spots.begin()) return Text("before {}", next->first);
+    return Text("between {} and {}", std::prev(next)->first, next->first);
 }
 
 Expected<GapCheck> check_gap(const Project& project, const GapPass& pass, const GapScanOptions& options) {

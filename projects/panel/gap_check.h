@@ -48,7 +48,7 @@ struct GapCheck {
     // The taught spots that the pass goes by, where it is nearest to them (within kBySpotMm), by path.
     std::vector<std::pair<std::string, double>> spots;
     // "between S1 and S2", "before S1", "behind S4", "at S2"; empty without spots.
-    std::string where(double path_mm) const;
+    Text where(double path_mm) const;
 };
 inline constexpr double kBySpotMm = 20;
 

@@ -52,7 +52,7 @@ struct PanelMeasurer::Impl {
     Profile profile;
     double surface_deg = 0;
 
-    static PanelMeasurement no(PanelMeasurement m, SpotStatus status, std::string message) {
+    static PanelMeasurement no(PanelMeasurement m, SpotStatus status, Text message) {
         m.status = status;
         m.message = std::move(message);
         return m;
@@ -70,7 +70,7 @@ struct PanelMeasurer::Impl {
             };
             auto merged =
                 merge_heads(heads[0].profile, head(heads[0]), heads[1].profile, head(heads[1]), merging);
-            if (!merged) return no(std::move(m), SpotStatus::no_stripe, merged.error().sentence());
+            if (!merged) return no(std::move(m), SpotStatus::no_stripe, merged.error().text());
             m.head_disagreement_mm = merged->disagreement_mm;
             m.head_offset_mm = merged->offset_mm;
             m.head_overlap_mm = merged->overlap_mm;
@@ -101,8 +101,8 @@ struct PanelMeasurer::Impl {
         profile.clear();
         return m;
     }
-    std::string named(std::size_t head, const std::string& message) const {
-        return heads.size() == 1 ? message : fmt::format("head {}: {}", heads[head].sensor_id, message);
+    Text named(std::size_t head, const Text& message) const {
+        return heads.size() == 1 ? message : Text("head {}: {}", heads[head].sensor_id, message);
     }
 };
 
@@ -113,9 +113,9 @@ PanelMeasurer::~PanelMeasurer() = default;
 
 Expected<PanelMeasurer> PanelMeasurer::make(const Project& project, const PanelJob& job,
                                             const PanelPlace& place) {
-    const std::string where = fmt::format("panel job {}, place {}", job.id, place.id);
+    const Text where("panel job {}, place {}", job.id, place.id);
     const auto at = [&](Error error) {
-        error.where = error.where.empty() ? where : where + ": " + error.where;
+        error.within(where);
         return tl::unexpected(std::move(error));
     };
     auto impl = std::make_unique<Impl>();
@@ -130,8 +130,7 @@ Expected<PanelMeasurer> PanelMeasurer::make(const Project& project, const PanelJ
         const Calibration* calibration = calibration_of(project, id);
         if (!calibration)
             return input_error(
-                Text(
-                    "its sensor \"{}\" has no calibration: where it stands on the gripper is not known", id),
+                Text("its sensor \"{}\" has no calibration: where it stands on the gripper is not known", id),
                 where, "calibrate it");
         HeadSetup& head = impl->heads.emplace_back();
         head.sensor_id = id;
@@ -154,7 +153,7 @@ PanelMeasurement PanelMeasurer::measure(const Frame& first, const Frame* second,
     PanelMeasurement m = i.started();
     const std::array<const Frame*, 2> frames{&first, second};
     // Every head's frame is captured before any is judged: replay finds them all.
-    std::vector<std::pair<SpotStatus, std::string>> captured;
+    std::vector<std::pair<SpotStatus, Text>> captured;
     for (std::size_t k = 0; k < i.heads.size(); ++k) {
         HeadSetup& head = i.heads[k];
         if (!frames[k]) return Impl::no(std::move(m), SpotStatus::not_measured, i.named(k, "no frame came"));
@@ -169,7 +168,7 @@ PanelMeasurement PanelMeasurer::measure(const Frame& first, const Frame* second,
             return Impl::no(std::move(m), captured[k].first, i.named(k, captured[k].second));
     for (std::size_t k = 0; k < i.heads.size(); ++k)
         if (auto tracked = track_capture(i.heads[k].capture, i.heads[k].filter, i.heads[k].profile); !tracked)
-            return Impl::no(std::move(m), SpotStatus::no_stripe, i.named(k, tracked.error().sentence()));
+            return Impl::no(std::move(m), SpotStatus::no_stripe, i.named(k, tracked.error().text()));
     return i.evaluate(std::move(m));
 }
 
@@ -206,7 +205,7 @@ PanelMeasurement PanelMeasurer::measure(const Capture& first, const Capture* sec
         const Capture& c = *captures[k];
         if (c.status != FrameStatus::ok)
             return Impl::no(std::move(m), SpotStatus::damaged_frame,
-                            i.named(k, fmt::format("the frame is {}", to_string(c.status))));
+                            i.named(k, Text("the frame is {}", to_string(c.status))));
         const auto& count = c.candidates.count;
         const bool candidates = std::any_of(count.begin(), count.end(), [](std::uint8_t n) { return n > 0; });
         if (c.profile.size() == 0 && !candidates)
@@ -215,7 +214,7 @@ PanelMeasurement PanelMeasurer::measure(const Capture& first, const Capture* sec
     }
     for (std::size_t k = 0; k < i.heads.size(); ++k)
         if (auto tracked = track_capture(*captures[k], i.heads[k].filter, i.heads[k].profile); !tracked)
-            return Impl::no(std::move(m), SpotStatus::no_stripe, i.named(k, tracked.error().sentence()));
+            return Impl::no(std::move(m), SpotStatus::no_stripe, i.named(k, tracked.error().text()));
     return i.evaluate(std::move(m));
 }
 
@@ -253,7 +252,8 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
         s.surface_rad = rad_from_deg(place->surface_deg);
         spots.push_back(std::move(s));
     }
-    if (spots.empty()) return input_error("no place of the panel job was measured", Text("panel job {}", job.id));
+    if (spots.empty())
+        return input_error("no place of the panel job was measured", Text("panel job {}", job.id));
     PanelOptions options;
     options.limits = job.limits;
     options.sigma_limit_mm = std::max(options.sigma_limit_mm, job.sigma_limit_mm);
@@ -265,26 +265,26 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
 namespace {
 // What is not a number is as far off as anything.
 void judge_off(const std::string& place, const char* what, const char* of, double off_mm, double tolerance_mm,
-               std::vector<std::string>& reasons) {
+               std::vector<Text>& reasons) {
     if (std::abs(off_mm) <= tolerance_mm) return;
-    reasons.push_back(fmt::format("place {}: {} a {} {:+.3f} mm off the taught one, tolerance {:.3f} mm",
-                                  place, what, of, off_mm, tolerance_mm));
+    reasons.push_back(Text("place {}: {} a {} {:+.3f} mm off the taught one, tolerance {:.3f} mm", place,
+                           what, of, off_mm, tolerance_mm));
 }
 
 // A tolerance that tolerates everything is none.
-void judge_tolerances(const PanelJob& job, std::vector<std::string>& reasons) {
+void judge_tolerances(const PanelJob& job, std::vector<Text>& reasons) {
     for (const Field<PanelJob>& f : panel_fields()) {
         if (f.info.name != "gap_tolerance_mm" && f.info.name != "flush_tolerance_mm") continue;
         const double value = f.get(job);
         if (!(value > 0 && value <= f.info.maximum))
-            reasons.push_back(fmt::format("{} of {} mm is no tolerance (above 0, up to {})", f.info.name,
-                                          value, f.info.maximum));
+            reasons.push_back(
+                Text("{} of {} mm is no tolerance (above 0, up to {})", f.info.name, value, f.info.maximum));
     }
 }
 }  // namespace
 
-std::vector<std::string> beyond_tolerance(const PanelJob& job, const PanelFit& fit) {
-    std::vector<std::string> reasons;
+std::vector<Text> beyond_tolerance(const PanelJob& job, const PanelFit& fit) {
+    std::vector<Text> reasons;
     judge_tolerances(job, reasons);
     for (const PanelSpotResult& s : fit.spots) {
         // What the weights do not see cannot be predicted; it is judged when it is measured again.
@@ -293,7 +293,7 @@ std::vector<std::string> beyond_tolerance(const PanelJob& job, const PanelFit& f
             place ? observed_gap_flush(place->weights, rad_from_deg(place->surface_deg))
                   : GapFlushObserved{true, true};
         if (!s.residual_mm.allFinite())
-            reasons.push_back(fmt::format("place {}: what the best fit leaves is not a finite number", s.id));
+            reasons.push_back(Text("place {}: what the best fit leaves is not a finite number", s.id));
         if (seen.gap)
             judge_off(s.id, "the best fit leaves", "gap", s.remaining.gap_mm, job.gap_tolerance_mm, reasons);
         if (seen.flush)
@@ -303,8 +303,8 @@ std::vector<std::string> beyond_tolerance(const PanelJob& job, const PanelFit& f
     return reasons;
 }
 
-std::vector<std::string> beyond_tolerance(const PanelJob& job, std::span<const PanelMeasurement> measured) {
-    std::vector<std::string> reasons;
+std::vector<Text> beyond_tolerance(const PanelJob& job, std::span<const PanelMeasurement> measured) {
+    std::vector<Text> reasons;
     judge_tolerances(job, reasons);
     for (const PanelMeasurement& m : measured) {
         const PanelPlace* place = find_place(job, m.place_id);
@@ -312,8 +312,8 @@ std::vector<std::string> beyond_tolerance(const PanelJob& job, std::span<const P
         if (!(m.panel_mm.allFinite() && m.body_mm.allFinite() && m.gap_flush_covariance.allFinite() &&
               std::isfinite(m.sigma_mm) && std::isfinite(m.head_disagreement_mm) &&
               std::isfinite(m.head_offset_mm) && std::isfinite(m.head_overlap_mm)))
-            reasons.push_back(fmt::format(
-                "place {}: the measurement holds a value that is not a finite number", m.place_id));
+            reasons.push_back(
+                Text("place {}: the measurement holds a value that is not a finite number", m.place_id));
         judge_off(m.place_id, "measured is", "gap", m.gap_mm - place->gap_mm, job.gap_tolerance_mm, reasons);
         judge_off(m.place_id, "measured is", "flush", m.flush_mm - place->flush_mm, job.flush_tolerance_mm,
                   reasons);
@@ -370,7 +370,7 @@ void compute_panel(const Project& project, const PanelJob& job, PanelRecord& rec
                             motion_as_correction(job, record.base_from_gripper, *record.fit).displacement,
                             job.base_from_frame);
     } else {
-        const std::string reason = "the motion cannot be computed: " + fit.error().sentence();
+        const Text reason("the motion cannot be computed: {}", fit.error().text());
         if (std::find(record.refusals.begin(), record.refusals.end(), reason) == record.refusals.end())
             record.refusals.push_back(reason);
     }

@@ -51,9 +51,9 @@ Expected<PanelFit> fit_places(const Project& project, const PanelJob& job,
                               std::span<const PanelMeasurement> measurements);
 
 // Why the best fit is not good enough, one sentence a place; empty when gap and flush will lie in tolerance.
-std::vector<std::string> beyond_tolerance(const PanelJob& job, const PanelFit& fit);
+std::vector<Text> beyond_tolerance(const PanelJob& job, const PanelFit& fit);
 // The same of what was measured after the motion.
-std::vector<std::string> beyond_tolerance(const PanelJob& job, std::span<const PanelMeasurement> measured);
+std::vector<Text> beyond_tolerance(const PanelJob& job, std::span<const PanelMeasurement> measured);
 PanelVerdict judge_panel(const PanelJob& job, std::span<const PanelMeasurement> after);
 
 // Where the gripper goes: base_from_gripper * G.

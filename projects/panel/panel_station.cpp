@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "devices/host_time.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/panel/panel_measure.h"
 #include "projects/station/acquire.h"
@@ -14,12 +15,6 @@
 
 namespace seamwright {
 namespace {
-
-std::int64_t steady_now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 // How far a controller may report itself off the corrected position when it fires there.
 constexpr double kArrivedMm = 1, kArrivedDeg = 0.1;
@@ -39,11 +34,10 @@ struct Places {
 
 Expected<Places> prepare(Station& station, const PanelJob& job) {
     Places out;
-    const std::string where = "panel job " + job.id;
+    const Text where("panel job {}", job.id);
     out.robot = station.robot(job.robot_id);
     if (!out.robot)
-        return usage_error(Text("its robot \"{}\" is not connected", job.robot_id), where,
-                           "connect first");
+        return usage_error(Text("its robot \"{}\" is not connected", job.robot_id), where, "connect first");
     for (const PanelPlace& place : job.places) {
         if (!place.enabled) continue;
         auto measurer = PanelMeasurer::make(station.project(), job, place);
@@ -90,7 +84,7 @@ class Run {
         if (!number) return tl::unexpected(number.error());
         run_.number = *number;
         if (run_.part_id.empty()) run_.part_id = fmt::format("run {}", run_.number);
-        since_ns_ = steady_now_ns();
+        since_ns_ = host_now_ns();
 
         std::optional<GatePass> pass = measure_and_judge();
         const bool pushing = options_.push && pass;
@@ -114,12 +108,12 @@ class Run {
   private:
     PanelRecord& panel() { return *run_.panel; }
     bool cancelled() const { return cancel_.stop_requested(); }
-    void progress(int done, std::string text) const {
+    void progress(int done, Text text) const {
         if (options_.progress)
             options_.progress({done, static_cast<int>(places_.measurers.size()), std::move(text)});
     }
     // Before the judged run is stored events go with it, afterwards each by itself.
-    Expected<void> event(EventKind kind, const std::string& subject, const std::string& text) {
+    Expected<void> event(EventKind kind, const std::string& subject, const Text& text) {
         EventRecord e{0, utc_now(), 0, kind, subject, text};
         if (judged_) {
             e.run = run_.number;
@@ -165,7 +159,7 @@ class Run {
                 auto frame = frames.at(id).at(
                     *trigger, options_.limits.frame_timeout, cancel_, [&](const Frame& dropped) {
                         (void)event(EventKind::device, id,
-                                    fmt::format("frame {} came too early and was dropped", dropped.sequence));
+                                    Text("frame {} came too early and was dropped", dropped.sequence));
                     });
                 if (!frame) return tl::unexpected(frame.error());
                 got.push_back(std::move(*frame));
@@ -191,7 +185,7 @@ class Run {
         }
         if (into.status != SpotStatus::measured)
             (void)event(EventKind::note, into.place_id,
-                        fmt::format("not measured ({}): {}", to_string(into.status), into.message));
+                        Text("not measured ({}): {}", to_string(into.status), into.message));
     }
 
     GateRequest gate_request() {
@@ -216,7 +210,7 @@ class Run {
             const PanelPlace& place = measurer->place();
             for (const std::string& sensor_id : sensors_of(place)) {
                 GateSpot g;
-                g.id = sensor_id == place.sensor_id ? place.id : fmt::format("{} (second head)", place.id);
+                g.id = sensor_id == place.sensor_id ? place.id : place.id + " (second head)";
                 g.required = place.required;
                 g.measured = m.status == SpotStatus::measured;
                 g.part_id = m.part_id;
@@ -243,7 +237,7 @@ class Run {
             if (auto now = places_.robot->read_frame(job_.frame_name))
                 request.base_from_frame_now = *now;
             else
-                request.frame_trouble = now.error().sentence();
+                request.frame_trouble = now.error().text();
         }
         for (const Region& other : project.regions) request.other_frames.push_back(other.frame_name);
         for (const PanelJob& other : project.panel_jobs)
@@ -252,24 +246,24 @@ class Run {
         request.now_utc = utc_now();
         if (const RobotSetup* setup = find_robot(project, job_.robot_id))
             request.required_mode = setup->required_mode;
-        request.now_ns = steady_now_ns();
+        request.now_ns = host_now_ns();
         return request;
     }
 
     std::optional<GatePass> judge() {
         panel().refusals = panel().fit && panel().fit->status == CorrectionStatus::ok
                                ? beyond_tolerance(job_, *panel().fit)
-                               : std::vector<std::string>{};
+                               : std::vector<Text>{};
         std::optional<GatePass> pass;
         if (panel().fit) {
             GateVerdict verdict = pass_gate(gate_request());
-            for (std::string& reason : verdict.reasons) panel().refusals.push_back(std::move(reason));
+            for (Text& reason : verdict.reasons) panel().refusals.push_back(std::move(reason));
             if (panel().refusals.empty() && verdict.pass) pass.emplace(std::move(*verdict.pass));
         } else {
             compute_panel(station_.project(), job_, panel());  // says why
         }
         panel().gate_passed = pass.has_value();
-        for (const std::string& reason : panel().refusals) (void)event(EventKind::refusal, job_.id, reason);
+        for (const Text& reason : panel().refusals) (void)event(EventKind::refusal, job_.id, reason);
         return pass;
     }
 
@@ -285,21 +279,21 @@ class Run {
             (void)event(EventKind::note, "run", "cancelled");
         } else if (!measured) {
             run_.status = RunStatus::device;
-            run_.message = measured.error().sentence();
-            panel().refusals = {"the measuring was not finished: " + run_.message};
+            run_.message = measured.error().text();
+            panel().refusals = {Text("the measuring was not finished: {}", run_.message)};
             (void)event(EventKind::device, "run", run_.message);
         } else {
             if (auto judged = judge()) pass.emplace(std::move(*judged));
             run_.status = pass ? RunStatus::ok : RunStatus::refused;
-            run_.message = pass ? std::string("the panel would be moved, nothing was pushed (dry run)")
-                                : "refused: " + panel().refusals.front();
+            run_.message = pass ? Text("the panel would be moved, nothing was pushed (dry run)")
+                                : Text("refused: {}", panel().refusals.front());
         }
         return pass;
     }
 
     Expected<void> store_judged() {
         run_.finished_utc = utc_now();
-        for (const std::string& notice : places_.robot->take_notices())
+        for (const Text& notice : places_.robot->take_notices())
             (void)event(EventKind::device, job_.robot_id, notice);
         auto stored = station_.file().finish_run(run_, stored_);
         judged_ = true;
@@ -316,7 +310,7 @@ class Run {
     }
     std::map<std::string, RobotLink*> link() const { return {{job_.robot_id, places_.robot}}; }
     EventSink sink() {
-        return [this](EventKind kind, const std::string& subject, const std::string& text) {
+        return [this](EventKind kind, const std::string& subject, const Text& text) {
             return event(kind, subject, text);
         };
     }
@@ -335,24 +329,24 @@ class Run {
             }
         }
         run_.status = yes ? RunStatus::refused : RunStatus::cancelled;
-        run_.message = yes ? "refused: " + panel().refusals.front() : "not pushed: not confirmed";
+        run_.message =
+            yes ? Text("refused: {}", panel().refusals.front()) : Text("not pushed: not confirmed");
         (void)event(yes ? EventKind::refusal : EventKind::note, "run", run_.message);
         return false;
     }
 
     bool tell(PartVerdict verdict) { return tell(verdict, run_.message); }
-    bool tell(PartVerdict verdict, const std::string& text) {
+    bool tell(PartVerdict verdict, const Text& text) {
         if (starts_ == 0) return true;
-        auto told = places_.robot->confirm(verdict, text);
+        auto told = places_.robot->confirm(verdict, text.english());
         if (!told)
-            (void)event(
-                EventKind::alarm, job_.robot_id,
-                fmt::format("did not acknowledge \"{}\": {}", to_string(verdict), told.error().sentence()));
+            (void)event(EventKind::alarm, job_.robot_id,
+                        Text("did not acknowledge \"{}\": {}", to_string(verdict), told.error().text()));
         return told.has_value();
     }
 
     // What was written goes back, the robot is told first: nothing runs in a frame that changes.
-    void take_back_motion(RunStatus status, std::string message) {
+    void take_back_motion(RunStatus status, Text message) {
         run_.status = status;
         run_.message = std::move(message);
         const PartVerdict verdict = status == RunStatus::refused ? PartVerdict::refused : PartVerdict::failed;
@@ -364,7 +358,7 @@ class Run {
             panel().push.release = back.release;
             if (back.release != Release::withdrawn) {
                 run_.status = RunStatus::alarm;
-                run_.message += "; " + back.text;
+                run_.message = joined(run_.message, "; ", back.text);
                 (void)event(EventKind::alarm, job_.robot_id, back.text);
             }
         }
@@ -381,7 +375,7 @@ class Run {
         if (stored) return true;
         panel().push.release = Release::none;
         run_.status = RunStatus::alarm;
-        run_.message = Text("alarm: the push cannot be recorded: {}", stored.error().sentence());
+        run_.message = Text("alarm: the push cannot be recorded: {}", stored.error().text());
         return false;
     }
 
@@ -413,24 +407,24 @@ class Run {
                          deg_from_rad(angle_rad(stands_at, target)) > kArrivedDeg))
             measured = device_error(
                 Text("the robot fired {:.2f} mm and {:.3f} degrees off the corrected position",
-                            distance_mm(stands_at, target), deg_from_rad(angle_rad(stands_at, target))),
+                     distance_mm(stands_at, target), deg_from_rad(angle_rad(stands_at, target))),
                 Text("robot {}", job_.robot_id), Text("let its program run in frame {}", job_.frame_name));
         panel().verdict = judge_panel(job_, panel().after);
         if (!measured)
             return take_back_motion(RunStatus::device,
-                                    "not verified after the motion: " + measured.error().sentence());
+                                    Text("not verified after the motion: {}", measured.error().text()));
         if (panel().verdict == PanelVerdict::not_verified)
             return take_back_motion(RunStatus::refused,
                                     "not verified: a required place was not measured after the motion");
         if (panel().verdict == PanelVerdict::out_of_tolerance)
-            return take_back_motion(RunStatus::refused, "out of tolerance after the motion: " +
-                                                            beyond_tolerance(job_, panel().after).front());
+            return take_back_motion(RunStatus::refused, Text("out of tolerance after the motion: {}",
+                                                             beyond_tolerance(job_, panel().after).front()));
         if (!record_pushed("the panel was moved and lies in tolerance; whether the application began is not "
                            "recorded yet"))
             return take_back_motion(RunStatus::alarm, run_.message);
-        const HoldOptions hold{
-            options_.hold, options_.cancel, options_.part_over,
-            [&](const std::string& text) { progress(static_cast<int>(places_.measurers.size()), text); }};
+        const HoldOptions hold{options_.hold, options_.cancel, options_.part_over, [&](const Text& text) {
+                                   progress(static_cast<int>(places_.measurers.size()), text);
+                               }};
         release_run(run_, link(), "the panel was moved and lies in tolerance", hold, sink());
     }
 
@@ -449,7 +443,7 @@ class Run {
 }  // namespace
 
 Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const TeachOptions& options) {
-    const std::string where = "panel job " + draft.id;
+    const Text where("panel job {}", draft.id);
     if (options.repeats < 1 || options.repeats > 1000)
         return usage_error(Text("{} repeats", options.repeats), where, "give 1 to 1000");
     auto places = prepare(station, draft);
@@ -467,7 +461,7 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
         double gap = 0, flush = 0, surface = 0;
         int count = 0;
         Profile profile;
-        std::string reason;
+        Text reason;
     };
     std::vector<Sum> sums(places->measurers.size());
     PanelJob taught = draft;
@@ -510,7 +504,7 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
         const std::string& id = places->measurers[i].place().id;
         if (2 * sum.count < options.repeats || sum.count == 0)
             return input_error(Text("panel and body were measured in {} of {} repeats ({})", sum.count,
-                                           options.repeats, sum.reason),
+                                    options.repeats, sum.reason),
                                Text("{}, place {}", where, id), "choose another window or move the sensor");
         auto& place = *std::find_if(taught.places.begin(), taught.places.end(),
                                     [&](const PanelPlace& p) { return p.id == id; });

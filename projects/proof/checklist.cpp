@@ -55,11 +55,11 @@ CheckItem check_sensors(const Project& p, const Facts& facts) {
             return missing(kStep, Text("sensor {} was never connected", s.id));
         }
         evidence.push_back(Text("sensor {}: {} {}, serial {}", s.id, s.identity.vendor, s.identity.model,
-                                  s.identity.serial));
+                                s.identity.serial));
     }
     return done(kStep,
-                Text(facts.sensors ? "all sensors answer ({})" : "all sensors answered last ({})",
-                       p.sensors.size()),
+                Text::chosen(facts.sensors ? "all sensors answer ({})" : "all sensors answered last ({})",
+                             p.sensors.size()),
                 std::move(evidence));
 }
 
@@ -76,13 +76,13 @@ CheckItem check_robots(const Project& p, const Facts& facts) {
         }
         if (r.identity.serial.empty() && r.identity.brand.empty())
             return missing(kStep, Text("robot {} has not told who it is", r.id));
-        evidence.push_back(Text("robot {}: {} {}, serial {}", r.id, r.identity.brand, r.identity.model,
-                                  r.identity.serial));
+        evidence.push_back(
+            Text("robot {}: {} {}, serial {}", r.id, r.identity.brand, r.identity.model, r.identity.serial));
     }
-    return done(
-        kStep,
-        Text(facts.robots ? "all robots answer ({})" : "all robots answered last ({})", p.robots.size()),
-        std::move(evidence));
+    return done(kStep,
+                Text::chosen(facts.robots ? "all robots answer ({})" : "all robots answered last ({})",
+                             p.robots.size()),
+                std::move(evidence));
 }
 
 CheckItem check_calibrations(const Project& p, const std::string& now_utc) {
@@ -96,22 +96,22 @@ CheckItem check_calibrations(const Project& p, const std::string& now_utc) {
             return missing(kStep, Text("sensor {} has no calibration in use", s.id));
         if (!serves(c->verdict))
             return missing(kStep, Text("calibration {} of sensor {} is {}", c->id, s.id,
-                                         Text(name_of(c->verdict).data())));
+                                       Text(name_of(c->verdict).data())));
         if (!s.identity.serial.empty() && !(s.identity == c->sensor_identity))
             return stale(kStep, Text("sensor {} is another device ({}) than was calibrated ({})", s.id,
-                                       s.identity.serial, c->sensor_identity.serial));
+                                     s.identity.serial, c->sensor_identity.serial));
         if (const RobotSetup* r = find_robot(p, c->robot_id);
             r && !r->identity.serial.empty() && !(r->identity == c->robot_identity))
             return stale(kStep, Text("robot {} is another one ({}) than sensor {} was calibrated on ({})",
-                                       r->id, r->identity.serial, s.id, c->robot_identity.serial));
+                                     r->id, r->identity.serial, s.id, c->robot_identity.serial));
         const auto age = days_between(c->created_utc, now_utc);
         if (!age) return stale(kStep, Text("calibration {} of sensor {} has no date", c->id, s.id));
         if (*age > p.requirements.calibration_age_days)
             return stale(kStep, Text("calibration {} of sensor {} is {} days old, {} are allowed", c->id,
-                                       s.id, fmt::format("{:.0f}", *age),
-                                       fmt::format("{:.0f}", p.requirements.calibration_age_days)));
+                                     s.id, fmt::format("{:.0f}", *age),
+                                     fmt::format("{:.0f}", p.requirements.calibration_age_days)));
         evidence.push_back(Text("sensor {}: {} of {}, {}", s.id, c->method, date_of(c->created_utc),
-                                  Text(name_of(c->verdict).data())));
+                                Text(name_of(c->verdict).data())));
     }
     return done(kStep, Text("every sensor has a fresh calibration in use"), std::move(evidence));
 }
@@ -124,7 +124,7 @@ CheckItem check_taught(const Project& p) {
         if (spot.reference_profile.size() == 0)
             return missing(kStep, Text("measure the reference of spot {}", spot.id));
         evidence.push_back(Text("spot {}: {}, reference x {} mm, z {} mm", spot.id, spot.feature.kind,
-                                  mm(spot.reference_mm.x()), mm(spot.reference_mm.z())));
+                                mm(spot.reference_mm.x()), mm(spot.reference_mm.z())));
     }
     if (evidence.empty()) return missing(kStep, Text("add a spot where the contour is to be measured"));
     const std::size_t taught = evidence.size();
@@ -155,8 +155,7 @@ CheckItem check_frozen(const Project& p, const Facts& facts) {
         const Evidence* e = newest<FrozenContour>(facts, spot.id);
         if (!e)
             return missing(
-                kStep,
-                Text("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
+                kStep, Text("the file holds no accepted pass of spot {}: record it and accept it", spot.id));
         const auto& f = std::get<FrozenContour>(e->what);
         if (f.status != AlignmentStatus::frozen)
             return missing(kStep, Text("the contour of spot {} is {}", spot.id, name_of_status(f.status)));
@@ -164,7 +163,7 @@ CheckItem check_frozen(const Project& p, const Facts& facts) {
             then == facts.setups.end() || pass_changed(*then->second, p, spot.id))
             return stale(kStep, Text("spot {} was changed since its pass of {}", spot.id, date_of(e->utc)));
         evidence.push_back(Text("spot {}: frozen, expected error {} mm at a jitter of {} mm, {}", spot.id,
-                                  mm(f.expected_error_mm), mm(f.jitter_mm), date_of(e->utc)));
+                                mm(f.expected_error_mm), mm(f.jitter_mm), date_of(e->utc)));
     }
     if (evidence.empty()) return missing(kStep, Text("there is no spot to align"));
     const std::size_t frozen = evidence.size();
@@ -183,22 +182,21 @@ CheckItem check_observable(const Project& p) {
         if (!forecast) return missing(kStep, Text("region {}: {}", region.id, forecast.error().what));
         const RegionPlan& plan = forecast->plan;
         if (plan.status != CorrectionStatus::ok)
-            return missing(kStep,
-                           Text("region {} is under-determined: {}", region.id,
-                                  plan.unobservable.empty() ? plan.weakest : plan.unobservable.front()));
+            return missing(kStep, Text("region {} is under-determined: {}", region.id,
+                                       plan.unobservable.empty() ? plan.weakest : plan.unobservable.front()));
         if (!forecast->enough()) {
             const Text cure = forecast->cures.empty() ? Text("add spots that lie farther apart")
-                                                        : forecast->cures.front().what;
+                                                      : forecast->cures.front().what;
             if (forecast->sigma_mm > forecast->wanted_mm)
                 return missing(kStep,
                                Text("region {} reaches 3 sigma {} mm, {} mm are required: {}", region.id,
-                                      mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm), cure));
+                                    mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm), cure));
             return missing(kStep,
                            Text("region {} reaches a sigma of {} deg, its limit is {} deg: {}", region.id,
-                                  fmt::format("{:.4f}", forecast->sigma_deg), forecast->wanted_deg, cure));
+                                fmt::format("{:.4f}", forecast->sigma_deg), forecast->wanted_deg, cure));
         }
         evidence.push_back(Text("region {}: predicted 3 sigma {} mm, required {} mm", region.id,
-                                  mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm)));
+                                mm(3 * forecast->sigma_mm), mm(3 * forecast->wanted_mm)));
     }
     for (const Spot& spot : p.spots) {
         const bool used = std::any_of(p.regions.begin(), p.regions.end(), [&](const Region& r) {
@@ -213,8 +211,7 @@ CheckItem check_observable(const Project& p) {
 // Whether evidence still holds for the project; else the stale item.
 std::optional<CheckItem> outdated(CheckStep step, const Evidence& e, const Project& p, const Facts& facts) {
     const auto then = facts.setups.find(e.setup);
-    const Text changed =
-        then == facts.setups.end() ? Text("the project") : changed_since(*then->second, p);
+    const Text changed = then == facts.setups.end() ? Text("the project") : changed_since(*then->second, p);
     if (changed.empty()) return std::nullopt;
     return stale(step, Text("{} was changed since the proof of {}", changed, date_of(e.utc)));
 }
@@ -227,20 +224,19 @@ CheckItem check_zero_shift(const Project& p, const Facts& facts) {
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
     const auto& zero = std::get<ZeroShift>(e->what);
     if (zero.refused > 0)
-        return missing(kStep, Text("{} of {} zero-shift runs were refused; see why and repeat",
-                                     zero.refused, zero.runs.size()));
+        return missing(kStep, Text("{} of {} zero-shift runs were refused; see why and repeat", zero.refused,
+                                   zero.runs.size()));
     if (static_cast<int>(zero.runs.size()) < wanted)
         return missing(kStep, Text("{} of {} zero-shift runs", zero.runs.size(), wanted));
     std::vector<Text> evidence;
     for (const ZeroShiftRegion& r : zero.regions) {
         if (r.worst_mean_mm > p.requirements.sigma3_mm)
             return missing(kStep, Text("region {} reads {} mm on the unmoved part; teach it again",
-                                         r.region_id, mm(r.worst_mean_mm)));
+                                       r.region_id, mm(r.worst_mean_mm)));
         evidence.push_back(Text("region {}: mean of {} runs within {} mm of zero, {}", r.region_id,
-                                  zero.runs.size(), mm(r.worst_mean_mm), date_of(e->utc)));
+                                zero.runs.size(), mm(r.worst_mean_mm), date_of(e->utc)));
     }
-    return done(kStep, Text("{} runs of the unmoved part read zero", zero.runs.size()),
-                std::move(evidence));
+    return done(kStep, Text("{} runs of the unmoved part read zero", zero.runs.size()), std::move(evidence));
 }
 
 CheckItem check_known_shift(const Project& p, const Facts& facts) {
@@ -255,20 +251,20 @@ CheckItem check_known_shift(const Project& p, const Facts& facts) {
         const ProvenAccuracy proven = proven_accuracy(proof, region.id);
         if (proven.refused > 0 || proven.tests == 0)
             return missing(kStep, Text("region {}: {} of {} known shifts were refused", region.id,
-                                         proven.refused, proven.tests));
+                                       proven.refused, proven.tests));
         if (proven.three_sigma_mm > need.sigma3_mm)
             return missing(kStep,
                            Text("region {}: known shifts come back with 3 sigma {} mm, required are {} mm",
-                                  region.id, mm(proven.three_sigma_mm), mm(need.sigma3_mm)));
+                                region.id, mm(proven.three_sigma_mm), mm(need.sigma3_mm)));
         evidence.push_back(Text("region {}: {} displacements, 3 sigma {} mm about the truth, {}", region.id,
-                                  proven.tests, mm(proven.three_sigma_mm), date_of(e->utc)));
+                                proven.tests, mm(proven.three_sigma_mm), date_of(e->utc)));
     }
     // A hair of tolerance for ranges that were typed.
     if (proof.range_mm < need.known_shift_mm * (1 - 1e-9) ||
         proof.range_deg < need.known_shift_deg * (1 - 1e-9))
         return missing(kStep,
                        Text("proven up to {} mm and {} deg, required are {} mm and {} deg", proof.range_mm,
-                              proof.range_deg, need.known_shift_mm, need.known_shift_deg));
+                            proof.range_deg, need.known_shift_mm, need.known_shift_deg));
     return done(kStep, Text("{} known displacements were recovered", proof.tests.size()),
                 std::move(evidence));
 }
@@ -288,19 +284,17 @@ CheckItem check_limits(const Project& p, const Facts& facts, const CheckItem& kn
             !(r.limits.rotation_deg <= range.rotation_deg * kSlack))
             return missing(
                 kStep,
-                Text(
-                    "region {} lets {} mm and {} deg through, proven are {} mm and {} deg: lower its limits "
-                    "or prove more",
-                    r.id, r.limits.translation_mm, r.limits.rotation_deg,
-                    fmt::format("{:.2f}", rounded.translation_mm),
-                    fmt::format("{:.3f}", rounded.rotation_deg)));
+                Text("region {} lets {} mm and {} deg through, proven are {} mm and {} deg: lower its limits "
+                     "or prove more",
+                     r.id, r.limits.translation_mm, r.limits.rotation_deg,
+                     fmt::format("{:.2f}", rounded.translation_mm),
+                     fmt::format("{:.3f}", rounded.rotation_deg)));
         if (!(3 * r.sigma_limit_mm <= p.requirements.sigma3_mm * kSlack))
-            return missing(kStep,
-                           Text("region {} lets 3 sigma {} mm through, required are {} mm: lower its "
-                                  "sigma limit",
-                                  r.id, mm(3 * r.sigma_limit_mm), mm(p.requirements.sigma3_mm)));
+            return missing(kStep, Text("region {} lets 3 sigma {} mm through, required are {} mm: lower its "
+                                       "sigma limit",
+                                       r.id, mm(3 * r.sigma_limit_mm), mm(p.requirements.sigma3_mm)));
         evidence.push_back(Text("region {}: {} mm, {} deg, 3 sigma {} mm", r.id, r.limits.translation_mm,
-                                  r.limits.rotation_deg, mm(3 * r.sigma_limit_mm)));
+                                r.limits.rotation_deg, mm(3 * r.sigma_limit_mm)));
     }
     return done(kStep, Text("no region lets through more than was proven"), std::move(evidence));
 }
@@ -310,14 +304,14 @@ CheckItem check_headless(const Project& p, const Facts& facts) {
     const Evidence* e = newest<HeadlessRun>(facts);
     if (!e)
         return missing(kStep, Text("save, close, and run it once without the screen: seamwright run {}",
-                                     facts.file.empty() ? std::string("FILE.seam") : facts.file));
+                                   facts.file.empty() ? std::string("FILE.seam") : facts.file));
     if (auto old = outdated(kStep, *e, p, facts)) return *old;
     const auto& run = std::get<HeadlessRun>(e->what);
     return done(kStep, Text("a run without the screen ended ok"),
                 {run.push ? Text("run {} of part {} on {}, pushed and read back, {}", run.run, run.part_id,
-                                   run.host, date_of(e->utc))
+                                 run.host, date_of(e->utc))
                           : Text("run {} of part {} on {}, dry run, {}", run.run, run.part_id, run.host,
-                                   date_of(e->utc))});
+                                 date_of(e->utc))});
 }
 
 // What a measurement rests on.
@@ -353,8 +347,8 @@ nlohmann::json essence(const Calibration* calibration) {
 template <class T>
 Text first_change(const std::vector<T>& then, const std::vector<T>& now, const char* name) {
     for (std::size_t i = 0; i < std::max(then.size(), now.size()); ++i) {
-        if (i >= now.size()) return Text(name, then[i].id);
-        if (i >= then.size() || essence(then[i]) != essence(now[i])) return Text(name, now[i].id);
+        if (i >= now.size()) return Text::chosen(name, then[i].id);
+        if (i >= then.size() || essence(then[i]) != essence(now[i])) return Text::chosen(name, now[i].id);
     }
     return {};
 }

@@ -35,7 +35,7 @@ inline constexpr std::array<CheckStep, 10> kCheckSteps{
     CheckStep::frozen,  CheckStep::observable, CheckStep::zero_shift,   CheckStep::known_shift,
     CheckStep::limits,  CheckStep::headless};
 std::string_view to_string(CheckStep step);  // "zero-shift"
-Text name_of(CheckStep step);              // "Zero shift"
+Text name_of(CheckStep step);                // "Zero shift"
 
 enum class CheckStatus {
     done,

@@ -114,18 +114,17 @@ class Forecaster {
             const std::string known = fmt::format("{:.3f}", feature);
             if (spot.feature.kind == "template")
                 add(with_better_feature,
-                    Text(
-                        "spot {}: its template is known to {} mm only; take a longer piece with more shape",
-                        spot.id, known));
+                    Text("spot {}: its template is known to {} mm only; take a longer piece with more shape",
+                         spot.id, known));
             else
                 add(with_better_feature,
                     Text("spot {}: its feature is known to {} mm only; teach it by a template", spot.id,
-                           known));
+                         known));
             if (!spot.stop_at_trigger)
                 add(sigma({i, false, true}),
                     Text("spot {}: the trigger jitters by up to {} mm along the displaced contour; stand "
-                           "still at the trigger, or drag the jitter window to what the robot keeps",
-                           spot.id, spot.jitter_mm));
+                         "still at the trigger, or drag the jitter window to what the robot keeps",
+                         spot.id, spot.jitter_mm));
         }
         if (const auto further = best_further_spot(spots_, options_)) {
             const Eigen::Vector3d p = further->spot.workobject_from_sensor.translation();
@@ -134,9 +133,9 @@ class Forecaster {
             add(sigma({}, &further->spot),
                 further->near.empty()
                     ? Text("add a spot towards ({}) mm of the work object, its edge along {}", at,
-                             further->edge)
+                           further->edge)
                     : Text("add a spot near {}, at ({}) mm of the work object, its edge along {}",
-                             further->near, at, further->edge));
+                           further->near, at, further->edge));
         }
         std::stable_sort(all.begin(), all.end(),
                          [](const Cure& a, const Cure& b) { return a.sigma_mm < b.sigma_mm; });

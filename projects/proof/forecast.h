@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/correction/correction.h"
-#include "projects/model/project.h"
 #include "core/text.h"
+#include "projects/model/project.h"
 
 namespace seamwright {
 

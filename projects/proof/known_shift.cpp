@@ -55,7 +55,7 @@ class ShiftedRobot final : public RobotLink {
     }
     Expected<Permission> permission() override { return robot_->permission(); }
     Expected<void> move_to(const Pose& pose) override { return robot_->move_to(*shift_ * pose); }
-    std::vector<std::string> take_notices() override { return robot_->take_notices(); }
+    std::vector<Text> take_notices() override { return robot_->take_notices(); }
 
   private:
     Expected<Pose> back(Expected<Pose> pose) const {
@@ -161,13 +161,12 @@ Expected<std::vector<ShiftTest>> shift_tests(const Project& project, const Shift
     for (const auto& [range, step, unit] :
          {std::tuple{grid.range_mm, grid.step_mm, "mm"}, std::tuple{grid.range_deg, grid.step_deg, "deg"}})
         if (!(range > 0 && step > 0 && step <= range && range <= 1000))
-            return usage_error(Text("a range of {0} {2} in steps of {1} {2}", range, step, unit),
-                               kWhere, "give a positive range and a step not above it");
+            return usage_error(Text("a range of {0} {2} in steps of {1} {2}", range, step, unit), kWhere,
+                               "give a positive range and a step not above it");
     const int moves = steps(grid.range_mm, grid.step_mm), turns = steps(grid.range_deg, grid.step_deg);
     const double count = 3.0 * 2 * (2.0 * moves + turns);
     if (count > static_cast<double>(kMostTests))
-        return usage_error(Text("{:.0f} displacements are too many", count), kWhere,
-                           "give larger steps");
+        return usage_error(Text("{:.0f} displacements are too many", count), kWhere, "give larger steps");
     const auto middle = middle_of(project);
     if (!middle) return tl::unexpected(middle.error());
     std::vector<ShiftTest> tests;
@@ -254,8 +253,8 @@ Expected<KnownShift> prove_known_shift(Station& station, const KnownShiftOptions
         if (auto opened = devices.open(options.by); !opened) return tl::unexpected(opened.error());
         int done = 0;
         const auto cancelled = [&] {
-            return usage_error(Text("cancelled after {} of {} displacements", done, tests->size()),
-                               kWhere, "start it again");
+            return usage_error(Text("cancelled after {} of {} displacements", done, tests->size()), kWhere,
+                               "start it again");
         };
         for (ShiftTest& test : *tests) {
             if (options.cancel.stop_requested()) return cancelled();

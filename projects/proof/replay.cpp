@@ -17,7 +17,7 @@ namespace seamwright {
 namespace {
 
 // Everything that a run computes, as exact text; two texts are equal when every bit is.
-constexpr ArchiveOptions kExact{.profiles = true, .rigid_poses = false};
+constexpr ArchiveOptions kExact{.profiles = true, .rigid_poses = false, .patterns = false};
 template <class T>
 std::string exact(const T& value) {
     return to_json_document(value, kExact).dump();
@@ -95,7 +95,7 @@ class Recomputer {
 
   private:
     Expected<void> recompute_panel(const RunRecord& stored, PanelRecord& panel) {
-        const std::string where = fmt::format("run {}", stored.number);
+        const Text where("run {}", stored.number);
         const PanelJob* job = find_panel_job(setup_, panel.job_id);
         if (!job) return file_error(Text("the setup of the run has no panel job {}", panel.job_id), where);
         for (auto* list : {&panel.before, &panel.after})
@@ -137,29 +137,27 @@ class Recomputer {
     std::map<std::string, SpotMeasurer> measurers_;
 };
 
-std::string describe_change(const SpotMeasurement& a, const SpotMeasurement& b) {
-    if (a.status != b.status)
-        return fmt::format("{} -> {} {}", to_string(a.status), to_string(b.status), b.message);
-    return fmt::format("measured ({}, {}, {}) -> ({}, {}, {}) mm", a.measured_mm.x(), a.measured_mm.y(),
-                       a.measured_mm.z(), b.measured_mm.x(), b.measured_mm.y(), b.measured_mm.z());
+Text describe_change(const SpotMeasurement& a, const SpotMeasurement& b) {
+    if (a.status != b.status) return Text("{} -> {} {}", to_string(a.status), to_string(b.status), b.message);
+    return Text("measured ({}, {}, {}) -> ({}, {}, {}) mm", a.measured_mm.x(), a.measured_mm.y(),
+                a.measured_mm.z(), b.measured_mm.x(), b.measured_mm.y(), b.measured_mm.z());
 }
 
-std::string describe_change(const RegionRecord& a, const RegionRecord& b) {
+Text describe_change(const RegionRecord& a, const RegionRecord& b) {
     if (a.correction.has_value() != b.correction.has_value())
-        return a.correction ? "corrected -> not corrected" : "not corrected -> corrected";
+        return a.correction ? Text("corrected -> not corrected") : Text("not corrected -> corrected");
     if (!a.correction) return "another frame";
     if (a.correction->status != b.correction->status)
-        return fmt::format("{} -> {}", to_string(a.correction->status), to_string(b.correction->status));
+        return Text("{} -> {}", to_string(a.correction->status), to_string(b.correction->status));
     const Pose& from = a.correction->displacement.workobject_from_movedworkobject;
     const Pose& to = b.correction->displacement.workobject_from_movedworkobject;
-    return fmt::format("displacement changed by {} mm and {} degrees", distance_mm(from, to),
-                       deg_from_rad(angle_rad(from, to)));
+    return Text("displacement changed by {} mm and {} degrees", distance_mm(from, to),
+                deg_from_rad(angle_rad(from, to)));
 }
 
-std::string describe_change(const PanelMeasurement& a, const PanelMeasurement& b) {
-    if (a.status != b.status)
-        return fmt::format("{} -> {} {}", to_string(a.status), to_string(b.status), b.message);
-    return fmt::format("gap {}, flush {} -> gap {}, flush {} mm", a.gap_mm, a.flush_mm, b.gap_mm, b.flush_mm);
+Text describe_change(const PanelMeasurement& a, const PanelMeasurement& b) {
+    if (a.status != b.status) return Text("{} -> {} {}", to_string(a.status), to_string(b.status), b.message);
+    return Text("gap {}, flush {} -> gap {}, flush {} mm", a.gap_mm, a.flush_mm, b.gap_mm, b.flush_mm);
 }
 
 void compare_panels(std::int64_t run, const PanelRecord& a, const PanelRecord& b,
@@ -168,7 +166,7 @@ void compare_panels(std::int64_t run, const PanelRecord& a, const PanelRecord& b
                             const std::vector<PanelMeasurement>& other) {
         for (std::size_t i = 0; i < std::min(one.size(), other.size()); ++i)
             if (exact(one[i]) != exact(other[i]))
-                differences.push_back({run, fmt::format("place {} {} the motion", one[i].place_id, when),
+                differences.push_back({run, Text("place {} {} the motion", one[i].place_id, Text(when)),
                                        describe_change(one[i], other[i]),
                                        std::max((one[i].panel_mm - other[i].panel_mm).norm(),
                                                 (one[i].body_mm - other[i].body_mm).norm())});
@@ -179,7 +177,7 @@ void compare_panels(std::int64_t run, const PanelRecord& a, const PanelRecord& b
     if (exact(computed_part(a)) == exact(computed_part(b)) || differences.size() > found) return;
     const double off = distance_mm(a.base_from_moved_gripper, b.base_from_moved_gripper);
     differences.push_back(
-        {run, "panel job " + a.job_id, fmt::format("the motion changed by {} mm", off), off});
+        {run, Text("panel job {}", a.job_id), Text("the motion changed by {} mm", off), off});
 }
 
 struct Part {  // what one run came to
@@ -227,13 +225,13 @@ std::vector<ReplayDifference> compare(const RunRecord& stored, const RunRecord& 
     for (std::size_t i = 0; i < std::min(stored.spots.size(), again.spots.size()); ++i) {
         const SpotMeasurement &a = stored.spots[i], &b = again.spots[i];
         if (exact(a) == exact(b)) continue;
-        differences.push_back({stored.number, "spot " + a.spot_id, describe_change(a, b),
+        differences.push_back({stored.number, Text("spot {}", a.spot_id), describe_change(a, b),
                                (a.measured_mm - b.measured_mm).norm()});
     }
     for (std::size_t i = 0; i < std::min(stored.regions.size(), again.regions.size()); ++i) {
         const RegionRecord a = computed_part(stored.regions[i]), b = computed_part(again.regions[i]);
         if (exact(a) == exact(b)) continue;
-        differences.push_back({stored.number, "region " + a.region_id, describe_change(a, b),
+        differences.push_back({stored.number, Text("region {}", a.region_id), describe_change(a, b),
                                distance_mm(a.base_from_frame, b.base_from_frame)});
     }
     if (stored.panel && again.panel) compare_panels(stored.number, *stored.panel, *again.panel, differences);

@@ -21,8 +21,8 @@ struct ReplayOptions {
 
 struct ReplayDifference {
     std::int64_t run = 0;
-    std::string what;    // "spot S3", "region left"
-    std::string text;    // "measured x 10.25 -> 10.26 mm"
+    Text what;           // "spot S3", "region left"
+    Text text;           // "measured x 10.25 -> 10.26 mm"
     double size_mm = 0;  // of the difference where it is a length, else 0
 };
 

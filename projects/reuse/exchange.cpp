@@ -61,7 +61,8 @@ std::string pcd_text(const std::vector<Eigen::Vector3d>& points) {
 nlohmann::json export_project(const Project& project, bool with_profiles) {
     return {{"format", kFormat},
             {"version", kVersion},
-            {"project", to_json_document(project, {.profiles = with_profiles, .rigid_poses = true})}};
+            {"project",
+             to_json_document(project, {.profiles = with_profiles, .rigid_poses = true, .patterns = false})}};
 }
 
 Expected<nlohmann::json> export_file(const ProjectFile& file, bool with_profiles) {
@@ -76,21 +77,24 @@ Expected<nlohmann::json> export_file(const ProjectFile& file, bool with_profiles
         if (!run) return tl::unexpected(run.error());
         nlohmann::json spots = nlohmann::json::array(), regions = nlohmann::json::array();
         for (const SpotMeasurement& m : run->spots)
-            spots.push_back(to_json_document(m, {.profiles = false, .rigid_poses = false}));
+            spots.push_back(
+                to_json_document(m, {.profiles = false, .rigid_poses = false, .patterns = false}));
         for (const RegionRecord& r : run->regions)
-            regions.push_back(to_json_document(r, {.profiles = false, .rigid_poses = false}));
+            regions.push_back(
+                to_json_document(r, {.profiles = false, .rigid_poses = false, .patterns = false}));
         list.push_back({{"number", run->number},
                         {"part_id", run->part_id},
                         {"started_utc", run->started_utc},
                         {"finished_utc", run->finished_utc},
                         {"push", run->push},
                         {"status", to_string(run->status)},
-                        {"message", run->message},
+                        {"message", run->message.english()},
                         {"captures", summary.captures},
                         {"spots", spots},
                         {"regions", regions}});
         if (run->panel)
-            list.back()["panel"] = to_json_document(*run->panel, {.profiles = false, .rigid_poses = false});
+            list.back()["panel"] =
+                to_json_document(*run->panel, {.profiles = false, .rigid_poses = false, .patterns = false});
     }
     document["runs"] = std::move(list);
     auto events = file.events();
@@ -117,8 +121,8 @@ Expected<Project> import_project(const nlohmann::json& document, const std::stri
     if (version == document.end() || !version->is_number_integer() || *version < 1)
         return input_error("the export has no version", where);
     if (*version > kVersion)
-        return input_error(Text("the export is newer than this program (version {})", version->dump()),
-                           where, "import it with a newer Seamwright");
+        return input_error(Text("the export is newer than this program (version {})", version->dump()), where,
+                           "import it with a newer Seamwright");
     return from_json_document<Project>(*project, where.empty() ? "project" : where + ": project");
 }
 

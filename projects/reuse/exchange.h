@@ -60,7 +60,7 @@ struct FolderImport {
 
 struct FolderImportResult {
     Project project;
-    bool in_pixels = false;          // no calibration: one pixel counts as one unit, nothing can be pushed
+    bool in_pixels = false;   // no calibration: one pixel counts as one unit, nothing can be pushed
     std::vector<Text> notes;  // spots without feature, frames without pose, ...
     std::vector<std::string> understood;  // how the files were read, a sentence each
 };

@@ -67,7 +67,7 @@ Expected<void> cut_template(const FolderImport& options, const Profile& taught, 
 Expected<void> check_calibration(const FolderImport& options, bool images, const Frame& first) {
     if (!options.calibration) return {};
     const Calibration& c = *options.calibration;
-    const std::string where = "calibration " + c.id;
+    const Text where("calibration {}", c.id);
     if (c.method == "pixels")
         return input_error("it measures in pixels", where, "choose one that was solved");
     if (c.flange_from_sensor.isApprox(Pose::Identity(), 0))
@@ -78,7 +78,7 @@ Expected<void> check_calibration(const FolderImport& options, bool images, const
     const CameraModel& camera = c.model->camera;
     if (camera.width > 0 && (camera.width != first.image.width || camera.height != first.image.height))
         return input_error(Text("it was made with images of {} x {}, these have {} x {}", camera.width,
-                                       camera.height, first.image.width, first.image.height),
+                                camera.height, first.image.width, first.image.height),
                            where, "choose the calibration of this camera at this resolution");
     return {};
 }
@@ -87,17 +87,17 @@ Expected<void> check_calibration(const FolderImport& options, bool images, const
 Expected<void> check_units(const FolderImport& options, const Frame& frame, const fs::path& file) {
     if (!options.layout.profile.unit.empty() || frame.profile.size() == 0) return {};
     auto ok = check_profile_millimetres(frame.profile, file.string());
-    if (!ok) ok.error().mend += ", or say what they are in with --unit";
+    if (!ok) ok.error().mend = Text("{}, or say what they are in with --unit", ok.error().mend);
     return ok;
 }
 
 // What the region will be worth with these sigmas, so that nobody learns it from a refused run.
-std::string forecast_note(const Project& project) {
+Text forecast_note(const Project& project) {
     const Region& region = project.regions.front();
     const auto plan = plan_region(planned_observations(project, region), correction_options(project, region));
     if (!plan || plan->status != CorrectionStatus::ok) return {};
-    return fmt::format("expected of a correction: {:.3f} mm (1 sigma) at the worst spot, limit {:.3g} mm",
-                       plan->sigma_at_spots_mm, region.sigma_limit_mm);
+    return Text("expected of a correction: {:.3f} mm (1 sigma) at the worst spot, limit {:.3g} mm",
+                plan->sigma_at_spots_mm, region.sigma_limit_mm);
 }
 
 }  // namespace
@@ -226,8 +226,7 @@ Expected<FolderImportResult> import_folder(const FolderImport& options) {
         spot.enabled = false;
         const auto reference = taught_by_spot.find(spot.id);
         if (reference == taught_by_spot.end()) {
-            result.notes.push_back(
-                fmt::format("spot {}: not in the reference folder, switched off", spot.id));
+            result.notes.push_back(Text("spot {}: not in the reference folder, switched off", spot.id));
             project.spots.push_back(std::move(spot));
             continue;
         }
@@ -236,8 +235,7 @@ Expected<FolderImportResult> import_folder(const FolderImport& options) {
         Spot& taught_spot = project.spots.back();
         if (auto read = read_recorded(*reference->second, layout, 0, frame); !read) {
             if (!unreadable) unreadable = read.error();
-            result.notes.push_back(
-                fmt::format("spot {}: {}, switched off", spot.id, read.error().sentence()));
+            result.notes.push_back(Text("spot {}: {}, switched off", spot.id, read.error().text()));
             continue;
         }
         if (auto ok = check_units(options, frame, reference->second->file); !ok)
@@ -250,15 +248,14 @@ Expected<FolderImportResult> import_folder(const FolderImport& options) {
             StripePeaks peaks;
             Capture capture;
             Profile taught_profile;
-            std::string message;
+            Text message;
             if (capture_frame(frame, options.peaks, calibration.model ? &*calibration.model : nullptr, peaks,
                               capture, message) != SpotStatus::measured) {
-                result.notes.push_back(fmt::format("spot {}: {}, switched off", spot.id, message));
+                result.notes.push_back(Text("spot {}: {}, switched off", spot.id, message));
                 continue;
             }
             if (auto tracked = track_capture(capture, options.filter, taught_profile); !tracked) {
-                result.notes.push_back(
-                    fmt::format("spot {}: {}, switched off", spot.id, tracked.error().sentence()));
+                result.notes.push_back(Text("spot {}: {}, switched off", spot.id, tracked.error().text()));
                 continue;
             }
             if (auto cut = cut_template(options, taught_profile, taught_spot); !cut)
@@ -269,8 +266,8 @@ Expected<FolderImportResult> import_folder(const FolderImport& options) {
         const SpotMeasurement& measured = measurer->measure(frame);
         taught_spot.reference_profile = measurer->profile();
         if (measured.status != SpotStatus::measured) {
-            result.notes.push_back(fmt::format("spot {}: {} ({}), switched off", spot.id,
-                                               to_string(measured.status), measured.message));
+            result.notes.push_back(Text("spot {}: {} ({}), switched off", spot.id, to_string(measured.status),
+                                        measured.message));
             continue;
         }
         taught_spot.reference_mm = measured.measured_mm;
@@ -282,11 +279,11 @@ Expected<FolderImportResult> import_folder(const FolderImport& options) {
         if (unreadable) return tl::unexpected(*unreadable);  // file and line of the first
         Error error{ErrorKind::input, "no feature was found in any frame", folder.string(),
                     "try another feature, or see with --look how the files are understood"};
-        if (!result.notes.empty()) error.what += " (" + result.notes.back() + ")";
+        if (!result.notes.empty()) error.what = Text("{} ({})", error.what, result.notes.back());
         return tl::unexpected(error);
     }
     project.regions = {region};
-    if (std::string note = forecast_note(project); !note.empty() && !result.in_pixels)
+    if (Text note = forecast_note(project); !note.empty() && !result.in_pixels)
         result.notes.push_back(std::move(note));
     return result;
 }

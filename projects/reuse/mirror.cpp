@@ -168,7 +168,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
         auto recipe = mirrored_recipe(spot.feature);
         if (!recipe) {
             Error error = recipe.error();
-            error.where = "spot " + spot.id + ": " + error.where;
+            error.within(Text("spot {}", spot.id));
             return tl::unexpected(std::move(error));
         }
         spot.feature = std::move(*recipe);

@@ -7,7 +7,7 @@
 namespace seamwright {
 
 Expected<Retaught> after_exchange(const Project& project, const Exchange& exchange) {
-    const std::string where = "sensor " + exchange.sensor_id;
+    const Text where("sensor {}", exchange.sensor_id);
     const SensorSetup* sensor = find_sensor(project, exchange.sensor_id);
     if (!sensor) return input_error("it is not in the project", where);
     const auto calibration = [&](const std::string& id) {
@@ -35,8 +35,9 @@ Expected<Retaught> after_exchange(const Project& project, const Exchange& exchan
     if (exchange.base_from_workobject)
         for (const Spot& spot : project.spots)
             if (spot.sensor_id != exchange.sensor_id)
-                return input_error(Text("spot {} is measured by another sensor and would stay behind", spot.id),
-                                   "work object", "exchange one robot of a project with a single sensor");
+                return input_error(
+                    Text("spot {} is measured by another sensor and would stay behind", spot.id),
+                    "work object", "exchange one robot of a project with a single sensor");
     Retaught result;
     result.project = project;
     Project& p = result.project;

@@ -123,8 +123,8 @@ Expected<FramePtr> TriggeredFrames::in_order(const TriggerEvent& trigger, std::c
     const auto apart = std::chrono::nanoseconds(frame->host_time_ns - trigger.host_time_ns);
     if (std::chrono::abs(apart) > kPairingWindow)
         return device_error(Text("frame {} came {:.1f} s {} the trigger of spot {}", frame->sequence,
-                                        std::abs(std::chrono::duration<double>(apart).count()),
-                                        apart.count() < 0 ? "before" : "after", trigger.spot_id),
+                                 std::abs(std::chrono::duration<double>(apart).count()),
+                                 apart.count() < 0 ? "before" : "after", trigger.spot_id),
                             Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
     return frame;
 }
@@ -138,8 +138,8 @@ Expected<void> TriggeredFrames::finish() {
         more = !is_over(**left);
     }
     if (more)
-        return device_error("the sensor exposed more often than the robot fired", Text("sensor {}", setup_.id),
-                            "check the trigger line between robot and sensor");
+        return device_error("the sensor exposed more often than the robot fired",
+                            Text("sensor {}", setup_.id), "check the trigger line between robot and sensor");
     return {};
 }
 
@@ -152,7 +152,7 @@ Expected<Pose> stand_at(RobotLink& robot, const std::string& spot_id, const Pose
     const double off_deg = deg_from_rad(angle_rad(*at, base_from_flange));
     if (off_mm <= kJoggedMm && off_deg <= kJoggedDeg) return at;
     return device_error(Text("the robot stands {:.2f} mm and {:.2f} deg off the pose to teach at ({})",
-                                    off_mm, off_deg, moved.error().what),
+                             off_mm, off_deg, moved.error().what),
                         Text("spot {}", spot_id), "jog it there");
 }
 

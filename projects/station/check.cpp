@@ -24,15 +24,16 @@ class Findings {
   public:
     // What the findings from here on concern.
     void concern(Concern c) { concern_ = c; }
-    void add(std::string where, std::string what, std::string mend = {}) {
+    void add(Text where, Text what, Text mend = {}) {
         add(Error{ErrorKind::input, std::move(what), std::move(where), std::move(mend)});
     }
     void add(Error error) { list.emplace_back(concern_, std::move(error)); }
-    void unless(bool ok, const std::string& where, std::string what, std::string mend = {}) {
+    void unless(bool ok, const Text& where, Text what, Text mend = {}) {
         if (!ok) add(where, std::move(what), std::move(mend));
     }
-    void rigid(const Pose& pose, const std::string& where) {
-        if (auto checked = pose_from_matrix(pose.matrix(), where, 1e-6); !checked) add(checked.error());
+    void rigid(const Pose& pose, const Text& where) {
+        if (auto checked = pose_from_matrix(pose.matrix(), where.english(), 1e-6); !checked)
+            add(checked.error());
     }
     std::vector<std::pair<Concern, Error>> list;
 
@@ -44,7 +45,7 @@ template <class T>
 void check_ids(const std::vector<T>& items, const char* kind, Findings& findings) {
     std::set<std::string> seen;
     for (const T& item : items) {
-        findings.unless(!item.id.empty(), fmt::format("{}s", kind), fmt::format("a {} has no id", kind),
+        findings.unless(!item.id.empty(), fmt::format("{}s", kind), Text("a {} has no id", kind),
                         "give it a name");
         findings.unless(seen.insert(item.id).second, fmt::format("{} {}", kind, item.id),
                         "the id is used twice", "rename one");
@@ -62,7 +63,7 @@ bool positive(double v) {
     return std::isfinite(v) && v > 0;
 }
 
-void check_profile(const Profile& profile, const std::string& where, Findings& findings) {
+void check_profile(const Profile& profile, const Text& where, Findings& findings) {
     const std::size_t n = profile.x_mm.size();
     findings.unless(profile.z_mm.size() == n &&
                         (profile.intensity.empty() || profile.intensity.size() == n) &&
@@ -71,26 +72,25 @@ void check_profile(const Profile& profile, const std::string& where, Findings& f
 }
 
 void check_calibration(const Calibration& c, Findings& findings) {
-    const std::string where = "calibration " + c.id;
-    findings.rigid(c.flange_from_sensor, where + ".flange_from_sensor");
+    const Text where("calibration {}", c.id);
+    findings.rigid(c.flange_from_sensor, joined(where, "", ".flange_from_sensor"));
     findings.unless(c.covariance.allFinite(), where,
                     "the covariance holds a value that is not a finite number");
     findings.unless(!c.covariance.allFinite() || correction::semidefinite(c.covariance), where,
                     "the covariance is none: not symmetric, or negative in some direction");
     if (!serves(c.verdict))
-        findings.add(
-            where,
-            fmt::format("its verdict is {}, nothing measured with it can be pushed", name_of(c.verdict)),
-            "calibrate again");
+        findings.add(where,
+                     Text("its verdict is {}, nothing measured with it can be pushed", name_of(c.verdict)),
+                     "calibrate again");
     if (!c.model) return;
-    findings.rigid(c.model->camera_from_laser, where + ".camera_from_laser");
+    findings.rigid(c.model->camera_from_laser, joined(where, "", ".camera_from_laser"));
     if (!c.model->table)
         findings.unless(positive(c.model->camera.fx) && positive(c.model->camera.fy), where,
                         "the camera's focal length is not positive");
 }
 
 void check_sensor(const Project& project, const SensorSetup& sensor, Findings& findings) {
-    const std::string where = "sensor " + sensor.id;
+    const Text where("sensor {}", sensor.id);
     findings.unless(!sensor.driver.empty(), where, "it has no driver", "choose one of `seamwright devices`");
     if (sensor.calibration_id.empty()) {
         findings.add(where, "it has no calibration, nothing measured with it can be pushed", "calibrate it");
@@ -99,35 +99,35 @@ void check_sensor(const Project& project, const SensorSetup& sensor, Findings& f
     for (const Calibration& c : project.calibrations) {
         if (c.id != sensor.calibration_id) continue;
         findings.unless(c.sensor_id.empty() || c.sensor_id == sensor.id, where,
-                        fmt::format("its calibration {} was made for sensor {}", c.id, c.sensor_id),
+                        Text("its calibration {} was made for sensor {}", c.id, c.sensor_id),
                         "calibrate this sensor");
         findings.unless(sensor.identity.serial.empty() || sensor.identity == c.sensor_identity, where,
-                        fmt::format("the connected sensor {} is not the one of calibration {} ({})",
-                                    sensor.identity.serial, c.id, c.sensor_identity.serial),
+                        Text("the connected sensor {} is not the one of calibration {} ({})",
+                             sensor.identity.serial, c.id, c.sensor_identity.serial),
                         "calibrate again after exchanging a sensor");
         return;
     }
-    findings.add(where, fmt::format("its calibration \"{}\" is not in the project", sensor.calibration_id));
+    findings.add(where, Text("its calibration \"{}\" is not in the project", sensor.calibration_id));
 }
 
 void check_spot(const Project& project, const Spot& spot, Findings& findings) {
-    const std::string where = "spot " + spot.id;
+    const Text where("spot {}", spot.id);
     findings.unless(known(project.sensors, spot.sensor_id), where,
-                    fmt::format("its sensor \"{}\" is not in the project", spot.sensor_id));
+                    Text("its sensor \"{}\" is not in the project", spot.sensor_id));
     findings.unless(known(project.robots, spot.robot_id), where,
-                    fmt::format("its robot \"{}\" is not in the project", spot.robot_id));
+                    Text("its robot \"{}\" is not in the project", spot.robot_id));
     if (spot.enabled) findings.concern(Concern::measuring);
-    findings.rigid(spot.base_from_flange, where + ".base_from_flange");
+    findings.rigid(spot.base_from_flange, joined(where, "", ".base_from_flange"));
     for (std::size_t i = 0; i < spot.via.size(); ++i)
         findings.rigid(spot.via[i], fmt::format("{}.via[{}]", where, i));
     findings.unless(positive(spot.speed_mm_s) && spot.speed_mm_s <= 5000, where,
-                    fmt::format("the speed of {} mm/s is not plausible (0..5000)", spot.speed_mm_s));
+                    Text("the speed of {} mm/s is not plausible (0..5000)", spot.speed_mm_s));
     findings.unless(std::isfinite(spot.entry_mm) && spot.entry_mm >= 0 && std::isfinite(spot.exit_mm) &&
                         spot.exit_mm >= 0 && spot.entry_mm <= 1000 && spot.exit_mm <= 1000,
                     where, "entry and exit must be between 0 and 1000 mm");
     findings.concern(Concern::setup);
     if (auto finder = make_feature_finder(spot.feature); !finder)
-        findings.add(where + ".feature", finder.error().what, finder.error().mend);
+        findings.add(joined(where, "", ".feature"), finder.error().what, finder.error().mend);
     findings.unless(spot.reference_mm.allFinite(), where, "the reference is not a finite point",
                     "teach it again");
     findings.unless(spot.weights.allFinite() && spot.weights.minCoeff() >= 0, where,
@@ -135,11 +135,11 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
     findings.unless(spot.weights.maxCoeff() > 0, where, "no direction has a weight",
                     "give x or z the weight 1");
     findings.unless(positive(spot.sigma_mm) && spot.sigma_mm <= 10, where,
-                    fmt::format("sigma of {} mm is not plausible (0..10)", spot.sigma_mm));
+                    Text("sigma of {} mm is not plausible (0..10)", spot.sigma_mm));
     findings.unless(std::isfinite(spot.jitter_mm) && spot.jitter_mm >= 0 && spot.jitter_mm <= 100, where,
-                    fmt::format("the jitter window of {} mm is not plausible (0..100)", spot.jitter_mm));
-    check_profile(spot.reference_profile, where + ".reference_profile", findings);
-    check_profile(spot.feature.template_profile, where + ".template_profile", findings);
+                    Text("the jitter window of {} mm is not plausible (0..100)", spot.jitter_mm));
+    check_profile(spot.reference_profile, joined(where, "", ".reference_profile"), findings);
+    check_profile(spot.feature.template_profile, joined(where, "", ".template_profile"), findings);
     if (spot.curve)
         findings.unless(spot.curve->x_coefficients.allFinite() && spot.curve->z_coefficients.allFinite() &&
                             spot.curve->valid_from_mm <= spot.curve->valid_to_mm,
@@ -151,20 +151,20 @@ void check_spot(const Project& project, const Spot& spot, Findings& findings) {
 }
 
 void check_region(const Project& project, const Region& region, Findings& findings) {
-    const std::string where = "region " + region.id;
+    const Text where("region {}", region.id);
     std::set<std::string> seen;
     int enabled = 0;
     std::set<std::string> robots;
     double observed = 0;
     for (const std::string& id : region.spot_ids) {
-        findings.unless(seen.insert(id).second, where, fmt::format("spot {} is named twice", id));
+        findings.unless(seen.insert(id).second, where, Text("spot {} is named twice", id));
         const Spot* spot = find_spot(project, id);
         if (!spot) {
-            findings.add(where, fmt::format("spot \"{}\" is not in the project", id));
+            findings.add(where, Text("spot \"{}\" is not in the project", id));
             continue;
         }
         findings.unless(spot->enabled || !spot->required, where,
-                        fmt::format("its required spot {} is switched off", id));
+                        Text("its required spot {} is switched off", id));
         if (!spot->enabled) continue;
         ++enabled;
         robots.insert(spot->robot_id);
@@ -176,35 +176,35 @@ void check_region(const Project& project, const Region& region, Findings& findin
     if (enabled > 0)
         findings.unless(
             observed >= static_cast<double>(free), where,
-            fmt::format("{} observed coordinates cannot determine {} degrees of freedom", observed, free),
+            Text("{} observed coordinates cannot determine {} degrees of freedom", observed, free),
             "add spots in other orientations");
     findings.concern(Concern::push);
     findings.unless(robots.size() <= 1, where,
                     "its spots belong to several robots, one frame cannot serve them",
                     "make one region per robot");
-    for (const std::string& none : limits_that_are_none(region)) findings.add(where, none);
+    for (const Text& none : limits_that_are_none(region)) findings.add(where, none);
     findings.unless(!region.frame_name.empty(), where,
                     "it names no frame on the controller, nothing can be pushed");
-    findings.rigid(region.base_from_frame, where + ".base_from_frame");
+    findings.rigid(region.base_from_frame, joined(where, "", ".base_from_frame"));
     for (const Region& other : project.regions) {
         if (&other == &region) break;
         findings.unless(!same_frame(other.frame_name, region.frame_name), where,
-                        fmt::format("region {} writes the same frame {}", other.id, other.frame_name),
+                        Text("region {} writes the same frame {}", other.id, other.frame_name),
                         "give each region its own frame");
     }
     findings.concern(Concern::setup);
 }
 
 void check_place(const Project& project, const PanelJob& job, const PanelPlace& place, Findings& findings) {
-    const std::string where = fmt::format("panel job {}, place {}", job.id, place.id);
+    const Text where("panel job {}, place {}", job.id, place.id);
     findings.unless(known(project.sensors, place.sensor_id), where,
-                    fmt::format("its sensor \"{}\" is not in the project", place.sensor_id));
+                    Text("its sensor \"{}\" is not in the project", place.sensor_id));
     findings.unless(place.second_sensor_id.empty() || known(project.sensors, place.second_sensor_id), where,
-                    fmt::format("its second sensor \"{}\" is not in the project", place.second_sensor_id));
+                    Text("its second sensor \"{}\" is not in the project", place.second_sensor_id));
     findings.unless(place.second_sensor_id != place.sensor_id, where, "both its heads are the same sensor",
                     "a double head has two sensors");
     if (auto good = check(place.gauge); !good)
-        findings.add(where + ".gauge", good.error().what, good.error().mend);
+        findings.add(joined(where, "", ".gauge"), good.error().what, good.error().mend);
     findings.concern(Concern::push);
     findings.unless(place.panel_reference_mm.allFinite() && place.body_reference_mm.allFinite() &&
                         std::isfinite(place.gap_mm) && std::isfinite(place.flush_mm) &&
@@ -214,29 +214,29 @@ void check_place(const Project& project, const PanelJob& job, const PanelPlace& 
         place.weights.allFinite() && place.weights.minCoeff() >= 0 && place.weights.maxCoeff() > 0, where,
         "the weights must be finite, not negative, and one of them positive");
     findings.unless(positive(place.sigma_mm) && place.sigma_mm <= 10, where,
-                    fmt::format("sigma of {} mm is not plausible (0..10)", place.sigma_mm));
+                    Text("sigma of {} mm is not plausible (0..10)", place.sigma_mm));
     findings.concern(Concern::setup);
-    check_profile(place.reference_profile, where + ".reference_profile", findings);
+    check_profile(place.reference_profile, joined(where, "", ".reference_profile"), findings);
 }
 
 void check_panel_job(const Project& project, const PanelJob& job, Findings& findings) {
-    const std::string where = "panel job " + job.id;
+    const Text where("panel job {}", job.id);
     findings.unless(known(project.robots, job.robot_id), where,
-                    fmt::format("its robot \"{}\" is not in the project", job.robot_id));
+                    Text("its robot \"{}\" is not in the project", job.robot_id));
     std::set<std::string> seen, sensors;
     int enabled = 0;
     for (const PanelPlace& place : job.places) {
         findings.unless(!place.id.empty() && seen.insert(place.id).second, where,
-                        fmt::format("place \"{}\" has no name of its own", place.id));
+                        Text("place \"{}\" has no name of its own", place.id));
         findings.unless(place.enabled || !place.required, where,
-                        fmt::format("its required place {} is switched off", place.id));
+                        Text("its required place {} is switched off", place.id));
         enabled += place.enabled;
         for (const std::string& id : {place.sensor_id, place.second_sensor_id})
             findings.unless(id.empty() || !place.enabled || sensors.insert(id).second, where,
-                            fmt::format("sensor {} is used at two places", id), "a sensor sees one place");
+                            Text("sensor {} is used at two places", id), "a sensor sees one place");
         check_place(project, job, place, findings);
     }
-    findings.unless(enabled >= 3, where, fmt::format("{} enabled places do not determine a motion", enabled),
+    findings.unless(enabled >= 3, where, Text("{} enabled places do not determine a motion", enabled),
                     "measure at three or more places in different orientations");
     findings.concern(Concern::push);
     for (const Field<PanelJob>& f : panel_fields())
@@ -244,17 +244,17 @@ void check_panel_job(const Project& project, const PanelJob& job, Findings& find
             findings.add(valid.error());
     findings.unless(!job.frame_name.empty(), where,
                     "it names no frame on the controller, nothing can be moved");
-    findings.rigid(job.base_from_frame, where + ".base_from_frame");
+    findings.rigid(job.base_from_frame, joined(where, "", ".base_from_frame"));
     for (const Region& region : project.regions)
         findings.unless(!same_frame(region.frame_name, job.frame_name), where,
-                        fmt::format("region {} writes the same frame {}", region.id, job.frame_name));
+                        Text("region {} writes the same frame {}", region.id, job.frame_name));
     for (const PanelJob& other : project.panel_jobs) {
         if (other.id == job.id) break;
         findings.unless(!same_frame(other.frame_name, job.frame_name), where,
-                        fmt::format("panel job {} writes the same frame {}", other.id, job.frame_name));
+                        Text("panel job {} writes the same frame {}", other.id, job.frame_name));
     }
     findings.concern(Concern::measuring);
-    findings.rigid(job.base_from_gripper, where + ".base_from_gripper");
+    findings.rigid(job.base_from_gripper, joined(where, "", ".base_from_gripper"));
     findings.concern(Concern::setup);
 }
 
@@ -292,7 +292,7 @@ Expected<void> none_of_motion(const std::vector<Error>& findings) {
     if (findings.empty()) return {};
     Error error = findings.front();
     if (findings.size() > 1)
-        error.what += fmt::format(" (and {} more findings, see check)", findings.size() - 1);
+        error.what = Text("{} (and {} more findings, see check)", error.what, findings.size() - 1);
     return tl::unexpected(std::move(error));
 }
 
@@ -307,10 +307,10 @@ std::vector<Error> check(const Project& project) {
     if (auto valid = validate_fields(project.requirements); !valid) findings.add(valid.error());
     for (const SensorSetup& sensor : project.sensors) check_sensor(project, sensor, findings);
     for (const RobotSetup& robot : project.robots)
-        findings.unless(!robot.driver.empty(), "robot " + robot.id, "it has no driver",
+        findings.unless(!robot.driver.empty(), Text("robot {}", robot.id), "it has no driver",
                         "choose one of `seamwright devices`");
     for (const RobotSetup& robot : project.robots)
-        findings.unless(correction::semidefinite(robot.arrival_covariance), "robot " + robot.id,
+        findings.unless(correction::semidefinite(robot.arrival_covariance), Text("robot {}", robot.id),
                         "the covariance of its arrivals is none: not finite, not symmetric, or negative in "
                         "some direction");
     for (const Calibration& calibration : project.calibrations) check_calibration(calibration, findings);

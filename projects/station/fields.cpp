@@ -10,7 +10,7 @@ namespace {
 
 template <class T>
 Expected<void> set_in(const std::vector<Field<T>>& fields, T& thing, std::string_view name, double value,
-                      const std::string& where) {
+                      const Text& where) {
     const auto field =
         std::find_if(fields.begin(), fields.end(), [&](const Field<T>& f) { return f.info.name == name; });
     assert(field != fields.end());
@@ -21,7 +21,7 @@ Expected<void> set_in(const std::vector<Field<T>>& fields, T& thing, std::string
 }
 
 template <class T>
-Expected<void> validate_in(const std::vector<Field<T>>& fields, const T& thing, const std::string& where) {
+Expected<void> validate_in(const std::vector<Field<T>>& fields, const T& thing, const Text& where) {
     ParameterValues values;
     std::vector<ParameterInfo> infos;
     for (const Field<T>& f : fields) {
@@ -146,14 +146,14 @@ const std::vector<Field<Requirements>>& requirement_fields() {
 }
 
 Expected<void> set_field(Spot& spot, std::string_view name, double value) {
-    return set_in(spot_fields(), spot, name, value, "spot " + spot.id);
+    return set_in(spot_fields(), spot, name, value, Text("spot {}", spot.id));
 }
 Expected<void> set_field(Region& region, std::string_view name, double value) {
-    return set_in(region_fields(), region, name, value, "region " + region.id);
+    return set_in(region_fields(), region, name, value, Text("region {}", region.id));
 }
 
 Expected<void> set_field(PanelJob& job, std::string_view name, double value) {
-    return set_in(panel_fields(), job, name, value, "panel job " + job.id);
+    return set_in(panel_fields(), job, name, value, Text("panel job {}", job.id));
 }
 
 Expected<void> set_field(Requirements& requirements, std::string_view name, double value) {
@@ -161,18 +161,18 @@ Expected<void> set_field(Requirements& requirements, std::string_view name, doub
 }
 
 Expected<void> validate_fields(const Spot& spot) {
-    const std::string where = "spot " + spot.id;
+    const Text where("spot {}", spot.id);
     if (auto valid = validate_in(spot_fields(), spot, where); !valid) return valid;
     const FeatureKind* kind = feature_kind(spot.feature.kind);
     if (!kind) return input_error(Text("the feature kind \"{}\" is not known", spot.feature.kind), where);
     return validate(spot.feature.parameters, kind->parameters, where);
 }
 Expected<void> validate_fields(const Region& region) {
-    return validate_in(region_fields(), region, "region " + region.id);
+    return validate_in(region_fields(), region, Text("region {}", region.id));
 }
 
 Expected<void> validate_fields(const PanelJob& job) {
-    return validate_in(panel_fields(), job, "panel job " + job.id);
+    return validate_in(panel_fields(), job, Text("panel job {}", job.id));
 }
 
 Expected<void> validate_fields(const Requirements& requirements) {

@@ -42,7 +42,7 @@ void clear_candidates(ProfileCandidates& c) {
 }  // namespace
 
 SpotStatus capture_frame(const Frame& frame, const PeakOptions& peak_options, const SensorModel* model,
-                         StripePeaks& peaks, Capture& capture, std::string& message) {
+                         StripePeaks& peaks, Capture& capture, Text& message) {
     capture.status = frame.status;
     capture.sequence = frame.sequence;
     capture.device_time_ns = frame.device_time_ns;
@@ -52,7 +52,7 @@ SpotStatus capture_frame(const Frame& frame, const PeakOptions& peak_options, co
     clear_candidates(capture.candidates);
     message.clear();
     if (frame.status != FrameStatus::ok) {
-        message = fmt::format("the frame is {}", to_string(frame.status));
+        message = Text("the frame is {}", to_string(frame.status));
         return SpotStatus::damaged_frame;
     }
     if (frame.profile.size() > 0) {
@@ -75,7 +75,7 @@ SpotStatus capture_frame(const Frame& frame, const PeakOptions& peak_options, co
         return SpotStatus::no_calibration;
     }
     if (auto found = find_peaks(frame.image, peak_options, peaks); !found) {
-        message = found.error().sentence();
+        message = found.error().text();
         return SpotStatus::no_stripe;
     }
     to_millimetres(peaks, *model, capture.candidates);
@@ -226,7 +226,7 @@ struct SpotMeasurer::Impl {
         profile.clear();
     }
 
-    const SpotMeasurement& no(SpotStatus status, const std::string& message) {
+    const SpotMeasurement& no(SpotStatus status, const Text& message) {
         measurement.status = status;
         measurement.message = message;
         return measurement;
@@ -235,7 +235,7 @@ struct SpotMeasurer::Impl {
     // From the capture's profile or candidates to the end.
     const SpotMeasurement& evaluate(const Capture& from) {
         if (auto tracked = track_capture(from, filter, profile); !tracked)
-            return no(SpotStatus::no_stripe, tracked.error().sentence());
+            return no(SpotStatus::no_stripe, tracked.error().text());
         measurement.feature = finder->find(profile);
         const Feature& feature = measurement.feature;
         if (feature.status != FeatureStatus::ok)
@@ -264,7 +264,7 @@ SpotMeasurer::~SpotMeasurer() = default;
 Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::string& spot_id) {
     const Spot* spot = find_spot(project, spot_id);
     if (!spot) return input_error(Text("there is no spot \"{}\"", spot_id), "spots");
-    const std::string where = fmt::format("spot {}", spot_id);
+    const Text where("spot {}", spot_id);
     const SensorSetup* sensor = find_sensor(project, spot->sensor_id);
     if (!sensor)
         return input_error(Text("its sensor \"{}\" is not in the project", spot->sensor_id), where,
@@ -272,7 +272,7 @@ Expected<SpotMeasurer> SpotMeasurer::make(const Project& project, const std::str
     auto finder = make_feature_finder(spot->feature);
     if (!finder) {
         Error error = finder.error();
-        error.where = error.where.empty() ? where : where + ": " + error.where;
+        error.within(where);
         return tl::unexpected(error);
     }
     auto impl = std::make_unique<Impl>();
@@ -318,7 +318,7 @@ const SpotMeasurement& SpotMeasurer::measure(const Capture& stored) {
     }
     i.reset(stored.host_time_ns);
     if (stored.status != FrameStatus::ok)
-        return i.no(SpotStatus::damaged_frame, fmt::format("the frame is {}", to_string(stored.status)));
+        return i.no(SpotStatus::damaged_frame, Text("the frame is {}", to_string(stored.status)));
     const auto& count = stored.candidates.count;
     const bool candidates = std::any_of(count.begin(), count.end(), [](std::uint8_t n) { return n > 0; });
     if (stored.profile.size() == 0 && !candidates)
@@ -418,13 +418,14 @@ std::vector<RegionRecord> correct_regions(const Project& project,
             add_repeating(project, *spot, *calibration, feature_at_reference(*spot), observations.back());
         }
         if (observations.empty()) {
-            record.refusals.push_back(uncalibrated ? "the sensors at the region's spots have no calibration"
-                                                   : "no spot of the region was measured");
+            record.refusals.push_back(uncalibrated
+                                          ? Text("the sensors at the region's spots have no calibration")
+                                          : Text("no spot of the region was measured"));
             continue;
         }
         auto solved = correct_region(project, region, std::move(observations));
         if (!solved) {
-            record.refusals.push_back("the correction refuses its input: " + solved.error().sentence());
+            record.refusals.push_back(Text("the correction refuses its input: {}", solved.error().text()));
             continue;
         }
         record.correction = std::move(*solved);

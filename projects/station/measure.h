@@ -28,7 +28,7 @@ namespace seamwright {
 // frame keeps only its status. Buffers of `capture` and `peaks` are reused. `model` may be null for finished
 // profiles. Returns the reason when the frame holds nothing to measure.
 SpotStatus capture_frame(const Frame& frame, const PeakOptions& peak_options, const SensorModel* model,
-                         StripePeaks& peaks, Capture& capture, std::string& message);
+                         StripePeaks& peaks, Capture& capture, Text& message);
 
 // Capture -> tracked, filtered profile. Error: the filter's.
 Expected<void> track_capture(const Capture& capture, const FilterOptions& options, Profile& profile);

@@ -62,8 +62,10 @@ Expected<std::vector<int>> regions_of(const Project& setup, const ApplicationPat
     for (std::size_t r = 0; r < setup.regions.size(); ++r)
         if (std::none_of(spots.begin(), spots.end(),
                          [&](const OwnSpot& s) { return s.region == static_cast<int>(r); }))
-            return input_error(Text("the path does not name its regions, and region {} has no spot of its own to go by", setup.regions[r].id),
-                               "path", "add a column region");
+            return input_error(
+                Text("the path does not name its regions, and region {} has no spot of its own to go by",
+                     setup.regions[r].id),
+                "path", "add a column region");
     for (std::size_t i = 0; i < out.size(); ++i) {
         double nearest = std::numeric_limits<double>::infinity();
         for (const OwnSpot& s : spots) {
@@ -81,7 +83,7 @@ class Refusals {
   public:
     explicit Refusals(std::vector<PathRefusal>& list) : list_(list) {}
     void refuse_unless(bool ok, const std::string& region, std::size_t point, const char* kind,
-                       const std::string& reason) {
+                       const Text& reason) {
         if (ok) return;
         const auto [at, fresh] = index_.emplace(std::pair(region, std::string(kind)), list_.size());
         if (fresh) list_.push_back({region, point, 0, reason});
@@ -110,14 +112,13 @@ void judge(const std::vector<const Region*>& regions, PathAnswer& answer) {
         constexpr double kRounding = 1e-9;
         refusals.refuse_unless(
             length <= most_mm + kRounding, id, i, "mm",
-            fmt::format("the displacement of {:.3f} mm is beyond the limit of {:.3f} mm", length, most_mm));
+            Text("the displacement of {:.3f} mm is beyond the limit of {:.3f} mm", length, most_mm));
         refusals.refuse_unless(
             turn <= most_deg + kRounding, id, i, "deg",
-            fmt::format("the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn,
-                        most_deg));
-        refusals.refuse_unless(p.sigma_mm >= 0 && p.sigma_mm <= most_sigma + kRounding, id, i, "sigma",
-                               fmt::format("sigma of {:.4f} mm at the path is over the limit of {:.4f} mm",
-                                           p.sigma_mm, most_sigma));
+            Text("the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn, most_deg));
+        refusals.refuse_unless(
+            p.sigma_mm >= 0 && p.sigma_mm <= most_sigma + kRounding, id, i, "sigma",
+            Text("sigma of {:.4f} mm at the path is over the limit of {:.4f} mm", p.sigma_mm, most_sigma));
     }
 }
 
@@ -150,12 +151,12 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
         const bool solved = found != run.regions.end() && found->correction &&
                             found->correction->status == CorrectionStatus::ok;
         if (!solved || !found->gate_passed) {
-            std::string why = found == run.regions.end() ? "it was not measured in this run"
-                              : found->refusals.empty()  ? "it was not solved"
-                                                         : found->refusals.front();
-            answer.refusals.push_back({region.id, 0, 0, "the safety gate refused it: " + why});
+            Text why = found == run.regions.end() ? Text("it was not measured in this run")
+                       : found->refusals.empty()  ? Text("it was not solved")
+                                                  : found->refusals.front();
+            answer.refusals.push_back({region.id, 0, 0, Text("the safety gate refused it: {}", why)});
         }
-        for (const std::string& none : limits_that_are_none(region))
+        for (const Text& none : limits_that_are_none(region))
             answer.refusals.push_back({region.id, 0, 0, none});
         PathRegion correction;
         if (solved) {

@@ -32,7 +32,8 @@ Expected<ProgramRequest> program_request(const Project& project, const std::stri
             });
         if (!its) continue;
         if (region.frame_name.empty())
-            return input_error("it names no frame on the controller", Text("region {}", region.id), "name one");
+            return input_error("it names no frame on the controller", Text("region {}", region.id),
+                               "name one");
         for (const ApplicationFrame& other : request.frames)
             if (other.name == region.frame_name)
                 return input_error(

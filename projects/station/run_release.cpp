@@ -30,16 +30,15 @@ namespace {
 
 // What became of the permissions, into the record; frames that nobody may run in go back.
 void settle(RunRecord& run, const std::map<std::string, RobotLink*>& robots,
-            const std::map<std::string, RobotRelease>& ended, const std::string& text,
-            const EventSink& record) {
+            const std::map<std::string, RobotRelease>& ended, const Text& text, const EventSink& record) {
     bool unsure = false;
-    std::string reasons;
+    Text reasons;
     for (const auto& [id, outcome] : ended) {
         for (PushRecord* push : pushes_of(run))
             if (push->robot_id == id && push->status == PushStatus::written) push->release = outcome.release;
         if (outcome.release == Release::taken) continue;
         unsure = unsure || outcome.release == Release::given;
-        reasons += fmt::format("{}robot {}: {}", reasons.empty() ? "" : "; ", id, outcome.text);
+        reasons = joined(reasons, "; ", Text("robot {}: {}", id, outcome.text));
     }
     if (reasons.empty()) {
         run.status = RunStatus::ok;
@@ -50,28 +49,28 @@ void settle(RunRecord& run, const std::map<std::string, RobotLink*>& robots,
     restore_frames(run, robots, record, alarm ? EventKind::alarm : EventKind::note);
     for (const PushRecord* push : pushes_of(run)) unsure = unsure || push->status == PushStatus::not_restored;
     if (alarm) {
-        if (unsure) run.message += "; " + reasons;
+        if (unsure) run.message = joined(run.message, "; ", reasons);
         return;
     }
     run.status = unsure ? RunStatus::alarm : RunStatus::not_taken;
-    run.message = (unsure ? "alarm: " : "nothing is released: ") + reasons;
+    run.message = unsure ? Text("alarm: {}", reasons) : Text("nothing is released: {}", reasons);
 }
 
 }  // namespace
 
-void release_run(RunRecord& run, const std::map<std::string, RobotLink*>& robots, const std::string& text,
+void release_run(RunRecord& run, const std::map<std::string, RobotLink*>& robots, const Text& text,
                  const HoldOptions& hold, const EventSink& record) {
     std::map<std::string, RobotLink*> pushed;
     for (const PushRecord* push : pushes_of(run))
         if (push->status == PushStatus::written) pushed[push->robot_id] = robots.at(push->robot_id);
     bool acknowledged = true;
     for (const auto& [id, robot] : robots) {
-        const auto told = robot->confirm(PartVerdict::corrected, text);
+        const auto told = robot->confirm(PartVerdict::corrected, text.english());
         if (told) continue;
         acknowledged = false;
-        (void)record(EventKind::alarm, id,
-                     fmt::format("did not acknowledge \"{}\": {}", to_string(PartVerdict::corrected),
-                                 told.error().sentence()));
+        (void)record(
+            EventKind::alarm, id,
+            Text("did not acknowledge \"{}\": {}", to_string(PartVerdict::corrected), told.error().text()));
     }
     if (acknowledged) return settle(run, robots, await_release(pushed, hold, record), text, record);
     // A part is not corrected with some of its robots.
@@ -96,7 +95,7 @@ Expected<void> record_outcome(RunRecord& run, const std::function<Expected<void>
     if (run.status != RunStatus::ok) return stored;
     run.events.push_back(
         {0, utc_now(), run.number, EventKind::alarm, "file",
-         "it could not be recorded that the application began: " + stored.error().sentence()});
+         Text("it could not be recorded that the application began: {}", stored.error().text())});
     return {};
 }
 

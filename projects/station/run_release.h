@@ -24,7 +24,7 @@ void restore_frames(RunRecord& run, const std::map<std::string, RobotLink*>& rob
 //   ok         all have taken it; message `text`
 //   not_taken  the others have none, their old frames are back
 //   alarm      a robot did not acknowledge, an old frame is not back, or it is not sure what a robot may do
-void release_run(RunRecord& run, const std::map<std::string, RobotLink*>& robots, const std::string& text,
+void release_run(RunRecord& run, const std::map<std::string, RobotLink*>& robots, const Text& text,
                  const HoldOptions& hold, const EventSink& record);
 
 // The outcome of a push, durable: what the file does not take at once it may take a moment later. Success too

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 
+#include "devices/host_time.h"
 #include "projects/file/file_use.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/station/acquire.h"
@@ -14,15 +15,7 @@
 #include "projects/station/run_release.h"
 
 namespace seamwright {
-namespace {
-
-std::int64_t steady_now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 struct Station::Impl {
     ProjectFile file;
@@ -61,10 +54,10 @@ struct Station::Impl {
         StoredMeasurements stored{};
         bool in_file = false;  // the judged run
 
-        void event(EventKind kind, const std::string& subject, const std::string& text) {
+        void event(EventKind kind, const std::string& subject, const Text& text) {
             run.events.push_back({0, utc_now(), 0, kind, subject, text});
         }
-        void progress(std::string text) const {
+        void progress(Text text) const {
             if (options.progress) options.progress({done, total, std::move(text)});
         }
         SpotMeasurement& measurement(const std::string& spot_id) {
@@ -101,8 +94,8 @@ struct Station::Impl {
             job.frames.at(spot.sensor_id)
                 .at(trigger, job.options.limits.frame_timeout, job.options.cancel, [&](const Frame& dropped) {
                     job.event(EventKind::device, spot.sensor_id,
-                              fmt::format("frame {} of spot {} came at spot {} and was dropped",
-                                          dropped.sequence, dropped.spot_id, spot.id));
+                              Text("frame {} of spot {} came at spot {} and was dropped", dropped.sequence,
+                                   dropped.spot_id, spot.id));
                 });
         if (!frame) return tl::unexpected(frame.error());
         SpotMeasurer& measurer = job.measurers.at(spot.id);
@@ -115,7 +108,7 @@ struct Station::Impl {
             job.run.captures.back().image = keep_image((*frame)->image);
         if (result.status != SpotStatus::measured)
             job.event(EventKind::note, spot.id,
-                      fmt::format("not measured ({}): {}", to_string(result.status), result.message));
+                      Text("not measured ({}): {}", to_string(result.status), result.message));
         return {};
     }
 
@@ -139,7 +132,7 @@ struct Station::Impl {
             if (spot == spots.end() || !open.count(trigger->spot_id))
                 return device_error(
                     Text("the robot fired for spot \"{}\", which is {}", trigger->spot_id,
-                                spot == spots.end() ? "not in the measuring program" : "measured already"),
+                         spot == spots.end() ? "not in the measuring program" : "measured already"),
                     Text("robot {}", robot_id), "compare the program on the controller with the project");
             if (auto measured = measure_spot(job, **spot, *trigger); !measured) return measured;
             open.erase(trigger->spot_id);
@@ -224,7 +217,7 @@ struct Station::Impl {
                 if (auto now = it->second->read_frame(region.frame_name))
                     request.base_from_frame_now = *now;
                 else
-                    request.frame_trouble = now.error().sentence();
+                    request.frame_trouble = now.error().text();
             }
         }
         if (const RobotSetup* robot = find_robot(project, robot_id))
@@ -234,7 +227,7 @@ struct Station::Impl {
         for (const PanelJob& other : project.panel_jobs) request.other_frames.push_back(other.frame_name);
         request.calibration_age_days = project.requirements.calibration_age_days;
         request.now_utc = utc_now();
-        request.now_ns = steady_now_ns();
+        request.now_ns = host_now_ns();
         return request;
     }
 
@@ -254,7 +247,7 @@ struct Station::Impl {
                 if (verdict.pass) passes.back().emplace(std::move(*verdict.pass));
             }
             record.gate_passed = passes.back().has_value();
-            for (const std::string& reason : record.refusals)
+            for (const Text& reason : record.refusals)
                 job.event(EventKind::refusal, record.region_id, reason);
         }
         return passes;
@@ -269,7 +262,7 @@ struct Station::Impl {
     Expected<void> store_judged(Job& job) {
         if (job.in_file) return {};
         for (auto& [id, robot] : robots)
-            for (const std::string& notice : robot->take_notices()) job.event(EventKind::device, id, notice);
+            for (const Text& notice : robot->take_notices()) job.event(EventKind::device, id, notice);
         if (auto stored = file.finish_run(job.run, job.stored); !stored) return stored;
         for (EventRecord& event : job.run.events) event.run = job.run.number;
         job.in_file = true;
@@ -278,8 +271,7 @@ struct Station::Impl {
 
     // Durable. The first event of a push takes the judged run with it into the file: one wait for the disk
     // while the robot waits, not two.
-    Expected<void> record_event(Job& job, EventKind kind, const std::string& subject,
-                                const std::string& text) {
+    Expected<void> record_event(Job& job, EventKind kind, const std::string& subject, const Text& text) {
         if (!job.in_file) {
             job.event(kind, subject, text);
             return store_judged(job);
@@ -296,14 +288,14 @@ struct Station::Impl {
     bool confirm_all(Job& job, PartVerdict verdict) {
         bool all = true;
         for (const std::string& id : job.started_robots) {
-            auto told = robots.at(id)->confirm(verdict, job.run.message);
+            auto told = robots.at(id)->confirm(verdict, job.run.message.english());
             if (told) continue;
             all = false;
             // The run's record stands either way; a file that takes no event has its own Error at the next
             // save.
             (void)record_event(
                 job, EventKind::alarm, id,
-                fmt::format("did not acknowledge \"{}\": {}", to_string(verdict), told.error().sentence()));
+                Text("did not acknowledge \"{}\": {}", to_string(verdict), told.error().text()));
         }
         return all;
     }
@@ -328,7 +320,7 @@ struct Station::Impl {
     }
 
     EventSink sink(Job& job) {
-        return [this, &job](EventKind kind, const std::string& subject, const std::string& text) {
+        return [this, &job](EventKind kind, const std::string& subject, const Text& text) {
             return record_event(job, kind, subject, text);
         };
     }
@@ -354,9 +346,8 @@ struct Station::Impl {
             region.push = push_region(std::move(*passes[i]), robot_of(project.regions[i]), sink(job));
             region.push.robot_id = find_spot(project, project.regions[i].spot_ids.front())->robot_id;
             alarm = region.push.status != PushStatus::written;
-            if (alarm)
-                job.run.message = Text("alarm: region {}: {}", region.region_id, region.push.message);
-            job.progress(fmt::format("region {}: {}", region.region_id, to_string(region.push.status)));
+            if (alarm) job.run.message = Text("alarm: region {}: {}", region.region_id, region.push.message);
+            job.progress(Text("region {}: {}", region.region_id, to_string(region.push.status)));
         }
         if (alarm) job.run.status = RunStatus::alarm;
         return !alarm;
@@ -388,33 +379,33 @@ struct Station::Impl {
         for (RegionRecord& region : job.run.regions) region.push.release = Release::given;
         if (auto stored = store_outcome(job); !stored) {
             job.run.status = RunStatus::alarm;
-            job.run.message = Text("alarm: the push cannot be recorded: {}", stored.error().sentence());
+            job.run.message = Text("alarm: the push cannot be recorded: {}", stored.error().text());
             return take_frames_back(job);
         }
         const HoldOptions hold{job.options.hold, job.options.cancel, job.options.part_over,
-                               [&](const std::string& text) { job.progress(text); }};
+                               [&](const Text& text) { job.progress(text); }};
         release_run(job.run, links(job.started_robots),
-                    fmt::format("regions corrected and pushed: {}", job.run.regions.size()), hold, sink(job));
+                    Text("regions corrected and pushed: {}", job.run.regions.size()), hold, sink(job));
     }
 
-    static std::string verdict(const RunRecord& run) {
+    static Text verdict(const RunRecord& run) {
         const auto regions = run.regions.size();
         switch (run.status) {
             case RunStatus::ok:
-                return run.push ? fmt::format("regions corrected and pushed: {}", regions)
-                                : fmt::format("regions corrected, nothing pushed (dry run): {}", regions);
+                return run.push ? Text("regions corrected and pushed: {}", regions)
+                                : Text("regions corrected, nothing pushed (dry run): {}", regions);
             case RunStatus::pushed:
-                return fmt::format(
+                return Text(
                     "regions corrected and pushed: {}; whether the application began is not "
                     "recorded yet",
                     regions);
             case RunStatus::refused: {
-                std::string text;
+                Text text;
                 for (const RegionRecord& region : run.regions)
                     if (!region.gate_passed && !region.refusals.empty())
-                        text += (text.empty() ? "" : "; ") +
-                                fmt::format("region {}: {}", region.region_id, region.refusals.front());
-                return "refused: " + text;
+                        text = joined(text, "; ",
+                                      Text("region {}: {}", region.region_id, region.refusals.front()));
+                return Text("refused: {}", text);
             }
             case RunStatus::cancelled:
                 return "cancelled";
@@ -498,32 +489,32 @@ Expected<void> Station::connect(const Patience& patience) {
         if (!use) return tl::unexpected(use.error());
         i.use = std::move(*use);
     }
-    const auto give_up = [&](Error error, const std::string& where) {
+    const auto give_up = [&](Error error, const Text& where) {
         i.disconnect();
-        error.where = error.where.empty() ? where : where + ": " + error.where;
+        error.within(where);
         return tl::unexpected(std::move(error));
     };
     for (const SensorSetup& setup : i.project.sensors) {
         auto sensor = open_sensor(setup.driver, setup.settings, i.session, patience);
-        if (!sensor) return give_up(sensor.error(), "sensor " + setup.id);
+        if (!sensor) return give_up(sensor.error(), Text("sensor {}", setup.id));
         if (i.recorder) {
             auto source = i.recorded_as("sensor " + setup.id, [&] {
                 return i.recorder->add_sensor(setup.id, (*sensor)->identity());
             });
-            if (!source) return give_up(source.error(), "sensor " + setup.id);
+            if (!source) return give_up(source.error(), Text("sensor {}", setup.id));
             *sensor = record_sensor(std::move(*sensor), i.recorder, *source);
         }
         i.sensors[setup.id] = std::move(*sensor);
     }
     for (const RobotSetup& setup : i.project.robots) {
         auto robot = open_robot(setup.driver, setup.settings, i.session);
-        if (!robot) return give_up(robot.error(), "robot " + setup.id);
+        if (!robot) return give_up(robot.error(), Text("robot {}", setup.id));
         auto identity = (*robot)->identity();
-        if (!identity) return give_up(identity.error(), "robot " + setup.id);
+        if (!identity) return give_up(identity.error(), Text("robot {}", setup.id));
         if (i.recorder) {
             auto source = i.recorded_as("robot " + setup.id,
                                         [&] { return i.recorder->add_robot(setup.id, *identity); });
-            if (!source) return give_up(source.error(), "robot " + setup.id);
+            if (!source) return give_up(source.error(), Text("robot {}", setup.id));
             *robot = record_robot(std::move(*robot), i.recorder, *source);
         }
         i.robots[setup.id] = std::move(*robot);
@@ -587,7 +578,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     run.number = *number;
     if (run.part_id.empty()) run.part_id = fmt::format("run {}", run.number);
     run.status = RunStatus::ok;
-    job.part_since_ns = steady_now_ns();
+    job.part_since_ns = host_now_ns();
     job.total = static_cast<int>(run.spots.size());
 
     auto measured = i.measure_all(job);
@@ -596,10 +587,10 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     std::vector<std::optional<GatePass>> passes;
     if (!measured && !cancelled) {
         run.status = RunStatus::device;
-        run.message = measured.error().sentence();
+        run.message = measured.error().text();
         job.event(EventKind::device, "run", run.message);
         for (RegionRecord& region : run.regions)
-            region.refusals.push_back("the measuring was not finished: " + run.message);
+            region.refusals.push_back(Text("the measuring was not finished: {}", run.message));
     } else if (cancelled) {
         run.status = RunStatus::cancelled;
         job.event(EventKind::note, "run", "cancelled");

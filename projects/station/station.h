@@ -31,7 +31,7 @@ namespace seamwright {
 
 struct RunProgress {
     int done = 0, total = 0;  // spots
-    Text text;         // "S3 measured", "region left: pushed"
+    Text text;                // "S3 measured", "region left: pushed"
 };
 
 struct RunOptions {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 
@@ -56,12 +57,6 @@ Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<
     return {};
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 Pose flange_from_sensor(const Station& station, const Spot& spot) {
     const Calibration* calibration = calibration_of(station.project(), spot);
     return calibration ? calibration->flange_from_sensor : Pose::Identity();
@@ -86,7 +81,7 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
     if (!measured) return tl::unexpected(measured.error());
 
     std::vector<std::size_t> found;
-    std::string reason;
+    Text reason;
     for (std::size_t i = 0; i < taught.measurements.size(); ++i) {
         if (taught.measurements[i].status == SpotStatus::measured)
             found.push_back(i);
@@ -95,7 +90,7 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
     }
     if (2 * found.size() < taught.measurements.size())
         return input_error(Text("the feature was found in {} of {} measurements ({})", found.size(),
-                                       options.repeats, reason),
+                                options.repeats, reason),
                            Text("spot {}", draft.id), "choose another feature or move the sensor");
 
     // A reflection that took the feature once must not pull the reference: what lies far from the median is

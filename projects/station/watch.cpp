@@ -46,7 +46,7 @@ class Watch {
             if (auto part = measure((*start)->part_id); !part) return tl::unexpected(part.error());
         }
         state_ = WatchState::stopped;
-        tell("info", "stopped", fmt::format("stopped after {} parts", counts_.parts));
+        tell("info", "stopped", Text("stopped after {} parts", counts_.parts));
         return counts_;
     }
 
@@ -55,7 +55,7 @@ class Watch {
         return options_.cancel.stop_requested() || (options_.parts > 0 && counts_.parts >= options_.parts);
     }
 
-    void tell(std::string level, std::string event, std::string text,
+    void tell(std::string level, std::string event, Text text,
               nlohmann::json data = nlohmann::json::object()) {
         if (!options_.tell) return;
         options_.tell({utc_now(), std::move(level), std::move(event), std::move(text), std::move(data),
@@ -73,15 +73,16 @@ class Watch {
     }
 
     // An outage is told and recorded once, however many attempts it lasts.
-    void lost(const std::string& subject, const Error& error) {
+    void lost(const Text& subject, const Error& error) {
         if (state_ != WatchState::lost) {
             state_ = WatchState::lost;
             ++counts_.lost;
             // An event that the file does not take is told all the same; the next run's record shows the
             // file's Error.
             (void)station_.file().append_event(
-                {0, utc_now(), 0, EventKind::alarm, subject, "lost: " + error.sentence()});
-            tell("alarm", "lost", subject + " is lost: " + error.sentence(), {{"device", subject}});
+                {0, utc_now(), 0, EventKind::alarm, subject.english(), Text("lost: {}", error.text())});
+            tell("alarm", "lost", Text("{} is lost: {}", subject, error.text()),
+                 {{"device", subject.english()}});
         }
         pause();
     }
@@ -121,8 +122,8 @@ class Watch {
             auto start = called_ && called_->first == setup.id
                              ? Expected<StartSignal>(std::exchange(called_, std::nullopt)->second)
                              : robot->wait_start(slice);
-            for (const std::string& notice : robot->take_notices())
-                tell("warning", "robot", "robot " + setup.id + ": " + notice);
+            for (const Text& notice : robot->take_notices())
+                tell("warning", "robot", Text("robot {}: {}", setup.id, notice));
             if (start) {
                 ready();
                 newest(*robot, setup.id, *start);
@@ -131,7 +132,7 @@ class Watch {
             }
             if (start.error().kind == ErrorKind::usage) return tl::unexpected(start.error());
             if (!is_silence(start.error())) {
-                lost("robot " + setup.id, start.error());
+                lost(Text("robot {}", setup.id), start.error());
                 return std::nullopt;
             }
         }
@@ -142,7 +143,7 @@ class Watch {
     // The newest of the calls that wait.
     void newest(RobotLink& robot, const std::string& id, StartSignal& start) {
         while (auto newer = robot.wait_start(std::chrono::milliseconds(0))) {
-            missed(id, start, fmt::format("part {}: a newer call came before it was measured", name(start)));
+            missed(id, start, Text("part {}: a newer call came before it was measured", name(start)));
             start = *newer;
         }
     }
@@ -153,16 +154,15 @@ class Watch {
         const auto age =
             std::chrono::steady_clock::now().time_since_epoch() - std::chrono::nanoseconds(called_ns);
         if (called_ns == 0 || age <= options_.start_expiry) return false;
-        const std::string why =
-            fmt::format("part {}: the call may be {:.0f} s old, another part may stand there; call again",
-                        name(start), std::chrono::duration<double>(age).count());
+        const Text why("part {}: the call may be {:.0f} s old, another part may stand there; call again",
+                       name(start), std::chrono::duration<double>(age).count());
         missed(id, start, why);
-        if (auto told = robot.confirm(PartVerdict::refused, why); !told)
-            tell("warning", "robot", "robot " + id + ": " + told.error().sentence());
+        if (auto told = robot.confirm(PartVerdict::refused, why.english()); !told)
+            tell("warning", "robot", Text("robot {}: {}", id, told.error().text()));
         return true;
     }
 
-    void missed(const std::string& id, const StartSignal& start, const std::string& why) {
+    void missed(const std::string& id, const StartSignal& start, const Text& why) {
         ++counts_.missed;
         (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, "robot " + id, why});
         tell("warning", "missed", why, {{"part", start.part_id}});
@@ -175,7 +175,8 @@ class Watch {
     Expected<void> measure(const std::string& part_id) {
         state_ = WatchState::measuring;
         ++counts_.parts;
-        tell("info", "start", "part " + (part_id.empty() ? "(no name)" : part_id), {{"part", part_id}});
+        tell("info", "start", Text("part {}", part_id.empty() ? Text("(no name)") : Text(part_id)),
+             {{"part", part_id}});
         RunOptions run;
         run.part_id = part_id;
         run.push = options_.push;
@@ -213,7 +214,7 @@ class Watch {
         tell(alarm || record->status == RunStatus::device ? "alarm"
              : record->status == RunStatus::ok            ? "info"
                                                           : "warning",
-             "run", fmt::format("part {}: {}", record->part_id, record->message), std::move(data));
+             "run", Text("part {}: {}", record->part_id, record->message), std::move(data));
         return forget_old_runs();
     }
 

@@ -31,7 +31,7 @@ struct WatchEvent {
     std::string utc;    // ISO 8601
     std::string level;  // info | warning | alarm
     std::string event;  // connected | lost | back | robot | start | missed | spot | run | stopped
-    Text text;   // one sentence
+    Text text;          // one sentence
     nlohmann::json data = nlohmann::json::object();
     WatchState state = WatchState::connecting;
     WatchCounts counts;

@@ -32,7 +32,7 @@ struct FakeCell {
     std::map<std::string, Pose> reported, actual;
 
     // Faults.
-    std::vector<std::string> notices;  // the robot link tells them once
+    std::vector<Text> notices;  // the robot link tells them once
     std::string silent_sensor_at, silent_robot_at, damaged_at, empty_at, wrong_spot_at;
     SensorIdentity sensor_identity{"fake", "Seamwright", "S1", "0001"};
     RobotIdentity robot_identity{"fake", "KUKA", "KR", "0002"};
@@ -125,7 +125,7 @@ class FakeRobot : public RobotLink {
     explicit FakeRobot(FakeCell& cell) : cell_(cell) {}
     Expected<RobotIdentity> identity() override { return cell_.robot_identity; }
     Expected<RobotMode> mode() override { return cell_.mode; }
-    std::vector<std::string> take_notices() override { return std::exchange(cell_.notices, {}); }
+    std::vector<Text> take_notices() override { return std::exchange(cell_.notices, {}); }
     Expected<Pose> base_from_flange() override { return Pose::Identity(); }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         moves_ = moves;

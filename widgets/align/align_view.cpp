@@ -13,6 +13,7 @@
 
 #include "widgets/align/align_canvas.h"
 #include "widgets/align/cure_arrow.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -223,7 +224,7 @@ void AlignView::set_result(std::span<const TravelProfile> pass, const AlignmentR
     const bool drifting = result.status == AlignmentStatus::drifting;
     impl_->arrow->set_cure(result.cure_about_z_deg, result.cure_about_x_deg, drifting);
     impl_->arrow->setVisible(drifting);
-    const QString cure = QString::fromStdString(result.cure);
+    const QString cure = shown(result.cure);
     switch (result.status) {
         case AlignmentStatus::frozen:
             impl_->say(tr("FROZEN"), tr("The contour stands still within the tolerance."), Impl::Mood::good,

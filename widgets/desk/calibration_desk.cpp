@@ -11,7 +11,7 @@
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/answer.h"
 #include "projects/station/measure.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 namespace {
@@ -96,7 +96,7 @@ Expected<void> CalibrationDesk::open(const std::string& method, const std::strin
     auto session = CalibrationSession::open(desk_.path(), method, sensor_id, robot_id);
     if (!session) return tl::unexpected(session.error());
     session_ = std::move(*session);
-    for (const std::string& notice : session_->notices()) emit refused(QString::fromStdString(notice));
+    for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())
         if (auto settings = prepared_settings(session_->method(), session_->state().settings, base());
             settings && *settings != session_->state().settings)
@@ -341,8 +341,7 @@ void CalibrationDesk::load(const std::filesystem::path& path) {
             if (generation != generation_) return;
             set_doing({});
             if (!*read) return emit refused(shown_error(read->error()));
-            for (const std::string& sentence : (*read)->skipped)
-                emit refused(QString::fromStdString(sentence));
+            for (const Text& sentence : (*read)->skipped) emit refused(shown(sentence));
             take_captures(std::move((*read)->captures), std::move((*read)->settings), false,
                           tr("Load %1").arg(QString::fromStdString(path.filename().string())));
         });

@@ -10,7 +10,7 @@
 #include "projects/file/project_json.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 namespace {
@@ -27,11 +27,11 @@ Expected<void> valid(const Project&, const T&) {
 }
 Expected<void> known_devices(const Project& project, const Spot& spot) {
     if (!find_sensor(project, spot.sensor_id))
-        return input_error(Text("the sensor \"{}\" is not in the project", spot.sensor_id), Text("spot {}", spot.id),
-                           "choose one of the project's");
+        return input_error(Text("the sensor \"{}\" is not in the project", spot.sensor_id),
+                           Text("spot {}", spot.id), "choose one of the project's");
     if (!find_robot(project, spot.robot_id))
-        return input_error(Text("the robot \"{}\" is not in the project", spot.robot_id), Text("spot {}", spot.id),
-                           "choose one of the project's");
+        return input_error(Text("the robot \"{}\" is not in the project", spot.robot_id),
+                           Text("spot {}", spot.id), "choose one of the project's");
     return {};
 }
 template <>
@@ -47,7 +47,8 @@ Expected<void> valid<Region>(const Project& project, const Region& region) {
         if (!find_spot(project, id))
             return input_error(Text("there is no spot \"{}\"", id), Text("region {}", region.id));
     if (std::none_of(region.free.begin(), region.free.end(), [](bool f) { return f; }))
-        return input_error("no degree of freedom is free", Text("region {}", region.id), "leave at least one free");
+        return input_error("no degree of freedom is free", Text("region {}", region.id),
+                           "leave at least one free");
     if (auto rigid = pose_from_matrix(region.base_from_frame.matrix(), "region " + region.id); !rigid)
         return tl::unexpected(rigid.error());
     return validate_fields(region);
@@ -56,7 +57,8 @@ template <>
 Expected<void> valid<SensorSetup>(const Project&, const SensorSetup& sensor) {
     const auto& drivers = sensor_drivers();
     if (std::none_of(drivers.begin(), drivers.end(), [&](const auto& d) { return d.name == sensor.driver; }))
-        return input_error(Text("the driver \"{}\" is not known", sensor.driver), Text("sensor {}", sensor.id));
+        return input_error(Text("the driver \"{}\" is not known", sensor.driver),
+                           Text("sensor {}", sensor.id));
     return check(sensor.filter);
 }
 template <>
@@ -88,12 +90,12 @@ std::string now_utc() {
 }
 
 // Who is in trouble, by name.
-std::vector<std::string> troubles(const StationState& state) {
-    std::vector<std::string> names;
+std::vector<Text> troubles(const StationState& state) {
+    std::vector<Text> names;
     for (const SensorState& s : state.sensors)
-        if (!s.trouble.empty()) names.push_back("sensor " + s.id);
+        if (!s.trouble.empty()) names.push_back(Text("sensor {}", s.id));
     for (const RobotState& r : state.robots)
-        if (!r.trouble.empty()) names.push_back("robot " + r.id);
+        if (!r.trouble.empty()) names.push_back(Text("robot {}", r.id));
     return names;
 }
 
@@ -244,13 +246,12 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
         recovery_ = std::move(*found);
     } else if (const auto aside = set_aside_recovery(path)) {
         told = tr("The unsaved edits of an earlier session cannot be read (%1). They were set aside as %2.")
-                   .arg(QString::fromStdString(found.error().what),
-                        QString::fromStdString(aside->filename().string()));
+                   .arg(shown(found.error().what), QString::fromStdString(aside->filename().string()));
     } else {
         told = tr("The unsaved edits of an earlier session cannot be read (%1). They stand in the way of "
                   "those of "
                   "this session, which are not kept against a crash: %2")
-                   .arg(QString::fromStdString(found.error().what), shown_error(aside.error()));
+                   .arg(shown(found.error().what), shown_error(aside.error()));
     }
     take_over(std::move(*file), std::move(*project));
     if (use) use_ = std::move(*use);

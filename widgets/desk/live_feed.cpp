@@ -1,7 +1,7 @@
 #include "widgets/desk/live_feed.h"
 
 #include "core/features/feature.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 
@@ -27,23 +27,22 @@ struct LiveFeed::Lane {
 namespace {
 
 // Frame -> peaks -> candidates -> tracked profile; the reason when there is none.
-std::string convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandidates& candidates,
-                    LiveSnapshot& snapshot) {
-    if (frame.status != FrameStatus::ok)
-        return shown_cause("damaged frame: " + std::string(to_string(frame.status))).toStdString();
+Text convert(const Frame& frame, const LiveRecipe& recipe, ProfileCandidates& candidates,
+             LiveSnapshot& snapshot) {
+    if (frame.status != FrameStatus::ok) return Text("damaged frame: {}", to_string(frame.status));
     if (frame.profile.size() > 0) {
         snapshot.profile = frame.profile;
         if (auto filtered = filter_profile(snapshot.profile, recipe.filter); !filtered)
-            return shown_error(filtered.error()).toStdString();
+            return filtered.error().text();
         return {};
     }
-    if (frame.image.empty()) return shown_cause("the frame is empty").toStdString();
+    if (frame.image.empty()) return "the frame is empty";
     if (auto found = find_peaks(frame.image, recipe.peaks, snapshot.peaks); !found)
-        return shown_error(found.error()).toStdString();
-    if (!recipe.model) return shown_cause("no calibration: the image has no millimetres").toStdString();
+        return found.error().text();
+    if (!recipe.model) return "no calibration: the image has no millimetres";
     to_millimetres(snapshot.peaks, *recipe.model, candidates);
     if (auto tracked = track_stripe(candidates, recipe.filter, snapshot.profile); !tracked)
-        return shown_error(tracked.error()).toStdString();
+        return tracked.error().text();
     return {};
 }
 

@@ -42,7 +42,7 @@ struct LiveSnapshot {
     StripePeaks peaks;               // of the image
     double rate_hz = 0;              // frames of the source, by their numbers
     SourceCounters counters;
-    std::string trouble;  // why there is no profile; empty when there is one
+    Text trouble;  // why there is no profile; empty when there is one
 };
 
 inline constexpr std::chrono::milliseconds kShownFor{1000}, kHiddenPeriod{500}, kSearchAtLeast{200};

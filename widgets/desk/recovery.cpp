@@ -6,7 +6,7 @@
 
 #include "projects/file/project_json.h"
 #include "widgets/desk/commands.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 namespace {
@@ -87,7 +87,8 @@ Expected<std::filesystem::path> set_aside_recovery(const std::filesystem::path& 
         aside = fmt::format("{}-{}", name, n);
     std::filesystem::rename(path, aside, failed);
     if (failed)
-        return file_error(Text("the file cannot be renamed: {}", failed.message()), path.string(), "move it away");
+        return file_error(Text("the file cannot be renamed: {}", failed.message()), path.string(),
+                          "move it away");
     std::error_code none;  // a journal belongs to its file
     std::filesystem::rename(path.string() + "-journal", aside.string() + "-journal", none);
     return aside;
@@ -183,7 +184,7 @@ void RecoveryWriter::work(const std::stop_token& stop) {
                             told = RecoveryText::tr(
                                        "The file that keeps unsaved edits went bad (%1). It was set "
                                        "aside as %2 and begun anew.")
-                                       .arg(QString::fromStdString(opens.error().what),
+                                       .arg(shown(opens.error().what),
                                             QString::fromStdString(aside->filename().string()));
                             made = ProjectFile::create(path, *project, true);
                         }

@@ -7,7 +7,7 @@
 
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 namespace {
@@ -23,7 +23,7 @@ struct StationWorker::Live {
     struct Sensor {
         ProfileSource* source;
         SoftwareTriggered by_software;
-        std::string trouble;
+        Text trouble;
         bool ended = false;
     };
     std::map<std::string, Sensor> sensors;
@@ -98,7 +98,7 @@ void StationWorker::post(const QString& what, Task task) {
 }
 
 std::function<void(const RunProgress&)> StationWorker::progress_sink() {
-    return [this](const RunProgress& p) { emit progressed(p.done, p.total, QString::fromStdString(p.text)); };
+    return [this](const RunProgress& p) { emit progressed(p.done, p.total, shown(p.text)); };
 }
 
 void StationWorker::attach_feed(Station& station) {
@@ -114,7 +114,7 @@ void StationWorker::connect_devices() {
         connect_trouble_.clear();
         auto connected = station.connect({.cancel = cancel});
         if (!connected) {
-            connect_trouble_ = shown_error(connected.error()).toStdString();
+            connect_trouble_ = connected.error().text();
             emit failed(shown_error(tr("The devices were not connected."), connected.error()));
         } else {
             // A simulated robot that stands nowhere yet goes to the first spot, so that there is something to
@@ -325,7 +325,8 @@ Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, 
     shot.sensor_id = sensor_id;
     shot.robot_id = robot_id;
     ProfileSource* sensor = station.sensor(sensor_id);
-    if (!sensor) return device_error("the sensor is not connected", Text("sensor {}", sensor_id), "connect it");
+    if (!sensor)
+        return device_error("the sensor is not connected", Text("sensor {}", sensor_id), "connect it");
     RobotLink* robot = robot_id.empty() ? nullptr : station.robot(robot_id);
     if (!robot_id.empty() && !robot)
         return device_error("the robot is not connected", Text("robot {}", robot_id), "connect it");
@@ -426,7 +427,7 @@ void StationWorker::publish(Station& station) {
         if (auto mode = robot->mode())
             r.mode = *mode;
         else
-            r.trouble = shown_error(mode.error()).toStdString();
+            r.trouble = mode.error().text();
         if (r.trouble.empty())
             if (auto at = robot->base_from_flange()) r.base_from_flange = *at;
         state->robots.push_back(std::move(r));
@@ -455,14 +456,14 @@ void StationWorker::idle(Station& station) {
     for (auto& [id, sensor] : live_->sensors) {
         if (sensor.ended) continue;
         if (auto fired = sensor.source->trigger(""); !fired) {
-            sensor.trouble = shown_error(fired.error()).toStdString();
+            sensor.trouble = fired.error().text();
             continue;
         }
         auto frame = sensor.source->wait_next(kLiveFrame);
         if (frame) {
             sensor.trouble.clear();
         } else {
-            sensor.trouble = shown_error(frame.error()).toStdString();
+            sensor.trouble = frame.error().text();
             sensor.ended = frame.error().code == ErrorCode::end_of_recording;
         }
     }

@@ -31,7 +31,7 @@ struct SensorState {
     SourceCounters counters;
     std::vector<ParameterInfo> parameters;  // of the device: exposure_us, ...
     ParameterValues values;
-    std::string trouble;  // why no frames come; empty when they do
+    Text trouble;  // why no frames come; empty when they do
 };
 
 struct RobotState {
@@ -39,14 +39,14 @@ struct RobotState {
     RobotIdentity identity;
     RobotMode mode = RobotMode::unknown;
     std::optional<Pose> base_from_flange;
-    std::string trouble;  // why it does not answer
+    Text trouble;  // why it does not answer
 };
 
 struct StationState {
     bool connected = false;
     std::vector<SensorState> sensors;
     std::vector<RobotState> robots;
-    std::string trouble;  // of the last attempt to connect
+    Text trouble;  // of the last attempt to connect
 };
 
 struct PassResult {
@@ -137,7 +137,7 @@ class StationWorker : public QObject {
     std::optional<bool> push_answer_;
     std::unique_ptr<Live> live_;
     std::optional<Station> station_;
-    std::string connect_trouble_;
+    Text connect_trouble_;
     std::jthread thread_;
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -42,7 +43,7 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
     impl_->info = info;
     impl_->value = info.default_value;
     const QString name = shown_word(info.name);
-    const QString help = shown_sentence(info.help);
+    const QString help = shown(Text::chosen(info.help));
     setAccessibleName(name);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(0, 0, 0, 0);

@@ -12,7 +12,7 @@
 #include <array>
 
 #include "widgets/editors/parameter_editor.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 
 namespace seamwright {

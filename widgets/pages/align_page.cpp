@@ -5,6 +5,7 @@
 #include "projects/station/measure.h"
 #include "projects/station/teach.h"
 #include "widgets/editors/number_box.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 
@@ -148,7 +149,7 @@ void AlignPage::show_result() {
                  number(r.expected_error_mm, 3));
     if (!pass_->curve)
         text += "\n" + tr("The feature was found in too few profiles to learn the contour's curve.");
-    if (!r.cure.empty()) text += "\n" + tr("To cure: %1").arg(QString::fromStdString(r.cure));
+    if (!r.cure.empty()) text += "\n" + tr("To cure: %1").arg(shown(r.cure));
     numbers_->setText(text);
 }
 

@@ -8,7 +8,7 @@
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 namespace {
@@ -162,7 +162,7 @@ void CalibratePage::refresh() {
         set_verdict(*verdict, tr("%1, %2").arg(verdict_word(c.verdict), age_of(c.created_utc)),
                     tone_of(c.verdict));
         box->addWidget(
-            make_text(tr("Method %1. From: %2").arg(shown_cause(c.method), shown_cause(c.source))));
+            make_text(tr("Method %1. From: %2").arg(shown(Text::chosen(c.method)), shown(c.source))));
         const Eigen::Vector3d t = c.flange_from_sensor.translation();
         box->addWidget(make_text(tr("flange_from_sensor  X %1  Y %2  Z %3 mm")
                                      .arg(number(t.x(), 2), number(t.y(), 2), number(t.z(), 2))));

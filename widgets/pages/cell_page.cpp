@@ -10,6 +10,7 @@
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
 #include "widgets/editors/parameter_editor.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -173,7 +174,7 @@ void CellPage::refresh() {
         for (const SensorState& k : s.sensors)
             if (k.id == sensor.id)
                 state = k.trouble.empty() ? tr("ok, %1 frames").arg(k.counters.completed)
-                                          : tr("no frame: %1").arg(QString::fromStdString(k.trouble));
+                                          : tr("no frame: %1").arg(shown(k.trouble));
         rows << QStringList{QString::fromStdString(sensor.id), tr("sensor"),
                             QString::fromStdString(sensor.driver), state};
     }
@@ -182,7 +183,7 @@ void CellPage::refresh() {
         for (const RobotState& k : s.robots)
             if (k.id == robot.id)
                 state = k.trouble.empty() ? tr("ok, %1").arg(shown_word(to_string(k.mode)))
-                                          : tr("silent: %1").arg(QString::fromStdString(k.trouble));
+                                          : tr("silent: %1").arg(shown(k.trouble));
         rows << QStringList{QString::fromStdString(robot.id), tr("robot"),
                             QString::fromStdString(robot.driver), state};
     }
@@ -216,10 +217,10 @@ void CellPage::show_device() {
     QString identity;
     if (sensor)
         for (const SensorDriver& d : sensor_drivers())
-            driver_->addItem(QString::fromStdString(std::string(d.name)), shown_sentence(d.help));
+            driver_->addItem(QString::fromStdString(std::string(d.name)), shown(Text::chosen(d.help)));
     else
         for (const RobotDriver& d : robot_drivers())
-            driver_->addItem(QString::fromStdString(std::string(d.name)), shown_sentence(d.help));
+            driver_->addItem(QString::fromStdString(std::string(d.name)), shown(Text::chosen(d.help)));
     for (int i = 0; i < driver_->count(); ++i) driver_->setItemData(i, driver_->itemData(i), Qt::ToolTipRole);
     const auto show = [&](const auto& setup, const std::string& model) {
         driver_->setCurrentText(QString::fromStdString(setup.driver));

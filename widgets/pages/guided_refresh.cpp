@@ -6,13 +6,14 @@
 
 #include "core/geometry/notation.h"
 #include "projects/calibrate/answer.h"
+#include "projects/file/stored_text.h"
 #include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
-#include "widgets/errors.h"
 #include "widgets/pages/form.h"
 #include "widgets/pages/guided_page.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 
 namespace seamwright {
@@ -200,7 +201,7 @@ void GuidedPage::refresh_table() {
             auto* item = new QTableWidgetItem(cells[k]);
             item->setTextAlignment((k == 0 || k == 4 ? Qt::AlignLeft : Qt::AlignRight) | Qt::AlignVCenter);
             item->setToolTip(r.note.empty() ? text(c.taken->origin + "  " + c.taken->taken_utc)
-                                            : text(r.note));
+                                            : shown(r.note));
             if (tone != Tone::plain) {
                 QFont font = table_->font();
                 font.setBold(true);
@@ -317,12 +318,11 @@ void GuidedPage::refresh_verdict() {
     QStringList lines;
     if (s.method().capture == CaptureKind::board_chain)
         for (const json& sensor : r->value("sensors", json::array()))
-            lines << text(sensor.value("reason", ""));
+            lines << shown(text_in(sensor, "reason"));
     else
-        lines << text(r->value("reason", ""));
-    if (const std::string cure = r->value("cure", ""); !cure.empty()) lines << tr("Cure: %1").arg(text(cure));
-    for (const json& notice : r->value("notices", json::array()))
-        if (notice.is_string()) lines << text(notice.get<std::string>());
+        lines << shown(text_in(*r, "reason"));
+    if (const Text cure = text_in(*r, "cure"); !cure.empty()) lines << tr("Cure: %1").arg(shown(cure));
+    for (const Text& notice : texts_in(*r, "notices")) lines << shown(notice);
     reason_->setText(lines.join("\n"));
     QVector<QStringList> rows;
     for (const json& p : r->value("parameters", json::array())) {

@@ -7,7 +7,7 @@
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "widgets/editors/number_box.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -24,13 +24,13 @@ QString first_refusal(const KnownShift& proof, const std::string& region_id) {
         for (const ShiftOutcome& o : test.regions)
             if (o.region_id == region_id && !o.ok && !o.message.empty())
                 return QStringLiteral(". ") + q(shift_name(test, proof)) + QStringLiteral(": ") +
-                       shown_cause(o.message);
+                       shown(o.message);
     return {};
 }
 QString first_refusal(Desk& desk, const ZeroShift& zero) {
     for (const std::int64_t number_of_run : zero.runs)
         if (const auto run = desk.run(number_of_run); run && run->status != RunStatus::ok)
-            return QStringLiteral(". ") + shown_cause(run->message);
+            return QStringLiteral(". ") + shown(run->message);
     return {};
 }
 

@@ -7,7 +7,7 @@
 #include "projects/proof/known_shift.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -200,7 +200,7 @@ void RegionsPage::refresh() {
 void RegionsPage::show_plan(const Region& r) {
     const auto forecast = forecast_region(desk_.project(), r);
     if (!forecast) {
-        set_verdict(*verdict_, shown_cause(forecast.error().what), Tone::attention);
+        set_verdict(*verdict_, shown(forecast.error().what), Tone::attention);
         set_rows(*plan_, {});
         advice_->clear();
         return;
@@ -210,8 +210,7 @@ void RegionsPage::show_plan(const Region& r) {
     if (plan->status != CorrectionStatus::ok)
         set_verdict(*verdict_,
                     tr("under-determined: %1")
-                        .arg(QString::fromStdString(plan->unobservable.empty() ? plan->weakest
-                                                                               : plan->unobservable.front())),
+                        .arg(shown(plan->unobservable.empty() ? plan->weakest : plan->unobservable.front())),
                     Tone::alarm);
     else
         set_verdict(
@@ -238,7 +237,7 @@ void RegionsPage::show_plan(const Region& r) {
     }
     set_rows(*plan_, rows);
     QString text;
-    if (plan->status != CorrectionStatus::ok) text = shown_cause(plan->advice);
+    if (plan->status != CorrectionStatus::ok) text = shown(plan->advice);
     constexpr std::size_t kMostCures = 3;
     for (std::size_t i = 0; i < std::min(kMostCures, forecast->cures.size()); ++i) {
         const Cure& cure = forecast->cures[i];

@@ -13,7 +13,7 @@
 #include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
 #include "projects/station/measure.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -264,7 +264,7 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
     set_verdict(*verdict_,
                 tr("Run %1, part %2: %3. %4")
                     .arg(r.number)
-                    .arg(QString::fromStdString(r.part_id), status_text(r.status), shown_cause(r.message)),
+                    .arg(QString::fromStdString(r.part_id), status_text(r.status), shown(r.message)),
                 tone_of(r.status));
     QVector<QStringList> rows;
     QStringList refusals;
@@ -292,9 +292,8 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
             row << head(tr("not solved")) << QStringLiteral("-") << QStringLiteral("-");
         }
         rows << row;
-        for (const std::string& reason : region.refusals)
-            refusals << tr("%1: %2").arg(QString::fromStdString(region.region_id),
-                                         QString::fromStdString(reason));
+        for (const Text& reason : region.refusals)
+            refusals << tr("%1: %2").arg(QString::fromStdString(region.region_id), shown(reason));
     }
     set_rows(*regions_, rows);
     set_verdict(*gate_,
@@ -310,7 +309,7 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
                                              : Eigen::Vector3d::Constant(std::nan(""));
         const QString word = shown_word(to_string(m.status));
         rows << QStringList{QString::fromStdString(m.spot_id), number(d.x(), 2), number(d.z(), 2),
-                            m.message.empty() ? word : word + ": " + shown_cause(m.message)};
+                            m.message.empty() ? word : word + ": " + shown(m.message)};
         for (const RegionRecord& region : r.regions) {
             if (!region.correction) continue;
             bool found = false;

@@ -2,7 +2,7 @@
 
 #include <QTimer>
 
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 
 namespace seamwright {

@@ -5,6 +5,7 @@
 
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -321,7 +322,7 @@ void TeachPage::refresh() {
     robot_->setCurrentText(QString::fromStdString(s->robot_id));
     kind_->setCurrentIndex(kind_->findData(QString::fromStdString(s->feature.kind)));
     if (const FeatureKind* kind = feature_kind(s->feature.kind))
-        kind_help_->setText(shown_sentence(kind->help));
+        kind_help_->setText(shown(Text::chosen(kind->help)));
     window_->setVisible(s->feature.kind == "template");
     pick_->setVisible(s->feature.kind != "template");
     show_parameters(*s);
@@ -405,8 +406,8 @@ void TeachPage::rename_spot() {
 std::optional<Pose> TeachPage::present_pose() {
     for (const RobotState& r : desk_.station().robots)
         if (r.id == spot()->robot_id && r.base_from_flange) return r.base_from_flange;
-    done(
-        device_error("the robot tells no pose", Text("robot {}", spot()->robot_id), "connect it, or type the pose"));
+    done(device_error("the robot tells no pose", Text("robot {}", spot()->robot_id),
+                      "connect it, or type the pose"));
     return std::nullopt;
 }
 

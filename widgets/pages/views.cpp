@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "projects/station/measure.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 
 namespace seamwright {
 
@@ -93,7 +93,7 @@ void ViewFeeder::live() {
                           .arg(QString::fromStdString(sensor))
                           .arg(std::lround(snapshot->rate_hz))
                           .arg(dropped);
-    if (!snapshot->trouble.empty()) caption += "   " + QString::fromStdString(snapshot->trouble);
+    if (!snapshot->trouble.empty()) caption += "   " + shown(snapshot->trouble);
     // A rate that flickers by one is not worth laying the head of the plot out sixty times a second.
     const bool same_but_rate = sensor == captioned_sensor_ && dropped == captioned_dropped_ &&
                                snapshot->trouble == captioned_trouble_ && caption_age_.isValid();
@@ -158,7 +158,7 @@ void ViewFeeder::project() {
             const Eigen::Vector3d along = plan->weakest_direction.head<3>();
             if (along.norm() > 0.1 && region.id == desk_.selection().region())
                 r.weak_direction = along.normalized();
-            r.weak_text = shown_cause(plan->weakest).toStdString();
+            r.weak_text = shown(plan->weakest).toStdString();
         }
         regions.push_back(std::move(r));
     }

@@ -58,7 +58,8 @@ class ViewFeeder : public QObject {
     std::string last_sensor_;
     QString caption_;
     QElapsedTimer caption_age_;
-    std::string captioned_sensor_, captioned_trouble_;
+    std::string captioned_sensor_;
+    Text captioned_trouble_;
     std::uint64_t captioned_dropped_ = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/geometry/pose.h"
-#include "widgets/errors.h"
+#include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
 
@@ -343,7 +343,7 @@ void ProfileCanvas::paint_marks(QPainter& painter) {
     } else if (feature) {
         painter.setPen(style::alarm(colours));
         const QString why =
-            feature->message.empty() ? shown_word(to_string(feature->status)) : shown_cause(feature->message);
+            feature->message.empty() ? shown_word(to_string(feature->status)) : shown(feature->message);
         painter.drawText(QRectF(axisRect()->rect()).adjusted(8, 6, -8, -6), Qt::AlignTop | Qt::AlignLeft,
                          ProfilePlot::tr("no feature: %1").arg(why));
     }

@@ -42,7 +42,8 @@ Expected<Answer> helped(const CLI::App& command, const std::string& driver) {
         for (const RobotDriver& d : robot_drivers())
             if (known.find(std::string(d.name) + ", ") == std::string::npos)
                 known += std::string(d.name) + ", ";
-        return usage_error("there is no driver \"" + driver + "\"", "--help", "known are " + known + "all");
+        return usage_error(Text("there is no driver \"{}\"", driver), "--help",
+                           Text("known are {}all", known));
     }
     answer.text = *text;
     answer.json = {{"status", "ok"}, {"driver", driver}, {"text", *text}};

@@ -92,7 +92,7 @@ json check_json(const GapPass& pass, const GapCheck& c, const GapScanOptions& o)
 }
 
 std::string stretch_text(const GapCheck& c, const GapStretch& s) {
-    const std::string between = c.where((s.from_mm + s.to_mm) / 2);
+    const std::string between = c.where((s.from_mm + s.to_mm) / 2).english();
     std::string text = fmt::format("  {:7.1f} .. {:.1f} mm{}: ", s.from_mm, s.to_mm,
                                    between.empty() ? "" : " (" + between + ")");
     switch (s.verdict) {
@@ -111,7 +111,7 @@ std::string stretch_text(const GapCheck& c, const GapStretch& s) {
     if (has_width(s.verdict))
         text += fmt::format(" (sigma {:.3f}) at {:.1f} mm", s.sigma_mm, s.at_mm);
     else if (!s.message.empty())
-        text += ", " + s.message;
+        text += ", " + s.message.english();
     return text + fmt::format("; work object X {:.1f} Y {:.1f} Z {:.1f}\n", s.place_mm.x(), s.place_mm.y(),
                               s.place_mm.z());
 }
@@ -199,7 +199,7 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
             const auto shown = [&](double v, int decimals) {
                 return there ? fmt::format("{:.{}f}", v, decimals) : std::string("-");
             };
-            rows.push_back({std::string(to_string(s.verdict)), c.where((s.from_mm + s.to_mm) / 2),
+            rows.push_back({std::string(to_string(s.verdict)), c.where((s.from_mm + s.to_mm) / 2).english(),
                             fmt::format("{:.1f}", s.from_mm), fmt::format("{:.1f}", s.to_mm),
                             shown(s.narrowest_mm, 3), shown(s.sigma_mm, 3), shown(s.at_mm, 1)});
         }

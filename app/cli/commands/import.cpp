@@ -83,8 +83,7 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
 }
 
 // What images need and do not say: the channel that shows the stripe, and how it runs.
-Expected<void> look_at_images(const ImportArguments& a, FolderImport& options,
-                              std::vector<std::string>& notes) {
+Expected<void> look_at_images(const ImportArguments& a, FolderImport& options, std::vector<Text>& notes) {
     auto frames = list_recording(fs::absolute(options.folder).lexically_normal(), "", false, options.layout);
     if (!frames) return tl::unexpected(frames.error());
     if (!frames->front().image) return {};
@@ -223,7 +222,7 @@ Expected<Answer> look(const ImportArguments& a) {
                 s.points, s.x_low, s.x_high, s.z_low, s.z_high, s.pitch, s.noise);
             if (!s.suspected.empty()) {
                 if (layout.profile.unit.empty()) sound = false;
-                answer.text += "  " + s.why + ", which looks like " + s.suspected +
+                answer.text += "  " + s.why.english() + ", which looks like " + s.suspected +
                                ": say what they are in with --unit\n";
             }
         }
@@ -247,7 +246,8 @@ Expected<Answer> import_command(const ImportArguments& a) {
     if (a.file.empty())
         return usage_error("the project to create is missing", "import", "give FILE.seam, or --look");
     Project project;
-    std::vector<std::string> notes, understood;
+    std::vector<Text> notes;
+    std::vector<std::string> understood;
     bool in_pixels = false;
     // A table is a recording; only .json is a project.
     if (!a.source.ends_with(".json") && (fs::is_directory(a.source) || fs::path(a.source).has_extension())) {
@@ -283,7 +283,7 @@ Expected<Answer> import_command(const ImportArguments& a) {
         fmt::format("{} created: {} spots, {} regions{}\n", a.file, project.spots.size(),
                     project.regions.size(), in_pixels ? ", measured in pixels (no calibration)" : "");
     for (const std::string& line : understood) answer.text += "  " + line + "\n";
-    for (const std::string& note : notes) answer.text += "  " + note + "\n";
+    for (const Text& note : notes) answer.text += "  " + note.english() + "\n";
     return answer;
 }
 

@@ -92,8 +92,7 @@ Expected<PanelDeviation> deviation_from(const std::string& word) {
     const auto& choices = deviation_field().info.choices;
     const auto at = std::find(choices.begin(), choices.end(), word);
     if (at == choices.end())
-        return usage_error(fmt::format("\"{}\" is not one of {}", word, fmt::join(choices, ", ")),
-                           "deviation");
+        return usage_error(Text("\"{}\" is not one of {}", word, fmt::join(choices, ", ")), "deviation");
     return static_cast<PanelDeviation>(at - choices.begin());
 }
 
@@ -198,8 +197,7 @@ Expected<void> teach(Station& station, const std::string& id, const PanelArgumen
     Project project = station.project();
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
-    if (job == project.panel_jobs.end())
-        return input_error(Text("there is no panel job \"{}\"", id), a.file);
+    if (job == project.panel_jobs.end()) return input_error(Text("there is no panel job \"{}\"", id), a.file);
     TeachOptions options;
     options.repeats = a.teach;
     options.cancel = stop_on_signal();
@@ -215,8 +213,7 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
     Project project = station.project();
     const auto job = std::find_if(project.panel_jobs.begin(), project.panel_jobs.end(),
                                   [&](const PanelJob& j) { return j.id == id; });
-    if (job == project.panel_jobs.end())
-        return input_error(fmt::format("there is no panel job \"{}\"", id), a.file);
+    if (job == project.panel_jobs.end()) return input_error(Text("there is no panel job \"{}\"", id), a.file);
     for (const auto& [name, text] : a.settings) {
         std::string known;
         const Field<PanelJob>* field = nullptr;
@@ -225,7 +222,8 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
             if (f.info.name == name) field = &f;
         }
         if (!field)
-            return usage_error("a panel job has no setting \"" + name + "\"", "--set", "known are " + known);
+            return usage_error(Text("a panel job has no setting \"{}\"", name), "--set",
+                               Text("known are {}", known));
         const auto value = setting_value(field->info, text);
         if (!value) return tl::unexpected(value.error());
         if (auto good = set_field(*job, name, *value); !good) return tl::unexpected(good.error());
@@ -391,7 +389,7 @@ void add_panel(CommandLine& line) {
         if (is_project(*a)) {
             if (!a->deviation.empty())
                 return usage_error("a project keeps what becomes of a deviation in its panel job",
-                                   "--deviation", "give --set deviation " + a->deviation);
+                                   "--deviation", Text("give --set deviation {}", a->deviation));
             return panel_on_devices(*a);
         }
         if (!a->settings.empty()) return usage_error("--set is for a project's panel job", a->file);

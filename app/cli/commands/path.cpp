@@ -197,7 +197,8 @@ Expected<Answer> correct_path(const PathArguments& a) {
         if (!files) return tl::unexpected(files.error());
         std::error_code failed;
         std::filesystem::create_directories(a.folder, failed);
-        if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), a.folder.string());
+        if (failed)
+            return file_error(Text("the folder cannot be made: {}", failed.message()), a.folder.string());
         for (const ProgramFile& f : *files) {
             const auto target = a.folder / f.name;
             if (auto written = write_text_file(target, f.text); !written)

@@ -31,7 +31,7 @@ void convert_to_mm(Profile& profile, const std::string& unit) {
 Expected<void> check_unit(const Profile& profile, const std::string& file, const std::string& unit) {
     if (!unit.empty()) return {};
     auto ok = check_profile_millimetres(profile, file);
-    if (!ok) ok.error().mend += ", or say what they are in with --unit";
+    if (!ok) ok.error().mend = Text("{}, or say what they are in with --unit", ok.error().mend);
     return ok;
 }
 void add_unit(CLI::App* command, std::string& unit) {

@@ -35,8 +35,7 @@ Expected<std::vector<Setup>> chosen(const std::vector<Setup>& all, const std::ve
     for (const std::string& name : names) {
         const auto it = std::find_if(all.begin(), all.end(), [&](const Setup& s) { return s.id == name; });
         if (it == all.end())
-            return input_error(Text("the project has no {} \"{}\"", what, name),
-                               std::string("--") + what);
+            return input_error(Text("the project has no {} \"{}\"", what, name), std::string("--") + what);
         some.push_back(*it);
     }
     return some;
@@ -48,7 +47,7 @@ std::function<bool(const Frame&, ProfileCandidates&)> candidates_with(const Sens
         SensorModel model;
         StripePeaks peaks;
         Capture capture;
-        std::string message;
+        Text message;
     };
     auto buffers = std::make_shared<Buffers>(Buffers{model, {}, {}, {}});
     return [buffers](const Frame& frame, ProfileCandidates& candidates) {
@@ -76,7 +75,7 @@ Expected<Answer> record(const RecordArguments& a) {
     std::map<std::string, std::unique_ptr<ProfileSource>> sources;
     std::map<std::string, std::unique_ptr<RobotLink>> links;
     const auto named = [](Error error, const std::string& where) {
-        error.where = error.where.empty() ? where : where + ": " + error.where;
+        error.within(where);
         return tl::unexpected(std::move(error));
     };
     for (const SensorSetup& s : *sensors) {

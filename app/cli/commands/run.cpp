@@ -148,9 +148,8 @@ Expected<Answer> run(const RunArguments& a) {
     options.keep_images = a.keep_images;
     options.hold = std::chrono::seconds(a.hold_s);
     options.cancel = stop_on_signal();
-    const Patience patience{.cancel = options.cancel, .progress = [](const std::string& text) {
-                                fmt::print(stderr, "waiting: {}\n", text);
-                            }};
+    const Patience patience{.cancel = options.cancel,
+                            .progress = [](const Text& text) { fmt::print(stderr, "waiting: {}\n", text); }};
     if (auto connected = station->connect(patience); !connected) return tl::unexpected(connected.error());
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);

@@ -42,7 +42,8 @@ Expected<ServedController> controller_from(const std::string& text) {
     if (!digits.empty() && digits.size() <= 5 && digits.find_first_not_of("0123456789") == std::string::npos)
         port = number_from<int>(digits).value_or(-1);
     if (port < 0 || port > 65535)
-        return usage_error(Text("\"{}\" is no port", digits), Text("--controller {}", text), "give NAME or NAME:PORT");
+        return usage_error(Text("\"{}\" is no port", digits), Text("--controller {}", text),
+                           "give NAME or NAME:PORT");
     c.settings["port"] = port;
     return c;
 }

@@ -317,7 +317,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     const auto start = std::chrono::steady_clock::now();
     std::error_code failed;
     std::filesystem::create_directories(options.folder, failed);
-    if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), options.folder.string());
+    if (failed)
+        return file_error(Text("the folder cannot be made: {}", failed.message()), options.folder.string());
 
     DemoOutcome outcome;
     outcome.project_file = options.folder / "demo.seam";

@@ -218,8 +218,8 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     c.flange_from_sensor = tcp->flange_from_sensor;
     c.covariance = tcp->covariance;
     c.method = "stripe-camera + tcp-sphere";
-    c.source = fmt::format("{} frames of a plate, {} of a sphere of {} mm, rendered", observations.size(),
-                           sphere.size(), *options.radius_mm);
+    c.source = Text("{} frames of a plate, {} of a sphere of {} mm, rendered", observations.size(),
+                    sphere.size(), *options.radius_mm);
     c.raw = sphere_json(sphere, *options.radius_mm);
     c.verdict = std::max(camera->report.judgement.verdict, tcp->report.judgement.verdict);
     demo.steps.push_back({"tcp-sphere", tcp->report,

@@ -26,7 +26,7 @@ void calibration_chapter(Page& page, const DemoOutcome& o) {
     for (const DemoCalibrationStep& step : o.calibration.steps) {
         page.heading(step.name, 3);
         page.verdict(name_of(step.report.judgement.verdict), tone_of(step.report.judgement.verdict),
-                     step.report.judgement.reason);
+                     step.report.judgement.reason.english());
         page.paragraph(step.summary);
         Plot plot;
         plot.title = step.name + ": residual per pose";
@@ -84,7 +84,7 @@ void teaching_chapter(Page& page, const DemoOutcome& o) {
     rows = {{"region", "status", "sigma at the spots (mm)", "weakest", "redundancy"}};
     for (std::size_t i = 0; i < o.plans.size(); ++i)
         rows.push_back({o.project.regions[i].id, std::string(to_string(o.plans[i].status)),
-                        mm(o.plans[i].sigma_at_spots_mm), o.plans[i].weakest,
+                        mm(o.plans[i].sigma_at_spots_mm), o.plans[i].weakest.english(),
                         fmt::format("{}", o.plans[i].redundancy)});
     page.table(rows);
 }

@@ -28,7 +28,7 @@ DemoSweep sweep_demo(DemoOptions options, std::uint64_t first, std::uint64_t las
                 row.pushed += part.pushed();
                 if (part.pushed() || row.outcome == "refused") continue;
                 row.outcome = "refused";
-                row.reason = part.run.part_id + ": " + part.run.message;
+                row.reason = part.run.part_id + ": " + part.run.message.english();
             }
             if (row.pushed > 0) row.path = statistics(*outcome, &DemoPart::path);
             add(*outcome, &DemoPart::path, tallies);

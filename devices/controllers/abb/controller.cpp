@@ -138,8 +138,9 @@ class Controller final : public AbbRapidController {
         }
         if (robot_.listening()) return {};
         const auto said = messages();
-        return device_error(Text("the server task does not listen{}", (said.empty() ? "" : ": " + said.back())),
-                            "simulated abb-rapid controller");
+        return device_error(
+            Text("the server task does not listen{}", (said.empty() ? "" : ": " + said.back())),
+            "simulated abb-rapid controller");
     }
 
     std::uint16_t port() const override { return port_; }

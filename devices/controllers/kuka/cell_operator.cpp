@@ -119,8 +119,7 @@ Expected<void> KukaCell::load(bool everything) {
         if (everything && with_submit_)
             for (const auto& [name, xml] : channels_) (void)parse_eki_configuration(xml);
     } catch (const KrlError& e) {
-        return device_error(Text("the controller does not take the program: {}", e.what()),
-                            "simulated KUKA");
+        return device_error(Text("the controller does not take the program: {}", e.what()), "simulated KUKA");
     }
     return {};
 }

@@ -343,8 +343,7 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
     try {
         controller->start(cell, *program);
     } catch (const krl::KrlError& e) {
-        return device_error(std::string("the controller does not take the program: ") + e.what(),
-                            "simulated KUKA");
+        return device_error(Text("the controller does not take the program: {}", e.what()), "simulated KUKA");
     }
     return controller;
 }

@@ -218,9 +218,7 @@ bool is_function_of_the_language(std::string_view name) {
 Expected<std::vector<Token>> tokens_of(std::string_view text) {
     std::vector<Token> tokens;
     int line = 1;
-    const auto fail = [&](const std::string& what) {
-        return input_error(what, Text("line {}", line));
-    };
+    const auto fail = [&](const std::string& what) { return input_error(what, Text("line {}", line)); };
     const auto add = [&](Token::Kind kind, std::string word, Value value = {}) {
         tokens.push_back({kind, std::move(word), std::move(value), line});
     };

@@ -72,8 +72,7 @@ Expected<void> ScriptRobot::movel(int thread, const PoseValue& tcp, double a, do
     if (!(a > 0 && a <= kMostAcceleration_m_s2)) return input_error(Text("movel() at {} m/s^2", a));
     if (!(r >= 0)) return input_error(Text("movel() with a blend radius of {} m", r));
     if (std::hypot(tcp[0], tcp[1], tcp[2]) > kReach_m)
-        return input_error(
-            Text("movel() to a point {:.1f} m away", std::hypot(tcp[0], tcp[1], tcp[2])));
+        return input_error(Text("movel() to a point {:.1f} m away", std::hypot(tcp[0], tcp[1], tcp[2])));
     const bool moving = arm_.pending() > 0;
     if (moving && mover_ != thread) return input_error("another thread moves the robot already");
     const Pose flange = pose_of(tcp) * pose_of(tcp_offset_).inverse();
@@ -82,7 +81,7 @@ Expected<void> ScriptRobot::movel(int thread, const PoseValue& tcp, double a, do
     const double room = distance_mm(from, flange);
     if (1000 * r + (moving ? radius_mm_ : 0) > room + 1e-6)
         return input_error(Text("blends overlap: {:.2f} mm on a way of {:.2f} mm",
-                                       1000 * r + (moving ? radius_mm_ : 0), room));
+                                1000 * r + (moving ? radius_mm_ : 0), room));
     mover_ = thread;
     target_ = tcp;
     target_flange_ = flange;

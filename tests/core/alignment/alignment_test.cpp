@@ -281,7 +281,7 @@ TEST(Alignment, TheCureAsWordedCures) {
         const AlignmentResult before = checked(pass(r0, 1, 0.003, rng));
         if (before.status == AlignmentStatus::frozen) continue;
         Eigen::Matrix3d r = r0;
-        std::string rest = before.cure;
+        std::string rest = before.cure.english();
         for (std::size_t at; (at = rest.find(" axis by ")) != std::string::npos; rest = rest.substr(at + 9)) {
             const bool about_z = rest[at - 1] == 'Z';
             const double degrees = std::stod(rest.substr(at + 9));

@@ -185,7 +185,7 @@ TEST(SpotCovariance, RefusesWhatIsNoCovariance) {
     c(1, 1) = std::numeric_limits<double>::quiet_NaN();
     const auto refused = with(c, {1, 0, 1});
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().where.find("covariance_mm2"), std::string::npos);
+    EXPECT_NE(refused.error().where.english().find("covariance_mm2"), std::string::npos);
 }
 
 }  // namespace

@@ -241,7 +241,7 @@ TEST(Nuisance, WhatIsNoPriorIsRefused) {
                 error = r.error();
             }
             ASSERT_TRUE(error) << where;
-            EXPECT_NE(error->where.find(where), std::string::npos) << error->sentence();
+            EXPECT_NE(error->where.english().find(where), std::string::npos) << error->sentence();
             EXPECT_FALSE(error->mend.empty());
         }
     };

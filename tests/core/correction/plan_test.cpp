@@ -50,13 +50,13 @@ TEST(PlanRegion, AdviceCuresParallelEdges) {
     EXPECT_EQ(plan.weakest, "translation along Y");
     EXPECT_THAT(plan.uncontrolled, ElementsAre("A", "B", "C"));
     EXPECT_THAT(plan.advice, HasSubstr("add a spot"));
-    EXPECT_TRUE(plan.advice.find("edge along X") != std::string::npos ||
-                plan.advice.find("edge along Z") != std::string::npos)
+    EXPECT_TRUE(plan.advice.english().find("edge along X") != std::string::npos ||
+                plan.advice.english().find("edge along Z") != std::string::npos)
         << plan.advice;
     // "... at (x, y, z) mm of the work object with its edge along X ..."
     double x, y, z;
     char axis;
-    const std::string tail = plan.advice.substr(plan.advice.find("at ("));
+    const std::string tail = plan.advice.english().substr(plan.advice.english().find("at ("));
     ASSERT_EQ(std::sscanf(tail.c_str(), "at (%lf, %lf, %lf) mm of the work object with its edge along %c", &x,
                           &y, &z, &axis),
               4)
@@ -65,7 +65,8 @@ TEST(PlanRegion, AdviceCuresParallelEdges) {
     const RegionPlan after = *plan_region(spots, {});
     EXPECT_EQ(after.status, CorrectionStatus::ok);
     double promised = 0;
-    const std::string gain = plan.advice.substr(plan.advice.find(" to ", plan.advice.find("goes from")));
+    const std::string gain = plan.advice.english().substr(
+        plan.advice.english().find(" to ", plan.advice.english().find("goes from")));
     ASSERT_EQ(std::sscanf(gain.c_str(), " to %lf mm", &promised), 1) << gain;
     EXPECT_NEAR(after.sigma_at_spots_mm, promised, 0.01 * promised);
 }

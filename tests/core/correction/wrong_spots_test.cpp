@@ -118,7 +118,7 @@ TEST(WrongSpots, WithoutRedundancyTheRegionIsRefusedAndSaysWhy) {
         const auto r = solve_region(spots, {});
         for (const SpotResidual& s : r->spots) EXPECT_TRUE(s.used);
         if (r->status == CorrectionStatus::ok) {
-            said += !r->consistent && r->message.find("contradict") != std::string::npos;
+            said += !r->consistent && r->message.english().find("contradict") != std::string::npos;
             continue;
         }
         ++refused;
@@ -139,7 +139,7 @@ TEST(WrongSpots, ScatterBeyondTheStatedSigmaIsSaidAndSpotsAreKept) {
         const auto r = solve_region(spots, {});
         ASSERT_EQ(r->status, CorrectionStatus::ok) << r->message;
         for (const SpotResidual& s : r->spots) left_out += !s.used;
-        said += !r->consistent && r->message.find("times") != std::string::npos;
+        said += !r->consistent && r->message.english().find("times") != std::string::npos;
     }
     EXPECT_GE(said, 198);
     EXPECT_LE(left_out, 6);

@@ -65,7 +65,7 @@ TEST(ContourScenes, RightOrRefusedButNeverWrong) {
                     kind.name, i, std::string(to_string(f.status)).c_str(), f.point_mm.x(), f.point_mm.y(),
                     scene.truth.x(), scene.truth.y(), std::sqrt(f.covariance_mm2.trace()),
                     scene.sensor.points, scene.sensor.pitch, scene.sensor.noise, int(scene.sensor.grid),
-                    scene.sensor.missing, scene.sensor.reversed, f.message.c_str());
+                    scene.sensor.missing, scene.sensor.reversed, f.message.english().c_str());
         }
         std::printf("%-34s right %3d  refused %3d  wrong %3d of %d\n", kind.name, tally.right, tally.refused,
                     tally.wrong, tally.all());

@@ -34,7 +34,7 @@ TEST(ContourSceneEnds, TheFieldsRimIsNoEnd) {
     Dice dice(22);
     const Feature f = found(edge_out_of_field(dice), dice);
     EXPECT_EQ(f.status, FeatureStatus::not_found);
-    EXPECT_NE(f.message.find("leaves the sensor's field"), std::string::npos) << f.message;
+    EXPECT_NE(f.message.english().find("leaves the sensor's field"), std::string::npos) << f.message;
 }
 
 TEST(ContourSceneEnds, WithoutEmptyLinesTheRecipeSaysWhereTheFieldEnds) {

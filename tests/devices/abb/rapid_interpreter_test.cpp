@@ -19,7 +19,7 @@ using testing::HasSubstr;
 std::string loads(const std::string& data, const std::string& routines = "") {
     auto ok = check_rapid(
         {{"M.mod", "MODULE M\n" + data + "\nPROC main()\nENDPROC\n" + routines + "\nENDMODULE\n"}});
-    return ok ? "" : ok.error().what;
+    return ok ? "" : ok.error().what.english();
 }
 std::string body(const std::string& text, const std::string& data = "") {
     return loads(data, "PROC p()\n" + text + "\nENDPROC");
@@ -103,7 +103,7 @@ TEST(RapidLoader, TasksShareAPersistentOfOneType) {
     const auto both = [](const std::string& a, const std::string& b) {
         auto ok = check_rapid({{"A.mod", "MODULE A\n" + a + "\nENDMODULE"}},
                               {{"B.mod", "MODULE B\n" + b + "\nENDMODULE"}});
-        return ok ? "" : ok.error().what;
+        return ok ? "" : ok.error().what.english();
     };
     EXPECT_EQ(both("PERS num x:=1;", "PERS num x;"), "");
     EXPECT_EQ(both("PERS num x:=1;", "PERS num x:=1;"), "");

@@ -196,7 +196,8 @@ TEST_P(AbbFault, IsAlarmedNothingStaysReleasedAndItRecovers) {
         error = pose.error();
         const auto mode = link->mode();
         ASSERT_FALSE(mode);
-        EXPECT_NE(mode.error().what.find("a mode that does not exist: \"DREAM ON RUN\""), std::string::npos);
+        EXPECT_NE(mode.error().what.english().find("a mode that does not exist: \"DREAM ON RUN\""),
+                  std::string::npos);
     } else if (GetParam().fault == ControllerFault::reject_write) {
         ASSERT_TRUE(link->write_frame("wobjDoor", far_pose())) << "staged";
         const auto confirmed = link->confirm(PartVerdict::corrected, "");

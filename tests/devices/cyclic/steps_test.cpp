@@ -334,7 +334,8 @@ TEST(RobotThatDoesNotFollow, IsTold) {
         }
         EXPECT_EQ(steady, 0u) << share;
         ASSERT_TRUE(d.corrector.alarm()) << share;
-        EXPECT_NE(d.corrector.alarm()->find("does not follow"), std::string::npos) << *d.corrector.alarm();
+        EXPECT_NE(d.corrector.alarm()->english().find("does not follow"), std::string::npos)
+            << *d.corrector.alarm();
         EXPECT_LE(told.mm, kStepMm) << share;
         EXPECT_EQ(last[2], 0) << "led back";
     }
@@ -352,7 +353,8 @@ TEST(RobotFoundCorrected, IsLedBackFromThere) {
         second.robot = first.robot;
         second.cycles(10);
         ASSERT_TRUE(second.corrector.alarm());
-        EXPECT_NE(second.corrector.alarm()->find("found with a correction of 3.000 mm"), std::string::npos);
+        EXPECT_NE(second.corrector.alarm()->english().find("found with a correction of 3.000 mm"),
+                  std::string::npos);
         second.cycles(600);
         EXPECT_LE(second.steps.mm, kStepMm) << relative;
         EXPECT_NEAR(second.robot.in_force()[2], 0, 1e-3) << relative;
@@ -418,7 +420,7 @@ TEST(Packets, WithoutRIstOrRSolAreNotPositionZero) {
         d.cycles(600);
         for (const double x : d.robot.in_force()) EXPECT_EQ(x, 0);
         EXPECT_TRUE(d.corrector.alarm());
-        EXPECT_NE(d.corrector.alarm()->find(rist ? "RSol" : "RIst"), std::string::npos);
+        EXPECT_NE(d.corrector.alarm()->english().find(rist ? "RSol" : "RIst"), std::string::npos);
     }
 }
 

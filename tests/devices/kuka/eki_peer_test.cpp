@@ -66,7 +66,9 @@ TEST(EkiPeer, StrangersAreRefusedAndTold) {
     }
     EXPECT_THAT(
         (*link)->take_notices(),
-        ElementsAre(MatchesRegex("2 connections of an unknown peer were refused, the last of 127.0.0.9:.*")));
+        ElementsAre(testing::ResultOf(
+            [](const Text& notice) { return notice.english(); },
+            MatchesRegex("2 connections of an unknown peer were refused, the last of 127.0.0.9:.*"))));
     EXPECT_THAT((*link)->take_notices(), IsEmpty()) << "told once";
 
     auto cell = SimulatedCell::open({{"optics", {{"width", 64}, {"height", 64}}}});

@@ -129,7 +129,7 @@ TEST_F(EkiSession, ARobotThatAnswersNoMoreIsTakenOverAndTold) {
     EXPECT_TRUE(link->write_frame("BASE_left", Pose::Identity())) << "the same robot as before";
     EXPECT_EQ(again.writes, 1);
     // Where the link's own question found it silent there was nothing left to take over.
-    for (const std::string& notice : link->take_notices())
+    for (const Text& notice : link->take_notices())
         EXPECT_THAT(notice, HasSubstr("has taken over from KRC-1"));
 }
 

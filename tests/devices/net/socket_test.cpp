@@ -59,7 +59,7 @@ TEST(Tcp, ADisconnectIsNamed) {
     auto got = p.client.receive_some(buffer, milliseconds(1000));
     ASSERT_FALSE(got);
     EXPECT_TRUE(is_disconnect(got.error())) << got.error().sentence();
-    EXPECT_NE(got.error().where.find("127.0.0.1:"), std::string::npos);
+    EXPECT_NE(got.error().where.english().find("127.0.0.1:"), std::string::npos);
 }
 
 TEST(Tcp, CloseFromAnotherThreadEndsAWaitingCall) {
@@ -71,7 +71,7 @@ TEST(Tcp, CloseFromAnotherThreadEndsAWaitingCall) {
     });
     auto got = p.client.receive_some(buffer, milliseconds(20000));
     ASSERT_FALSE(got);
-    EXPECT_NE(got.error().what.find("closed"), std::string::npos);
+    EXPECT_NE(got.error().what.english().find("closed"), std::string::npos);
     EXPECT_FALSE(p.client.is_open());
 }
 

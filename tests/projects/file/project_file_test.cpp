@@ -174,8 +174,8 @@ TEST(ProjectFile, MessagesInOtherBytesAreKeptReadable) {
     TemporaryFolder folder;
     auto file = ProjectFile::create(folder / "a.seam", sample_project());
     RunRecord run = sample_run(1);
-    run.message = run.part_id = run.spots[0].message = run.regions[0].refusals[0] = run.events[0].text =
-        "St\xf6rung";
+    run.part_id = "St\xf6rung";
+    run.message = run.spots[0].message = run.regions[0].refusals[0] = run.events[0].text = Text(run.part_id);
     Project setup = sample_project();
     setup.sensors[0].identity.serial = "\xff";
     auto number = file->append_run(run, setup);

@@ -338,7 +338,8 @@ TEST(SafetyGate, WhatMayDifferPasses) {
 
 struct Logged {
     EventKind kind;
-    std::string subject, text;
+    std::string subject;
+    Text text;
 };
 
 class Push : public testing::Test {
@@ -347,7 +348,7 @@ class Push : public testing::Test {
         GateVerdict verdict = pass_gate(request);
         return push_region(
             std::move(*verdict.pass), robot,
-            [this](EventKind kind, const std::string& subject, const std::string& text) -> Expected<void> {
+            [this](EventKind kind, const std::string& subject, const Text& text) -> Expected<void> {
                 if (log_broken) return file_error("the disk is full");
                 log.push_back({kind, subject, text});
                 return {};
@@ -544,12 +545,11 @@ TEST_F(Push, WithdrawPutsTheOldFrameBack) {
     });
     PushRecord record = push();
     ASSERT_EQ(record.status, PushStatus::written);
-    withdraw_push(
-        record, robot,
-        [this](EventKind kind, const std::string& subject, const std::string& text) -> Expected<void> {
-            log.push_back({kind, subject, text});
-            return {};
-        });
+    withdraw_push(record, robot,
+                  [this](EventKind kind, const std::string& subject, const Text& text) -> Expected<void> {
+                      log.push_back({kind, subject, text});
+                      return {};
+                  });
     EXPECT_EQ(record.status, PushStatus::restored);
     EXPECT_TRUE(frame.isApprox(old_frame));
     EXPECT_THAT(kinds(), ElementsAre(EventKind::push_attempt, EventKind::push, EventKind::alarm));
@@ -561,9 +561,7 @@ TEST_F(Push, APassIsGoodForOnePush) {
         return {};
     });
     GateVerdict verdict = pass_gate(request);
-    const EventSink sink = [](EventKind, const std::string&, const std::string&) -> Expected<void> {
-        return {};
-    };
+    const EventSink sink = [](EventKind, const std::string&, const Text&) -> Expected<void> { return {}; };
     EXPECT_EQ(push_region(std::move(*verdict.pass), robot, sink).status, PushStatus::written);
     EXPECT_TRUE(verdict.pass->spent());
     EXPECT_EQ(push_region(std::move(*verdict.pass), robot, sink).status, PushStatus::failed);

@@ -64,7 +64,7 @@ TEST_F(Door, SimulatedPartAndShiftedMovesFindTheSameShifts) {
         std::string refusals;
         for (const ShiftTest& test : proof->tests)
             if (!test.regions[0].ok)
-                refusals += shift_name(test, *proof) + ": " + test.regions[0].message + "\n";
+                refusals += shift_name(test, *proof) + ": " + test.regions[0].message.english() + "\n";
         // The end of a contour is lost at single displacements; then a region is refused, never wrong.
         EXPECT_LE(proven.refused, 2) << refusals;
         EXPECT_LT(proven.three_sigma_mm, 0.4);

@@ -89,7 +89,7 @@ class Saboteur final : public RobotLink {
     Expected<Permission> permission() override {
         return call("permission", [&] { return real_.permission(); });
     }
-    std::vector<std::string> take_notices() override { return real_.take_notices(); }
+    std::vector<Text> take_notices() override { return real_.take_notices(); }
 
   private:
     template <class F>
@@ -139,7 +139,7 @@ class Borrowed final : public RobotLink {
     }
     Expected<void> confirm(PartVerdict v, const std::string& t) override { return link_.confirm(v, t); }
     Expected<Permission> permission() override { return link_.permission(); }
-    std::vector<std::string> take_notices() override { return link_.take_notices(); }
+    std::vector<Text> take_notices() override { return link_.take_notices(); }
 
   private:
     RobotLink& link_;
@@ -328,7 +328,7 @@ class FaultMatrix : public testing::TestWithParam<Brand> {
             auto record = station->run(options);
             if (record) {
                 out.run = to_string(record->status);
-                out.message = record->message;
+                out.message = record->message.english();
                 out.exit = record->status == RunStatus::ok                                             ? 0
                            : record->status == RunStatus::device || record->status == RunStatus::alarm ? 3
                                                                                                        : 1;

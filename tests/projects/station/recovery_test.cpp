@@ -156,9 +156,9 @@ TEST(KilledRunner, ItsHoldOnTheCameraIsWaitedOut) {
     ASSERT_FALSE(refused);
     EXPECT_TRUE(is_in_use(refused.error())) << refused.error().sentence();
     int told = 0;
-    const auto connected = station.connect({.progress = [&](const std::string& text) {
+    const auto connected = station.connect({.progress = [&](const Text& text) {
         ++told;
-        EXPECT_NE(text.find("another program controls the camera"), std::string::npos) << text;
+        EXPECT_NE(text.english().find("another program controls the camera"), std::string::npos) << text;
     }});
     EXPECT_TRUE(connected) << connected.error().sentence();
     EXPECT_GT(told, 0);

@@ -87,7 +87,7 @@ TEST_F(Releasing, TheLinkIsHeldUntilTheApplicationHasThePermission) {
     cell->on_permission = [&] {
         if (++looks == 4) cell->permission = Permission::taken;
     };
-    std::vector<std::string> told;
+    std::vector<Text> told;
     options.progress = [&](const RunProgress& p) { told.push_back(p.text); };
     const RunRecord record = run();
     EXPECT_EQ(record.status, RunStatus::ok);

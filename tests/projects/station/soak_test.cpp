@@ -61,7 +61,7 @@ Soaked soak(const ServedCellOptions& options, Minutes minutes) {
         watching.cancel = stop.get_token();
         watching.tell = [&](const WatchEvent& e) {
             ended = e.counts.corrected + e.counts.refused + e.counts.failed + e.counts.alarms;
-            if (e.counts.lost > 0 || e.counts.alarms > 0) outage = e.text;
+            if (e.counts.lost > 0 || e.counts.alarms > 0) outage = e.text.english();
         };
         std::jthread runner([&] {
             auto counts = watch(*served->station, watching);

@@ -275,7 +275,8 @@ TEST_F(StationRun, SecondPushGoingWrongTakesTheFirstBack) {
 TEST_F(StationRun, CapturesAreInTheFileWhileTheRobotTravels) {
     int seen = 0;
     options.progress = [&](const RunProgress& progress) {
-        if (progress.done == 0 || progress.text.starts_with("region") || progress.text.starts_with("robot"))
+        if (progress.done == 0 || progress.text.english().starts_with("region") ||
+            progress.text.english().starts_with("robot"))
             return;
         ++seen;
         auto reader = ProjectFile::open(folder / "cell.seam", FileAccess::read_only);

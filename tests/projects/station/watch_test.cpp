@@ -32,7 +32,7 @@ class Watching : public testing::Test {
         options.retry_longest = std::chrono::milliseconds(4);
         options.tell = [this](const WatchEvent& e) {
             if (e.event != "spot") told.push_back(e.level + " " + e.event);
-            texts += e.text + "\n";
+            texts += e.text.english() + "\n";
         };
     }
     // Called when the part before is through.

@@ -46,7 +46,7 @@ inline Left what_a_crash_leaves(const std::filesystem::path& file) {
     if (found)
         left.recovery = std::move(*found);
     else
-        left.unreadable = found.error().what;
+        left.unreadable = found.error().what.english();
     return left;
 }
 

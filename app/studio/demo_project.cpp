@@ -71,7 +71,7 @@ Expected<Project> demo_project() {
 
     StripePeaks peaks;
     Capture capture;
-    std::string reason;
+    Text reason;
     Frame frame;
     std::uint64_t number = 0;
     for (const DoorSpot& door : default_door_spots()) {

@@ -128,7 +128,7 @@ inline Project sample_project(unsigned seed = 1) {
     c.sensor_identity = sensor.identity;
     c.robot_identity = robot.identity;
     c.created_utc = "2024-01-02T03:04:05.678Z";
-    c.source = "ball";
+    c.source = std::string("ball");
     c.model.emplace();
     c.model->camera = {1000.1, 1000.2, 640.3, 512.4, 0.01, -0.02, 1e-5, -2e-5, 0.003, 1280, 1024};
     c.model->camera_from_laser = make.pose();

@@ -113,6 +113,40 @@ std::vector<std::vector<std::string>> statistic_rows(const std::vector<DemoStati
     return rows;
 }
 
+// Of a region whose bead scatters by more than a tenth of a millimetre: how much from part to part, which a
+// better measurement would mend, and how much along one part, which no rigid frame can follow.
+std::vector<std::string> what_limits(const DemoOutcome& o) {
+    constexpr double kTenth_mm = 0.1;
+    std::vector<std::string> sentences;
+    const std::vector<DemoStatistic> path = statistics(o, &DemoPart::path);
+    for (std::size_t r = 0; r < o.project.regions.size() && r < o.plans.size(); ++r) {
+        if (!(path[r].after_three_sigma_mm > kTenth_mm)) continue;
+        double within = 0, points = 0, means = 0, mean_squares = 0, parts = 0;
+        for (const DemoPart& part : o.parts)
+            for (const int axis : {0, 1}) {
+                double n = 0, sum = 0, squares = 0;
+                for (const DemoDeviation& d : part.path)
+                    if (part.pushed() && d.region_id == o.project.regions[r].id)
+                        n += 1, sum += d.after_mm[axis], squares += d.after_mm[axis] * d.after_mm[axis];
+                if (n == 0) continue;
+                within += squares - sum * sum / n;
+                points += n;
+                means += sum / n, mean_squares += sum / n * sum / n, parts += 1;
+            }
+        const double along = within / points, between = mean_squares / parts - means / parts * means / parts;
+        const RegionPlan& plan = o.plans[r];
+        sentences.push_back(fmt::format(
+            "{}: 3 sigma of {} mm is above a tenth of a millimetre. Of that variance {:.0f} % lies between "
+            "the parts, from how well a part's displacement is measured ({} mm predicted, 3 sigma at the "
+            "spots; "
+            "least known: {}), and {:.0f} % along the bead of one part, whose bend and twist one rigid frame "
+            "cannot follow.",
+            o.project.regions[r].id, mm(path[r].after_three_sigma_mm), 100 * between / (between + along),
+            mm(3 * plan.sigma_at_spots_mm), plan.weakest, 100 * along / (between + along)));
+    }
+    return sentences;
+}
+
 void correction_chapter(Page& page, const DemoOutcome& o) {
     page.heading("Parts: displaced, measured, corrected, pushed");
     std::vector<std::vector<std::string>> rows = {
@@ -139,6 +173,7 @@ void correction_chapter(Page& page, const DemoOutcome& o) {
                "Across the edge and in height; the direction along the edge does not move the bead.");
     page.heading("Deviation along the bead", 3);
     page.table(statistic_rows(statistics(o, &DemoPart::path)));
+    for (const std::string& sentence : what_limits(o)) page.paragraph(sentence);
     if (o.parts.empty()) return;
     Plot before, after;
     before.title = "Bead before correction";

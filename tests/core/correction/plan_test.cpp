@@ -7,6 +7,7 @@
 
 #include "core/correction/correction.h"
 #include "tests/core/correction/doors.h"
+#include "tests/core/english.h"
 
 namespace seamwright {
 namespace {
@@ -46,7 +47,7 @@ TEST(PlanRegion, AdviceCuresParallelEdges) {
                                        spot("C", {300, 500, 120}, {0, 1, 0})};
     const RegionPlan plan = *plan_region(spots, {});
     EXPECT_EQ(plan.status, CorrectionStatus::under_determined);
-    EXPECT_THAT(plan.unobservable, ElementsAre("translation along Y"));
+    EXPECT_THAT(english(plan.unobservable), ElementsAre("translation along Y"));
     EXPECT_EQ(plan.weakest, "translation along Y");
     EXPECT_THAT(plan.uncontrolled, ElementsAre("A", "B", "C"));
     EXPECT_THAT(plan.advice, HasSubstr("add a spot"));

@@ -7,6 +7,7 @@
 #include "core/geometry/decompositions.h"
 #include "core/geometry/notation.h"
 #include "tests/core/correction/doors.h"
+#include "tests/core/english.h"
 
 namespace seamwright {
 namespace {
@@ -174,7 +175,7 @@ TEST(SolveRegion, ParallelEdgesAreRefusedAndTheDirectionIsNamed) {
         for (SpotObservation& s : spots) s.measured_mm = s.reference_mm;
         RegionCorrection r = solved(spots);
         EXPECT_EQ(r.status, CorrectionStatus::under_determined);
-        EXPECT_THAT(r.unobservable, ElementsAre(words));
+        EXPECT_THAT(english(r.unobservable), ElementsAre(words));
         EXPECT_THAT(r.message, HasSubstr(words));
         EXPECT_TRUE(r.displacement.workobject_from_movedworkobject.matrix().isIdentity(0));
         // With that degree fixed the same spots suffice.
@@ -193,10 +194,10 @@ TEST(SolveRegion, NamesRotations) {
     // Edges all parallel to Z on the same line leave the rotation about that line open as well.
     std::vector<SpotObservation> spots{spot("A", {0, 0, -300}, {0, 0, 1}), spot("B", {0, 0, 100}, {0, 0, 1}),
                                        spot("C", {0, 0, 400}, {0, 0, 1})};
-    EXPECT_THAT(solved(spots).unobservable, ElementsAre("translation along Z", "rotation about Z"));
+    EXPECT_THAT(english(solved(spots).unobservable), ElementsAre("translation along Z", "rotation about Z"));
     for (SpotObservation& s : spots) s.workobject_from_sensor.pretranslate(Eigen::Vector3d(1000, 200, 0));
     for (SpotObservation& s : spots) s.measured_mm = s.reference_mm;
-    EXPECT_THAT(solved(spots).unobservable,
+    EXPECT_THAT(english(solved(spots).unobservable),
                 ElementsAre("translation along Z", "rotation about Z through (1000.0, 200.0, 66.7)"));
     // Edges tangent to circles about one axis.
     std::vector<SpotObservation> ring;
@@ -211,7 +212,7 @@ TEST(SolveRegion, NamesRotations) {
     EXPECT_THAT(words[0], HasSubstr("rotation about Y through (500.0, "));
     // A single spot: one translation and all rotations.
     EXPECT_THAT(
-        solved({spot("A", {0, 0, 0}, {1, 0, 0})}).unobservable,
+        english(solved({spot("A", {0, 0, 0}, {1, 0, 0})}).unobservable),
         ElementsAre("translation along X", "rotation about X", "rotation about Y", "rotation about Z"));
 }
 
@@ -356,7 +357,7 @@ TEST(SolveRegion, RefusesHostileInputWithASentence) {
     }
     const RegionCorrection together = solved(good);
     EXPECT_EQ(together.status, CorrectionStatus::under_determined);
-    EXPECT_THAT(together.unobservable,
+    EXPECT_THAT(english(together.unobservable),
                 ElementsAre("rotation about X", "rotation about Y", "rotation about Z"));
     // Measures kilometres off: any status but a crash or an ok.
     Rng other(10);

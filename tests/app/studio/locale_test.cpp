@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <QLabel>
 #include <clocale>
 #include <cstdlib>
 #include <filesystem>
@@ -107,6 +108,31 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
         << c.message;
     EXPECT_LT(c.sigma_xyz_mm.x(), 0.5);
     EXPECT_EQ(std::string(std::localeconv()->decimal_point), ",") << "to the end";
+
+    // What the gate refuses is said in the window's language, on the page and in the log, and again from the file.
+    run.reset();
+    served->cell->set_part({make_pose(Eigen::Matrix3d::Identity(), {60, 0, 0}), {}});
+    desk.worker().measure("CAR-2", true, false);
+    ASSERT_TRUE(me.wait([&] { return run != nullptr; }));
+    ASSERT_EQ(run->status, RunStatus::refused) << run->message;
+    studio->window().show_step(Step::run);
+    QString said;
+    ASSERT_TRUE(me.wait([&] {
+        for (const QLabel* label : studio->window().findChildren<QLabel*>())
+            if (label->isVisible() && label->text().startsWith("Sicherheitsprüfung lehnt ab"))
+                said = label->text();
+        return !said.isEmpty();
+    }));
+    studio->window().grab().save(
+        QStringLiteral(SEAMWRIGHT_SCREENS "/refused_de_%1.png").arg(QString::fromStdString(GetParam())));
+    const auto stored = desk.run(run->number);
+    ASSERT_TRUE(stored);
+    ASSERT_FALSE(stored->regions.at(0).refusals.empty());
+    for (const Text& reason : stored->regions[0].refusals) {
+        EXPECT_TRUE(said.contains(QString::fromStdString(reason.in(Language::german)))) << said.toStdString();
+        EXPECT_NE(reason.in(Language::german), reason.english());
+        EXPECT_FALSE(said.contains(QString::fromStdString(reason.english()))) << said.toStdString();
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Brands, GermanStudio,

@@ -105,12 +105,13 @@ class AbbRapidLink final : public RobotLink {
             names.push_back(move.spot_id);
         }
         if (auto open = connected(); !open) return open;
-        triggers_.clear();
-        ended_ = false;
-        next_trigger_ = 1;
+        next_trigger_ = 0;  // until the answer every trigger and end is of the measuring before
         auto answer = ask({0, "MEASURE", {std::to_string(names.size()), program_signature(moves)}, {}, {}},
                           settings_.timeout);
         if (!answer) return tl::unexpected(answer.error());
+        triggers_.clear();
+        ended_ = false;
+        next_trigger_ = 1;
         starts_.clear();  // whatever was called for before is what is measured now
         return {};
     }

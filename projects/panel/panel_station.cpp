@@ -165,8 +165,7 @@ class Run {
                 got.push_back(std::move(*frame));
             }
             keep(measurer, got, trigger->base_from_flange, into[i]);
-            progress(static_cast<int>(i) + 1,
-                     fmt::format("{} {}", into[i].place_id, to_string(into[i].status)));
+            progress(static_cast<int>(i) + 1, Text("{} {}", into[i].place_id, to_string(into[i].status)));
         }
         for (auto& [id, f] : frames)
             if (auto complete = f.finish(); !complete) return complete;
@@ -385,7 +384,7 @@ class Run {
         cancel_ = {};
         panel().push = push_region(std::move(pass), *places_.robot, sink());
         panel().push.robot_id = job_.robot_id;
-        progress(0, fmt::format("{}: {}", job_.frame_name, to_string(panel().push.status)));
+        progress(0, Text("{}: {}", job_.frame_name, to_string(panel().push.status)));
         if (panel().push.status != PushStatus::written) {
             run_.status = RunStatus::alarm;
             run_.message = Text("alarm: {}", panel().push.message);
@@ -496,8 +495,8 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
             if (sum.count++ == 0) sum.profile = measurer.profile();
         }
         if (options.progress)
-            options.progress({round + 1, options.repeats,
-                              fmt::format("{}: {} of {}", draft.id, round + 1, options.repeats)});
+            options.progress(
+                {round + 1, options.repeats, Text("{}: {} of {}", draft.id, round + 1, options.repeats)});
     }
     for (std::size_t i = 0; i < sums.size(); ++i) {
         const Sum& sum = sums[i];

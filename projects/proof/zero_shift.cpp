@@ -73,7 +73,7 @@ Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions&
         if (options.progress)
             run_options.progress = [&](const RunProgress& p) {
                 options.progress({n * p.total + p.done, options.runs * p.total,
-                                  fmt::format("{}/{}: {}", n + 1, options.runs, p.text)});
+                                  Text("{}/{}: {}", n + 1, options.runs, p.text)});
             };
         auto run = station.run(run_options);
         if (!run) return tl::unexpected(run.error());

@@ -137,7 +137,7 @@ struct Station::Impl {
             if (auto measured = measure_spot(job, **spot, *trigger); !measured) return measured;
             open.erase(trigger->spot_id);
             ++job.done;
-            job.progress(fmt::format("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
+            job.progress(Text("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
             if (!open.empty())  // while the robot travels; the last ones go with the judged run
                 if (auto stored = file.append_measured(job.run, job.stored); !stored) return stored;
         }

@@ -52,7 +52,7 @@ Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<
         visit(i, *measurer, measurer->measure(**frame, *at));
         if (progress)
             progress({static_cast<int>(i) + 1, static_cast<int>(poses.size()),
-                      fmt::format("{}: {} of {}", spot.id, i + 1, poses.size())});
+                      Text("{}: {} of {}", spot.id, i + 1, poses.size())});
     }
     return {};
 }

@@ -160,6 +160,8 @@ MODULE SeamwrightServer
     LOCAL PROC TellEvents()
         VAR bool ended;
         VAR num calls;
+        ! Looked at before the end: whoever calls for the next part has ended the one before.
+        calls:=swCalls;
         IF swGivenFor<>0 AND swGivenFor<>swPartNo Take_back;
         IF measuring THEN
             ended:=swEnded;
@@ -173,7 +175,6 @@ MODULE SeamwrightServer
                 Say "0 END "+NumToStr(told,0),"","";
             ENDIF
         ENDIF
-        calls:=swCalls;
         IF calls<>calls_told THEN
             starts:=starts+1;
             Say "0 START "+NumToStr(starts,0),swPart,"";

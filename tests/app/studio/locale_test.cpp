@@ -123,6 +123,7 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
                 said = label->text();
         return !said.isEmpty();
     }));
+    QTest::qWait(300);  // until the page has found room for it
     studio->window().grab().save(
         QStringLiteral(SEAMWRIGHT_SCREENS "/refused_de_%1.png").arg(QString::fromStdString(GetParam())));
     const auto stored = desk.run(run->number);

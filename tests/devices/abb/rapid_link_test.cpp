@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <thread>
 
 #include "devices/abb/rapid.h"
+#include "devices/abb/rapid_message.h"
 #include "devices/controllers/abb/controller.h"
+#include "devices/net/socket.h"
 #include "devices/silence.h"
 #include "devices/simulated/cell.h"
 
@@ -234,6 +237,45 @@ INSTANTIATE_TEST_SUITE_P(
                               "wobjDoor"},
                     FaultCase{ControllerFault::out_of_range, "no position of a robot"}),
     [](const auto& tested) { return std::string(to_string(tested.param.fault)); });
+
+// What comes before MEASURE is answered belongs to the measuring before: a controller may see the call for a
+// part before the end of the last one.
+TEST(AbbRapidByHand, TheLastMeasuringsEndIsNotTheNewOnes) {
+    auto listener = TcpListener::listen("127.0.0.1", 0);
+    ASSERT_TRUE(listener) << listener.error().sentence();
+    std::jthread controller([&] {
+        auto client = listener->accept(Milliseconds(5000));
+        ASSERT_TRUE(client) << client.error().sentence();
+        const auto say = [&](const abb::Message& message) {
+            const std::string bytes = abb::message_bytes(message);
+            EXPECT_TRUE(client->send(std::as_bytes(std::span(bytes)), Milliseconds(1000)));
+        };
+        std::array<char, abb::kMessageBytes> bytes;
+        ASSERT_TRUE(client->receive_exactly(std::as_writable_bytes(std::span(bytes)), Milliseconds(5000)));
+        const auto asked = abb::parse_message(std::string_view(bytes.data(), bytes.size()), "test");
+        ASSERT_TRUE(asked) << asked.error().sentence();
+        abb::Message old{0, "TRIGGER", {"12", "12", "S12"}, {}, {}};
+        abb::set_pose_lines(old, Pose::Identity());
+        say(old);
+        say({0, "END", {"12"}, {}, {}});
+        say({asked->number, asked->word, {}, {}, {}});
+        abb::Message fresh{0, "TRIGGER", {"1", "1", "S1"}, {}, {}};
+        abb::set_pose_lines(fresh, Pose::Identity());
+        say(fresh);
+        say({0, "END", {"1"}, {}, {}});
+    });
+    DeviceSession session;
+    auto link = open_abb_rapid({{"port", listener->port()}, {"timeout_ms", 2000}}, session);
+    ASSERT_TRUE(link) << link.error().sentence();
+    const auto started = (*link)->start_measuring(moves(1));
+    ASSERT_TRUE(started) << started.error().sentence();
+    const auto trigger = (*link)->wait_trigger(Milliseconds(2000));
+    ASSERT_TRUE(trigger) << trigger.error().sentence();
+    EXPECT_EQ(trigger->spot_id, "S1");
+    const auto end = (*link)->wait_trigger(Milliseconds(2000));
+    ASSERT_FALSE(end);
+    EXPECT_EQ(end.error().what, "the measuring program has ended");
+}
 
 TEST(AbbRapidSettings, AreChecked) {
     DeviceSession session;

@@ -2,13 +2,14 @@
 
 #include <fmt/args.h>
 
+#include <functional>
 #include <ostream>
 
 namespace seamwright {
 namespace {
 
-constexpr std::size_t kLongestKey = 2000, kMostArguments = 20;
-constexpr std::size_t kLongestMark = 12;  // "{0:+12.6f}"
+constexpr std::size_t kLongestKey = 20'000, kMostArguments = 1000;  // of the chain of a large region's spots
+constexpr std::size_t kLongestMark = 12;                            // "{0:+12.6f}"
 
 // A stored pattern may ask for a width that fills the memory; ours have two digits at most, and no nested marks.
 bool modest(std::string_view key) {
@@ -28,6 +29,13 @@ bool modest(std::string_view key) {
         }
     }
     return true;
+}
+
+// "{}; {}; {}"
+std::string chain_of(std::size_t count, std::string_view between) {
+    std::string key = "{}";
+    for (std::size_t i = 1; i < count; ++i) key.append(between).append("{}");
+    return key;
 }
 
 }  // namespace
@@ -100,10 +108,20 @@ std::ostream& Text::print(std::ostream& out) const {
     return out << english();
 }
 
+// What is joined again and again is one pattern, "{}; {}; {}", however many there are: nothing nests.
 Text joined(const Text& first, std::string_view between, const Text& second) {
     if (first.empty()) return second;
     if (second.empty()) return first;
-    return Text::chosen("{}" + std::string(between) + "{}", first, second);
+    std::vector<Text::Argument> parts;
+    for (const Text& part : {std::cref(first), std::cref(second)}) {
+        if (part.arguments().size() > 1 && part.key() == chain_of(part.arguments().size(), between))
+            parts.insert(parts.end(), part.arguments().begin(), part.arguments().end());
+        else
+            parts.emplace_back(part);
+    }
+    std::string key = chain_of(parts.size(), between);
+    if (auto chain = Text::from(std::move(key), std::move(parts))) return *std::move(chain);
+    return Text::chosen(chain_of(2, between), first, second);  // longer than may be stored
 }
 
 Text listed(const std::vector<Text>& texts) {

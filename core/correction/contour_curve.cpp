@@ -10,8 +10,6 @@
 #include "core/median.h"
 
 namespace seamwright {
-namespace {}  // namespace
-
 PolynomialFit fit_polynomial(std::span<const double> y, std::span<const double> v, int order) {
     PolynomialFit out;
     out.order = order;

@@ -317,12 +317,12 @@ Expected<void> check(const StripeImage& image, const PeakOptions& options) {
     if (image.empty())
         return input_error("the image is empty", "image", "give a frame with at least one pixel");
     if (image.bit_depth != 8 && image.bit_depth != 10 && image.bit_depth != 12 && image.bit_depth != 16)
-        return input_error(Text("the bit depth {} is not supported", std::to_string(image.bit_depth)),
+        return input_error(Text("the bit depth {} is not supported", image.bit_depth),
                            "image.bit_depth", "deliver 8, 10, 12 or 16 bit");
     const auto bytes = static_cast<std::size_t>(image.bytes_per_pixel());
     if (image.row_bytes < static_cast<std::size_t>(image.width) * bytes)
         return input_error(Text("a row of {} bytes is shorter than {} pixels",
-                                std::to_string(image.row_bytes), std::to_string(image.width)),
+                                image.row_bytes, image.width),
                            "image.row_bytes", "give the distance between rows in bytes");
     if (bytes == 2 && (image.row_bytes % 2 || reinterpret_cast<std::uintptr_t>(image.pixels) % 2))
         return input_error("the 16-bit rows begin at odd addresses", "image.row_bytes",
@@ -332,7 +332,7 @@ Expected<void> check(const StripeImage& image, const PeakOptions& options) {
         return input_error("the number of peaks a line is out of range", "per_line", "give 1 to 64");
     if (!in(options.threshold, 0, image.full_scale()))
         return input_error("the threshold is out of range", "threshold",
-                           Text("give 0 (automatic) to {} grey values", std::to_string(image.full_scale())));
+                           Text("give 0 (automatic) to {} grey values", image.full_scale()));
     if (!in(options.min_width_px, 0, 1e6) || !in(options.max_width_px, options.min_width_px, 1e6))
         return input_error("the widths are out of range", "min_width_px, max_width_px",
                            "give 0 <= min <= max");

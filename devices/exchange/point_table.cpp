@@ -234,7 +234,7 @@ Expected<PointTable> parse_text_points(std::string_view text, const std::string&
 Expected<PointTable> parse_points(std::string_view bytes, const std::string& where, std::size_t limit) {
     if (bytes.starts_with("\x93NUMPY")) return parse_npy(bytes, where, limit);
     const auto marked = [&](Expected<PointTable> table) {
-        if (table && bytes.substr(0, 1024).find("robot base") != std::string_view::npos) {
+        if (table && bytes.substr(0, 1024).find(kInBaseMark) != std::string_view::npos) {
             table->in_base = true;
             table->understood += ", in the robot's base";
         }

@@ -11,14 +11,16 @@
 
 namespace seamwright {
 
+// In the head of the PLY and PCD files that `export` writes: lengths and frame of their points.
+inline constexpr std::string_view kInBaseMark = "millimetres, robot base";
+
 struct PointTable {
     std::vector<std::string> names;            // empty where the file names none
     std::vector<std::vector<double>> columns;  // NaN: an empty field
     std::vector<std::size_t>
         blocks;  // first row of each block of rows (blank or comment line between), [0] = 0
     std::vector<std::uint32_t> lines;  // of text: the line of each row, from 1
-    bool in_base =
-        false;  // PLY and PCD that say "robot base", as our own export does: no profile of any plane yet
+    bool in_base = false;  // PLY and PCD with kInBaseMark: no profile of any plane yet
     std::string understood;  // "text, separated by semicolons, decimal comma, header in line 5"
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
     // "line 12" or "point 12" of a row, for messages.

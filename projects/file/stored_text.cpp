@@ -14,8 +14,10 @@ constexpr std::string_view kBegin = R"({"text":)";
 constexpr int kDeepest = 8;
 constexpr const char* kTexts = "texts";
 
-nlohmann::json argument_json(const Text::Argument& argument) {
-    if (const auto* text = std::get_if<Text>(&argument)) return {{"text", text_json(*text)}};
+nlohmann::json write(const Text& text, int depth);
+
+nlohmann::json argument_json(const Text::Argument& argument, int depth) {
+    if (const auto* text = std::get_if<Text>(&argument)) return {{"text", write(*text, depth + 1)}};
     if (const auto* number = std::get_if<double>(&argument)) {
         if (std::isfinite(*number)) return *number;
         return {{"number", std::isnan(*number) ? "nan" : *number > 0 ? "inf" : "-inf"}};
@@ -60,6 +62,17 @@ std::optional<Text> read(const nlohmann::json& json, int depth) {
     return Text::from(key->get<std::string>(), std::move(arguments));
 }
 
+// Whatever the program says can be read again: what read() would refuse is stored as its English.
+nlohmann::json write(const Text& text, int depth) {
+    if (text.empty()) return "";
+    if (text.foreign() || depth > kDeepest || !Text::from(text.key(), text.arguments()))
+        return text.english();
+    nlohmann::json json = {{"text", text.key()}};
+    for (const Text::Argument& argument : text.arguments())
+        json["with"].push_back(argument_json(argument, depth));
+    return json;
+}
+
 const nlohmann::json* stored_in(const nlohmann::json& object, const char* name) {
     const auto texts = object.find(kTexts);
     if (texts == object.end() || !texts->is_object()) return nullptr;
@@ -70,11 +83,7 @@ const nlohmann::json* stored_in(const nlohmann::json& object, const char* name) 
 }  // namespace
 
 nlohmann::json text_json(const Text& text) {
-    if (text.empty()) return "";
-    if (text.foreign()) return text.english();
-    nlohmann::json json = {{"text", text.key()}};
-    for (const Text::Argument& argument : text.arguments()) json["with"].push_back(argument_json(argument));
-    return json;
+    return write(text, 0);
 }
 
 Expected<Text> text_from_json(const nlohmann::json& json) {

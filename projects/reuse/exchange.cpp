@@ -8,6 +8,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
+#include "devices/exchange/point_table.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/profile_csv.h"
 #include "projects/file/project_json.h"
@@ -38,20 +39,18 @@ std::string file_stem(const std::string& id, std::set<std::string>& taken) {
 
 std::string ply_text(const std::vector<Eigen::Vector3d>& points) {
     std::string text = fmt::format(
-        "ply\nformat ascii 1.0\ncomment millimetres, robot base\nelement vertex {}\nproperty double "
-        "x\nproperty double "
-        "y\nproperty double z\nend_header\n",
-        points.size());
+        "ply\nformat ascii 1.0\ncomment {}\nelement vertex {}\nproperty double x\nproperty double y\n"
+        "property double z\nend_header\n",
+        kInBaseMark, points.size());
     for (const auto& p : points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
     return text;
 }
 
 std::string pcd_text(const std::vector<Eigen::Vector3d>& points) {
     std::string text = fmt::format(
-        "# .PCD v0.7 - millimetres, robot base\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 "
-        "1\nWIDTH "
-        "{0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA ascii\n",
-        points.size());
+        "# .PCD v0.7 - {1}\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {0}\n"
+        "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA ascii\n",
+        points.size(), kInBaseMark);
     for (const auto& p : points) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
     return text;
 }

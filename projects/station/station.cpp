@@ -15,8 +15,6 @@
 #include "projects/station/run_release.h"
 
 namespace seamwright {
-namespace {}  // namespace
-
 struct Station::Impl {
     ProjectFile file;
     Project project;

@@ -178,7 +178,7 @@ void trigger_to_released(benchmark::State& state, const char* driver) {
         const std::int64_t end = now_ns();
         observer = {};
         if (!run || run->status != RunStatus::ok)
-            return state.SkipWithError(run ? run->message.c_str() : run.error().sentence().c_str());
+            return state.SkipWithError((run ? run->message.english() : run.error().sentence()).c_str());
         const std::int64_t last = run->captures.back().host_time_ns;
         released_ms.push_back(static_cast<double>(released_at - last) / 1e6);
         all_ms.push_back(static_cast<double>(end - last) / 1e6);

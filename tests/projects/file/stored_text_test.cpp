@@ -1,10 +1,13 @@
 // A sentence comes back from the file as it was, and says the same in every language; a forged one is words.
 #include "projects/file/stored_text.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
+
+#include "devices/exchange/json_fields.h"
 
 namespace seamwright {
 namespace {
@@ -37,6 +40,31 @@ TEST(StoredText, ComesBack) {
         EXPECT_EQ(stored_text(row), stored_text(text));
         EXPECT_EQ(row.foreign(), text.foreign());
     }
+}
+
+// However long or deep a sentence grew, a run that holds it is read again: nothing of it is lost.
+TEST(StoredText, NoSentenceIsTooLongOrTooDeepToComeBack) {
+    Text chain, deep("cancelled");
+    std::vector<Text> list;
+    for (int i = 0; i < 3000; ++i) {
+        list.push_back(Text("spot {}", fmt::format("S{}", i)));
+        chain = joined(chain, "; ", Text("region {}: {}", fmt::format("R{}", i), Text("cancelled")));
+    }
+    for (int i = 0; i < 200; ++i) deep = Text("robot {}: {}", std::string("R1"), deep);
+    const Text wide("{:>200} {:.3f}", std::string("a"), 0.5);
+    for (const Text& text : {chain, deep, wide, listed(list)}) {
+        const json document = text_json(text);
+        EXPECT_LE(json_depth(document), kDeepestJson - 8) << "room for what it stands in";
+        const auto back = text_from_json(json::parse(document.dump()));
+        ASSERT_TRUE(back);
+        EXPECT_EQ(back->english(), text.english());
+        EXPECT_EQ(text_from_stored(stored_text(text)).english(), text.english());
+    }
+    list.resize(40);
+    Text regions;
+    for (const Text& one : list) regions = joined(regions, "; ", one);
+    EXPECT_EQ(text_from_stored(stored_text(regions)).in(Language::german), regions.in(Language::german));
+    EXPECT_NE(regions.in(Language::german), regions.english());
 }
 
 TEST(StoredText, OldColumnsAreSomebodysWords) {

@@ -12,6 +12,7 @@
 #include "devices/abb/rapid.h"
 #include "devices/controllers/abb/controller.h"
 #include "devices/controllers/kuka/controller.h"
+#include "devices/controllers/abb/egm_controller.h"
 #include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/controllers/ur/controller.h"
 #include "devices/genicam/genicam.h"

@@ -317,12 +317,11 @@ Expected<void> check(const StripeImage& image, const PeakOptions& options) {
     if (image.empty())
         return input_error("the image is empty", "image", "give a frame with at least one pixel");
     if (image.bit_depth != 8 && image.bit_depth != 10 && image.bit_depth != 12 && image.bit_depth != 16)
-        return input_error(Text("the bit depth {} is not supported", image.bit_depth),
-                           "image.bit_depth", "deliver 8, 10, 12 or 16 bit");
+        return input_error(Text("the bit depth {} is not supported", image.bit_depth), "image.bit_depth",
+                           "deliver 8, 10, 12 or 16 bit");
     const auto bytes = static_cast<std::size_t>(image.bytes_per_pixel());
     if (image.row_bytes < static_cast<std::size_t>(image.width) * bytes)
-        return input_error(Text("a row of {} bytes is shorter than {} pixels",
-                                image.row_bytes, image.width),
+        return input_error(Text("a row of {} bytes is shorter than {} pixels", image.row_bytes, image.width),
                            "image.row_bytes", "give the distance between rows in bytes");
     if (bytes == 2 && (image.row_bytes % 2 || reinterpret_cast<std::uintptr_t>(image.pixels) % 2))
         return input_error("the 16-bit rows begin at odd addresses", "image.row_bytes",

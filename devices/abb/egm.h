@@ -24,8 +24,8 @@
 // correction is an alarm, unless the path had come to its end and EGM is STOPPED: then the path is over
 // (permission() `taken`). There is no release that could fall: a permission that goes while the path runs, by
 // a verdict, an alarm or the end of the program, ends the answers, and the robot stops with CommTimeout of
-// SeamwrightEgm.mod, its last correction in force until it stands. EGM tells no operating mode: without a measuring link mode() is unknown, stopped or
-// fault.
+// SeamwrightEgm.mod, its last correction in force until it stands. EGM tells no operating mode: without a
+// measuring link mode() is unknown, stopped or fault. EGM talks from EGMSetupUC to EGMReset: a robot that is not at its path is silent here.
 //
 // Settings: abb_egm_settings(). "frame": "sensor" tells the same shift along the axes of the sensor frame that
 // EGMActMove was given, for controllers that are set up so.
@@ -34,38 +34,11 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/cyclic/link.h"
-#include "devices/cyclic/measuring.h"
-#include "devices/simulated/cell.h"
-#include "devices/simulated/controller.h"
 
 namespace seamwright {
 
 const SettingTable& abb_egm_settings();
 Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings, DeviceSession& session,
                                                   OpenRobot open_robot);
-
-// The robot's side. Settings: {"address": "127.0.0.1", "port": 6510, "cycle_ms": 4, "late_limit": 100 (cycles
-// without an answer until EGM stops: CommTimeout), "max_translation_mm": 20, "restart_ms": 700,
-// "ramp_out_ms": 200 (in which a stopped EGM leads the correction away), "speed_mm_s": 100, "straight": false
-// (a line instead of a circle), "application": true, "path_s": 2 (the path ends so long after a correction
-// came, EGM stops, and begins anew; false: it never ends), "slow_ms": 300, "measuring": {"driver",
-// "settings"}}. Faults: silent, slow, half_message and disconnect as for RSI; wrong_answer is a message of
-// another type; reject_write ends EGM with MCI_ERROR as soon as a correction comes; out_of_range tells
-// positions that no robot has. released() is true while a correction is in force, and once the path is over
-// (taken()).
-class SimulatedEgm : public SimulatedController {
-  public:
-    struct Sample {
-        Pose programmed = Pose::Identity(), corrected = Pose::Identity();
-        Eigen::Vector3d told_mm = Eigen::Vector3d::Zero(), travel = Eigen::Vector3d::Zero();
-    };
-    virtual Sample newest() const = 0;
-    virtual std::vector<Sample> history() const = 0;
-    virtual std::uint64_t stops() const = 0;
-    virtual SimulatedController* measuring() = 0;
-};
-Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<SimulatedCell> cell,
-                                                             const nlohmann::json& settings,
-                                                             StartController start_controller);
 
 }  // namespace seamwright

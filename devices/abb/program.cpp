@@ -10,6 +10,7 @@
 
 #include "abb_resources.h"
 #include "core/geometry/notation.h"
+#include "devices/abb/egm.h"
 #include "devices/abb/rapid.h"
 #include "devices/abb/rapid_message.h"
 #include "devices/exchange/settings.h"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMostSpots = 64, kMostFrames = 32;  // arrays of the modules
 constexpr double kFastest_mm_s = 2000;
+constexpr int kEgmSample_ms = 4;
 
 std::string rapid_pose(const Pose& pose) {
     const Eigen::Vector3d& t = pose.translation();
@@ -127,7 +129,35 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
 
 }  // namespace
 
+namespace {
+
+// The measuring driver's program, with the settings in "measuring", and the module of EGM.
+Expected<std::vector<ProgramFile>> write_egm_program(const ProgramRequest& request) {
+    int cycle_ms = 0;
+    SettingsReader f(request.settings, "settings", abb_egm_settings(), UnknownSettings::passed_over);
+    f.whole("cycle_ms", cycle_ms);
+    if (f.failed()) return tl::unexpected(f.error());
+    if (cycle_ms % kEgmSample_ms != 0)
+        return input_error(Text("EGM has no sample rate of {} ms", cycle_ms), "settings.cycle_ms",
+                           "give a multiple of 4");
+    ProgramRequest measuring = request;
+    measuring.driver.clear();
+    measuring.settings = nlohmann::json::object();
+    if (request.settings.contains("measuring") && request.settings["measuring"].is_object())
+        measuring.settings = request.settings["measuring"].value("settings", nlohmann::json::object());
+    auto files = write_abb_program(measuring);
+    if (!files) return files;
+    std::string text(resources::SeamwrightEgm_mod);
+    constexpr std::string_view kRate = "SampleRate:=48";
+    text.replace(text.find(kRate), kRate.size(), fmt::format("SampleRate:={}", cycle_ms));
+    files->push_back({"SeamwrightEgm.mod", text});
+    return files;
+}
+
+}  // namespace
+
 Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request) {
+    if (request.driver == "abb-egm") return write_egm_program(request);
     if (request.moves.size() > kMostSpots)
         return input_error(Text("{} spots are more than the module holds", request.moves.size()),
                            request.project, Text("measure at most {} in one program", kMostSpots));

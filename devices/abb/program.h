@@ -10,13 +10,17 @@
 //   "load": {"mass_kg", "centre_mm": [x, y, z], "inertia_kgm2": [x, y, z]}, in the flange's frame.
 // Without either the moves carry what tool0 does, 1 g: the controller then knows nothing of the sensor's
 // weight.
+//
+// For abb-egm also SeamwrightEgm.mod with the robot's "cycle_ms" as sample rate; the settings above are then
+// those of its measuring driver.
 
 #include "devices/robot_program.h"
 
 namespace seamwright {
 
 // Error (input): more than 64 spots or 32 frames, names that RAPID cannot hold, reserves or our modules use,
-// two frames of one name, a speed over 2 m/s, a pose that is not finite or beyond 100 m.
+// two frames of one name, a speed over 2 m/s, a pose that is not finite or beyond 100 m, a sample rate that EGM
+// has not.
 Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& request);
 
 // NAME.mod: PROC NAME_run(tool) along the points in a work object of its own.

@@ -274,6 +274,18 @@ Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base
     return {};
 }
 
+// The robot's program comes from its measuring to its path, and begins to ask there. Of a robot without a measuring
+// link nothing tells that it will come.
+Expected<CyclicServer::State> CyclicLink::on_path(Clock::time_point until) {
+    while (true) {
+        auto state = fresh_state();
+        const bool comes =
+            state ? !state->packet.running && !state->packet.problem : is_silence(state.error());
+        if (!measuring_ || !comes || Clock::now() >= until) return state;
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+}
+
 Expected<void> CyclicLink::apply() {
     std::optional<Pose> b;
     std::string first;
@@ -290,7 +302,8 @@ Expected<void> CyclicLink::apply() {
             first = name;
         }
     }
-    auto state = fresh_state();
+    const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
+    auto state = on_path(deadline);
     if (!state) return tl::unexpected(state.error());
     if (state->packet.missing)
         return device_error(Text("the robot's packets carry no {}", state->packet.missing), settings_.driver,
@@ -301,7 +314,6 @@ Expected<void> CyclicLink::apply() {
     if (auto ok = same_robot(); !ok) return ok;
     const Pose& r = settings_.base_from_reference;
     server_->set_target(b ? Pose(r.inverse() * *b * r) : Pose::Identity());
-    const auto deadline = Clock::now() + milliseconds(settings_.confirm_timeout_ms);
     while (true) {
         if (auto ok = no_alarm(); !ok) return ok;
         state = fresh_state();

@@ -17,7 +17,8 @@
 // taught frame), and in every cycle at the programmed position. Alarms of corrector.h are told, once, by the
 // next call whatever it is; the correction is being withdrawn by then.
 //
-// confirm(corrected) returns when the robot has shown the whole correction. permission() is then `given`
+// confirm(corrected) waits for a robot that is on its way from measuring to its path (at most confirm_timeout_ms), and
+// returns when the robot has shown the whole correction. permission() is then `given`
 // until its path moves, `running` while it does, which needs this link in every cycle, and `taken` when the
 // path has come to its end. After a new session the identity is asked again, of the measuring link and by the
 // peer's address, before anything is written or confirmed.
@@ -85,6 +86,7 @@ class CyclicLink : public RobotLink {
                std::unique_ptr<RobotLink> measuring);
     Expected<void> no_alarm();
     Expected<CyclicServer::State> fresh_state();
+    Expected<CyclicServer::State> on_path(std::chrono::steady_clock::time_point until);
     Expected<void> apply();
     Expected<void> back_to_zero();
     Expected<void> same_robot();

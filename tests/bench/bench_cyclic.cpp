@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "devices/abb/egm.h"
+#include "devices/controllers/abb/egm_controller.h"
 #include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/kuka/rsi.h"

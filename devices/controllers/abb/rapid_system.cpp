@@ -114,6 +114,9 @@ FUNC pose PoseMult(pose Pose1,pose Pose2);
 FUNC pose PoseInv(pose Pose1);
 FUNC orient NOrient(orient Rotation);
 FUNC num SocketPeek(VAR socketdev Socket);
+PROC StopMove(\switch Quick\switch AllMotionTasks);
+PROC StartMove(\switch AllMotionTasks);
+PROC ClearPath();
 PROC EGMReset(VAR egmident EGMid);
 PROC EGMGetId(VAR egmident EGMid);
 PROC EGMSetupUC(VAR mecunit MecUnit,VAR egmident EGMid,string ExtConfigName,string UCDevice\switch Joint|switch Pose_1

@@ -20,14 +20,26 @@ MODULE SeamwrightEgm
         EGMReset egm_id;
     ENDPROC
 
-    ! A path in the shape that EGM wants: up to the first point by ordinary motion with a fine point, along the
-    ! corrected path with EGMMoveL and EGMMoveC only, away by ordinary motion. Joint motion is not corrected.
-    PROC SeamwrightEgmPath(robtarget start, robtarget via, robtarget on_arc, robtarget end, PERS tooldata tool_used,
+    ! A path in the shape that EGM wants, called behind SW_Measure: up to the start by ordinary motion with a fine
+    ! point, then by EGMMoveL and EGMMoveC only, away by ordinary motion. Joint motion is not corrected.
+    ! EGM corrects only a robot that moves along its path, and Seamwright gives its permission once the robot shows the
+    ! whole correction. So from start to seam lies a lead-in with the process off, as long as the correction takes: at
+    ! 100 mm/s some 150 mm for 10 mm. While it runs the permission is waited for; without it the seam is not run.
+    PROC SeamwrightEgmPath(robtarget start, robtarget seam, robtarget on_arc, robtarget end, PERS tooldata tool_used,
         PERS wobjdata wobj_used, speeddata speed)
         MoveL start, speed, fine, tool_used\WObj:=wobj_used;
         SeamwrightEgmOn tool_used;
-        EGMMoveL egm_id, via, speed, z5, tool_used\WObj:=wobj_used;
+        EGMMoveL egm_id, seam, speed, z5, tool_used\WObj:=wobj_used;
+        IF NOT SW_Take() THEN
+            SeamwrightEgmOff;
+            TPWrite "Seamwright has not released this part";
+            Stop;
+            EXIT;
+        ENDIF
+        ! Here the process begins.
         EGMMoveC egm_id, on_arc, end, speed, fine, tool_used\WObj:=wobj_used;
+        ! Here it ends. Seamwright hears that EGM stands at the end of its path before EGM is gone.
+        WaitTime 0.5;
         SeamwrightEgmOff;
     ERROR
         IF ERRNO = ERR_UDPUC_COMM THEN

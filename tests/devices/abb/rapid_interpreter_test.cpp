@@ -259,15 +259,22 @@ TEST(RapidDelivered, TheMovesCarryTheLoadOfTheProject) {
     }
 }
 
-// EGM's own instructions are not executed here; the module is RAPID, and no word of it is reserved.
-TEST(RapidDelivered, TheModuleOfEgmIsRead) {
-    try {
-        const auto module =
-            rapid::parse_module(std::string(resources::SeamwrightEgm_mod), "SeamwrightEgm.mod");
-        EXPECT_EQ(module->routines.size(), 3u);
-    } catch (const std::exception& e) {
-        ADD_FAILURE() << e.what();
-    }
+TEST(RapidDelivered, EgmComesWithItsModule) {
+    auto request = project(1);
+    request.driver = "abb-egm";
+    request.settings = {{"cycle_ms", 24}, {"port", 6510}, {"measuring", {{"settings", {{"port", 2222}}}}}};
+    auto files = write_abb_program(request);
+    ASSERT_TRUE(files) << files.error().sentence();
+    ASSERT_EQ(files->size(), 4u);
+    EXPECT_THAT((*files)[0].text, HasSubstr("2222")) << "the port of the measuring driver";
+    EXPECT_EQ((*files)[3].name, "SeamwrightEgm.mod");
+    EXPECT_THAT((*files)[3].text, HasSubstr("SampleRate:=24;"));
+    const auto loaded = loads_with(*files);
+    EXPECT_TRUE(loaded) << loaded.error().sentence();
+    request.settings["cycle_ms"] = 10;
+    const auto refused = write_abb_program(request);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("no sample rate of 10 ms"));
 }
 
 // Whatever somebody calls a path or a work object: it is refused, or a controller loads it.

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "devices/abb/egm_message.h"
+#include "devices/controllers/abb/egm_controller.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/net/socket.h"
 
@@ -310,7 +311,7 @@ TEST_P(EgmWithdrawn, StopsThePathWhichIsNeverTaken) {
     EgmPair pair = open_egm({{"application", true},
                              {"path_s", 3},
                              {"late_limit", 50},
-                             {"restart_ms", 1000},
+                             {"restart_ms", 1500},
                              {"speed_mm_s", 40},
                              {"straight", true}});
     ASSERT_TRUE(pair.link->write_frame("PATH", egm_written()));

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "devices/abb/egm.h"
+#include "devices/controllers/abb/egm_controller.h"
 #include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/kuka/rsi.h"
@@ -110,7 +111,8 @@ TEST_P(WholeRobot, MeasuresByOneDriverAndCorrectsByTheOther) {
     auto again = start_measuring();
     ASSERT_TRUE(again) << again.error().sentence();
     EXPECT_FALSE(beside->released());
-    EXPECT_TRUE(static_cast<CyclicLink&>(*link).server().state().zero);
+    const CyclicServer::State state = static_cast<CyclicLink&>(*link).server().state();
+    EXPECT_TRUE(state.zero || state.silent) << "a robot that stopped its path asks no more";
 }
 INSTANTIATE_TEST_SUITE_P(Brands, WholeRobot,
                          testing::Values(Brand{"kuka-rsi", "kuka-eki", true},

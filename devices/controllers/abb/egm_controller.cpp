@@ -1,4 +1,6 @@
-// The robot's end of EGM path correction, before a simulated cell.
+#include "devices/controllers/abb/egm_controller.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
@@ -8,8 +10,10 @@
 #include <mutex>
 #include <thread>
 
-#include "devices/abb/egm.h"
+#include "abb_application.h"
 #include "devices/abb/egm_message.h"
+#include "devices/abb/program.h"
+#include "devices/controllers/abb/egm_application.h"
 #include "devices/cyclic/path.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/net/socket.h"
@@ -20,9 +24,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::size_t kHistory = 20000;
-constexpr int kStandsAtEnd_ms = 100;
 
-struct Options {
+struct EgmRobotOptions {
     std::string address = "127.0.0.1";
     int port = 6510, cycle_ms = 4, late_limit = 100, restart_ms = 700, slow_ms = 300, ramp_out_ms = 200;
     double max_translation_mm = 20, path_s = 2;
@@ -32,15 +35,12 @@ struct Options {
 
 class Egm final : public SimulatedEgm {
   public:
-    Egm(Options options, UdpSocket socket, std::unique_ptr<SimulatedController> measuring)
-        : options_(std::move(options)),
-          socket_(std::move(socket)),
-          measuring_(std::move(measuring)),
-          thread_([this] { run(); }) {}
+    Egm(EgmRobotOptions options, UdpSocket socket, std::unique_ptr<SimulatedController> measuring)
+        : options_(std::move(options)), socket_(std::move(socket)), measuring_(std::move(measuring)) {}
     ~Egm() override {
         stop_ = true;
         socket_.close();
-        thread_.join();
+        if (thread_.joinable()) thread_.join();
     }
     std::uint16_t port() const override { return static_cast<std::uint16_t>(options_.port); }
     Sample newest() const override {
@@ -54,92 +54,95 @@ class Egm final : public SimulatedEgm {
     std::uint64_t stops() const override { return stops_; }
     SimulatedController* measuring() override { return measuring_.get(); }
 
+    std::vector<std::string> messages() const override { return application_->messages(); }
+    // Throws rapid::LoadError.
+    void start(const std::vector<rapid::SourceText>& modules) {
+        rapid::EgmApplicationSettings settings;
+        settings.path = options_.path;
+        settings.path_s = options_.path_s;
+        settings.ends = options_.application;
+        settings.cycle_ms = options_.cycle_ms;
+        settings.restart_ms = options_.restart_ms;
+        application_ = std::make_unique<rapid::EgmApplication>(settings, modules);
+        thread_ = std::thread([this] { run(); });
+    }
+
   private:
     void run() {
         auto next = Clock::now();
-        std::uint64_t cycle = 0;
         std::uint32_t seqno = 0;
-        bool half_sent = false;
-        int off_ms = 0;       // EGM is stopped for so long yet
-        int standing_ms = 0;  // at the end of the path
-        double left_ms = -1;  // of the path, once a correction is in force
-        EgmMci stopped = EgmMci::error;
+        bool half_sent = false, answered = false;
+        rapid::EgmApplication::Now before;
         while (!stop_) {
             next += milliseconds(options_.cycle_ms);
-            const bool at_end = options_.application && left_ms == 0;
-            if (!at_end && off_ms <= 0) ++cycle;  // without EGM it stands: its program has ended or raised
-            ++clock_;
+            int passed_ms = options_.cycle_ms;
             const ControllerFault kind = fault();
             if (kind == ControllerFault::slow) {
                 for (int waited = 0; waited < options_.slow_ms && !stop_; waited += 10)
                     std::this_thread::sleep_for(milliseconds(10));
-                const auto missed = static_cast<std::uint32_t>(options_.slow_ms / options_.cycle_ms);
-                seqno += missed;
-                cycle += missed;
-                clock_ += missed;
+                passed_ms += options_.slow_ms;
+                seqno += static_cast<std::uint32_t>(options_.slow_ms / options_.cycle_ms);
             }
             next = std::max(next, Clock::now() + milliseconds(1));
-            const double time = static_cast<double>(cycle) * options_.cycle_ms / 1e3;
-            const Pose programmed = options_.path.at(time);
-            const Eigen::Vector3d travel = options_.path.tangent(time);
+            clock_ms_ += passed_ms;
+            const auto now = application_->cycle(passed_ms, answered, permitted());
+            const bool running = now.mci == EgmMci::running;
+            if (now.paths > before.paths) take();
+            if (now.stops > before.stops) withdraw();
+            stops_ = now.stops;
+            if (before.mci == EgmMci::running && !running) {
+                out_ = in_force_;
+                told_.setZero();
+            }
+            before = now;
             EgmState s;
             s.seqno = ++seqno;
-            s.tm_ms = static_cast<std::uint32_t>(clock_) * static_cast<std::uint32_t>(options_.cycle_ms);
-            s.planned = programmed;
-            s.measured = corrected(programmed, travel);
+            s.tm_ms = static_cast<std::uint32_t>(clock_ms_);
+            s.planned = now.programmed;
+            s.measured = corrected(now.programmed, now.travel);
             s.motors_on = s.rapid_running = true;
-            s.mci = off_ms > 0 ? stopped : EgmMci::running;
+            s.mci = now.mci;
             if (kind == ControllerFault::out_of_range) {
                 s.planned->translation().x() = 1e9;
                 s.measured->translation().z() = std::numeric_limits<double>::infinity();
             }
             if (kind != ControllerFault::half_message && kind != ControllerFault::disconnect)
                 half_sent = false;
-            send(kind, s, half_sent);
-            const bool answered = await_answer(next, s.tm_ms);
-            without_answer_ = answered ? 0 : without_answer_ + 1;
-            if (off_ms > 0) {
-                // What is told is not taken; what was in force is led out in ramp_out_ms.
-                const Eigen::Vector3d step =
-                    out_ * (static_cast<double>(options_.cycle_ms) / options_.ramp_out_ms);
-                in_force_ = in_force_.norm() <= step.norm() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                                            : Eigen::Vector3d(in_force_ - step);
-                told_.setZero();
-                off_ms -= options_.cycle_ms;
-                without_answer_ = 0;
-                if (off_ms <= 0) in_force_.setZero();
-            } else {
+            if (now.talks) send(kind, s, half_sent);
+            answered = await_answer(next, s.tm_ms);
+            if (running) {
                 in_force_ = told_;
+            } else {
+                told_.setZero();
+                lead_out();
             }
             if (measured_.begins(measuring_.get())) part_begins();
             const bool correcting = !told_.isZero(0);
-            if (correcting && left_ms < 0) left_ms = options_.path_s * 1000;
-            if (left_ms > 0) left_ms = std::max(0.0, left_ms - options_.cycle_ms);
-            standing_ms = at_end ? standing_ms + options_.cycle_ms : 0;
-            const bool over = standing_ms > kStandsAtEnd_ms;
-            if (over || without_answer_ > options_.late_limit || told_.norm() > options_.max_translation_mm ||
-                (kind == ControllerFault::reject_write && correcting)) {
-                if (over)
-                    take();
-                else
-                    ++stops_;
-                stopped = over ? EgmMci::stopped : EgmMci::error;
-                out_ = in_force_;
-                told_.setZero();
-                without_answer_ = 0;
-                left_ms = -1;
-                standing_ms = 0;
-                off_ms = options_.restart_ms;
-                withdraw();
-            } else if (correcting && !released()) {
+            if (told_.norm() > options_.max_translation_mm ||
+                (kind == ControllerFault::reject_write && correcting))
+                application_->egm_fails();
+            else if (correcting && !released())
                 take_verdict(PartVerdict::corrected);
-            } else if (!correcting && released()) {
+            else if (!correcting && released())
                 withdraw();
-            }
             const std::lock_guard lock(mutex_);
-            history_.push_back({programmed, corrected(programmed, travel), in_force_, travel});
+            history_.push_back(
+                {now.programmed, corrected(now.programmed, now.travel), in_force_, now.travel});
             if (history_.size() > kHistory) history_.pop_front();
         }
+    }
+
+    // Without a measuring controller: a correction is in force.
+    bool permitted() const {
+        if (!measuring_) return !told_.isZero(0);
+        return measuring_->verdict() == PartVerdict::corrected;
+    }
+
+    // What is told to a stopped EGM is not taken; what was in force goes within ramp_out_ms.
+    void lead_out() {
+        const Eigen::Vector3d step = out_ * (static_cast<double>(options_.cycle_ms) / options_.ramp_out_ms);
+        in_force_ = in_force_.norm() <= step.norm() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                                    : Eigen::Vector3d(in_force_ - step);
     }
 
     // Across the path only.
@@ -194,19 +197,43 @@ class Egm final : public SimulatedEgm {
         return answered;
     }
 
-    const Options options_;
+    const EgmRobotOptions options_;
     UdpSocket socket_;
     std::unique_ptr<SimulatedController> measuring_;
     NextPart measured_;
     Eigen::Vector3d told_ = Eigen::Vector3d::Zero(), in_force_ = told_, out_ = told_;
-    std::uint64_t clock_ = 0;  // cycles
-    int without_answer_ = 0;
+    std::int64_t clock_ms_ = 0;
+    std::unique_ptr<rapid::EgmApplication> application_;
     std::atomic<std::uint64_t> stops_ = 0;
     mutable std::mutex mutex_;
     std::deque<Sample> history_;
     std::atomic<bool> stop_ = false;
     std::thread thread_;
 };
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+}
+
+// The delivered module with the sample rate of the settings and the time-out that the commissioning engineer chose.
+Expected<std::vector<rapid::SourceText>> modules_of(const EgmRobotOptions& o) {
+    ProgramRequest request;
+    request.project = "the simulated cell";
+    request.driver = "abb-egm";
+    request.settings = {{"cycle_ms", o.cycle_ms}};
+    auto files = write_abb_program(request);
+    if (!files) return tl::unexpected(files.error());
+    std::string application(resources::SimEgmApplication_mod);
+    replace(application, "@REST@", fmt::format("{:.3f}", o.restart_ms / 1e3));
+    std::vector<rapid::SourceText> modules = {{"SimEgmApplication.mod", application}};
+    for (ProgramFile& file : *files) {
+        if (file.name != "SeamwrightEgm.mod") continue;
+        replace(file.text, "CommTimeout:=1",
+                fmt::format("CommTimeout:={:.3f}", o.late_limit * o.cycle_ms / 1e3));
+        modules.push_back({file.name, file.text});
+    }
+    return modules;
+}
 
 }  // namespace
 
@@ -220,7 +247,7 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
             "");
         !ok)
         return tl::unexpected(ok.error());
-    Options o;
+    EgmRobotOptions o;
     auto address = json_string_or(settings, "address", o.address, "");
     if (!address) return tl::unexpected(address.error());
     o.address = *address;
@@ -254,7 +281,15 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
     if (!measuring) return measuring;
     auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);
     if (!socket) return tl::unexpected(socket.error());
-    return std::make_unique<Egm>(std::move(o), std::move(*socket), std::move(*measuring));
+    auto modules = modules_of(o);
+    if (!modules) return tl::unexpected(modules.error());
+    auto controller = std::make_unique<Egm>(o, std::move(*socket), std::move(*measuring));
+    try {
+        controller->start(*modules);
+    } catch (const rapid::LoadError& e) {
+        return input_error(e.what(), "programs of the ABB controller");
+    }
+    return controller;
 }
 
 }  // namespace seamwright

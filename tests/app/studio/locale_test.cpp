@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <QLabel>
+#include <QTableWidget>
 #include <clocale>
 #include <cstdlib>
 #include <filesystem>
@@ -89,6 +90,7 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     std::shared_ptr<const RunRecord> run;
     QObject::connect(&desk.worker(), &StationWorker::confirm_push, &desk,
                      [&](const std::shared_ptr<const RunRecord>& judged) {
+                         EXPECT_FALSE(served->controller().released()) << "before the person has said yes";
                          before = judged->regions.at(0).push.before;
                          desk.worker().answer_push(true);
                      });
@@ -98,6 +100,15 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     ASSERT_TRUE(me.wait([&] { return run != nullptr; }));
     EXPECT_EQ(run->status, RunStatus::ok) << run->message;
     ASSERT_TRUE(before);
+    // The desk holds the link until the application runs, and says that it does.
+    EXPECT_TRUE(served->controller().released());
+    EXPECT_EQ(run->regions.at(0).push.release, Release::taken);
+    studio->window().show_step(Step::run);
+    const auto* regions = studio->window().findChild<QTableWidget*>("run_regions");
+    ASSERT_TRUE(regions);
+    ASSERT_TRUE(me.wait([&] { return regions->rowCount() == 1; }));
+    EXPECT_TRUE(regions->item(0, 0)->text().contains("die Anwendung läuft im Frame"))
+        << regions->item(0, 0)->text().toStdString();
     EXPECT_LT(distance_mm(*before, frame), 0.01);
     EXPECT_LT(angle_rad(*before, frame), 1e-4);
     ASSERT_TRUE(run->regions.at(0).push.read_back);

@@ -208,4 +208,42 @@ void SettingsReader::pose(const char* key, Pose& value) {
     value = *read;
 }
 
+Expected<void> check_settings(const nlohmann::json& json, const std::string& where,
+                              const SettingTable& table) {
+    SettingsReader f(json, where, table);
+    for (const SettingInfo& s : table) {
+        const char* key = s.name.c_str();
+        double number = 0;
+        bool truth = false;
+        std::string text;
+        Pose pose = Pose::Identity();
+        switch (s.kind) {
+            case SettingKind::number:
+            case SettingKind::whole:
+                f.number(key, number);
+                break;
+            case SettingKind::text:
+            case SettingKind::choice:
+                f.text(key, text);
+                break;
+            case SettingKind::yes_no:
+                f.truth(key, truth);
+                break;
+            case SettingKind::pose:
+                f.pose(key, pose);
+                break;
+            case SettingKind::list:
+                if (f.has(key)) f.keep(json_array(f.json(), key, where).map([](const nlohmann::json*) {}));
+                break;
+            case SettingKind::object:
+                f.object(key, [&](SettingsReader& inner) {
+                    if (!s.fields.empty()) inner.keep(check_settings(inner.json(), f.path(s.name), s.fields));
+                });
+                break;
+        }
+    }
+    if (f.failed()) return tl::unexpected(f.error());
+    return {};
+}
+
 }  // namespace seamwright

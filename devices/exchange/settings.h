@@ -61,6 +61,11 @@ SettingTable reconnect(int least_ms, int first_ms, int most_ms, const std::strin
 // The table for people: "name  default  range or choices  help", a line each, fields of objects indented.
 std::string settings_text(const SettingTable& table);
 
+// Everything at once that a reader of the table would refuse, field by field; what only the driver can know is not
+// asked.
+Expected<void> check_settings(const nlohmann::json& json, const std::string& where,
+                              const SettingTable& table);
+
 // What a reader does with names that its table does not hold.
 enum class UnknownSettings { refused, passed_over };
 

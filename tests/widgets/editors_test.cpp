@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <QCheckBox>
+#include <QComboBox>
 #include <QLineEdit>
 #include <QSignalSpy>
 #include <QTest>
@@ -7,6 +9,7 @@
 #include "widgets/editors/number_box.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/editors/settings_editor.h"
 
 namespace seamwright {
 namespace {
@@ -117,6 +120,98 @@ TEST(PoseEditor, TypedNumbersCommitOnce) {
     QTest::keyClick(lines[4], Qt::Key_Return);
     EXPECT_FALSE(editor.refused()) << editor.reason().toStdString();
     EXPECT_NEAR(editor.pose().linear()(1, 1), -1, 1e-12);
+}
+
+SettingTable example_settings() {
+    using namespace entry;
+    return {text("address", "127.0.0.1", "the controller's"),
+            whole("port", 54600, 1, 65535, "of the robot"),
+            choice("mode", {"absolute", "relative"}, "of the correction"),
+            yes_no("trigger", false, "by hardware"),
+            formerly("retry_ms", whole("reconnect_ms", 100, 1, 1000, "back-off")),
+            object("ramp", {number("speed_mm_s", 20, 1e-3, 1000, "of the ramp")}, "how a correction comes"),
+            list("range", nullptr, "of columns"), pose("tool", "that it tells")};
+}
+
+class SettingsForm : public testing::Test {
+  protected:
+    void SetUp() override {
+        editor.set_table(example_settings());
+        editor.show_all(true);
+        editor.show();
+        ASSERT_TRUE(QTest::qWaitForWindowExposed(&editor));
+    }
+    QLineEdit* line(const char* name) { return editor.findChild<QLineEdit*>(name); }
+    void type(const char* name, const char* text) {
+        line(name)->setFocus();
+        line(name)->selectAll();
+        if (*text == 0) QTest::keyClick(line(name), Qt::Key_Delete);
+        QTest::keyClicks(line(name), text);
+        QTest::keyClick(line(name), Qt::Key_Return);
+    }
+    SettingsEditor editor;
+    QSignalSpy edited{&editor, &SettingsEditor::edited};
+};
+
+TEST_F(SettingsForm, WritesWhatIsTypedAndNothingElse) {
+    editor.set_value({{"port", 54601}, {"retry_ms", 250}, {"strange", {1, 2}}});
+    EXPECT_EQ(edited.size(), 0);
+    EXPECT_EQ(line("setting_port")->text(), "54601");
+    EXPECT_EQ(line("setting_reconnect_ms")->text(), "250") << "by its former name";
+    EXPECT_EQ(line("setting_address")->text(), "");
+    EXPECT_EQ(line("setting_address")->placeholderText(), "127.0.0.1");
+    type("setting_port", "4711");
+    type("setting_ramp_speed_mm_s", "12,5");
+    type("setting_address", "10.0.0.7");
+    type("setting_range", "[3, 4]");
+    auto* mode = editor.findChild<QComboBox*>("setting_mode");
+    mode->setCurrentIndex(1);
+    emit mode->activated(1);
+    QTest::mouseClick(editor.findChild<QCheckBox*>("setting_trigger"), Qt::LeftButton, {}, {10, 10});
+    EXPECT_EQ(editor.value(), nlohmann::json::parse(R"({"port": 4711, "reconnect_ms": 250, "strange": [1, 2],
+        "ramp": {"speed_mm_s": 12.5}, "address": "10.0.0.7", "range": [3, 4], "mode": "relative", "trigger": true})"));
+    EXPECT_EQ(edited.size(), 6);
+    // An empty field is a setting that is left out; an object that held nothing else goes with it.
+    type("setting_ramp_speed_mm_s", "");
+    type("setting_port", "");
+    EXPECT_FALSE(editor.value().contains("ramp"));
+    EXPECT_FALSE(editor.value().contains("port"));
+    EXPECT_FALSE(editor.refused());
+}
+
+TEST_F(SettingsForm, RefusesAndKeepsTheLastGoodOne) {
+    editor.set_value({{"port", 5000}});
+    for (const char* bad : {"0", "65536", "1.5", "x", "nan", "1e999"}) {
+        type("setting_port", bad);
+        EXPECT_TRUE(editor.refused()) << bad;
+        EXPECT_EQ(editor.value().at("port"), 5000) << bad;
+        EXPECT_EQ(line("setting_port")->text(), bad);
+    }
+    type("setting_port", "6000");
+    EXPECT_FALSE(editor.refused());
+    for (const char* bad : {"{", "{}", "3", "[1,"}) {
+        type("setting_range", bad);
+        EXPECT_TRUE(editor.refused()) << bad;
+        EXPECT_FALSE(editor.value().contains("range")) << bad;
+    }
+    editor.set_value({{"port", 7000}});
+    EXPECT_FALSE(editor.refused());
+}
+
+TEST_F(SettingsForm, ShowsWhatCounts) {
+    editor.show_all(false);
+    EXPECT_TRUE(line("setting_port")->isVisible());
+    EXPECT_FALSE(line("setting_ramp_speed_mm_s")->isVisible());
+    editor.set_value({{"ramp", {{"speed_mm_s", 3}}}});
+    EXPECT_TRUE(line("setting_ramp_speed_mm_s")->isVisible());
+    // Whatever a file holds: nothing is thrown, nothing is lost.
+    for (const char* odd : {"[]", "null", "3", R"({"ramp": 3, "port": "x", "tool": [], "mode": 7, "trigger": {}})"}) {
+        const auto json = nlohmann::json::parse(odd);
+        editor.set_value(json);
+        if (json.is_object()) {
+            EXPECT_EQ(editor.value(), json);
+        }
+    }
 }
 
 }  // namespace

@@ -66,23 +66,36 @@ CellPage::CellPage(Desk& desk, const Views& views)
     add_field(*mode_box, tr("Push only in mode"), mode_,
               tr("Pushes are refused while the robot is in another mode"));
     box().addWidget(mode_row_);
-    auto* settings_name = new QLabel(tr("Settings (JSON)"));
-    box().addWidget(settings_name);
+    form_ = new SettingsEditor;
+    form_->setObjectName("settings_form");
+    box().addWidget(form_);
+    as_text_ =
+        make_button("settings_as_text", "log", tr("Settings as text"),
+                    tr("The settings as the project file holds them (JSON), to copy and to paste"), [] {});
+    as_text_->setCheckable(true);
     settings_ = new QPlainTextEdit;
     settings_->setObjectName("settings");
     settings_->setAccessibleName(tr("Settings (JSON)"));
-    settings_->setToolTip(tr("Address, port, serial number and whatever else the driver documents"));
     settings_->setTabChangesFocus(true);
     settings_->setMinimumHeight(110);
-    settings_name->setBuddy(settings_);
+    settings_->hide();
+    connect(as_text_, &QPushButton::toggled, settings_, &QWidget::setVisible);
+    box().addLayout(make_row({as_text_}));
     box().addWidget(settings_);
     settings_state_ = make_text({});
+    settings_state_->setObjectName("settings_state");
     box().addWidget(settings_state_);
+    connect(driver_, &QComboBox::currentIndexChanged, this, [this] { show_table(); });
+    connect(form_, &SettingsEditor::edited, this, [this] {
+        const QSignalBlocker quiet(settings_);
+        settings_->setPlainText(QString::fromStdString(form_->value().dump(2)));
+        judge_settings();
+    });
     connect(settings_, &QPlainTextEdit::textChanged, this, [this] {
-        const bool ok = parse_json(settings_->toPlainText().toStdString(), {}).has_value();
-        set_verdict(*settings_state_, ok ? QString() : tr("refused: this is no JSON"),
-                    ok ? Tone::plain : Tone::alarm);
-        apply_->setEnabled(ok && !chosen().empty());
+        if (const auto json = parse_json(settings_->toPlainText().toStdString(), {});
+            json && json->is_object())
+            form_->set_value(*json);
+        judge_settings();
     });
     apply_ = make_button("apply_device", "check", tr("Apply"),
                          tr("Take driver and settings over; connect again afterwards"), [this] { apply(); });
@@ -209,7 +222,7 @@ void CellPage::show_device() {
     const Project& p = desk_.project();
     const bool sensor = sensor_chosen();
     const std::string id = chosen();
-    for (QWidget* w : std::initializer_list<QWidget*>{driver_, settings_, rename_, remove_, apply_})
+    for (QWidget* w : std::initializer_list<QWidget*>{driver_, form_, settings_, rename_, remove_})
         w->setEnabled(!id.empty());
     mode_row_->setVisible(!id.empty() && !sensor);
     const QSignalBlocker quiet(driver_);
@@ -226,6 +239,7 @@ void CellPage::show_device() {
         driver_->setCurrentText(QString::fromStdString(setup.driver));
         const QString text = QString::fromStdString(setup.settings.dump(2));
         if (settings_->toPlainText() != text) settings_->setPlainText(text);
+        show_table();
         identity = setup.identity.serial.empty() ? tr("never connected")
                                                  : tr("answers as %1, serial %2")
                                                        .arg(QString::fromStdString(model),
@@ -238,9 +252,49 @@ void CellPage::show_device() {
         for (std::size_t i = 0; i < kModes.size(); ++i)
             if (kModes[i] == r->required_mode) mode_->setCurrentIndex(static_cast<int>(i));
     }
-    if (id.empty()) settings_->clear();
+    if (id.empty()) {
+        settings_->clear();
+        show_table();
+    }
     answers_->setText(identity);
     show_parameters();
+}
+
+// The form of the chosen driver, filled with what the text says.
+void CellPage::show_table() {
+    static const SettingTable none;
+    const SettingTable* table = &none;
+    const std::string driver = driver_->currentText().toStdString();
+    const auto look = [&](const auto& drivers) {
+        for (const auto& d : drivers)
+            if (d.name == driver) table = &d.settings();
+    };
+    if (!chosen().empty()) sensor_chosen() ? look(sensor_drivers()) : look(robot_drivers());
+    if (table != shown_table_) {
+        shown_table_ = table;
+        form_->set_table(*table);
+    }
+    if (const auto json = parse_json(settings_->toPlainText().toStdString(), {}); json && json->is_object())
+        form_->set_value(*json);
+    judge_settings();
+}
+
+void CellPage::judge_settings() {
+    QString why;
+    const auto json = parse_json(settings_->toPlainText().toStdString(), {});
+    if (!chosen().empty()) {
+        if (!json) {
+            why = tr("refused: this is no JSON");
+        } else if (form_->refused()) {
+            why = tr("refused: see the marked field");
+        } else if (shown_table_) {
+            if (const auto ok = check_settings(*json, {}, *shown_table_); !ok)
+                why = tr("refused: %1").arg(shown_error(ok.error()));
+        }
+    }
+    set_verdict(*settings_state_, why, why.isEmpty() ? Tone::plain : Tone::alarm);
+    settings_state_->setVisible(!why.isEmpty());
+    apply_->setEnabled(why.isEmpty() && !chosen().empty());
 }
 
 // The connected sensor's own settings; made anew when another sensor is shown.

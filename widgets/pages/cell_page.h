@@ -7,6 +7,7 @@
 
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/editors/settings_editor.h"
 #include "widgets/pages/step_page.h"
 
 namespace seamwright {
@@ -25,6 +26,8 @@ class CellPage : public StepPage {
     void rename_device();
     void apply();
     void show_device();
+    void show_table();
+    void judge_settings();
     void show_parameters();
     void import_part();
     void place_part();
@@ -32,14 +35,16 @@ class CellPage : public StepPage {
     std::string chosen() const;
 
     QTableWidget* devices_;
-    QPushButton *connect_, *disconnect_, *remove_, *rename_, *apply_, *place_;
+    QPushButton *connect_, *disconnect_, *remove_, *rename_, *apply_, *place_, *as_text_;
     QComboBox *driver_, *mode_, *unit_;
-    QPlainTextEdit* settings_;
+    SettingsEditor* form_;
+    QPlainTextEdit* settings_;  // the same as text
     QLabel *settings_state_, *part_, *answers_;
     QWidget *mode_row_, *parameters_, *simulated_;
     QVBoxLayout* parameters_box_;
     PoseEditor* workobject_;
     std::vector<ParameterEditor*> requirements_;
+    const SettingTable* shown_table_ = nullptr;
     std::string shown_parameters_;
     std::uint64_t placed_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <QLabel>
+#include <QLineEdit>
 #include <QTableWidget>
 #include <clocale>
 #include <cstdlib>
@@ -83,6 +84,17 @@ TEST_P(GermanStudio, ReadsPoseAndFramesAndPushes) {
     ASSERT_TRUE(robot.base_from_flange);
     EXPECT_LT(distance_mm(*robot.base_from_flange, *served->cell->reported_flange()), 0.01);
     EXPECT_LT(angle_rad(*robot.base_from_flange, *served->cell->reported_flange()), 1e-4);
+
+    // The robot's settings are a form of its driver, filled with the project's.
+    auto* devices = studio->window().findChild<QTableWidget*>("devices");
+    ASSERT_TRUE(devices);
+    devices->setCurrentCell(1, 0);
+    auto* port = studio->window().findChild<QLineEdit*>("setting_port");
+    ASSERT_TRUE(me.wait([&] { return port && port->isVisible(); }));
+    me.look_at(port);
+    EXPECT_EQ(port->text().toInt(), desk.project().robots.at(0).settings.at("port").get<int>());
+    studio->window().grab().save(
+        QStringLiteral(SEAMWRIGHT_SCREENS "/cell_de_%1.png").arg(QString::fromStdString(GetParam())));
 
     const Pose frame = *served->cell->read_frame("path");
     served->cell->set_part({make_pose(rotation_exp({0.002, -0.001, 0.003}), {3.5, -2.25, 1.125}), {}});

@@ -226,6 +226,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         for (const QString& device : {QString("add_sensor"), QString("add_robot")}) {
             me.click(device);
             if (device == "add_sensor") {
+                me.click("settings_as_text");
                 auto* text = me.find<QPlainTextEdit>("settings");
                 ASSERT_TRUE(text);
                 me.look_at(text);

@@ -1,0 +1,39 @@
+#pragma once
+// The settings of a driver as its table describes them (devices/exchange/settings.h): a line for each with name, unit
+// and what an absent one means, fields of objects behind a heading. Those that are set, those without a default and the
+// table's first few are shown, the others on demand.
+//
+// What a person changes is written into the JSON at once; an empty field takes the setting out again. What is no
+// number, out of range or no JSON stays in the field, marked by the word "refused" and the reason, and is not written.
+// Settings that the table does not hold stay in the JSON untouched.
+
+#include <QWidget>
+#include <memory>
+
+#include "devices/exchange/settings.h"
+
+namespace seamwright {
+
+class SettingsEditor : public QWidget {
+    Q_OBJECT
+  public:
+    explicit SettingsEditor(QWidget* parent = nullptr);
+    ~SettingsEditor() override;
+    void set_table(const SettingTable& table);       // with empty settings
+    void set_value(const nlohmann::json& settings);  // no signal
+    const nlohmann::json& value() const;
+    bool refused() const;  // of any field
+    void show_all(bool all);
+
+  signals:
+    void edited();  // by a person; read value()
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace seamwright

@@ -1,7 +1,7 @@
 #include "devices/cell_server.h"
 
-#include "devices/genicam/served_camera.h"
-#include "devices/gocator/served_gocator.h"
+#include "devices/served/served_camera.h"
+#include "devices/served/served_gocator.h"
 
 namespace seamwright {
 

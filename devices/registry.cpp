@@ -11,8 +11,8 @@
 #include "devices/abb/program.h"
 #include "devices/abb/rapid.h"
 #include "devices/controllers/abb/controller.h"
-#include "devices/controllers/kuka/controller.h"
 #include "devices/controllers/abb/egm_controller.h"
+#include "devices/controllers/kuka/controller.h"
 #include "devices/controllers/kuka/rsi_controller.h"
 #include "devices/controllers/ur/controller.h"
 #include "devices/genicam/genicam.h"
@@ -29,6 +29,14 @@
 #include "devices/ur/rtde.h"
 
 namespace seamwright {
+
+bool is_simulated_cell(std::string_view driver) {
+    return driver == "simulated";
+}
+
+bool is_own_device(std::string_view driver) {
+    return is_simulated_cell(driver) || driver == "simulated-gripper" || driver == "replay";
+}
 
 const std::vector<SensorDriver>& sensor_drivers() {
     static const std::vector<SensorDriver> drivers = {

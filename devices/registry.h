@@ -46,6 +46,11 @@ struct ProgramWriter {
     Expected<std::vector<ProgramFile>> (*write)(const ProgramRequest& request);
     Expected<std::vector<ProgramFile>> (*write_path)(const PathProgramRequest& request);
 };
+// Of the cell in this program (devices/simulated/cell.h): its truth is known, its part can be displaced, and its robot
+// is moved without a person beside it.
+bool is_simulated_cell(std::string_view driver);
+// Stands in this program alone, so that no other can have it at the same time: simulated cells, recordings.
+bool is_own_device(std::string_view driver);
 const std::vector<SensorDriver>& sensor_drivers();
 const std::vector<RobotDriver>& robot_drivers();
 const std::vector<ControllerDriver>& controller_drivers();

@@ -13,6 +13,7 @@
 #include "app/studio/demo_project.h"
 #include "app/studio/look.h"
 #include "app/studio/main_window.h"
+#include "devices/registry.h"
 #include "widgets/shown_text.h"
 
 // Outside of any namespace, as Qt wants it: a static library's resources are linked only when named.
@@ -113,7 +114,7 @@ bool Studio::open(const QString& file) {
     const auto& sensors = desk_.project().sensors;
     const bool simulated =
         !sensors.empty() && std::all_of(sensors.begin(), sensors.end(),
-                                        [](const SensorSetup& s) { return s.driver == "simulated"; });
+                                        [](const SensorSetup& s) { return is_simulated_cell(s.driver); });
     // A simulated cell is there at once. Real devices are connected by a person.
     if (simulated && options_.connect) desk_.worker().connect_devices();
     window_->begin_at_next();

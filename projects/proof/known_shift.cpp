@@ -14,7 +14,6 @@ namespace seamwright {
 namespace {
 
 constexpr const char* kWhere = "known shift";
-constexpr const char* kSimulated = "simulated";
 constexpr std::size_t kMostTests = 2000;
 constexpr CorrectionLimits kNoLimits{1000, 45};
 constexpr char kAxes[] = "XYZ";
@@ -87,7 +86,7 @@ class Borrowed {
     explicit Borrowed(Station& station)
         : station_(station), before_(station.project()), was_connected_(station.connected()) {
         for (const RobotSetup& r : before_.robots)
-            if (RobotLink* robot = station_.robot(r.id); robot && r.driver == kSimulated)
+            if (RobotLink* robot = station_.robot(r.id); robot && is_simulated_cell(r.driver))
                 if (auto pose = robot->base_from_flange()) stood_[r.id] = *pose;
         station_.disconnect();
     }
@@ -147,7 +146,7 @@ Expected<void> fits(const Project& project, const KnownShiftOptions& options) {
     if (options.by == ShiftBy::by_hand && !options.place)
         return usage_error("nobody is there to displace the part", kWhere, "run it at a terminal");
     if (options.by != ShiftBy::simulated_part) return {};
-    const auto simulated = [](const auto& device) { return device.driver == kSimulated; };
+    const auto simulated = [](const auto& device) { return is_simulated_cell(device.driver); };
     if (project.sensors.empty() || !std::all_of(project.sensors.begin(), project.sensors.end(), simulated) ||
         !std::all_of(project.robots.begin(), project.robots.end(), simulated))
         return usage_error("only a simulated cell can move its part", kWhere,

@@ -13,7 +13,7 @@
 namespace seamwright {
 
 Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetup& robot) {
-    if (sensor.driver != "simulated" || robot.driver != "simulated")
+    if (!is_simulated_cell(sensor.driver) || !is_simulated_cell(robot.driver))
         return input_error("only a simulated cell knows its own calibration", Text("sensor {}", sensor.id),
                            "calibrate the sensor");
     auto cell = SimulatedCell::open(sensor.settings);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "devices/host_time.h"
+#include "devices/registry.h"
 #include "projects/file/file_use.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/station/acquire.h"
@@ -478,9 +479,8 @@ Expected<void> Station::connect(const Patience& patience) {
     Impl& i = *impl_;
     i.disconnect();
     const auto alone = [](const auto& setups) {
-        return std::any_of(setups.begin(), setups.end(), [](const auto& setup) {
-            return setup.driver != "simulated" && setup.driver != "replay";  // those are each program's own
-        });
+        return std::any_of(setups.begin(), setups.end(),
+                           [](const auto& setup) { return !is_own_device(setup.driver); });
     };
     if (alone(i.project.sensors) || alone(i.project.robots)) {
         auto use = FileUse::take(i.file.path(), FileUse::For::devices);

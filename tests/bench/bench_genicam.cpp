@@ -13,8 +13,8 @@
 
 #include "devices/genicam/genicam.h"
 #include "devices/genicam/pixel_format.h"
-#include "devices/genicam/served_camera.h"
 #include "devices/registry.h"
+#include "devices/served/served_camera.h"
 
 using namespace seamwright;
 using Clock = std::chrono::steady_clock;

@@ -8,6 +8,7 @@
 
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/answer.h"
 #include "projects/station/measure.h"
@@ -139,7 +140,7 @@ std::optional<Pose> CalibrationDesk::mounting() const {
     if (const Calibration* c = base(); c && !c->flange_from_sensor.isApprox(Pose::Identity()))
         return c->flange_from_sensor;
     const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
-    if (sensor && sensor->driver == "simulated")
+    if (sensor && is_simulated_cell(sensor->driver))
         if (auto cell = parse_cell_settings(sensor->settings)) return cell->flange_from_sensor;
     return std::nullopt;
 }

@@ -5,6 +5,7 @@
 
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/registry.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/calibrate/session.h"
 #include "projects/file/project_json.h"
@@ -557,7 +558,7 @@ Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_
     return together(DeskCommand::tr("Place the simulated part"), [&]() -> Expected<void> {
         const auto place = [&](auto all) -> Expected<void> {  // a copy: the edits change the list
             for (auto& setup : all) {
-                if (setup.driver != "simulated") continue;
+                if (!is_simulated_cell(setup.driver)) continue;
                 setup.settings["part"] = part;
                 if (auto ok = edit(setup); !ok) return ok;
             }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "devices/registry.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
@@ -14,7 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLivePeriod{60}, kLiveFrame{400}, kRobotPeriod{500}, kRest{5};
-constexpr const char* kSimulated = "simulated";
 
 }  // namespace
 
@@ -121,7 +121,7 @@ void StationWorker::connect_devices() {
             // see; a real one is never moved from here.
             for (const RobotSetup& setup : station.project().robots) {
                 RobotLink* robot = station.robot(setup.id);
-                if (setup.driver != kSimulated || robot->base_from_flange()) continue;
+                if (!is_simulated_cell(setup.driver) || robot->base_from_flange()) continue;
                 for (const Spot& spot : station.project().spots)
                     if (spot.robot_id == setup.id) {
                         (void)robot->move_to(spot.base_from_flange);
@@ -379,7 +379,7 @@ void StationWorker::jog_simulated(const std::string& robot_id, const Pose& base_
     post(tr("Moving the simulated robot"), [=, this](Station& station, const std::stop_token&) {
         const RobotSetup* setup = find_robot(station.project(), robot_id);
         RobotLink* robot = station.robot(robot_id);
-        if (!setup || !robot || setup->driver != kSimulated)
+        if (!setup || !robot || !is_simulated_cell(setup->driver))
             return emit failed(tr("only a simulated robot is moved from here"));
         if (auto moved = robot->move_to(base_from_flange); !moved)
             emit failed(shown_error(tr("The robot was not moved."), moved.error()));

@@ -44,8 +44,9 @@ struct Name {
 Name name_of(std::string_view setting) {
     for (const Unit& u : kUnits)
         if (setting.size() > u.ending.size() && setting.ends_with(u.ending))
-            return {shown_word(setting.substr(0, setting.size() - u.ending.size())),
-                    QString::fromUtf8(u.shown.data(), static_cast<qsizetype>(u.shown.size()))};
+            return {
+                shown_word(has_word(setting) ? setting : setting.substr(0, setting.size() - u.ending.size())),
+                QString::fromUtf8(u.shown.data(), static_cast<qsizetype>(u.shown.size()))};
     return {shown_word(setting), {}};
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "devices/registry.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
@@ -95,9 +96,9 @@ void CalibratePage::begin(const std::string& method) {
 void CalibratePage::take_simulated() {
     const Project p = desk_.project();
     for (const SensorSetup& s : p.sensors) {
-        if (s.driver != "simulated" || !s.calibration_id.empty()) continue;
+        if (!is_simulated_cell(s.driver) || !s.calibration_id.empty()) continue;
         for (const RobotSetup& r : p.robots) {
-            if (r.driver != "simulated" || r.settings != s.settings) continue;
+            if (!is_simulated_cell(r.driver) || r.settings != s.settings) continue;
             auto truth = simulated_truth(s, r);
             if (!truth) {
                 done(tl::unexpected(truth.error()));
@@ -114,7 +115,7 @@ void CalibratePage::refresh() {
     const Project& p = desk_.project();
     simulated_->setVisible(desk_.station().connected &&
                            std::any_of(p.sensors.begin(), p.sensors.end(), [](const SensorSetup& s) {
-                               return s.driver == "simulated" && s.calibration_id.empty();
+                               return is_simulated_cell(s.driver) && s.calibration_id.empty();
                            }));
     const auto fill = [](QComboBox& list, const auto& things) {
         QStringList names;

@@ -6,6 +6,7 @@
 #include <QInputDialog>
 
 #include "devices/exchange/json_fields.h"
+#include "devices/registry.h"
 #include "devices/simulated/random.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
@@ -215,7 +216,7 @@ void CellPage::refresh() {
                   .arg(QString::fromStdString(p.part.name), QString::fromStdString(p.part.mesh_source)));
     if (!workobject_->hasFocus()) workobject_->set_pose(p.part.base_from_workobject);
     simulated_->setVisible(std::any_of(p.sensors.begin(), p.sensors.end(),
-                                       [](const SensorSetup& x) { return x.driver == "simulated"; }));
+                                       [](const SensorSetup& x) { return is_simulated_cell(x.driver); }));
 }
 
 void CellPage::show_device() {
@@ -345,7 +346,7 @@ void CellPage::add_device(bool sensor) {
         r.driver = "simulated";
         // Sensor and robot of one simulated cell have the same settings.
         for (const SensorSetup& s : desk_.project().sensors)
-            if (s.driver == "simulated") r.settings = s.settings;
+            if (is_simulated_cell(s.driver)) r.settings = s.settings;
         ok = done(desk_.add(r));
     }
     if (!ok) return;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/registry.h"
 #include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
@@ -23,7 +24,6 @@ namespace seamwright {
 namespace {
 
 constexpr QSize kThumbnail(64, 44);
-constexpr const char* kSimulated = "simulated";
 
 }  // namespace
 
@@ -125,12 +125,12 @@ void GuidedPage::hideEvent(QHideEvent* event) {
 
 bool GuidedPage::simulated_sensor() const {
     const SensorSetup* s = find_sensor(desk_.project(), calibration_.session().sensor_id());
-    return s && s->driver == kSimulated;
+    return s && is_simulated_cell(s->driver);
 }
 
 bool GuidedPage::simulated_robot() const {
     const RobotSetup* r = find_robot(desk_.project(), calibration_.session().robot_id());
-    return r && r->driver == kSimulated;
+    return r && is_simulated_cell(r->driver);
 }
 
 std::optional<Pose> GuidedPage::flange() const {
@@ -143,7 +143,7 @@ std::optional<Pose> GuidedPage::target_pose() const {
     const CalibrationSession& s = calibration_.session();
     if (const auto next = next_pose(s, calibration_.mounting())) return next->base_from_flange;
     const SensorSetup* sensor = find_sensor(desk_.project(), s.sensor_id());
-    if (!sensor || sensor->driver != kSimulated || !s.state().captures.empty()) return std::nullopt;
+    if (!sensor || !is_simulated_cell(sensor->driver) || !s.state().captures.empty()) return std::nullopt;
     if (const auto start = simulated_start(s.method(), sensor->settings)) return start->base_from_flange;
     return std::nullopt;
 }

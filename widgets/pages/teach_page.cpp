@@ -3,6 +3,7 @@
 #include <QInputDialog>
 #include <cmath>
 
+#include "devices/registry.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
@@ -300,7 +301,7 @@ void TeachPage::refresh() {
         pose_->set_pose(s->base_from_flange);
     }
     const RobotSetup* robot = find_robot(desk_.project(), s->robot_id);
-    go_->setVisible(robot && robot->driver == "simulated");
+    go_->setVisible(robot && is_simulated_cell(robot->driver));
     take_->setEnabled(connected);
     go_->setEnabled(connected);
     add_via_->setEnabled(connected);

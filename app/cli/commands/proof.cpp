@@ -12,6 +12,7 @@
 #include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/registry.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 
@@ -118,7 +119,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
                  : a.by == "base" ? ShiftBy::robot_moves
                                   : ShiftBy::by_hand;
     if (a.by.empty())
-        options.by = !project.sensors.empty() && project.sensors.front().driver == "simulated"
+        options.by = !project.sensors.empty() && is_simulated_cell(project.sensors.front().driver)
                          ? ShiftBy::simulated_part
                          : ShiftBy::robot_moves;
     options.cancel = stop_on_signal();

@@ -15,7 +15,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/settings.h"
-#include "devices/gocator/served_gocator.h"
+#include "devices/served/served_gocator.h"
 #include "projects/file/project_file.h"
 #include "projects/station/acquire.h"
 

@@ -19,7 +19,7 @@
 
 #include "devices/abb/egm_message.h"
 #include "devices/controllers/abb/rapid_machine.h"
-#include "devices/cyclic/path.h"
+#include "devices/controllers/cyclic/simulated_path.h"
 #include "devices/robot_program.h"
 
 namespace seamwright::rapid {

@@ -14,7 +14,7 @@
 #include "devices/abb/egm_message.h"
 #include "devices/abb/program.h"
 #include "devices/controllers/abb/egm_application.h"
-#include "devices/cyclic/path.h"
+#include "devices/controllers/cyclic/simulated_path.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/net/socket.h"
 

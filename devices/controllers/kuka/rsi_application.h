@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "devices/controllers/cyclic/simulated_path.h"
 #include "devices/controllers/kuka/machine.h"
-#include "devices/cyclic/path.h"
 #include "devices/robot_program.h"
 
 namespace seamwright::krl {

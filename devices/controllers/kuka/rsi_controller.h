@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "core/geometry/pose.h"
-#include "devices/cyclic/measuring.h"
+#include "devices/controllers/cyclic/measuring_controller.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/controller.h"
 

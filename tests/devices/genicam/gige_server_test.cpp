@@ -1,6 +1,6 @@
 // The camera's side of GigE Vision, spoken to byte by byte as the standard has it.
 
-#include "devices/genicam/gige_server.h"
+#include "devices/served/gige_server.h"
 
 #include <gtest/gtest.h>
 

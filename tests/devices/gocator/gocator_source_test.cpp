@@ -13,8 +13,8 @@
 #include "core/features/feature.h"
 #include "core/profile/peaks.h"
 #include "devices/gocator/gocator.h"
-#include "devices/gocator/served_gocator.h"
 #include "devices/net/socket.h"
+#include "devices/served/served_gocator.h"
 
 namespace seamwright {
 namespace {

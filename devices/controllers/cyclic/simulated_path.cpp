@@ -1,4 +1,4 @@
-#include "devices/cyclic/path.h"
+#include "devices/controllers/cyclic/simulated_path.h"
 
 #include <cmath>
 

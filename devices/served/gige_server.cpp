@@ -1,4 +1,4 @@
-#include "devices/genicam/gige_server.h"
+#include "devices/served/gige_server.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "devices/gocator/served_gocator.h"
+#include "devices/served/served_gocator.h"
 
 #include <fmt/format.h>
 

@@ -19,7 +19,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "devices/genicam/wire_camera.h"
+#include "devices/served/wire_camera.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {

@@ -1,4 +1,4 @@
-#include "devices/genicam/wire_camera.h"
+#include "devices/served/wire_camera.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "devices/genicam/aravis_private.h"
-#include "devices/genicam/gige_server.h"
 #include "devices/genicam/pixel_format.h"
+#include "devices/served/gige_server.h"
 #include "served_camera_xml.h"
 
 namespace seamwright {

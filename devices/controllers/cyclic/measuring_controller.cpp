@@ -1,4 +1,4 @@
-#include "devices/cyclic/measuring.h"
+#include "devices/controllers/cyclic/measuring_controller.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "devices/genicam/served_camera.h"
+#include "devices/served/served_camera.h"
 
 #include <algorithm>
 #include <cmath>

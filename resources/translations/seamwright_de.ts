@@ -1558,10 +1558,6 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Einstellungen (JSON)</translation>
     </message>
     <message>
-        <source>Address, port, serial number and whatever else the driver documents</source>
-        <translation>Adresse, Port, Seriennummer und was der Treiber sonst beschreibt</translation>
-    </message>
-    <message>
         <source>refused: this is no JSON</source>
         <translation>abgelehnt: das ist kein JSON</translation>
     </message>
@@ -1732,6 +1728,22 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>Known rotation</source>
         <translation>Bekannte Drehung</translation>
+    </message>
+    <message>
+        <source>Settings as text</source>
+        <translation>Einstellungen als Text</translation>
+    </message>
+    <message>
+        <source>The settings as the project file holds them (JSON), to copy and to paste</source>
+        <translation>Die Einstellungen, wie sie in der Projektdatei stehen (JSON), zum Kopieren und Einfügen</translation>
+    </message>
+    <message>
+        <source>refused: see the marked field</source>
+        <translation>abgelehnt: siehe das markierte Feld</translation>
+    </message>
+    <message>
+        <source>refused: %1</source>
+        <translation>abgelehnt: %1</translation>
     </message>
 </context>
 <context>
@@ -3942,6 +3954,53 @@ ausgelassen</translation>
     <message>
         <source>No 3D picture: this display offers no OpenGL 3.2. Everything else works; measuring, correcting and pushing do not need it. Cure: a graphics driver with OpenGL 3.2, or Mesa&apos;s software renderer (LIBGL_ALWAYS_SOFTWARE=1).</source>
         <translation>Kein 3D-Bild: dieser Bildschirm bietet kein OpenGL 3.2. Alles andere geht; Messen, Korrigieren und Übertragen brauchen es nicht. Abhilfe: ein Grafiktreiber mit OpenGL 3.2 oder Mesas Softwarezeichner (LIBGL_ALWAYS_SOFTWARE=1).</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::SettingsEditor</name>
+    <message>
+        <source>refused: %1</source>
+        <translation>abgelehnt: %1</translation>
+    </message>
+    <message>
+        <source>not a number</source>
+        <translation>keine Zahl</translation>
+    </message>
+    <message>
+        <source>outside %1 to %2</source>
+        <translation>außerhalb %1 bis %2</translation>
+    </message>
+    <message>
+        <source>not a whole number</source>
+        <translation>keine ganze Zahl</translation>
+    </message>
+    <message>
+        <source>not a list: [1, 2]</source>
+        <translation>keine Liste: [1, 2]</translation>
+    </message>
+    <message>
+        <source>not an object: {&quot;name&quot;: 1}</source>
+        <translation>kein Objekt: {&quot;name&quot;: 1}</translation>
+    </message>
+    <message>
+        <source>; %1 to %2</source>
+        <translation>; %1 bis %2</translation>
+    </message>
+    <message>
+        <source>; %1 if left empty</source>
+        <translation>; %1, wenn leer gelassen</translation>
+    </message>
+    <message>
+        <source>All settings of the driver</source>
+        <translation>Alle Einstellungen des Treibers</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>ja</translation>
+    </message>
+    <message>
+        <source>Why the value is refused</source>
+        <translation>Warum der Wert abgelehnt wird</translation>
     </message>
 </context>
 <context>

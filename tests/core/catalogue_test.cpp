@@ -1,6 +1,8 @@
 // What the program says to a person has its German: every key one, and no German without a key.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -68,17 +70,42 @@ TEST(SaidInSources, FindsWhatBecomesAText) {
                 ElementsAre("a b"));
 }
 
-// What only the command line and simulated devices say is not shown in a window.
+TEST(SaidInSources, OfASettingOnlyItsHelp) {
+    const auto said = [](const std::string& source) {
+        std::vector<std::string> texts;
+        for (const SourceLiteral& literal : literals_of(source))
+            if (is_setting_help(literal) && is_said(literal)) texts.push_back(literal.text);
+        return texts;
+    };
+    using testing::ElementsAre;
+    using testing::IsEmpty;
+    EXPECT_THAT(said("{entry::text(\"listen\", \"this computer\", \"in the \"\n  \"network\"),\n"
+                     " whole(\"buffer_size\", 0, 0, 1 << 30, \"bytes\")}"),
+                ElementsAre("in the network", "bytes"));
+    EXPECT_THAT(
+        said("choice(\"kind\", {\"\", \"a b\", \"c\"}, \"which files\"), pose(\"tool\", \"as taught\")"),
+        ElementsAre("which files", "as taught"));
+    EXPECT_THAT(
+        said("object(\"ramp\", {number(\"speed\", f(d, \"a b\", 2), 0, 1, \"of it\"),\n"
+             "  list(\"points\", json{{0, 1}}, \"ids\"), yes_no(\"loop\", false, \"anew\")}, \"way of it\")"),
+        ElementsAre("of it", "ids", "anew", "way of it"));
+    EXPECT_THAT(
+        said("f.text(\"serial\", s.serial); r.number(\"low and high\", v, 0, 1); o.pose(\"a b\", p);"),
+        IsEmpty());
+}
+
+// What only the command line and simulated devices say is not shown in a window; what their settings are for is.
+constexpr std::array kElsewhere = {"devices/controllers", "devices/simulated", "devices/cell_server",
+                                   "devices/served"};
 TEST(Catalogue, EveryKeyHasItsGerman) {
     const auto german = catalogue();
     int keys = 0;
     each_source(
         {"core", "devices", "projects", "widgets"}, [&](const std::string& name, const std::string& source) {
-            for (const char* elsewhere :
-                 {"devices/controllers", "devices/simulated", "devices/cell_server", "devices/served"})
-                if (name.starts_with(elsewhere)) return;
+            const bool elsewhere = std::any_of(kElsewhere.begin(), kElsewhere.end(),
+                                               [&](const char* folder) { return name.starts_with(folder); });
             for (const SourceLiteral& literal : literals_of(source)) {
-                if (!is_said(literal)) continue;
+                if (elsewhere ? !is_setting_help(literal) : !is_said(literal)) continue;
                 ++keys;
                 EXPECT_TRUE(german.count(literal.text))
                     << name << ":" << literal.line << ": \"" << literal.text

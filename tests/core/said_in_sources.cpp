@@ -21,6 +21,14 @@ const std::set<std::string> kSayers = {
     "refuse_unless", "say",       "missing",      "done",      "give_up",          "damaged",
     "broken",        "refused",   "undetermined", "unless",    "failure",          "raise",
     "missed",        "Judgement", "Error",        "judgement", "take_back_motion", "t"};
+// The entries of tables of settings, and which argument their help is.
+const std::map<std::string, int> kHelps = {{"number", 4}, {"whole", 4}, {"text", 2}, {"choice", 2},
+                                           {"yes_no", 2}, {"pose", 1},  {"list", 2}, {"object", 2}};
+
+bool has_letter(const std::string& text) {
+    return std::any_of(text.begin(), text.end(),
+                       [](char c) { return std::isalpha(static_cast<unsigned char>(c)); });
+}
 
 }  // namespace
 
@@ -102,9 +110,14 @@ std::vector<SourceLiteral> literals_of(const std::string& s) {
     return found;
 }
 
+bool is_setting_help(const SourceLiteral& l) {
+    const auto help = kHelps.find(l.call);
+    return help != kHelps.end() && l.argument == help->second && has_letter(l.text);
+}
+
 bool is_said(const SourceLiteral& l) {
-    const bool words = std::any_of(l.text.begin(), l.text.end(),
-                                   [](char c) { return std::isalpha(static_cast<unsigned char>(c)); });
+    if (is_setting_help(l)) return true;
+    const bool words = has_letter(l.text);
     const bool sentence = words && l.text.find(' ') != std::string::npos;
     if (l.call == "Text") return l.argument == 0 ? words : sentence;
     if (l.call == "chosen") return l.argument == 0 && words;

@@ -19,5 +19,8 @@ std::vector<SourceLiteral> literals_of(const std::string& source);
 
 // A literal that becomes a Text, by where it stands.
 bool is_said(const SourceLiteral& literal);
+// One of them: what a table of settings says of a setting (devices/exchange/settings.h). Its name, what an absent
+// one means and its choices are not said.
+bool is_setting_help(const SourceLiteral& literal);
 
 }  // namespace seamwright

@@ -41,6 +41,8 @@ struct SpotReturns {
     // (x, z) of the feature moves by sees * q, q in base axes.
     Eigen::Matrix<double, 2, 3> sees = Eigen::Matrix<double, 2, 3>::Zero();
     bool x = true, z = true;  // what the spot observes of the two
+    // What the feature itself states as the sigma of x and z, root mean square; 0: it states none.
+    Eigen::Vector2d stated_mm{0, 0};
     // Of each return the feature (x, z) in every profile taken while the robot stood, mm.
     std::vector<std::vector<Eigen::Vector2d>> returns;
 };

@@ -35,7 +35,7 @@ inline SpotReturns simulated_returns(const std::string& id, const Eigen::Matrix<
             for (int k = 0; k < j; ++k) rest -= root(i, k) * root(j, k);
             root(i, j) = i == j ? std::sqrt(std::max(0.0, rest)) : root(j, j) > 0 ? rest / root(j, j) : 0;
         }
-    SpotReturns spot{id, sees, true, true, {}};
+    SpotReturns spot{id, sees, true, true, {0, 0}, {}};
     for (int j = 0; j < returns; ++j) {
         Eigen::Vector3d q;
         for (int i = 0; i < 3; ++i) q[i] = normal(random);

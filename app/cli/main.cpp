@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     add_proof(line);
     add_hand_over(line);
     add_acceptance(line);
+    add_device_studies(line);
     add_replay(line);
     add_correct(line);
     add_plan(line);

@@ -94,7 +94,8 @@ nlohmann::json SimulatedCell::describe() const {
             {"robot",
              {{"repeatability_sigma_mm", s.robot.repeatability_mm},
               {"repeatability_sigma_deg", s.robot.repeatability_deg},
-              {"trigger_jitter_half_width_mm_at_100_mm_s", s.robot.trigger_jitter_mm}}}};
+              {"trigger_jitter_half_width_mm_at_100_mm_s", s.robot.trigger_jitter_mm},
+              {"trigger_latency_ms", s.robot.trigger_latency_ms}}}};
 }
 
 void SimulatedCell::set_part(const PartState& part) {
@@ -235,7 +236,8 @@ Eigen::Vector3d SimulatedCell::trigger_error(const Eigen::Vector3d& velocity_mm_
     if (speed < 1e-6) return Eigen::Vector3d::Zero();
     Random random(stream_seed(settings_.seed, kJitter, arrivals_));
     const double half = settings_.robot.trigger_jitter_mm * speed / 100;
-    return velocity_mm_s / speed * random.uniform(-half, half);
+    return velocity_mm_s / speed * random.uniform(-half, half) +
+           velocity_mm_s * (1e-3 * settings_.robot.trigger_latency_ms);
 }
 
 void SimulatedCell::follow(const Pose& base_from_flange) {

@@ -35,6 +35,7 @@ struct PartState {
 
 struct RobotSettings {
     double repeatability_mm = 0.03, repeatability_deg = 0.002, trigger_jitter_mm = 1.5;
+    double trigger_latency_ms = 0;  // from the instant that the controller tells to the exposure
     RobotMode mode = RobotMode::automatic;
     std::map<std::string, Pose> frames;  // base_from_frame by name
 };
@@ -100,7 +101,7 @@ class SimulatedCell {
     // For a robot program that is executed (arm.h): where the robot is sent at this instant, without scatter.
     void follow(const Pose& base_from_flange);
     // The sensor's trigger input rises while the robot passes there: with the scatter of an arrival, and with
-    // the jitter along `velocity_mm_s` (base; zero = standing). The spot is the one of the stored program
+    // latency and jitter along `velocity_mm_s` (base; zero = standing). The spot is the one of the stored program
     // whose trigger lies nearest.
     void fire(const Pose& base_from_flange, const Eigen::Vector3d& velocity_mm_s);
     // The measuring program as stored on a controller, and its start. Error (device) when the robot is
@@ -134,7 +135,7 @@ class SimulatedCell {
   private:
     SimulatedCell(const CellSettings& settings, TriangleMesh part);
     Pose arrived(const Pose& commanded);  // precondition: locked
-    // Jitter of the trigger at that velocity. Precondition: locked.
+    // Latency and jitter of the trigger at that velocity. Precondition: locked.
     Eigen::Vector3d trigger_error(const Eigen::Vector3d& velocity_mm_s);
     void expose(const std::string& spot_id, const Pose& base_from_flange);
 

@@ -128,6 +128,8 @@ const SettingTable& simulated_cell_settings() {
                            "one sigma per axis, anew at every arrival"),
                     number("trigger_jitter_mm", d.robot.trigger_jitter_mm, 0, 50,
                            "half width, uniform, at 100 mm/s; grows with the speed"),
+                    number("trigger_latency_ms", d.robot.trigger_latency_ms, 0, 1000,
+                           "from the instant that the controller tells to the exposure"),
                     text("mode", std::string(to_string(d.robot.mode)),
                          "operating mode: automatic, external, ..."),
                     object("frames", {}, "NAME: POSE base_from_frame")},
@@ -202,6 +204,7 @@ Expected<CellSettings> parse_cell_settings(const nlohmann::json& json) {
         o.number("repeatability_mm", s.robot.repeatability_mm);
         o.number("repeatability_deg", s.robot.repeatability_deg);
         o.number("trigger_jitter_mm", s.robot.trigger_jitter_mm);
+        o.number("trigger_latency_ms", s.robot.trigger_latency_ms);
         std::string mode(to_string(s.robot.mode));
         o.text("mode", mode);
         if (const auto known = robot_mode_from_string(mode)) {

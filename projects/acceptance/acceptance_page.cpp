@@ -361,6 +361,7 @@ report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& o
     if (a.stability) stability_chapter(w);
     if (a.correlation) correlation_chapter(w);
     if (a.vda5) vda5_chapter(w);
+    if (options.more) options.more(page, options.language);
     if (!a.not_done.empty()) {
         page.heading(w.t("Studies that the data do not allow"));
         Rows rows{{w.t("Study"), w.t("Finding")}};

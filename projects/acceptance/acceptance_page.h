@@ -3,6 +3,7 @@
 // and verdict, in English or German. A page of blocks (report::Page) for HTML and PDF; the same chapters as text
 // for the command line.
 
+#include <functional>
 #include <string>
 
 #include "projects/acceptance/studies.h"
@@ -12,8 +13,9 @@ namespace seamwright {
 
 struct AcceptancePageOptions {
     Language language = Language::english;
-    std::string now_utc;  // ISO 8601; empty: the clock's
-    std::string program;  // "Seamwright 0.1.0"
+    std::string now_utc;                                // ISO 8601; empty: the clock's
+    std::string program;                                // "Seamwright 0.1.0"
+    std::function<void(report::Page&, Language)> more;  // chapters after the studies
 };
 
 report::Page acceptance_page(const Acceptance& acceptance, const AcceptancePageOptions& options);

@@ -109,6 +109,19 @@ void balance(std::vector<StudyValue>& values, std::vector<Text>& remarks) {
 
 }  // namespace
 
+void name_devices(StudySource& source, const Project& setup, const Spot& spot) {
+    if (const SensorSetup* sensor = find_sensor(setup, spot.sensor_id)) {
+        source.sensor = sensor->identity.vendor + " " + sensor->identity.model;
+        source.sensor_serial = sensor->identity.serial;
+        source.simulated = sensor->driver == "simulated" || names_simulation(source.sensor);
+    }
+    if (const RobotSetup* robot = find_robot(setup, spot.robot_id)) {
+        source.robot = robot->identity.brand + " " + robot->identity.model;
+        source.robot_serial = robot->identity.serial;
+        source.simulated = source.simulated || robot->driver == "simulated" || names_simulation(source.robot);
+    }
+}
+
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id) {
     auto project = file.load();
     if (!project) return tl::unexpected(project.error());
@@ -209,19 +222,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
         Text("region {}, spot {}, {}", id, worst->spot_id, worst->normal ? Text("normal") : Text("binormal"));
     source.part_name = project->part.name;
     source.runs = static_cast<int>(used.size());
-    if (const Spot* spot = find_spot(*setup, worst->spot_id)) {
-        if (const SensorSetup* sensor = find_sensor(*setup, spot->sensor_id)) {
-            source.sensor = sensor->identity.vendor + " " + sensor->identity.model;
-            source.sensor_serial = sensor->identity.serial;
-            source.simulated = sensor->driver == "simulated" || names_simulation(source.sensor);
-        }
-        if (const RobotSetup* robot = find_robot(*setup, spot->robot_id)) {
-            source.robot = robot->identity.brand + " " + robot->identity.model;
-            source.robot_serial = robot->identity.serial;
-            source.simulated =
-                source.simulated || robot->driver == "simulated" || names_simulation(source.robot);
-        }
-    }
+    if (const Spot* spot = find_spot(*setup, worst->spot_id)) name_devices(source, *setup, *spot);
     if (refused > 0)
         source.remarks.push_back(Text("Runs left out because the gate refused them: {}.", refused));
     if (of_older_proofs > 0)

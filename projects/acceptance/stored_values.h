@@ -33,6 +33,9 @@ struct StoredStudy {
 // named, no usable run; (file): the file.
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region);
 
+// Sensor and robot of a spot with their serials, and whether they are simulated.
+void name_devices(StudySource& source, const Project& setup, const Spot& spot);
+
 // References of the parts from another instrument, matched by part: mean value of each part of `table`. They make
 // the correlation.
 void add_references(StudyValues& values, const std::vector<StudyValue>& table);

@@ -269,6 +269,7 @@ void describe(A& a, RobotSetup& v) {
     a("identity", v.identity);
     a("required_mode", v.required_mode);
     a("arrival_covariance", v.arrival_covariance);
+    a("trigger_latency_ms", v.trigger_latency_ms);
 }
 template <class A>
 void describe(A& a, Calibration& v) {
@@ -558,6 +559,40 @@ void describe(A& a, HeadlessRun& v) {
     a("host", v.host);
 }
 
+template <class A>
+void describe(A& a, SpotReturns& v) {
+    a("spot_id", v.spot_id);
+    a("sees", v.sees);
+    a("x", v.x);
+    a("z", v.z);
+    a("stated_mm", v.stated_mm);
+    a("returns", v.returns);
+}
+template <class A>
+void describe(A& a, RobotReturns& v) {
+    a("robot_id", v.robot_id);
+    a("spots", v.spots);
+    a("not_found", v.not_found);
+    a("replaced_covariance", v.replaced_covariance);
+}
+template <class A>
+void describe(A& a, TriggerPass& v) {
+    a("velocity_mm_s", v.velocity_mm_s);
+    a("backward", v.backward);
+    a("travel_mm", v.travel_mm);
+}
+template <class A>
+void describe(A& a, TriggerPasses& v) {
+    a("spot_id", v.spot_id);
+    a("travel_deg", v.travel_deg);
+    a("slope", v.slope);
+    a("slope_sigma", v.slope_sigma);
+    a("passes", v.passes);
+    a("not_found", v.not_found);
+    a("replaced_latency_ms", v.replaced_latency_ms);
+    a("replaced_jitter_mm", v.replaced_jitter_mm);
+}
+
 template <class T>
 nlohmann::json to_json_document(const T& value, const ArchiveOptions& options) {
     return JsonWriter(options).document(value);
@@ -589,6 +624,8 @@ SEAMWRIGHT_DOCUMENT(FrozenContour);
 SEAMWRIGHT_DOCUMENT(ZeroShift);
 SEAMWRIGHT_DOCUMENT(KnownShift);
 SEAMWRIGHT_DOCUMENT(HeadlessRun);
+SEAMWRIGHT_DOCUMENT(RobotReturns);
+SEAMWRIGHT_DOCUMENT(TriggerPasses);
 #undef SEAMWRIGHT_DOCUMENT
 
 Expected<std::string> dump_document(const nlohmann::json& document, const std::string& where) {

@@ -11,7 +11,7 @@ namespace seamwright {
 
 // T: Project, PartSetup, SensorSetup, RobotSetup, Calibration, Spot, Region, PanelJob, SpotMeasurement,
 // RegionRecord, PanelMeasurement, PanelRecord, Requirements, FrozenContour, ZeroShift, KnownShift,
-// HeadlessRun. Meshes and captures are never part of the JSON; profiles when the options say so.
+// HeadlessRun, RobotReturns, TriggerPasses. Meshes and captures are never part of the JSON; profiles when the options say so.
 template <class T>
 nlohmann::json to_json_document(const T& value, const ArchiveOptions& options = {});
 // Error: input, with the path inside the document after `where`.

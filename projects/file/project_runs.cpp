@@ -357,9 +357,14 @@ Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, co
     auto s = db.prepare("INSERT INTO evidence (utc, kind, subject, setup, body) VALUES (?, ?, ?, ?, ?)");
     if (!s) return tl::unexpected(s.error());
     const auto* frozen = std::get_if<FrozenContour>(&evidence.what);
+    const auto* passes = std::get_if<TriggerPasses>(&evidence.what);
+    const auto* returns = std::get_if<RobotReturns>(&evidence.what);
     s->bind(1, evidence.utc.empty() ? utc_now() : utf8_text(evidence.utc));
     s->bind(2, kind);
-    s->bind(3, frozen ? utf8_text(frozen->spot_id) : std::string());
+    s->bind(3, frozen    ? utf8_text(frozen->spot_id)
+               : passes  ? utf8_text(passes->spot_id)
+               : returns ? utf8_text(returns->robot_id)
+                         : std::string());
     s->bind(4, *setup_number);
     s->bind(5, *text);
     if (auto done = s->run(); !done) return tl::unexpected(done.error());
@@ -388,12 +393,15 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
             e.what = std::move(*value);
             return {};
         };
-        Expected<void> done = kind == kFrozenContour ? read_as(static_cast<FrozenContour*>(nullptr))
-                              : kind == kZeroShift   ? read_as(static_cast<ZeroShift*>(nullptr))
-                              : kind == kKnownShift  ? read_as(static_cast<KnownShift*>(nullptr))
-                              : kind == kHeadlessRun ? read_as(static_cast<HeadlessRun*>(nullptr))
-                                                     : file_error("an evidence is of unknown kind",
-                                                                  joined(impl_->path.string(), ": ", where));
+        Expected<void> done =
+            kind == kFrozenContour  ? read_as(static_cast<FrozenContour*>(nullptr))
+            : kind == kZeroShift    ? read_as(static_cast<ZeroShift*>(nullptr))
+            : kind == kKnownShift   ? read_as(static_cast<KnownShift*>(nullptr))
+            : kind == kHeadlessRun  ? read_as(static_cast<HeadlessRun*>(nullptr))
+            : kind == kRobotReturns ? read_as(static_cast<RobotReturns*>(nullptr))
+            : kind == kTriggerPasses
+                ? read_as(static_cast<TriggerPasses*>(nullptr))
+                : file_error("an evidence is of unknown kind", joined(impl_->path.string(), ": ", where));
         if (done) list.push_back(std::move(e));
         return done;
     });

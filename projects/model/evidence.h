@@ -1,18 +1,22 @@
 #pragma once
 // What was proven on the cell, as it stays in the project's file: the contours that stood still, the unmoved
-// part that read zero, the known shifts that were recovered, the run without a screen. Value types; made by
-// zero_shift.h, known_shift.h and the pass of a spot, judged by checklist.h, printed by hand_over.h.
+// part that read zero, the known shifts that were recovered, the run without a screen, the returns of a robot and
+// the passes that told its trigger. Value types; made by zero_shift.h, known_shift.h, measure_robot.h,
+// measure_trigger.h and the pass of a spot, judged by checklist.h, printed by hand_over.h.
 //
 // Evidence is never edited. It refers to the project as it was proven with (Evidence::setup), so that it is
 // stale when what it rests on was changed, and it can be said what was.
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "core/acceptance/robot_study.h"
+#include "core/acceptance/trigger_study.h"
 #include "core/alignment/alignment.h"
 #include "core/geometry/pose.h"
 #include "core/text.h"
@@ -80,18 +84,40 @@ struct HeadlessRun {
     std::string host;
 };
 
+// What a robot's repeatability follows from (robot_study()), and the covariance of arrivals that it replaced.
+struct RobotReturns {
+    std::string robot_id;
+    std::vector<SpotReturns> spots;
+    int not_found = 0;  // profiles without the feature, or far off those of the same return
+    Matrix6 replaced_covariance = Matrix6::Zero();
+};
+
+// What latency and jitter of a trigger follow from (trigger_study()), and what they replaced.
+struct TriggerPasses {
+    std::string spot_id;
+    double travel_deg = 0;                            // of the passes, from the sensor's Y towards its X
+    Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // of (x, z) per mm of travel
+    double slope_sigma = 0;
+    std::vector<TriggerPass> passes;
+    int not_found = 0;
+    double replaced_latency_ms = 0;
+    std::map<std::string, double> replaced_jitter_mm;  // by spot
+};
+
 struct Evidence {
     std::int64_t id = 0;     // given by the file
     std::string utc;         // ISO 8601; empty = when stored
     std::int64_t setup = 0;  // ProjectFile::load_setup
-    std::variant<FrozenContour, ZeroShift, KnownShift, HeadlessRun> what;
+    std::variant<FrozenContour, ZeroShift, KnownShift, HeadlessRun, RobotReturns, TriggerPasses> what;
 };
 
 // The words of the kinds on disk.
 inline constexpr std::string_view kFrozenContour = "frozen contour", kZeroShift = "zero shift",
-                                  kKnownShift = "known shift", kHeadlessRun = "headless run";
+                                  kKnownShift = "known shift", kHeadlessRun = "headless run",
+                                  kRobotReturns = "robot returns", kTriggerPasses = "trigger passes";
 inline std::string_view kind_of(const Evidence& evidence) {
-    constexpr std::array<std::string_view, 4> names{kFrozenContour, kZeroShift, kKnownShift, kHeadlessRun};
+    constexpr std::array<std::string_view, 6> names{kFrozenContour, kZeroShift,    kKnownShift,
+                                                    kHeadlessRun,   kRobotReturns, kTriggerPasses};
     return names[evidence.what.index()];
 }
 

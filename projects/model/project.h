@@ -51,8 +51,11 @@ struct RobotSetup {
     RobotMode required_mode =
         RobotMode::unknown;  // pushes are refused in any other; unknown = any but stopped/fault
     // Of base_from_flange as one arrival at a taught pose reaches it (tangent of pose.h, base's axes): what the
-    // robot repeats. 0: not stated, then Spot::sigma_mm holds it.
+    // robot repeats, measured by measure_robot.h. 0: not stated, then Spot::sigma_mm holds it.
     Matrix6 arrival_covariance = Matrix6::Zero();
+    // From the instant whose pose the controller tells with a trigger to the exposure, measured by
+    // measure_trigger.h: the cut lies latency times speed further along the travel. 0: not stated.
+    double trigger_latency_ms = 0;
 };
 
 // A calibration that turns a sensor's frames into millimetres on the flange.

@@ -313,6 +313,11 @@ std::vector<Error> check(const Project& project) {
         findings.unless(correction::semidefinite(robot.arrival_covariance), Text("robot {}", robot.id),
                         "the covariance of its arrivals is none: not finite, not symmetric, or negative in "
                         "some direction");
+    for (const RobotSetup& robot : project.robots)
+        findings.unless(
+            std::abs(robot.trigger_latency_ms) <= 10000, Text("robot {}", robot.id),
+            Text("the trigger's latency of {} ms is not plausible (10 s at most)", robot.trigger_latency_ms),
+            "measure it: seamwright measure-trigger");
     for (const Calibration& calibration : project.calibrations) check_calibration(calibration, findings);
     for (const Spot& spot : project.spots) check_spot(project, spot, findings);
     for (const Region& region : project.regions) check_region(project, region, findings);

@@ -14,14 +14,18 @@ namespace {
 
 constexpr double kSamePoseMm = 1e-3, kSamePoseDeg = 1e-4;
 
-// What a trigger of the session brought.
-using Visit =
-    std::function<void(std::size_t move, const SpotMeasurer& measurer, const SpotMeasurement& measurement)>;
+Pose flange_from_sensor(const Station& station, const Spot& spot) {
+    const Calibration* calibration = calibration_of(station.project(), spot);
+    return calibration ? calibration->flange_from_sensor : Pose::Identity();
+}
 
-// Measures standing still at each of `poses` (base_from_flange).
-Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<Pose>& poses,
-                          const std::stop_token& cancel,
-                          const std::function<void(const RunProgress&)>& progress, const Visit& visit) {
+}  // namespace
+
+Expected<void> measure_standing(Station& station, const Spot& spot, std::span<const Standing> stands,
+                                const std::stop_token& cancel,
+                                const std::function<void(const RunProgress&)>& progress,
+                                const std::function<void(std::size_t stand, const SpotMeasurer& measurer,
+                                                         const SpotMeasurement& measurement)>& visit) {
     ProfileSource* sensor = station.sensor(spot.sensor_id);
     RobotLink* robot = station.robot(spot.robot_id);
     if (!sensor || !robot)
@@ -41,28 +45,23 @@ Expected<void> measure_at(Station& station, const Spot& spot, const std::vector<
     StartedSensors started;
     if (auto on = started.start(*sensor); !on) return on;
     const AcquireLimits limits;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (std::size_t i = 0; i < stands.size(); ++i) {
         if (cancel.stop_requested())
             return device_error(ErrorCode::cancelled, "cancelled", Text("spot {}", spot.id));
-        auto at = stand_at(*robot, spot.id, poses[i]);
+        auto at = stand_at(*robot, spot.id, stands[i].base_from_flange);
         if (!at) return tl::unexpected(at.error());
-        if (auto fired = sensor->trigger(spot.id); !fired) return fired;
-        auto frame = next_frame(*sensor, limits.frame_timeout, cancel);
-        if (!frame) return tl::unexpected(frame.error());
-        visit(i, *measurer, measurer->measure(**frame, *at));
+        for (int n = 0; n < stands[i].measurements; ++n) {
+            if (auto fired = sensor->trigger(spot.id); !fired) return fired;
+            auto frame = next_frame(*sensor, limits.frame_timeout, cancel);
+            if (!frame) return tl::unexpected(frame.error());
+            visit(i, *measurer, measurer->measure(**frame, *at));
+        }
         if (progress)
-            progress({static_cast<int>(i) + 1, static_cast<int>(poses.size()),
-                      Text("{}: {} of {}", spot.id, i + 1, poses.size())});
+            progress({static_cast<int>(i) + 1, static_cast<int>(stands.size()),
+                      Text("{}: {} of {}", spot.id, i + 1, stands.size())});
     }
     return {};
 }
-
-Pose flange_from_sensor(const Station& station, const Spot& spot) {
-    const Calibration* calibration = calibration_of(station.project(), spot);
-    return calibration ? calibration->flange_from_sensor : Pose::Identity();
-}
-
-}  // namespace
 
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options) {
     if (options.repeats < 1 || options.repeats > 1000)
@@ -71,8 +70,9 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
     taught.spot = draft;
     std::vector<Profile> profiles;
     // Standing still: the reference is free of trigger jitter.
-    auto measured = measure_at(
-        station, draft, std::vector<Pose>(static_cast<std::size_t>(options.repeats), draft.base_from_flange),
+    auto measured = measure_standing(
+        station, draft,
+        std::vector<Standing>(static_cast<std::size_t>(options.repeats), Standing{draft.base_from_flange}),
         options.cancel, options.progress,
         [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
             taught.measurements.push_back(m);
@@ -151,7 +151,7 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
     const MeasuringMove through = measuring_move(spot, flange_from_sensor(station, spot));
     const Eigen::Vector3d before = through.entry.translation() - through.trigger.translation();
     const Eigen::Vector3d after = through.exit.translation() - through.trigger.translation();
-    std::vector<Pose> poses;
+    std::vector<Standing> poses;
     std::vector<double> travel;
     const int back = static_cast<int>(std::floor(spot.entry_mm / options.step_mm + 1e-9));
     const int ahead = static_cast<int>(std::floor(spot.exit_mm / options.step_mm + 1e-9));
@@ -161,11 +161,11 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
         at.translation() += y < 0   ? Eigen::Vector3d(before * (-y / spot.entry_mm))
                             : y > 0 ? Eigen::Vector3d(after * (y / spot.exit_mm))
                                     : Eigen::Vector3d(Eigen::Vector3d::Zero());
-        poses.push_back(at);
+        poses.push_back(Standing{at});
         travel.push_back(y);
     }
     RecordedPass pass;
-    auto measured = measure_at(
+    auto measured = measure_standing(
         station, spot, poses, options.cancel, options.progress,
         [&](std::size_t i, const SpotMeasurer& measurer, const SpotMeasurement& m) {
             if (measurer.profile().size() > 0) pass.profiles.push_back({travel[i], measurer.profile()});

@@ -3,15 +3,32 @@
 // the contour stands still. The robot makes the same moves as in a run; nothing is written to it.
 
 #include <functional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
 #include "core/alignment/alignment.h"
 #include "projects/model/evidence.h"
 #include "projects/model/run.h"
+#include "projects/station/measure.h"
 #include "projects/station/station.h"
 
 namespace seamwright {
+
+// A place to go to and stand still at, and how often to measure there: 0 on the way.
+struct Standing {
+    Pose base_from_flange = Pose::Identity();
+    int measurements = 1;
+};
+
+// Goes to one after the other and measures `spot` (its recipe and sensor; it need not be in the project), with
+// `visit` after each measurement, whatever became of it; `progress` counts the places. Error: not connected, a
+// device, cancelled.
+Expected<void> measure_standing(Station& station, const Spot& spot, std::span<const Standing> stands,
+                                const std::stop_token& cancel,
+                                const std::function<void(const RunProgress&)>& progress,
+                                const std::function<void(std::size_t stand, const SpotMeasurer& measurer,
+                                                         const SpotMeasurement& measurement)>& visit);
 
 struct TeachOptions {
     int repeats = 5;  // measurements of the reference, 1 to 1000

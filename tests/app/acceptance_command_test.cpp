@@ -123,5 +123,36 @@ TEST_F(AcceptanceCli, BadInputIsOneSentence) {
     EXPECT_EQ(run({"--data", file}).exit_code, 2);
 }
 
+// Robot and trigger: what is bad input, and what is not there.
+TEST_F(AcceptanceCli, RobotAndTriggerAreOfAProject) {
+    ASSERT_EQ(run_program({"new", "empty.seam"}, folder).exit_code, 0);
+    const auto refused_by = [&](const std::vector<std::string>& arguments, const std::string& part,
+                                int code = 2) {
+        const ProgramResult r = run_program(arguments, folder);
+        EXPECT_EQ(r.exit_code, code) << r.err;
+        EXPECT_THAT(r.err, HasSubstr(part));
+        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+        EXPECT_EQ(r.out, "");
+    };
+    refused_by({"acceptance", "empty.seam", "--study", "robot"}, "seamwright measure-robot");
+    refused_by({"acceptance", "empty.seam", "--study", "trigger"}, "seamwright measure-trigger");
+    refused_by({"acceptance", "--data", write("v.csv", fifty(true)), "--study", "trigger"}, "FILE.seam");
+    refused_by({"acceptance", "empty.seam", "--study", "type1"}, "--tolerance-mm");
+    refused_by({"measure-robot", "none.seam"}, "none.seam", 3);
+    refused_by({"measure-robot", "empty.seam"}, "no enabled spot is calibrated");
+    refused_by({"measure-robot", "empty.seam", "--spot", "S1"}, "no spot \"S1\"");
+    refused_by({"measure-robot", "empty.seam", "--undo"}, "no study of the robot is stored");
+    refused_by({"measure-trigger", "empty.seam"}, "no enabled spot is calibrated");
+    refused_by({"measure-trigger", "empty.seam", "--undo"}, "no study of the trigger is stored");
+    refused_by({"measure-trigger", "empty.seam", "--program", "krc"}, "--brand");
+    for (const std::vector<std::string>& bad :
+         {std::vector<std::string>{"measure-robot", "empty.seam", "--returns", "4"},
+          {"measure-robot", "empty.seam", "--profiles", "1"},
+          {"measure-trigger", "empty.seam", "--travel-deg", "91"},
+          {"measure-trigger", "empty.seam", "--passes", "nan"},
+          {"measure-trigger", "empty.seam", "--speeds", "a,b,c"}})
+        EXPECT_EQ(run_program(bad, folder).exit_code, 2) << bad[2];
+}
+
 }  // namespace
 }  // namespace seamwright

@@ -281,9 +281,10 @@ TEST_F(Cli, UsageErrorsEndWithTwo) {
 
 TEST_F(Cli, EveryCommandsHelpShowsAnExample) {
     for (const char* command :
-         {"demo",    "new",   "info",     "check",    "run",           "replay",  "export", "import",
-          "correct", "plan",  "filter",   "feature",  "match",         "extract", "align",  "calibrate",
-          "devices", "panel", "evaluate", "sim-cell", "robot-program", "path",    "gap"}) {
+         {"demo",   "new",       "info",          "check",          "run",      "replay",   "export",
+          "import", "correct",   "plan",          "filter",         "feature",  "match",    "extract",
+          "align",  "calibrate", "devices",       "panel",          "evaluate", "sim-cell", "robot-program",
+          "path",   "gap",       "measure-robot", "measure-trigger"}) {
         const ProgramResult r = run({command, "--help"});
         EXPECT_EQ(r.exit_code, 0) << command;
         EXPECT_THAT(r.out, HasSubstr("Example:")) << command;

@@ -312,6 +312,7 @@ inline PanelRecord sample_panel_record(unsigned seed) {
     return panel;
 }
 
+inline constexpr int kSampleEvidence = 6;
 inline Evidence sample_evidence(int kind) {
     Evidence e;
     if (kind == 0) {
@@ -338,8 +339,26 @@ inline Evidence sample_evidence(int kind) {
                     9,
                     {{"edge", false, std::nan(""), {}, "too few spots"}}}};
         e.what = k;
-    } else {
+    } else if (kind == 3) {
         e.what = HeadlessRun{12, "car", true, "line-pc"};
+    } else if (kind == 4) {
+        RobotReturns r;
+        r.robot_id = "R1";
+        r.spots.resize(1);
+        r.spots[0] = {"S1", {}, true, false, {0.1, 1.0 / 9}, {{{1.0 / 3, 2}, {3, 4}}, {{5, 6}}}};
+        r.spots[0].sees << 1, 2, 3, 4, 5, 1.0 / 7;
+        r.not_found = 2;
+        r.replaced_covariance(0, 0) = 1e-3;
+        e.what = r;
+    } else {
+        e.what = TriggerPasses{"S1",
+                               45,
+                               {-0.7, 0.1},
+                               0.001,
+                               {{-50, true, 1.0 / 3}, {0, false, 2}},
+                               1,
+                               3.5,
+                               {{"S1", 3}, {"S2", 2.5}}};
     }
     return e;
 }

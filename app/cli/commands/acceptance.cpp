@@ -8,6 +8,7 @@
 #include "devices/quality/study_csv.h"
 #include "projects/acceptance/acceptance_json.h"
 #include "projects/acceptance/acceptance_page.h"
+#include "projects/acceptance/device_studies.h"
 #include "projects/acceptance/stored_values.h"
 #include "widgets/print/pdf.h"
 
@@ -18,6 +19,7 @@ struct AcceptanceArguments {
     std::string file, data, references, study = "all", region, dfq, html, pdf, language = "en";
     double reference_mm = 0;
     CLI::Option* reference = nullptr;
+    CLI::Option* tolerance = nullptr;
     AcceptanceSettings settings;
 };
 
@@ -68,8 +70,89 @@ QdasStudy qdas_of(const Acceptance& a) {
     return q;
 }
 
+// Those of the robot and its trigger that the file holds.
+struct StoredDeviceStudies {
+    std::optional<MeasuredRobot> robot;
+    std::optional<MeasuredTrigger> trigger;
+    void write(report::Page& page, Language language) const {
+        if (robot) add_chapter(page, language, *robot);
+        if (trigger) add_chapter(page, language, *trigger);
+    }
+    void write(nlohmann::json& answer) const {
+        if (robot) answer["robot"] = robot_study_json(*robot);
+        if (trigger) answer["trigger"] = trigger_study_json(*trigger);
+    }
+};
+
+// `study` robot, trigger or all. Error (input): the one that is asked for is not stored.
+Expected<StoredDeviceStudies> device_studies_of(const AcceptanceArguments& a) {
+    StoredDeviceStudies studies;
+    if (a.file.empty()) return studies;
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    if (a.study != "trigger") {
+        auto robot = stored_robot_study(*file, {});
+        if (!robot) return tl::unexpected(robot.error());
+        studies.robot = std::move(*robot);
+        if (a.study == "robot" && !studies.robot)
+            return input_error("no study of the robot is stored", a.file,
+                               "make it: seamwright measure-robot");
+    }
+    if (a.study != "robot") {
+        auto trigger = stored_trigger_study(*file);
+        if (!trigger) return tl::unexpected(trigger.error());
+        studies.trigger = std::move(*trigger);
+        if (a.study == "trigger" && !studies.trigger)
+            return input_error("no study of the trigger is stored", a.file,
+                               "make it: seamwright measure-trigger");
+    }
+    return studies;
+}
+
+// The page as HTML and PDF where they are asked for.
+Expected<void> write_page(const AcceptanceArguments& a, const report::Page& page, Answer& answer) {
+    const auto written = [&](const char* field, const std::string& path) {
+        answer.json[field] = path;
+        answer.text += path + " written\n";
+    };
+    if (!a.html.empty()) {
+        if (auto done = write_text_file(a.html, page.html()); !done) return done;
+        written("html", a.html);
+    }
+    if (!a.pdf.empty()) {
+        if (auto done = write_pdf(page, a.pdf); !done) return done;
+        written("pdf", a.pdf);
+    }
+    return {};
+}
+
+Expected<Answer> device_study_command(const AcceptanceArguments& a) {
+    if (a.file.empty()) return usage_error("it is of a project", "--study", "give FILE.seam");
+    if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
+    auto studies = device_studies_of(a);
+    if (!studies) return tl::unexpected(studies.error());
+    const auto page = [&](Language language) {
+        report::Page of(
+            Text("Acceptance of the measuring process: {}", std::filesystem::path(a.file).filename().string())
+                .in(language),
+            std::string(code_of(language)));
+        studies->write(of, language);
+        return of;
+    };
+    Answer answer;
+    answer.json = {{"status", "ok"}};
+    studies->write(answer.json);
+    answer.text = page_text(page(Language::english));
+    if (auto done = write_page(a, page(*language_from(a.language)), answer); !done)
+        return tl::unexpected(done.error());
+    return answer;
+}
+
 Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
     AcceptanceArguments a = given;
+    if (a.study == "robot" || a.study == "trigger") return device_study_command(a);
+    if (a.tolerance->count() == 0)
+        return usage_error("--tolerance-mm is required", "acceptance", "give T = USL - LSL, the customer's");
     if (a.reference->count() > 0) a.settings.reference_mm = a.reference_mm;
     auto study = values_of(a);
     if (!study) return tl::unexpected(study.error());
@@ -79,31 +162,29 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
     auto acceptance =
         judge_acceptance(std::move(study->values), std::move(study->source), a.settings, studies);
     if (!acceptance) return tl::unexpected(acceptance.error());
+    StoredDeviceStudies devices;
+    if (a.study == "all") {
+        auto stored = device_studies_of(a);
+        if (!stored) return tl::unexpected(stored.error());
+        devices = std::move(*stored);
+    }
     AcceptancePageOptions options;
     options.program = "Seamwright " SEAMWRIGHT_VERSION;
+    options.more = [&](report::Page& page, Language language) { devices.write(page, language); };
     Answer answer;
     answer.json = acceptance_json(*acceptance);
+    devices.write(answer.json);
     answer.text = page_text(acceptance_page(*acceptance, options));
     answer.exit_code = acceptance->verdict() == AcceptanceVerdict::ok ? kExitOk : kExitVerdict;
-    const auto written = [&](const char* field, const std::string& path) {
-        answer.json[field] = path;
-        answer.text += path + " written\n";
-    };
     if (!a.dfq.empty()) {
         if (auto done = write_text_file(a.dfq, dfq_text(qdas_of(*acceptance))); !done)
             return tl::unexpected(done.error());
-        written("dfq", a.dfq);
+        answer.json["dfq"] = a.dfq;
+        answer.text += a.dfq + " written\n";
     }
     options.language = *language_from(a.language);
-    const report::Page page = acceptance_page(*acceptance, options);
-    if (!a.html.empty()) {
-        if (auto done = write_text_file(a.html, page.html()); !done) return tl::unexpected(done.error());
-        written("html", a.html);
-    }
-    if (!a.pdf.empty()) {
-        if (auto done = write_pdf(page, a.pdf); !done) return tl::unexpected(done.error());
-        written("pdf", a.pdf);
-    }
+    if (auto done = write_page(a, acceptance_page(*acceptance, options), answer); !done)
+        return tl::unexpected(done.error());
     return answer;
 }
 
@@ -122,11 +203,16 @@ void add_acceptance(CommandLine& line) {
     AcceptanceSettings& s = a->settings;
     command->add_option("file", a->file, "The project whose stored runs are studied")->type_name("FILE.seam");
     command->add_option("--data", a->data, "Values from elsewhere instead")->type_name("FILE.csv");
-    command->add_option("--study", a->study, "Which study; all: each that the data allow")
-        ->check(CLI::IsMember({"type1", "type3", "linearity", "stability", "correlation", "vda5", "all"}))
+    command
+        ->add_option(
+            "--study", a->study,
+            "Which study; robot and trigger: as measure-robot and measure-trigger stored them; all: each "
+            "that the data allow")
+        ->check(CLI::IsMember(
+            {"type1", "type3", "linearity", "stability", "correlation", "vda5", "robot", "trigger", "all"}))
         ->capture_default_str();
-    command->add_option("--tolerance-mm", s.tolerance_mm, "T = USL - LSL, the customer's requirement")
-        ->required();
+    a->tolerance = command->add_option("--tolerance-mm", s.tolerance_mm,
+                                       "T = USL - LSL, the customer's requirement; not of robot and trigger");
     command->add_option("--nominal", s.nominal_mm, "Middle of the tolerance, mm")->capture_default_str();
     command->add_option("--region", a->region, "Of the project; may be left out where there is one");
     a->reference = command->add_option("--reference", a->reference_mm, "Of the type 1 part, mm");

@@ -36,7 +36,7 @@ MEMBERS(PartSetup, a, b, c, d)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
 MEMBERS(FilterOptions, a, b, c, d, e, f)
-MEMBERS(RobotSetup, a, b, c, d, e, f)
+MEMBERS(RobotSetup, a, b, c, d, e, f, g)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(FeatureRecipe, a, b, c, d)
 MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
@@ -48,6 +48,10 @@ MEMBERS(FrozenContour, a, b, c, d, e, f, g, h, i)
 MEMBERS(ZeroShift, a, b, c)
 MEMBERS(KnownShift, a, b, c, d)
 MEMBERS(HeadlessRun, a, b, c, d)
+MEMBERS(SpotReturns, a, b, c, d, e, f)
+MEMBERS(RobotReturns, a, b, c, d)
+MEMBERS(TriggerPass, a, b, c)
+MEMBERS(TriggerPasses, a, b, c, d, e, f, g, h)
 #undef MEMBERS
 
 template <class T>
@@ -105,6 +109,16 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(ZeroShift{}, to_json_document(ZeroShift{}));
     whole(KnownShift{}, to_json_document(KnownShift{}));
     whole(HeadlessRun{}, to_json_document(HeadlessRun{}));
+    RobotReturns returns;
+    returns.spots.resize(1);
+    const auto q = to_json_document(returns);
+    whole(returns, q);
+    whole(returns.spots[0], q["spots"][0]);
+    TriggerPasses passes;
+    passes.passes.resize(1);
+    const auto v = to_json_document(passes);
+    whole(passes, v);
+    whole(passes.passes[0], v["passes"][0]);
 }
 
 // A file from before random and systematic were told apart: all it knew was random.

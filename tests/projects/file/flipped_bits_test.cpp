@@ -25,7 +25,8 @@ void make_full_file(const fs::path& path) {
     RunRecord panel = sample_run(3, 1, 20);
     panel.panel = sample_panel_record(3);
     ASSERT_TRUE(file->append_run(panel, project));
-    for (int kind = 0; kind < 4; ++kind) ASSERT_TRUE(file->append_evidence(sample_evidence(kind), project));
+    for (int kind = 0; kind < kSampleEvidence; ++kind)
+        ASSERT_TRUE(file->append_evidence(sample_evidence(kind), project));
     ASSERT_TRUE(file->append_event({0, "2024-05-01T12:00:02.000Z", 0, EventKind::note, "desk", "a word"}));
 }
 

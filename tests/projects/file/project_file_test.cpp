@@ -641,7 +641,8 @@ TEST(Migration, VersionTwoBecomesCurrentAndTakesEvidence) {
     project.requirements.sigma3_mm = 0.1;
     project.requirements.calibration_age_days = 30;
     ASSERT_TRUE(file->save(project));
-    for (int kind = 0; kind < 4; ++kind) ASSERT_TRUE(file->append_evidence(sample_evidence(kind), project));
+    for (int kind = 0; kind < kSampleEvidence; ++kind)
+        ASSERT_TRUE(file->append_evidence(sample_evidence(kind), project));
     EXPECT_TRUE(file->check().empty());
     EXPECT_EQ(file->load()->requirements.sigma3_mm, 0.1);
 }
@@ -693,7 +694,7 @@ TEST(ProjectFile, EvidenceComesBackToTheLastBitAndOutlivesRuns) {
     const Project project = sample_project();
     auto file = ProjectFile::create(folder / "a.seam", project).value();
     const auto run = file.append_run(sample_run(1), project).value();
-    for (int kind = 0; kind < 4; ++kind) {
+    for (int kind = 0; kind < kSampleEvidence; ++kind) {
         const Evidence put = sample_evidence(kind);
         const auto id = file.append_evidence(put, project);
         ASSERT_TRUE(id) << id.error().sentence();
@@ -708,7 +709,7 @@ TEST(ProjectFile, EvidenceComesBackToTheLastBitAndOutlivesRuns) {
     }
     ASSERT_TRUE(file.delete_run(run));
     const auto all = file.evidence().value();
-    ASSERT_EQ(all.size(), 4u);
+    ASSERT_EQ(all.size(), std::size_t{kSampleEvidence});
     EXPECT_EQ(file.load_setup(all[3].setup)->spots.size(), project.spots.size());
     EXPECT_TRUE(file.check().empty());
 }

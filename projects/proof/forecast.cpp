@@ -81,7 +81,7 @@ class Forecaster {
                     o.reference_covariance_mm2.reset();
                 }
                 o.measured_mm = displaced_measure(o, d);
-                if (i != change.spot || !change.travel) add_travel(spot, d, o);
+                if (i != change.spot || !change.travel) add_travel(o, d, travel_window_mm(spot));
             }
             if (further) {
                 moved.push_back(*further);

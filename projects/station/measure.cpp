@@ -355,6 +355,11 @@ CorrectionOptions correction_options(const Project& project, const Region& regio
     return options;
 }
 
+int points_at_reference(const Spot& spot) {
+    const std::optional<Feature> found = feature_at_reference(spot);
+    return found ? found->points_used : 0;
+}
+
 double travel_window_mm(const Spot& spot) {
     return spot.stop_at_trigger ? 0 : spot.jitter_mm;
 }

@@ -83,7 +83,7 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
     options.program = "Seamwright " SEAMWRIGHT_VERSION;
     Answer answer;
     answer.json = acceptance_json(*acceptance);
-    answer.text = page_text(acceptance_page(*acceptance, options));
+    answer.text = acceptance_page(*acceptance, options).text();
     answer.exit_code = acceptance->verdict() == AcceptanceVerdict::ok ? kExitOk : kExitVerdict;
     const auto written = [&](const char* field, const std::string& path) {
         answer.json[field] = path;

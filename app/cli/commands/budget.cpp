@@ -104,7 +104,9 @@ void add_budget(CommandLine& line) {
                      "Where the part lies, D of the correction: JSON or a file of it; else as taught")
         ->type_name("POSE");
     command->add_flag("--monte-carlo", a->options.monte_carlo, "Draw the inputs and run the real correction");
-    command->add_option("--seed", a->options.seed, "Of the draws")->capture_default_str();
+    command->add_option("--seed", a->options.seed, "Of the draws")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     command
         ->add_option("--most-trials", a->options.drawing.most,
                      "Stop drawing here where the 95 % limits do not stand to 1 % of u before")

@@ -5,15 +5,13 @@
 
 #include "core/geometry/notation.h"
 #include "projects/file/project_file.h"
+#include "projects/report/svg_bars.h"
 #include "projects/report/svg_plot.h"
 
 namespace seamwright {
 namespace {
 
-using report::Mark;
-using report::Plot;
 using report::Rows;
-using report::Series;
 using report::Tone;
 namespace colour = report::colour;
 
@@ -59,24 +57,13 @@ void table(const BudgetWriter& w, const MeasurandBudget& m) {
 }
 
 std::string bars(const BudgetWriter& w, const MeasurandBudget& m) {
-    Plot plot;
-    plot.title = w.t("Shares of the variance: {}", name_of(m.quantity));
-    plot.y_label = "%";
-    plot.width_px = 800;
-    plot.height_px = 240;
-    plot.y_min = 0;
-    plot.y_max = 100;
-    Series random{w.t("random"), {}, {}, Mark::bars, colour::kBlue},
-        systematic{w.t("systematic"), {}, {}, Mark::bars, colour::kVermilion};
+    std::vector<report::ShareBar> all;
     for (const BudgetRow& row : m.rows) {
-        Series& of = is_systematic(row.source) ? systematic : random;
-        of.x.push_back(static_cast<double>(plot.categories.size()));
-        of.y.push_back(100 * row.share);
-        plot.categories.push_back(w.label(row));
+        const bool systematic = is_systematic(row.source);
+        all.push_back({w.label(row), 100 * row.share, systematic ? colour::kVermilion : colour::kBlue,
+                       systematic ? w.t("systematic") : w.t("random")});
     }
-    for (Series* s : {&random, &systematic})
-        if (!s->x.empty()) plot.series.push_back(*s);
-    return report::svg(plot);
+    return report::svg_bars(w.t("Shares of the variance: {}", name_of(m.quantity)), all);
 }
 
 void monte_carlo_chapter(const BudgetWriter& w, const RegionBudget& b) {

@@ -7,6 +7,7 @@
 
 #include "core/acceptance/distributions.h"
 #include "core/geometry/notation.h"
+#include "projects/proof/forecast.h"
 #include "projects/proof/path_direction.h"
 #include "projects/station/measure.h"
 
@@ -212,6 +213,61 @@ void compare(MeasurandBudget& m, const MonteCarlo& drawn, const MonteCarloFigure
                std::abs(figure.high - m.expanded) <= kAgreement * m.u;
 }
 
+struct Prepared {
+    std::vector<BudgetSpot> spots;
+    CorrectionOptions correction;
+    RegionPlan plan;
+    std::vector<PathDirection> directions;
+};
+
+Expected<Prepared> prepare(const Project& project, const Region& region) {
+    Prepared out;
+    auto spots = spots_of(project, region);
+    if (!spots) return tl::unexpected(spots.error());
+    out.spots = std::move(*spots);
+    out.correction = correction_options(project, region);
+    std::vector<SpotObservation> observations;
+    for (const BudgetSpot& b : out.spots) observations.push_back(b.spot);
+    auto plan = plan_region(observations, out.correction);
+    if (!plan) return tl::unexpected(plan.error());
+    out.plan = std::move(*plan);
+    out.directions = path_directions(project, region);
+    return out;
+}
+
+// The tables, and what they are of.
+struct FirstOrder {
+    RegionBudget budget;
+    std::vector<Measure> measures;
+    std::array<PathDirection, 2> at;
+};
+
+Expected<FirstOrder> first_order(const Project& project, const Region& region, const Prepared& p,
+                                 const Displacement& displacement) {
+    FirstOrder out;
+    RegionBudget& b = out.budget;
+    b.region_id = region.id;
+    b.displacement = displacement;
+    b.required_sigma3_mm = project.requirements.sigma3_mm;
+    const auto budget = uncertainty_budget(p.spots, p.correction, displacement);
+    if (!budget) return tl::unexpected(budget.error());
+    if (p.plan.status != CorrectionStatus::ok || !budget->determined) {
+        b.status = CorrectionStatus::under_determined;
+        b.message = p.plan.advice;
+        return out;
+    }
+    out.measures =
+        worst_of(p.directions, *budget, displacement.workobject_from_movedworkobject, b.spot_id, out.at);
+    for (std::size_t i = 0; i < 6; ++i)
+        if (region.free[i])
+            out.measures.push_back(
+                {static_cast<Quantity>(static_cast<int>(Quantity::x) + static_cast<int>(i))});
+    const Tables tables(project, p.correction, p.spots, *budget);
+    for (const Measure& m : out.measures) b.measurands.push_back(tables.table(m));
+    b.remarks = not_stated(project, p.correction, p.spots);
+    return out;
+}
+
 }  // namespace
 
 std::string_view to_string(Quantity quantity) {
@@ -224,40 +280,46 @@ bool RegionBudget::first_order_holds() const {
                        [](const MeasurandBudget& m) { return m.agrees; });
 }
 
+double RegionBudget::bead_u_mm() const {
+    double worst = 0;
+    for (const MeasurandBudget& m : measurands)
+        if (m.quantity <= Quantity::binormal) worst = std::max(worst, m.u);
+    return worst;
+}
+
+Expected<RegionBudget> worst_budget(const Project& project, const Region& region) {
+    const auto prepared = prepare(project, region);
+    if (!prepared) return tl::unexpected(prepared.error());
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const BudgetSpot& b : prepared->spots)
+        middle +=
+            b.spot.workobject_from_sensor * b.spot.reference_mm / static_cast<double>(prepared->spots.size());
+    std::optional<RegionBudget> worst;
+    for (const Displacement& d : required_displacements(project.requirements, middle)) {
+        if (!check_displacement(region, d.workobject_from_movedworkobject)) continue;
+        auto here = first_order(project, region, *prepared, d);
+        if (!here) return tl::unexpected(here.error());
+        if (!worst || here->budget.status != CorrectionStatus::ok ||
+            here->budget.bead_u_mm() > worst->bead_u_mm())
+            worst = std::move(here->budget);
+        if (worst->status != CorrectionStatus::ok) break;
+    }
+    return std::move(*worst);  // as taught is always among them
+}
+
 Expected<RegionBudget> region_budget(const Project& project, const Region& region,
                                      const BudgetOptions& options) {
     const Pose& d = options.displacement.workobject_from_movedworkobject;
     if (auto good = check_displacement(region, d); !good) return tl::unexpected(good.error());
-    const auto spots = spots_of(project, region);
-    if (!spots) return tl::unexpected(spots.error());
-    const CorrectionOptions correction = correction_options(project, region);
-    std::vector<SpotObservation> observations;
-    for (const BudgetSpot& b : *spots) observations.push_back(b.spot);
-    const auto plan = plan_region(observations, correction);
-    if (!plan) return tl::unexpected(plan.error());
-    RegionBudget out;
-    out.region_id = region.id;
-    out.displacement = options.displacement;
-    out.required_sigma3_mm = project.requirements.sigma3_mm;
+    const auto prepared = prepare(project, region);
+    if (!prepared) return tl::unexpected(prepared.error());
+    const auto first = first_order(project, region, *prepared, options.displacement);
+    if (!first) return tl::unexpected(first.error());
+    RegionBudget out = first->budget;
     out.seed = options.seed;
-    auto budget = uncertainty_budget(*spots, correction, options.displacement);
-    if (!budget) return tl::unexpected(budget.error());
-    if (plan->status != CorrectionStatus::ok || !budget->determined) {
-        out.status = CorrectionStatus::under_determined;
-        out.message = plan->advice;
-        return out;
-    }
-    std::array<PathDirection, 2> at;
-    std::vector<Measure> measures = worst_of(path_directions(project, region), *budget, d, out.spot_id, at);
-    for (std::size_t i = 0; i < 6; ++i)
-        if (region.free[i])
-            measures.push_back({static_cast<Quantity>(static_cast<int>(Quantity::x) + static_cast<int>(i))});
-    const Tables tables(project, correction, *spots, *budget);
-    for (const Measure& m : measures) out.measurands.push_back(tables.table(m));
-    out.remarks = not_stated(project, correction, *spots);
-    if (!options.monte_carlo) return out;
+    if (!options.monte_carlo || out.status != CorrectionStatus::ok) return out;
 
-    CorrectionDraws draws(*spots, correction, options.displacement, options.seed);
+    CorrectionDraws draws(prepared->spots, prepared->correction, options.displacement, options.seed);
     RegionCorrector corrector(project, region);
     RegionCorrection found;
     const auto truth = printed(d);
@@ -267,20 +329,20 @@ Expected<RegionBudget> region_budget(const Project& project, const Region& regio
             return false;
         const Pose& estimate = found.displacement.workobject_from_movedworkobject;
         const auto off = Eigen::Matrix<double, 6, 1>(printed(estimate) - truth);
-        for (std::size_t i = 0; i < measures.size(); ++i) {
-            const int k = static_cast<int>(measures[i].quantity) - static_cast<int>(Quantity::x);
+        for (std::size_t i = 0; i < first->measures.size(); ++i) {
+            const int k = static_cast<int>(first->measures[i].quantity) - static_cast<int>(Quantity::x);
             if (k < 0)
-                values[i] = at[i].value(estimate) - at[i].value(d);
+                values[i] = first->at[i].value(estimate) - first->at[i].value(d);
             else
                 values[i] = k < 3 ? off[k] : std::remainder(off[k], 360.0);
         }
         return true;
     };
-    out.drawn = monte_carlo(measures.size(), options.drawing, trial);
+    out.drawn = monte_carlo(first->measures.size(), options.drawing, trial);
     if (options.drawing.cancel.stop_requested())
         return usage_error(Text("cancelled after {} trials", out.drawn->trials), Text("region {}", region.id),
                            "start it again");
-    for (std::size_t i = 0; i < measures.size(); ++i)
+    for (std::size_t i = 0; i < first->measures.size(); ++i)
         compare(out.measurands[i], *out.drawn, out.drawn->figures[i]);
     return out;
 }

@@ -71,6 +71,7 @@ struct RegionBudget {
     std::optional<MonteCarlo> drawn;  // its figures in the order of the measurands
     std::uint64_t seed = 0;
     std::vector<Text> remarks;  // what is not stated and therefore not in the budget
+    double bead_u_mm() const;   // the larger of normal and binormal
     // Without Monte Carlo nothing speaks against it.
     bool first_order_holds() const;
 };
@@ -86,5 +87,9 @@ struct BudgetOptions {
 // limits or along what it keeps fixed, what plan_region refuses; (usage, cancelled): stopped while drawing.
 Expected<RegionBudget> region_budget(const Project& project, const Region& region,
                                      const BudgetOptions& options);
+
+// Of the part as taught and as displaced by what is required (forecast.h), where the bead is least sure; displacements
+// that the region cannot find are passed over. First order alone.
+Expected<RegionBudget> worst_budget(const Project& project, const Region& region);
 
 }  // namespace seamwright

@@ -105,11 +105,8 @@ void region_chapter(const BudgetWriter& w, const RegionBudget& b) {
                          w.number(d.translation().x(), 3), w.number(d.translation().y(), 3),
                          w.number(d.translation().z(), 3), w.number(abc.a_deg), w.number(abc.b_deg),
                          w.number(abc.c_deg), b.spot_id));
-    double worst = 0;
-    for (const MeasurandBudget& m : b.measurands)
-        if (m.quantity <= Quantity::binormal) worst = std::max(worst, m.u);
-    w.page.paragraph(w.t("3 u across the bead: {} mm; the project requires {} mm.", w.number(3 * worst, 3),
-                         w.number(b.required_sigma3_mm, 3)));
+    w.page.paragraph(w.t("3 u across the bead: {} mm; the project requires {} mm.",
+                         w.number(3 * b.bead_u_mm(), 3), w.number(b.required_sigma3_mm, 3)));
     for (const MeasurandBudget& m : b.measurands) {
         w.page.heading(name_of(m.quantity).in(w.language), 3);
         table(w, m);

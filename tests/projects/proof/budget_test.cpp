@@ -197,6 +197,22 @@ TEST(RegionBudget, FewPointsMeanFewDegreesOfFreedom) {
     EXPECT_GT(b.measurands[0].k, 1.96);
 }
 
+TEST(RegionBudget, TheWorstIsThatOfARequiredDisplacement) {
+    Project p = stated_project();
+    p.calibrations.front().covariance = arrival(0.3, 0.3);
+    const auto worst = worst_budget(p, p.regions.front());
+    ASSERT_TRUE(worst);
+    EXPECT_GT(worst->bead_u_mm(), budget_of(p, {}).bead_u_mm());
+    const RegionBudget same = budget_of(p, {worst->displacement});
+    EXPECT_EQ(worst->bead_u_mm(), same.bead_u_mm());
+    EXPECT_EQ(worst->spot_id, same.spot_id);
+    // What the region keeps fixed is passed over.
+    p.regions.front().free = {true, false, false, false, false, false};
+    const auto along_x = worst_budget(p, p.regions.front());
+    ASSERT_TRUE(along_x) << along_x.error().sentence();
+    EXPECT_EQ(along_x->measurands.size(), 3u);
+}
+
 TEST(RegionBudget, RefusesInOneSentence) {
     Project p = stated_project();
     const Region& region = p.regions.front();

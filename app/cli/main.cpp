@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
     add_run(line);
     add_record(line);
     add_proof(line);
+    add_budget(line);
     add_hand_over(line);
     add_acceptance(line);
     add_device_studies(line);

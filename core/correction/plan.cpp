@@ -281,39 +281,6 @@ Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const C
     return plan;
 }
 
-Expected<PredictedCovariance> predicted_covariance(std::span<const SpotObservation> spots,
-                                                   const CorrectionOptions& options,
-                                                   const Displacement& displacement) {
-    if (auto good = check_region(spots, options, false); !good) return tl::unexpected(good.error());
-    const Pose& d = displacement.workobject_from_movedworkobject;
-    State state;
-    state.rotation = d.linear();
-    state.translation = d.translation();
-    const KukaAbc abc = kuka_from_rotation(d.linear());
-    state.abc = rad_from_deg(1) * Eigen::Vector3d(abc.a_deg, abc.b_deg, abc.c_deg);
-    const std::vector<double> all(spots.size(), 1.0);
-    RegionSystem system;
-    Linearization lin;
-    Shared shared;
-    if (d.matrix().isIdentity(0)) {  // as taught: nothing that a sensor errs by shows
-        system.load(spots, options, true);
-        system.linearize(state, all, lin);
-    } else {
-        Spots moved(spots.begin(), spots.end());
-        for (SpotObservation& s : moved) s.measured_mm = displaced_measure(s, displacement);
-        system.load(moved, options, false);
-        if (system.shares())
-            system.linearize_shared(state, all, lin, shared);
-        else
-            system.linearize(state, all, lin);
-    }
-    const Spread spread = system.spread(lin, state);
-    const RegionSystem::Parts parts = system.parts(lin, shared, state, all, spread);
-    RegionPlan out;
-    report_spread(system, spread, system.observability(lin, state), state, &parts, out);
-    return PredictedCovariance{out.covariance, out.covariance_random, out.covariance_systematic};
-}
-
 std::optional<FurtherSpot> best_further_spot(std::span<const SpotObservation> spots,
                                              const CorrectionOptions& options) {
     if (!check_region(spots, options, false)) return std::nullopt;

@@ -8,63 +8,20 @@
 namespace seamwright::correction {
 namespace {
 
-// What errs at one spot beside the noise of its measure, along the sensor's axes, mm^2.
-struct LocalTerms {
-    bool any = false;
-    Eigen::Matrix3d random = Eigen::Matrix3d::Zero(), systematic = Eigen::Matrix3d::Zero();
-};
-
-LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
-    LocalTerms out;
-    if (in.robot_covariance && !in.robot_covariance->isZero(0)) {
-        out.any = true;
-        const Pose& w = in.workobject_from_sensor;
-        const bool curved = in.curve && in.weights.y() == 0;
-        const bool travel = curved || in.weights.y() > 0;
-        out.random = arrival_covariance(w, *in.robot_covariance,
-                                        from_reference ? in.reference_mm : in.measured_mm, travel);
-        out.systematic = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel);
-        if (curved) {
-            // An arrival further along the contour sees it where it runs on.
-            Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
-            along(0, 1) = -in.curve->x_coefficients[0];
-            along(2, 1) = -in.curve->z_coefficients[0];
-            out.random = along * out.random * along.transpose();
-            out.systematic = along * out.systematic * along.transpose();
-        }
-    }
-    if (in.reference_covariance_mm2 && !in.reference_covariance_mm2->isZero(0)) {
-        out.any = true;
-        const Eigen::Matrix2d& c = *in.reference_covariance_mm2;
-        out.systematic(0, 0) += c(0, 0);
-        out.systematic(2, 2) += c(1, 1);
-        out.systematic(0, 2) += c(0, 1);
-        out.systematic(2, 0) += c(0, 1);
-    }
-    return out;
+void put_xz(const Eigen::Matrix2d& c, Eigen::Matrix3d& out) {
+    out(0, 0) = c(0, 0);
+    out(2, 2) = c(1, 1);
+    out(0, 2) = out(2, 0) = c(1, 0);
 }
 
 // shape with shape shape^T sigma^2 = noise + local terms over the observed axes; flat is its inverse.
 void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, Eigen::Matrix3d& flat) {
     const double variance = in.sigma_mm * in.sigma_mm;
-    Eigen::Matrix3d all = variance * Eigen::Matrix3d::Identity();
-    if (in.covariance_mm2) {
-        const Eigen::Matrix2d& c = *in.covariance_mm2;
-        all(0, 0) = c(0, 0);
-        all(2, 2) = c(1, 1);
-        all(0, 2) = all(2, 0) = c(1, 0);
-    }
-    all += local.random + local.systematic;
-    Eigen::Matrix3d systematic = local.systematic;
-    const double weight = in.weights.maxCoeff();
-    bool together = true;  // the observed axes count the same
-    for (int i = 0; i < 3; ++i) together = together && (in.weights[i] == 0 || in.weights[i] == weight);
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) {
-            const bool kept = in.weights[i] > 0 && in.weights[k] > 0 && (together || i == k);
-            if (!kept) systematic(i, k) = 0, all(i, k) = i == k ? variance : 0.0;
-        }
-    }
+    const Eigen::Matrix3d repeating = local.taught + local.reference;
+    const Eigen::Matrix3d systematic = kept(in.weights, repeating);
+    Eigen::Matrix3d all = kept(in.weights, noise_covariance(in) + (local.run + repeating));
+    for (int i = 0; i < 3; ++i)
+        if (!(in.weights[i] > 0)) all(i, i) = variance;
     // Cholesky, and its inverse.
     Eigen::Matrix3d& t = s.shape;
     t(0, 0) = std::sqrt(all(0, 0));
@@ -84,6 +41,48 @@ void fold(const SpotObservation& in, const LocalTerms& local, PreparedSpot& s, E
 }
 
 }  // namespace
+
+LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
+    LocalTerms out;
+    if (in.robot_covariance && !in.robot_covariance->isZero(0)) {
+        out.any = true;
+        const Pose& w = in.workobject_from_sensor;
+        const bool curved = in.curve && in.weights.y() == 0;
+        const bool travel = curved || in.weights.y() > 0;
+        out.run = arrival_covariance(w, *in.robot_covariance,
+                                     from_reference ? in.reference_mm : in.measured_mm, travel);
+        out.taught = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel);
+        if (curved) {
+            // An arrival further along the contour sees it where it runs on.
+            Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
+            along(0, 1) = -in.curve->x_coefficients[0];
+            along(2, 1) = -in.curve->z_coefficients[0];
+            out.run = along * out.run * along.transpose();
+            out.taught = along * out.taught * along.transpose();
+        }
+    }
+    if (in.reference_covariance_mm2 && !in.reference_covariance_mm2->isZero(0)) {
+        out.any = true;
+        put_xz(*in.reference_covariance_mm2, out.reference);
+    }
+    return out;
+}
+
+Eigen::Matrix3d noise_covariance(const SpotObservation& in) {
+    Eigen::Matrix3d out = in.sigma_mm * in.sigma_mm * Eigen::Matrix3d::Identity();
+    if (in.covariance_mm2) put_xz(*in.covariance_mm2, out);
+    return out;
+}
+
+Eigen::Matrix3d kept(const Eigen::Vector3d& weights, Eigen::Matrix3d covariance) {
+    const double weight = weights.maxCoeff();
+    bool together = true;  // the observed axes count the same
+    for (int i = 0; i < 3; ++i) together = together && (weights[i] == 0 || weights[i] == weight);
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (!(weights[i] > 0 && weights[k] > 0 && (together || i == k))) covariance(i, k) = 0;
+    return covariance;
+}
 
 void RegionSystem::load(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                         bool from_reference) {

@@ -53,6 +53,20 @@ struct Observability {
     double weakest_sigma_mm = 0;                             // at the spots; infinity when singular
 };
 
+// What errs at one spot beside the noise of its measure, along the sensor's axes, mm^2: the reference, the
+// arrival when it was taught, that of the run.
+struct LocalTerms {
+    bool any = false;
+    Eigen::Matrix3d reference = Eigen::Matrix3d::Zero(), taught = Eigen::Matrix3d::Zero(),
+                    run = Eigen::Matrix3d::Zero();
+};
+// `from_reference`: the taught point stands for the measured one.
+LocalTerms local_terms(const SpotObservation& spot, bool from_reference);
+// Of the noise alone.
+Eigen::Matrix3d noise_covariance(const SpotObservation& spot);
+// What is folded in of a spot's covariance: its observed axes, and the correlations where these weigh the same.
+Eigen::Matrix3d kept(const Eigen::Vector3d& weights, Eigen::Matrix3d covariance);
+
 // A stated covariance S of (x, z) is folded in: `shape` T with T T^T sigma^2 = S on x and z, 1 on y, and
 // everything below is T^-1 times the sensor's own. Residuals then have the noise sigma along all axes.
 struct PreparedSpot {
@@ -158,6 +172,19 @@ class RegionSystem {
     int free_count_ = 6;
     bool all_free_ = true, by_angles_ = false, binary_ = true;
 };
+
+// The normal equations as they will stand when the part displaced by `displacement` is measured without noise
+// (measured_mm is ignored). As taught, `shared` is empty: nothing that a sensor errs by shows.
+struct Predicted {
+    RegionSystem system;
+    State state;
+    std::vector<double> factor;
+    Linearization lin;
+    Shared shared;
+    Spread spread;
+};
+Predicted predict(std::span<const SpotObservation> spots, const CorrectionOptions& options,
+                  const Displacement& displacement);
 
 // Plain words for a set of unobservable directions (columns in xi, spanning the unobservable space): pure
 // translations first, then rotations with their axis. `centroid` and `spread` as in RegionSystem.

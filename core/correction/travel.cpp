@@ -1,6 +1,7 @@
 #include "core/correction/travel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace seamwright {
 
@@ -52,6 +53,20 @@ Eigen::Matrix2d travel_covariance(const SpotObservation& spot, const Displacemen
     const Eigen::Vector3d direction = contour_direction(spot, displacement);
     const Eigen::Vector2d slope = sigma_mm * Eigen::Vector2d(direction.x(), direction.z());
     return slope * slope.transpose();
+}
+
+void add_travel(SpotObservation& spot, const Displacement& displacement, double half_window_mm) {
+    if (half_window_mm == 0) return;
+    constexpr double kNothingMm2 = 1e6;
+    const double sigma2 = spot.sigma_mm * spot.sigma_mm;
+    Eigen::Matrix2d c = travel_covariance(spot, displacement, half_window_mm / std::sqrt(3.0));
+    if (!c.allFinite() || c.trace() > kNothingMm2) c = kNothingMm2 * Eigen::Matrix2d::Identity();
+    if (spot.weights.x() == spot.weights.z()) {
+        spot.covariance_mm2 = c + spot.covariance_mm2.value_or(sigma2 * Eigen::Matrix2d::Identity());
+    } else {
+        const double worst = std::max(spot.weights.x() > 0 ? c(0, 0) : 0, spot.weights.z() > 0 ? c(1, 1) : 0);
+        spot.sigma_mm = std::sqrt(sigma2 + worst);
+    }
 }
 
 }  // namespace seamwright

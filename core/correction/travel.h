@@ -20,4 +20,9 @@ Eigen::Vector3d displaced_measure(const SpotObservation& spot, const Displacemen
 Eigen::Matrix2d travel_covariance(const SpotObservation& spot, const Displacement& displacement,
                                   double sigma_mm);
 
+// Adds that of a trigger that comes anywhere within `half_window_mm` to the observation's noise. Where x and z
+// weigh differently there is one sigma for both: the worse of those observed. A contour that came to lie along
+// the laser line tells nothing; 1 m stands for infinite.
+void add_travel(SpotObservation& spot, const Displacement& displacement, double half_window_mm);
+
 }  // namespace seamwright

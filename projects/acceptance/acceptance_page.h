@@ -20,9 +20,6 @@ struct AcceptancePageOptions {
 
 report::Page acceptance_page(const Acceptance& acceptance, const AcceptancePageOptions& options);
 
-// Headings, verdicts, sentences and tables of a page, without its plots.
-std::string page_text(const report::Page& page);
-
 // The word of a verdict and its colour.
 Text name_of(AcceptanceVerdict verdict);
 report::Tone tone_of(AcceptanceVerdict verdict);

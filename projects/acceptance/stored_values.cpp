@@ -4,6 +4,7 @@
 #include <map>
 
 #include "projects/proof/known_shift.h"
+#include "projects/proof/path_direction.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/measure.h"
 
@@ -23,28 +24,6 @@ struct UsedRun {
     Pose found = Pose::Identity();
     std::optional<Pose> truth;
 };
-
-struct PathDirection {
-    std::string spot_id;
-    bool normal = false;
-    Eigen::Vector3d point_mm, direction;
-    double value(const Pose& d) const { return direction.dot(d * point_mm - point_mm); }
-};
-
-std::vector<PathDirection> directions_of(const Project& setup, const Region& region) {
-    std::vector<PathDirection> out;
-    for (const SpotObservation& spot : planned_observations(setup, region)) {
-        Eigen::Vector3d tangent = Eigen::Vector3d::UnitY();
-        if (spot.curve) tangent = {spot.curve->x_coefficients[0], 1, spot.curve->z_coefficients[0]};
-        tangent = (spot.workobject_from_sensor.linear() * tangent).normalized();
-        const Eigen::Vector3d z = spot.workobject_from_sensor.linear().col(2);
-        const Eigen::Vector3d normal = (z - z.dot(tangent) * tangent).normalized();
-        const Eigen::Vector3d point = spot.workobject_from_sensor * spot.reference_mm;
-        out.push_back({spot.id, true, point, normal});
-        out.push_back({spot.id, false, point, tangent.cross(normal)});
-    }
-    return out;
-}
 
 // The cell that a demo serves over real protocols says so in its devices' names.
 bool names_simulation(std::string text) {
@@ -194,7 +173,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
     const auto region = std::find_if(setup->regions.begin(), setup->regions.end(),
                                      [&](const Region& r) { return r.id == id; });
     std::vector<PathDirection> directions;
-    if (region != setup->regions.end()) directions = directions_of(*setup, *region);
+    if (region != setup->regions.end()) directions = path_directions(*setup, *region);
     if (directions.empty())
         return input_error(Text("region \"{}\" has no calibrated spot", id), file.path().string());
     const PathDirection* worst = &directions.front();

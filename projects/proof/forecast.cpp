@@ -26,18 +26,6 @@ double feature_spread(const Spot& spot) {
 // A cure that gains less is not worth a word.
 constexpr double kWorthIt = 0.98;
 
-// The part as taught, and displaced both ways along and about each axis by what is required.
-std::vector<Displacement> displacements(const Requirements& need, const Eigen::Vector3d& middle) {
-    std::vector<Displacement> all(1);
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double way : {-1.0, 1.0}) {
-            const Eigen::Vector3d along = way * Eigen::Vector3d::Unit(axis);
-            const Eigen::Matrix3d turn = rotation_exp(along * rad_from_deg(need.known_shift_deg));
-            all.push_back({make_pose(turn, middle - turn * middle + along * need.known_shift_mm)});
-        }
-    return all;
-}
-
 struct Sigma {
     double mm = 0, deg = 0;
     std::size_t worst = 0;
@@ -70,7 +58,7 @@ class Forecaster {
 
     Sigma sigma(const Change& change = {}, const SpotObservation* further = nullptr) const {
         Sigma worst;
-        for (const Displacement& d : displacements(project_.requirements, middle_)) {
+        for (const Displacement& d : required_displacements(project_.requirements, middle_)) {
             Spots moved = spots_;
             for (std::size_t i = 0; i < moved.size(); ++i) {
                 SpotObservation& o = moved[i];
@@ -81,7 +69,7 @@ class Forecaster {
                     o.reference_covariance_mm2.reset();
                 }
                 o.measured_mm = displaced_measure(o, d);
-                if (i != change.spot || !change.travel) add_travel(spot, d, o);
+                if (i != change.spot || !change.travel) add_travel(o, d, travel_window_mm(spot));
             }
             if (further) {
                 moved.push_back(*further);
@@ -153,6 +141,17 @@ class Forecaster {
 };
 
 }  // namespace
+
+std::vector<Displacement> required_displacements(const Requirements& need, const Eigen::Vector3d& middle) {
+    std::vector<Displacement> all(1);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double way : {-1.0, 1.0}) {
+            const Eigen::Vector3d along = way * Eigen::Vector3d::Unit(axis);
+            const Eigen::Matrix3d turn = rotation_exp(along * rad_from_deg(need.known_shift_deg));
+            all.push_back({make_pose(turn, middle - turn * middle + along * need.known_shift_mm)});
+        }
+    return all;
+}
 
 Expected<RegionForecast> forecast_region(const Project& project, const Region& region) {
     Spots spots = planned_observations(project, region);

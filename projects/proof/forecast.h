@@ -37,4 +37,8 @@ struct RegionForecast {
 // Error: what plan_region refuses (no spot, ...).
 Expected<RegionForecast> forecast_region(const Project& project, const Region& region);
 
+// The part as taught, and displaced both ways along and about each axis through `middle` (work object) by what is
+// required to be recovered.
+std::vector<Displacement> required_displacements(const Requirements& need, const Eigen::Vector3d& middle);
+
 }  // namespace seamwright

@@ -205,4 +205,42 @@ std::string Page::html() const {
         language_, escape(title_), kStyle, escape(title_), body);
 }
 
+std::string Page::text() const {
+    std::string out = title_ + "\n";
+    for (const Block& b : blocks_) {
+        switch (b.kind) {
+            case Block::Kind::heading:
+                out += "\n" + b.text + "\n";
+                break;
+            case Block::Kind::paragraph:
+                out += b.text + "\n";
+                break;
+            case Block::Kind::verdict:
+                out += b.word + ": " + b.text + "\n";
+                break;
+            case Block::Kind::table: {
+                if (!b.text.empty()) out += b.text + "\n";
+                const std::vector<bool> numeric = numeric_columns(b.rows);
+                std::vector<std::size_t> widths;
+                for (const auto& row : b.rows) {
+                    widths.resize(std::max(widths.size(), row.size()));
+                    for (std::size_t c = 0; c < row.size(); ++c)
+                        widths[c] = std::max(widths[c], row[c].size());
+                }
+                for (const auto& row : b.rows) {
+                    std::string line = " ";
+                    for (std::size_t c = 0; c < row.size(); ++c)
+                        line += c < numeric.size() && numeric[c] ? fmt::format(" {:>{}} ", row[c], widths[c])
+                                                                 : fmt::format(" {:<{}} ", row[c], widths[c]);
+                    out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+                }
+                break;
+            }
+            default:
+                break;
+        }
+    }
+    return out;
+}
+
 }  // namespace seamwright::report

@@ -50,6 +50,8 @@ class Page {
     const std::string& language() const { return language_; }
     std::span<const Block> blocks() const { return blocks_; }
     std::string html() const;
+    // Headings, verdicts, sentences and tables, without the plots.
+    std::string text() const;
 
   private:
     std::string title_, language_;

@@ -355,41 +355,35 @@ CorrectionOptions correction_options(const Project& project, const Region& regio
     return options;
 }
 
-void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation) {
-    if (spot.stop_at_trigger || spot.jitter_mm == 0) return;
-    // A contour that came to lie along the laser line tells nothing; so much is as good as infinite.
-    constexpr double kNothingMm2 = 1e6;
-    const double sigma2 = observation.sigma_mm * observation.sigma_mm;
-    Eigen::Matrix2d c = travel_covariance(observation, displacement, spot.jitter_mm / std::sqrt(3.0));
-    if (!c.allFinite() || c.trace() > kNothingMm2) c = kNothingMm2 * Eigen::Matrix2d::Identity();
-    if (spot.weights.x() == spot.weights.z()) {
-        observation.covariance_mm2 =
-            c + observation.covariance_mm2.value_or(sigma2 * Eigen::Matrix2d::Identity());
-    } else {  // one sigma for both: the worse of those observed
-        const double worst = std::max(spot.weights.x() > 0 ? c(0, 0) : 0, spot.weights.z() > 0 ? c(1, 1) : 0);
-        observation.sigma_mm = std::sqrt(sigma2 + worst);
-    }
+int points_at_reference(const Spot& spot) {
+    const std::optional<Feature> found = feature_at_reference(spot);
+    return found ? found->points_used : 0;
 }
 
-namespace {
+double travel_window_mm(const Spot& spot) {
+    return spot.stop_at_trigger ? 0 : spot.jitter_mm;
+}
 
-Expected<RegionCorrection> correct_region(const Project& project, const Region& region,
-                                          std::vector<SpotObservation> observations) {
+RegionCorrector::RegionCorrector(const Project& project, const Region& region)
+    : project_(&project), options_(correction_options(project, region)), roughly_(options_) {
+    roughly_.limits = {};
+}
+
+Expected<void> RegionCorrector::correct(std::vector<SpotObservation>& observations,
+                                        RegionCorrection& correction) {
     // First where the part lies, to know what the travel does there. A good spot that the travel made look
     // wrong does not matter to that.
-    CorrectionOptions roughly = correction_options(project, region);
-    roughly.limits = {};
-    auto rough = solve_region(observations, roughly);
-    if (rough && rough->status != CorrectionStatus::ok) {
-        roughly.reject_outliers = false;
-        rough = solve_region(observations, roughly);
+    auto rough = solver_.solve(observations, roughly_, correction);
+    if (rough && correction.status != CorrectionStatus::ok) {
+        CorrectionOptions all = roughly_;
+        all.reject_outliers = false;
+        rough = solver_.solve(observations, all, correction);
     }
-    if (rough && rough->status == CorrectionStatus::ok)
-        for (SpotObservation& o : observations) add_travel(*find_spot(project, o.id), rough->displacement, o);
-    return solve_region(observations, correction_options(project, region));
+    if (rough && correction.status == CorrectionStatus::ok)
+        for (SpotObservation& o : observations)
+            add_travel(o, correction.displacement, travel_window_mm(*find_spot(*project_, o.id)));
+    return solver_.solve(observations, options_, correction);
 }
-
-}  // namespace
 
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements) {
@@ -423,12 +417,12 @@ std::vector<RegionRecord> correct_regions(const Project& project,
                                           : Text("no spot of the region was measured"));
             continue;
         }
-        auto solved = correct_region(project, region, std::move(observations));
-        if (!solved) {
+        RegionCorrection correction;
+        if (auto solved = RegionCorrector(project, region).correct(observations, correction); !solved) {
             record.refusals.push_back(Text("the correction refuses its input: {}", solved.error().text()));
             continue;
         }
-        record.correction = std::move(*solved);
+        record.correction = std::move(correction);
     }
     return records;
 }

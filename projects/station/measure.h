@@ -50,9 +50,12 @@ SpotObservation observation(const Spot& spot, const Pose& base_from_workobject,
 // calibration are left out, as they are in a run.
 std::vector<SpotObservation> planned_observations(const Project& project, const Region& region);
 
-// What the part's displacement does to a spot whose trigger may come anywhere in its jitter window, added to
-// the observation's noise: the contour stands still over the window as taught, not as displaced.
-void add_travel(const Spot& spot, const Displacement& displacement, SpotObservation& observation);
+// Points that the spot's feature rests on in its reference profile; 0 without either.
+int points_at_reference(const Spot& spot);
+
+// Half the window in which a spot's trigger may come (add_travel() of core/correction/travel.h): the contour
+// stands still over it as taught, not as displaced. 0 where the robot stops.
+double travel_window_mm(const Spot& spot);
 
 // The calibration in use at a sensor, at a spot's sensor; nullptr when there is none.
 const Calibration* calibration_of(const Project& project, const std::string& sensor_id);
@@ -97,10 +100,23 @@ class SpotMeasurer {
 // covariance of their calibrations' flange_from_sensor, turned into the sensor.
 CorrectionOptions correction_options(const Project& project, const Region& region);
 
+// A region's correction from what its spots say. Solved twice: where the part lies tells how far the contour of
+// each spot moves in the laser plane while the trigger jitters over Spot::jitter_mm (uniform, half width;
+// travel.h), and that is part of the covariance of the measured point. A spot with stop_at_trigger does not
+// jitter. Keeps its memory from part to part. The project must outlive it.
+class RegionCorrector {
+  public:
+    RegionCorrector(const Project& project, const Region& region);
+    // `observations` are left with the travel's covariance in them.
+    Expected<void> correct(std::vector<SpotObservation>& observations, RegionCorrection& correction);
+
+  private:
+    const Project* project_;
+    CorrectionOptions options_, roughly_;
+    RegionSolver solver_;
+};
+
 // Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
-// Solved twice: where the part lies tells how far the contour of each spot moves in the laser plane while the
-// trigger jitters over Spot::jitter_mm (uniform, half width; travel.h), and that is part of the covariance of
-// the measured point. A spot with stop_at_trigger does not jitter.
 // What repeats is stated as in planned_observations().
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
 // correction and says why in `refusals`.

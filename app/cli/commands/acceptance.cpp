@@ -142,7 +142,7 @@ Expected<Answer> device_study_command(const AcceptanceArguments& a) {
     Answer answer;
     answer.json = {{"status", "ok"}};
     studies->write(answer.json);
-    answer.text = page_text(page(Language::english));
+    answer.text = page(Language::english).text();
     if (auto done = write_page(a, page(*language_from(a.language)), answer); !done)
         return tl::unexpected(done.error());
     return answer;
@@ -174,7 +174,7 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
     Answer answer;
     answer.json = acceptance_json(*acceptance);
     devices.write(answer.json);
-    answer.text = page_text(acceptance_page(*acceptance, options));
+    answer.text = acceptance_page(*acceptance, options).text();
     answer.exit_code = acceptance->verdict() == AcceptanceVerdict::ok ? kExitOk : kExitVerdict;
     if (!a.dfq.empty()) {
         if (auto done = write_text_file(a.dfq, dfq_text(qdas_of(*acceptance))); !done)

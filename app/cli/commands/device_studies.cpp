@@ -42,7 +42,7 @@ template <class Measured>
 std::string text_of(const Measured& measured) {
     report::Page page(measured.source.file);
     add_chapter(page, Language::english, measured);
-    return page_text(page);
+    return page.text();
 }
 
 Answer undone(const char* what) {

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
+#include "app/cli/pose_argument.h"
 #include "devices/exchange/files.h"
-#include "devices/exchange/json_fields.h"
-#include "devices/exchange/pose_json.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/reteach.h"
 #include "widgets/print/pdf.h"
@@ -63,9 +62,7 @@ Expected<Answer> reteach_command(const ReteachArguments& a) {
     exchange.sensor_id = a.sensor;
     exchange.calibration_id = a.calibration;
     if (!a.base_from_workobject.empty()) {
-        auto document = parse_json(a.base_from_workobject, "--base-from-workobject");
-        if (!document) return tl::unexpected(document.error());
-        auto pose = parse_pose(*document, "--base-from-workobject");
+        auto pose = read_pose_argument(a.base_from_workobject, "--base-from-workobject");
         if (!pose) return tl::unexpected(pose.error());
         exchange.base_from_workobject = *pose;
     }

@@ -8,6 +8,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/feature_setting.h"
+#include "app/cli/pose_argument.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
@@ -32,19 +33,6 @@ struct ImportArguments {
     bool rows = false, columns = false, replace = false, look = false;
     double sigma_mm = FolderImport{}.sigma_mm, sigma_limit_mm = FolderImport{}.sigma_limit_mm;
 };
-
-Expected<Pose> read_pose_argument(const std::string& argument, const std::string& where) {
-    if (argument.empty()) return Pose::Identity();
-    std::string text = argument;
-    if (text.find('{') == std::string::npos) {
-        auto read = read_text_file(argument);
-        if (!read) return tl::unexpected(read.error());
-        text = *read;
-    }
-    auto document = parse_json(text, where);
-    if (!document) return tl::unexpected(document.error());
-    return parse_pose(*document, where);
-}
 
 // Of a project (the one named, or its only one that turns pixels into millimetres), or what `calibrate`
 // answered.

@@ -115,13 +115,13 @@ TEST(Page, BothLanguages) {
     ASSERT_TRUE(a);
     AcceptancePageOptions options;
     options.now_utc = "2024-05-01T12:00:00.000Z";
-    const std::string english = page_text(acceptance_page(*a, options));
+    const std::string english = acceptance_page(*a, options).text();
     EXPECT_THAT(english, HasSubstr("Type 1: capability on a reference part"));
     EXPECT_THAT(english, HasSubstr("simulated"));
     EXPECT_THAT(english, HasSubstr("2024-05-01 12:00"));
     options.language = Language::german;
     const report::Page page = acceptance_page(*a, options);
-    const std::string german = page_text(page), html = page.html();
+    const std::string german = page.text(), html = page.html();
     EXPECT_THAT(german, HasSubstr("Verfahren 1"));
     EXPECT_THAT(german, HasSubstr("Varianzanalyse"));
     for (const char* english_word : {"capability", "repeat (mm)", "Required", "accepted", "conformity zone"})

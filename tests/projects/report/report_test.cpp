@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "projects/report/html.h"
+#include "projects/report/svg_bars.h"
 #include "projects/report/svg_plot.h"
 
 namespace seamwright::report {
@@ -40,6 +41,17 @@ TEST(Svg, GapsAndMissingDataDrawNoNumberThatIsNone) {
     EXPECT_THAT(svg(plot), HasSubstr("no data"));
     plot.series = {{"one point", {5}, {5}, Mark::dots}};
     EXPECT_THAT(svg(plot), Not(HasSubstr("nan")));
+}
+
+TEST(SvgBars, OneLineAShareWithItsFigure) {
+    const std::string drawing =
+        svg_bars("a < b", {{"one & all", 62.5, "#0072B2", "random"}, {"none", std::nan("")}, {"more", 1e9}});
+    EXPECT_THAT(drawing, HasSubstr("a &lt; b"));
+    EXPECT_THAT(drawing, HasSubstr("one &amp; all"));
+    EXPECT_THAT(drawing, HasSubstr("62.5 %, random</text>"));
+    EXPECT_THAT(drawing, HasSubstr("0.0 %</text>"));
+    EXPECT_THAT(drawing, HasSubstr("100.0 %</text>"));
+    EXPECT_THAT(drawing, Not(HasSubstr("nan")));
 }
 
 TEST(Page, EscapesEverythingThatUsersWrite) {

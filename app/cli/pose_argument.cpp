@@ -1,0 +1,22 @@
+#include "app/cli/pose_argument.h"
+
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+
+namespace seamwright::cli {
+
+Expected<Pose> read_pose_argument(const std::string& argument, const std::string& where) {
+    if (argument.empty()) return Pose::Identity();
+    std::string text = argument;
+    if (text.find('{') == std::string::npos) {
+        auto read = read_text_file(argument);
+        if (!read) return tl::unexpected(read.error());
+        text = *read;
+    }
+    auto document = parse_json(text, where);
+    if (!document) return tl::unexpected(document.error());
+    return parse_pose(*document, where);
+}
+
+}  // namespace seamwright::cli

@@ -1,0 +1,76 @@
+#pragma once
+// The uncertainty budget of a region's correction (GUM, JCGM 100): which error contributes how much of the
+// covariance that the correction states.
+//
+// With B = (J^T Omega J)^-1 after the sensors' errors are eliminated, e the residual of spot n whitened by
+// flat_n, Omega_n its weights and J_n its rows freed of what the sensor's errors take, the estimate errs by
+//     d(xi) = - B (sum_n J_n^T Omega_n flat_n eps_n  +  sum_s gain_s u_s),
+// eps_n the spot's own errors and u_s the sensor's in units of their priors (nuisance.h). All are independent,
+// so each has its share
+//     C_k = B (sum_n J_n^T Omega_n flat_n cov_k,n flat_n^T Omega_n J_n) B    of a spot,
+//     C_k = B (sum_j gain_s,j gain_s,j^T) B                                  of a sensor (columns j of it),
+// and the shares add up to the covariance of correction.h exactly. As taught the sensors' shares are 0.
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/correction/correction.h"
+
+namespace seamwright {
+
+// In the order of a budget's rows.
+enum class ErrorSource {
+    feature,    // noise of the profile, as the feature sees it
+    stated,     // the spot's own sigma, typed
+    travel,     // the trigger's jitter along the displaced contour
+    robot_run,  // the arrival of the run
+    reference,  // taught once, the same ever after, as all below
+    robot_taught,
+    hand_eye,
+    scale_x,
+    scale_z,
+    shear
+};
+std::string_view to_string(ErrorSource source);
+inline bool is_systematic(ErrorSource source) {
+    return source >= ErrorSource::reference;
+}
+inline bool is_of_sensor(ErrorSource source) {
+    return source >= ErrorSource::hand_eye;
+}
+
+// A spot before its part is displaced, and what its noise is made of.
+struct BudgetSpot {
+    SpotObservation spot;        // without travel; measured_mm is ignored
+    double stated_sigma_mm = 0;  // share of the noise, every axis alike; the rest is the feature's
+    double half_window_mm = 0;   // the trigger comes anywhere in it, uniform
+    // Of the feature's and the reference's covariance, which are estimates themselves. Infinite: known.
+    double feature_degrees = std::numeric_limits<double>::infinity();
+    double reference_degrees = std::numeric_limits<double>::infinity();
+};
+
+struct BudgetTerm {
+    ErrorSource source = ErrorSource::feature;
+    std::size_t of = 0;  // index of the spot, or of the sensor in CorrectionOptions::sensors
+    // What errs, one standard deviation: mm along an observed axis of the spot (mean square of them), of the
+    // travel mm along it, of hand-eye mm of a point measured along x or z (mean square over the sensor's spots,
+    // from the reference), of scale and shear 1/1.
+    double input_sigma = 0;
+    Matrix6 covariance = Matrix6::Zero();  // its share of D's, tangent of pose.h, work object
+    DofSigma sigma;                        // the same of the printed numbers
+};
+
+struct UncertaintyBudget {
+    bool determined = false;        // false: the information is singular, and there are no terms
+    std::vector<BudgetTerm> terms;  // those of priors other than 0, in no particular order
+    Matrix6 covariance = Matrix6::Zero();
+    DofSigma sigma;
+};
+
+// Of the part displaced by `displacement`. Refuses what plan_region refuses.
+Expected<UncertaintyBudget> uncertainty_budget(std::span<const BudgetSpot> spots,
+                                               const CorrectionOptions& options,
+                                               const Displacement& displacement);
+
+}  // namespace seamwright

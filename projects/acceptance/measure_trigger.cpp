@@ -115,10 +115,17 @@ Expected<void> judge_passes(MeasuredTrigger& m, const Project& setup, const std:
     m.study = std::move(*study);
     if (spot) m.jitter_mm = jitter_by_spot(setup, *spot, *m.study);
     const double cut_mm = 1e-3 * m.study->latency_ms * m.speed_mm_s;
-    m.source.remarks.push_back(Text(
-        "At the spot's {:.0f} mm/s the cut lies {:.3f} mm past the taught pose; a tenth more or less of "
-        "override moves it by {:.3f} mm.",
-        m.speed_mm_s, cut_mm, std::abs(cut_mm) / 10));
+    m.source.remarks.push_back(
+        Text("At the spot's {:.0f} mm/s the cut lies {:.3f} mm past the taught pose; a tenth more or less of "
+             "override moves it by {:.3f} mm.",
+             m.speed_mm_s, cut_mm, std::abs(cut_mm) / 10));
+    if (spot && spot->feature.kind == "contour-end")
+        m.source.remarks.emplace_back(
+            "The end of a contour errs by the pixel that it falls on, differently where the stopped passes "
+            "do not "
+            "look: the limits may be too narrow. Take a template or a corner.");
+    if (m.study->latency_limits_ms.contains(0))
+        m.source.remarks.emplace_back("The latency is not told from none.");
     if (!m.study->jitter_seen())
         m.source.remarks.emplace_back(
             "The jitter is not told from the robot's and the sensor's scatter: its upper limit is taken.");

@@ -56,6 +56,7 @@ TEST(DeviceStudies, TheLimitsHoldTheSimulatedTrigger) {
     const StudyTruth truth;
     for (int seed = 1; seed <= kSeeds; ++seed) {
         StudyCell cell(truth, static_cast<std::uint64_t>(1000 + seed));
+        cell.teach_template("L2");
         MeasureTriggerOptions options;
         options.spot_id = "L2";
         options.travel_deg = 45;

@@ -119,6 +119,7 @@ TEST(MeasureRobot, Refuses) {
 TEST(MeasureTrigger, FindsTheSimulatedTrigger) {
     const StudyTruth truth;
     StudyCell cell(truth, 6);
+    cell.teach_template("L2");
     MeasureTriggerOptions options;
     options.spot_id = "L2";
     options.travel_deg = 45;
@@ -142,6 +143,26 @@ TEST(MeasureTrigger, FindsTheSimulatedTrigger) {
     EXPECT_EQ(cell.project().robots[0].trigger_latency_ms, 0);
     for (const Spot& spot : cell.project().spots) EXPECT_EQ(spot.jitter_mm, 3);
     EXPECT_TRUE(cell.station().file().check().empty());
+}
+
+// The end of a contour again: in motion it falls on other pixels than where the robot stops.
+TEST(MeasureTrigger, AFeatureThatErrsWithThePlaceIsNamed) {
+    const auto remarks = [](bool by_template) {
+        StudyCell cell({}, 6);
+        if (by_template) cell.teach_template("L2");
+        MeasureTriggerOptions options;
+        options.spot_id = "L2";
+        options.travel_deg = 45;
+        options.keep = false;
+        const auto measured = measure_trigger(cell.station(), options);
+        EXPECT_TRUE(measured && measured->study);
+        std::string said;
+        if (measured)
+            for (const Text& remark : measured->source.remarks) said += remark.english() + "\n";
+        return said;
+    };
+    EXPECT_THAT(remarks(false), HasSubstr("errs by the pixel"));
+    EXPECT_THAT(remarks(true), testing::Not(HasSubstr("errs by the pixel")));
 }
 
 TEST(MeasureTrigger, AContourAlongTheTravelIsRefusedAndThePassNamed) {

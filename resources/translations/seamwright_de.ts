@@ -3512,6 +3512,14 @@ A %5  B %6  C %7 Grad</translation>
         <source>To cure, the most effective first:</source>
         <translation>Abhilfe, das Wirksamste zuerst:</translation>
     </message>
+    <message>
+        <source>What makes it uncertain</source>
+        <translation>Woher die Unsicherheit kommt</translation>
+    </message>
+    <message>
+        <source>Across the bead at spot %1, where it is worst: u = %2 mm (random %3, systematic %4), U = %5 mm (95 %). The shares of the variance:</source>
+        <translation>Quer zur Raupe an Messstelle %1, wo es am schlechtesten ist: u = %2 mm (zufällig %3, systematisch %4), U = %5 mm (95 %). Die Anteile an der Varianz:</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ResidualBars</name>
@@ -4001,6 +4009,21 @@ ausgelassen</translation>
     <message>
         <source>Why the value is refused</source>
         <translation>Warum der Wert abgelehnt wird</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::ShareBars</name>
+    <message>
+        <source>Shares of the variance</source>
+        <translation>Anteile an der Varianz</translation>
+    </message>
+    <message>
+        <source>%1 % random</source>
+        <translation>%1 % zufällig</translation>
+    </message>
+    <message>
+        <source>%1 % systematic</source>
+        <translation>%1 % systematisch</translation>
     </message>
 </context>
 <context>

@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "widgets/charts/histogram.h"
+#include "widgets/charts/share_bars.h"
 #include "widgets/charts/trend_chart.h"
+#include "widgets/style.h"
 
 namespace seamwright {
 namespace {
@@ -43,6 +45,31 @@ TEST(TrendChart, ClickOpensThePartAndLimitsAreCounted) {
     QTest::keyClick(chart.focusProxy(), Qt::Key_Return);
     ASSERT_EQ(opened.size(), 2);
     EXPECT_EQ(opened[1][0].toInt(), 1);
+}
+
+TEST(ShareBars, SayWhatTheyDraw) {
+    ShareBars bars;
+    bars.set_data(
+        {{"hand-eye A", 75, true}, {"spot's sigma A", 25, false}, {"nothing", std::nan(""), false}});
+    EXPECT_EQ(bars.accessibleDescription().section("; ", 0, 1),
+              "hand-eye A: 75 % systematic; spot's sigma A: 25 % random");
+    EXPECT_EQ(bars.sizeHint().height() % 3, 0);
+    bars.resize(400, bars.sizeHint().height());
+    const QImage drawn = bars.grab().toImage();
+    // Along the middle of the first bar: most of it is filled, of the second a quarter.
+    const auto filled = [&](int row, const QColor& colour) {
+        int n = 0;
+        const int y = (2 * row + 1) * drawn.height() / 6;
+        for (int x = 0; x < drawn.width(); ++x) n += drawn.pixelColor(x, y) == colour;
+        return n;
+    };
+    const int first = filled(0, style::segment(1, bars.palette())),
+              second = filled(1, style::segment(0, bars.palette()));
+    EXPECT_GT(second, 0);
+    EXPECT_NEAR(first, 3 * second, 4);
+    EXPECT_EQ(filled(2, style::segment(0, bars.palette())), 0);
+    bars.resize(60, 20);  // narrower than its words
+    bars.grab();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <QListWidget>
 #include <array>
 
+#include "widgets/charts/share_bars.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/pages/step_page.h"
@@ -24,6 +25,7 @@ class RegionsPage : public StepPage {
   private:
     const Region* region() const;
     void show_plan(const Region& region);
+    void show_budget(const Region& region);
     QListWidget *list_, *spots_;
     QPushButton *proven_ = nullptr, *rename_, *remove_;
     QWidget* inspector_;
@@ -33,6 +35,8 @@ class RegionsPage : public StepPage {
     std::vector<ParameterEditor*> editors_;
     QLabel *verdict_, *advice_;
     QTableWidget* plan_;
+    QLabel* budget_;
+    ShareBars* shares_;
     bool filling_ = false;
 };
 

@@ -475,6 +475,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     for (const auto& section : sections)
         if (section.used) between += disagreement(section, model);
     const double first_mean = between / system.count;
+    result.poses_freedom = noise.redundancy;
+    result.poses_variance_mm2 = between / std::max(1.0, noise.redundancy);
     for (size_t k = 1; k < starts.size(); ++k) {
         Model other = starts[k].model;
         const double cost =

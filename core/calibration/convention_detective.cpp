@@ -10,6 +10,7 @@ namespace seamwright {
 namespace {
 
 constexpr double kChance = 1e-3;
+constexpr std::size_t kSolved = 6;  // in full, of those that the screen ranks
 constexpr double kSamePose = 1e-6;  // mm, and of a rotation's entries
 
 using PoseLists = std::vector<std::vector<Pose>>;
@@ -60,8 +61,9 @@ std::vector<PoseReading> readings_of(std::span<const WrittenPoses> lists) {
 // Readings that give the same poses are one solution.
 struct ReadSolution {
     PoseLists poses;
-    std::vector<PoseReading> readings;  // in the order tried
-    bool serves() const { return readings.front().fit && seamwright::serves(readings.front().fit->verdict); }
+    std::vector<PoseReading> readings;  // in the order tried; the first holds the fit until all have one
+    bool full = true;                   // solved by more than the screen
+    bool fits() const { return readings.front().fit && readings.front().fit->fits; }
     double variance() const {
         const auto& fit = readings.front().fit;
         return fit && std::isfinite(fit->variance) ? fit->variance : std::numeric_limits<double>::infinity();
@@ -104,37 +106,45 @@ Text words_of(const PoseReading& reading, std::span<const WrittenPoses> lists) {
     return listed(changed);
 }
 
-DetectedConvention detect_convention(std::span<const WrittenPoses> lists, const PoseFit& fit) {
+DetectedConvention detect_convention(std::span<const WrittenPoses> lists, const PoseFit& fit,
+                                     const PoseFit& screen) {
     DetectedConvention found;
-    std::vector<PoseReading> readings = readings_of(lists);
+    const std::vector<PoseReading> readings = readings_of(lists);
     std::vector<ReadSolution> solutions;
-    for (PoseReading& reading : readings) {
-        ++found.tried;
+    for (const PoseReading& reading : readings) {
+        const bool first = ++found.tried == 1;
         auto poses = read_all(lists, reading);
         if (poses) {
             const auto known = std::find_if(solutions.begin(), solutions.end(), [&](const ReadSolution& s) {
                 return same_poses(s.poses, *poses);
             });
             if (known != solutions.end()) {
-                reading.fit = known->readings.front().fit;
                 known->readings.push_back(reading);
             } else {
-                reading.fit = fit(*poses);
+                auto solved = first || !screen ? fit(*poses) : screen(*poses);
                 solutions.push_back({std::move(*poses), {reading}});
+                solutions.back().readings[0].fit = solved;
+                solutions.back().full = first || !screen;
             }
         }
-        if (found.tried > 1) continue;
-        found.as_given = reading;
-        if (!reading.fit || reading.fit->verdict != Verdict::good) continue;
+        if (!first) continue;
+        found.as_given = solutions.empty() ? reading : solutions[0].readings[0];
+        if (!found.as_given.fit || found.as_given.fit->verdict != Verdict::good) continue;
         found.finding = ConventionFinding::as_given;
-        found.best = reading;
-        found.sentence =
-            Text("the poses fit as they are read, {} ({})", millimetres(reading), words_of(reading, lists));
+        found.best = found.as_given;
+        found.sentence = Text("the poses fit as they are read, {} ({})", millimetres(found.as_given),
+                              words_of(reading, lists));
         return found;
     }
     std::stable_sort(solutions.begin(), solutions.end(), by_variance);
+    for (std::size_t i = 0; i < std::min(kSolved, solutions.size()); ++i)
+        if (!solutions[i].full)
+            if (auto solved = fit(solutions[i].poses)) solutions[i].readings[0].fit = solved;
+    for (ReadSolution& s : solutions)
+        for (PoseReading& reading : s.readings) reading.fit = s.readings[0].fit;
+    std::stable_sort(solutions.begin(), solutions.end(), by_variance);
     const auto best =
-        std::find_if(solutions.begin(), solutions.end(), [](const auto& s) { return s.serves(); });
+        std::find_if(solutions.begin(), solutions.end(), [](const auto& s) { return s.fits(); });
     if (best == solutions.end()) {
         if (solutions.empty() || std::isinf(solutions.front().variance())) {
             found.sentence =
@@ -161,9 +171,9 @@ DetectedConvention detect_convention(std::span<const WrittenPoses> lists, const 
     }
     found.ratio = second_variance / best_fit.variance;
     const bool alone = !(found.ratio <= found.limit);
-    const bool given_serves = found.as_given.fit && serves(found.as_given.fit->verdict);
+    const bool given_fits = found.as_given.fit && found.as_given.fit->fits;
     const bool given_is_best = found.best->conventions == found.as_given.conventions;
-    if (given_is_best || (given_serves && !alone)) {
+    if (given_is_best || (given_fits && !alone)) {
         found.finding = ConventionFinding::as_given;
         found.best = found.as_given;
         found.sentence = Text("the poses fit as they are read, {} ({})", millimetres(found.as_given),

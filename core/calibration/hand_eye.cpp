@@ -564,7 +564,8 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     const double check_deg = std::isnan(report.hold_out.rms_deg) ? result.rms_deg : report.hold_out.rms_deg;
     const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
     const Text fit("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
-    if (check_mm > kUsableHand_mm || check_deg > kUsableHand_deg || 3 * sigma_mm > 2 * kUsableHand_mm) {
+    result.fits = check_mm <= kUsableHand_mm && check_deg <= kUsableHand_deg;
+    if (!result.fits || 3 * sigma_mm > 2 * kUsableHand_mm) {
         const Text mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
         report.judgement = {Verdict::poor, fit,
                             mistake.empty()

@@ -59,7 +59,8 @@ struct HandEyeResult {
     double rms_mm = 0, rms_deg = 0;
     double sigma_mm = 0, sigma_deg = 0;
     int pairs_used = 0;
-    std::string start;             // which closed form the refinement began from
+    bool fits = false;  // pairs not used fit as they should; how well the poses determine the answer is apart
+    std::string start;  // which closed form the refinement began from
     std::vector<Text> degenerate;  // plain words
     std::vector<Text> notices;
     CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg] of X, then target_* of Y

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/calibration/hand_eye.h"
 #include "devices/exchange/json_fields.h"
@@ -33,20 +34,29 @@ json without_poses(std::string_view method, const json& data, const json& instea
     return bare;
 }
 
+struct Fits {
+    PoseFit fit, screen;
+};
+
 // The three numbers of a profile weigh very unequally where the poses err, the cut's radius least: two count.
-Expected<PoseFit> sphere_fit(const json& data, const Exclude& exclude) {
+std::optional<ConventionFit> sphere_fit(SphereData& set, const std::vector<Pose>& poses, bool thorough) {
+    for (std::size_t i = 0; i < set.observations.size(); ++i) set.observations[i].base_from_flange = poses[i];
+    set.options.thorough = thorough;
+    const auto solved = calibrate_tcp_sphere(set.observations, set.options);
+    if (!solved || solved->status == TcpSphereStatus::not_converged) return std::nullopt;
+    const double unknowns = set.options.radius_mm ? 9 : 10;
+    return ConventionFit{std::max(kExactPoint_mm * kExactPoint_mm, solved->poses_variance_mm2),
+                         std::max(1.0, (solved->poses_freedom + unknowns) * 2 / 3 - unknowns), solved->rms_mm,
+                         thorough && solved->fits,
+                         thorough ? solved->report.judgement.verdict : Verdict::undetermined};
+}
+
+Expected<Fits> sphere_fits(const json& data, const Exclude& exclude) {
     auto sphere = parse_sphere_data(without_poses("tcp-sphere", data, pose_json(Pose::Identity())), exclude);
     if (!sphere) return tl::unexpected(sphere.error());
-    return [set = std::move(*sphere)](const Lists& lists) mutable -> std::optional<ConventionFit> {
-        for (std::size_t i = 0; i < set.observations.size(); ++i)
-            set.observations[i].base_from_flange = lists[0][i];
-        const auto solved = calibrate_tcp_sphere(set.observations, set.options);
-        if (!solved || solved->status == TcpSphereStatus::not_converged) return std::nullopt;
-        const double unknowns = set.options.radius_mm ? 9 : 10;
-        return ConventionFit{std::max(kExactPoint_mm * kExactPoint_mm, solved->poses_variance_mm2),
-                             std::max(1.0, (solved->poses_freedom + unknowns) * 2 / 3 - unknowns),
-                             solved->rms_mm, solved->report.judgement.verdict};
-    };
+    const auto set = std::make_shared<SphereData>(std::move(*sphere));
+    return Fits{[set](const Lists& lists) { return sphere_fit(*set, lists[0], true); },
+                [set](const Lists& lists) { return sphere_fit(*set, lists[0], false); }};
 }
 
 // Millimetres and radians have a variance each: their geometric mean has the tails of one of 3 n - 6 degrees at most.
@@ -56,23 +66,25 @@ std::optional<ConventionFit> pairs_fit(Mount mount, const std::vector<HandEyePai
     if (!solved) return std::nullopt;
     return ConventionFit{
         std::max(kExactPose_mm, solved->sigma_mm) * std::max(kExactPose_rad, rad_from_deg(solved->sigma_deg)),
-        std::max(1.0, 3.0 * solved->pairs_used - 6), solved->rms_mm, solved->report.judgement.verdict};
+        std::max(1.0, 3.0 * solved->pairs_used - 6), solved->rms_mm, solved->fits,
+        solved->report.judgement.verdict};
 }
 
-Expected<PoseFit> hand_eye_fit(const json& data, const Exclude& exclude) {
+Expected<Fits> hand_eye_fits(const json& data, const Exclude& exclude) {
     auto set = parse_hand_eye_data(without_poses("hand-eye", data, pose_json(Pose::Identity())));
     if (!set) return tl::unexpected(set.error());
-    return [set = std::move(*set), exclude](const Lists& lists) mutable {
+    PoseFit fit = [set = std::move(*set), exclude](const Lists& lists) mutable {
         for (std::size_t i = 0; i < set.pairs.size(); ++i) {
             set.pairs[i].base_from_flange = lists[0][i];
             set.pairs[i].camera_from_target = lists[1][i];
         }
         return pairs_fit(set.mount, set.pairs, exclude);
     };
+    return Fits{std::move(fit), {}};
 }
 
 // Camera and plate without the robot, once; the robot's poses then against where the camera saw the plate.
-Expected<PoseFit> stripe_fit(const json& data, const Exclude& exclude) {
+Expected<Fits> stripe_fits(const json& data, const Exclude& exclude) {
     auto set = parse_stripe_data(without_poses("stripe-camera", data, nullptr));
     if (!set) return tl::unexpected(set.error());
     auto solved = calibrate_stripe_frames(set->observations, set->spec, exclude);
@@ -92,18 +104,19 @@ Expected<PoseFit> stripe_fit(const json& data, const Exclude& exclude) {
         pairs.push_back({set->observations[i].id, Pose::Identity(), *camera_from_target});
         number.push_back(own);
     }
-    return [pairs = std::move(pairs), number = std::move(number)](const Lists& lists) mutable {
+    PoseFit fit = [pairs = std::move(pairs), number = std::move(number)](const Lists& lists) mutable {
         for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].base_from_flange = lists[0][number[i]];
         return pairs_fit(Mount::eye_in_hand, pairs, {});
     };
+    return Fits{std::move(fit), {}};
 }
 
 struct Detective {
     std::string_view method;
-    Expected<PoseFit> (*fit)(const json& data, const Exclude& exclude);
+    Expected<Fits> (*fits)(const json& data, const Exclude& exclude);
 };
 constexpr Detective kDetectives[] = {
-    {"tcp-sphere", sphere_fit}, {"hand-eye", hand_eye_fit}, {"stripe-camera", stripe_fit}};
+    {"tcp-sphere", sphere_fits}, {"hand-eye", hand_eye_fits}, {"stripe-camera", stripe_fits}};
 
 json reading_json(const PoseReading& reading, const std::vector<WrittenPoses>& lists) {
     json conventions = json::object();
@@ -138,10 +151,10 @@ Expected<ConventionAnswer> detect_pose_convention(std::string_view method, const
     if (lists->empty())
         return input_error("there are no poses", Text("calibrate {}", std::string(method)),
                            "leave --detect-convention out");
-    const auto fit = detective->fit(data, exclude);
-    if (!fit) return tl::unexpected(fit.error());
+    const auto fits = detective->fits(data, exclude);
+    if (!fits) return tl::unexpected(fits.error());
     ConventionAnswer answer;
-    answer.found = detect_convention(*lists, *fit);
+    answer.found = detect_convention(*lists, fits->fit, fits->screen);
     const DetectedConvention& found = answer.found;
     const auto optional = [&](const std::optional<PoseReading>& reading) {
         return reading ? reading_json(*reading, *lists) : json(nullptr);

@@ -39,7 +39,7 @@ json hand_eye(unsigned seed, const WriteOne& robot, const WriteOne& camera) {
 }
 
 TEST(ConventionDetective, GoodDataAreAsGivenAtOnce) {
-    const auto of_sphere = asked("tcp-sphere", sphere(1, kAsTheHouse));
+    const auto of_sphere = asked("tcp-sphere", sphere(1, kAsTheHouse, 12, 0.01, 0));
     EXPECT_EQ(of_sphere.result["verdict"], "as_given") << of_sphere.result;
     EXPECT_EQ(of_sphere.result["tried"], 1);
     EXPECT_TRUE(of_sphere.result["offer"].is_null());
@@ -59,7 +59,7 @@ TEST(ConventionDetective, NamesWhatTheSphereWasWrittenIn) {
         data["pose_convention"] = answer.offer;
         const auto solved = calibrate_tcp_sphere_json(data, {});
         ASSERT_TRUE(solved) << solved.error().sentence();
-        EXPECT_EQ(solved->exit_code, 0) << solved->result["reason"];
+        EXPECT_EQ(solved->result["status"], "ok") << solved->result["reason"];
         EXPECT_EQ(solved->result["pose_convention"], answer.offer);
         EXPECT_EQ(asked("tcp-sphere", data).result["verdict"], "as_given");
     }

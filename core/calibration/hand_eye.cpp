@@ -502,6 +502,19 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     }
     if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
+    const double n = static_cast<double>(chain.used_count());
+    double squares_t = 0, squares_r = 0;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+        if (!chain.used[i]) continue;
+        squares_t += residual_mm(chain, i, x, y).squaredNorm();
+        squares_r += residual_rad(chain, i, x, y).squaredNorm();
+    }
+    result.rms_mm = std::sqrt(squares_t / n);
+    result.rms_deg = deg_from_rad(std::sqrt(squares_r / n));
+    result.sigma_mm = scales.mm;
+    result.sigma_deg = deg_from_rad(scales.rad);
+    result.pairs_used = static_cast<int>(n);
+
     if (!(known.worst_mm < kUndetermined_mm) || !(known.worst_rad < kUndetermined_rad)) {
         result.status = HandEyeStatus::undetermined;
         report.judgement = {Verdict::undetermined, "",
@@ -524,20 +537,10 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     result.status = HandEyeStatus::ok;
     result.x = x;
     result.y = y;
-    result.sigma_mm = scales.mm;
-    result.sigma_deg = deg_from_rad(scales.rad);
-    double squares_t = 0, squares_r = 0;
     for (size_t i = 0; i < pairs.size(); ++i) {
-        const double t = residual_mm(chain, i, x, y).norm(), r = residual_rad(chain, i, x, y).norm();
-        report.poses[i].rms_mm = t;
-        report.poses[i].deg = deg_from_rad(r);
-        if (!chain.used[i]) continue;
-        squares_t += t * t;
-        squares_r += r * r;
+        report.poses[i].rms_mm = residual_mm(chain, i, x, y).norm();
+        report.poses[i].deg = deg_from_rad(residual_rad(chain, i, x, y).norm());
     }
-    const double n = static_cast<double>(chain.used_count());
-    result.rms_mm = std::sqrt(squares_t / n);
-    result.rms_deg = deg_from_rad(std::sqrt(squares_r / n));
     const double student = student_quantile(0.975, std::max(1.0, 6 * n - 12)) / 1.959964;
     const Matrix12 covariance = known.inverse * student * student;
     result.covariance_x = covariance.topLeftCorner<6, 6>();
@@ -561,7 +564,8 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     const double check_deg = std::isnan(report.hold_out.rms_deg) ? result.rms_deg : report.hold_out.rms_deg;
     const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
     const Text fit("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
-    if (check_mm > kUsableHand_mm || check_deg > kUsableHand_deg || 3 * sigma_mm > 2 * kUsableHand_mm) {
+    result.fits = check_mm <= kUsableHand_mm && check_deg <= kUsableHand_deg;
+    if (!result.fits || 3 * sigma_mm > 2 * kUsableHand_mm) {
         const Text mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
         report.judgement = {Verdict::poor, fit,
                             mistake.empty()

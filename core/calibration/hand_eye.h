@@ -55,10 +55,13 @@ struct HandEyeResult {
     Pose x = Pose::Identity();  // flange_from_camera (eye_in_hand) or base_from_camera (eye_to_hand)
     Pose y = Pose::Identity();  // base_from_target (eye_in_hand) or flange_from_target (eye_to_hand)
     Matrix6 covariance_x = Matrix6::Zero(), covariance_y = Matrix6::Zero();
-    double rms_mm = 0, rms_deg = 0;      // |r_t|, |r_r| over the pairs used
-    double sigma_mm = 0, sigma_deg = 0;  // estimated s_t, s_r an axis
-    std::string start;                   // which closed form the refinement began from
-    std::vector<Text> degenerate;        // plain words
+    // |r_t|, |r_r| over the pairs used, and the estimated s_t, s_r an axis; known also of an undetermined answer.
+    double rms_mm = 0, rms_deg = 0;
+    double sigma_mm = 0, sigma_deg = 0;
+    int pairs_used = 0;
+    bool fits = false;  // pairs not used fit as they should; how well the poses determine the answer is apart
+    std::string start;  // which closed form the refinement began from
+    std::vector<Text> degenerate;  // plain words
     std::vector<Text> notices;
     CalibrationReport report;  // parameters x y z [mm] rx ry rz [deg] of X, then target_* of Y
 };

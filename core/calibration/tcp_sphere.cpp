@@ -439,7 +439,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     // Rims of other things can be rounder than the sphere is large: the second largest cut bounds the radius.
     std::sort(radii.begin(), radii.end());
     const double radius = options.radius_mm.value_or(radii[radii.size() - 2]);
-    const auto starts = global_start(sections, radius, radius_free);
+    const auto starts = global_start(sections, radius, radius_free, options.thorough);
     if (starts.empty()) {
         result.status = TcpSphereStatus::not_converged;
         write_poses(observations, sections, excluded, nullptr, result.report);
@@ -475,6 +475,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     for (const auto& section : sections)
         if (section.used) between += disagreement(section, model);
     const double first_mean = between / system.count;
+    result.poses_freedom = noise.redundancy;
+    result.poses_variance_mm2 = between / std::max(1.0, noise.redundancy);
     for (size_t k = 1; k < starts.size(); ++k) {
         Model other = starts[k].model;
         const double cost =
@@ -488,7 +490,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
 
     result.degenerate = degenerate_pose_words(sections, model, radius_free);
     const bool weak = !(result.weakest_sigma_mm < kUndeterminedSigma_mm);
-    if (weak || result.weakest_sigma_mm * 3 > kUsableTcp_mm || used < 9)
+    if (options.thorough && (weak || result.weakest_sigma_mm * 3 > kUsableTcp_mm || used < 9))
         result.proposals = propose_poses(sections, model, system.information, result.working_point_mm,
                                          radius_free, floor_sigma, weak ? 3 : 1);
     if (weak || ambiguous) {
@@ -500,7 +502,8 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
                 result.degenerate.empty()
                     ? Text("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
                     : result.degenerate.front();
-            judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
+            if (!result.proposals.empty())
+                judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
         } else {
             judgement.reason = "two different sensor positions explain these profiles about equally well";
             judgement.cure =
@@ -526,7 +529,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     }
     write_statistics(model, covariance, radius_free, result);
     write_poses(observations, sections, excluded, &model, result.report);
-    result.report.hold_out = verify(sections, model, radius_free);
+    if (options.thorough) result.report.hold_out = verify(sections, model, radius_free);
     result.mirrored = judge_axes(sections, observations, options, model, result.notices);
 
     // Verdict.
@@ -553,15 +556,18 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     }
     // With less than six poses left a wrong one among them still fits; leaving it out shows it.
     const double hold_out_limit = used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
+    const bool few_agree = used < 0.5 * static_cast<double>(candidates);
+    const bool bad_fit = result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit;
+    result.fits = !std::isfinite(free_radius) && !few_agree && !bad_fit;
     if (std::isfinite(free_radius)) {
         judgement = {Verdict::poor,
                      Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
                           free_radius, model.radius),
                      "check the radius (was the diameter given?)"};
-    } else if (used < 0.5 * static_cast<double>(candidates)) {
+    } else if (few_agree) {
         judgement = {Verdict::poor, "most profiles contradict the solution found from the others",
                      "check the robot poses and that the sphere did not move"};
-    } else if (result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit) {
+    } else if (bad_fit) {
         judgement = {Verdict::poor,
                      Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
                           result.rms_mm, hold_out),

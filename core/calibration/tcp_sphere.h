@@ -53,6 +53,9 @@ struct TcpSphereOptions {
     std::vector<std::string> exclude;  // ids left out of the solution; their residual is still given
     // Where the sensor should sit, when known: only used to recognise mirrored axes, never as a start.
     std::optional<Pose> nominal_flange_from_sensor;
+    // false: many times quicker and for comparing many sets of poses: wrong poses are left out only where they show
+    // without searching small subsets, and nothing is held out or proposed.
+    bool thorough = true;
 };
 
 inline constexpr int kTcpSphereFewestPoses = 6;  // distinct ones; nine or more are better
@@ -83,8 +86,13 @@ struct TcpSphereResult {
     Pose flange_from_sensor = Pose::Identity();
     Eigen::Vector3d centre_base_mm = Eigen::Vector3d::Zero();
     double radius_mm = 0;
-    double rms_mm = 0;                     // of e over the points used
-    double noise_mm = 0;                   // of a point about its own profile's circle
+    double rms_mm = 0;    // of e over the points used
+    double noise_mm = 0;  // of a point about its own profile's circle
+    // By what the profiles used contradict one another, known also of an undetermined answer: mean square (mm^2,
+    // noise_mm^2 where nothing but the points' noise is at work) of `poses_freedom` degrees, 3 profiles - unknowns.
+    double poses_variance_mm2 = 0, poses_freedom = 0;
+    // The profiles fit one sphere of this radius as they should; how well the poses determine the answer is apart.
+    bool fits = false;
     Matrix6 covariance = Matrix6::Zero();  // of flange_from_sensor, tangent of pose.h
     Eigen::Matrix3d centre_covariance = Eigen::Matrix3d::Zero();
     double radius_sigma_mm = 0;                                  // 0 when the radius was given

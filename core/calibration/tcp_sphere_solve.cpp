@@ -316,14 +316,15 @@ int agreeing(const std::vector<Section>& sections, const Model& model) {
 
 }  // namespace
 
-std::vector<Start> global_start(const std::vector<Section>& sections, double radius, bool radius_free) {
+std::vector<Start> global_start(const std::vector<Section>& sections, double radius, bool radius_free,
+                                bool subsets) {
     auto found = search(sections, radius, radius_free);
     std::vector<size_t> used;
     for (size_t i = 0; i < sections.size(); ++i)
         if (sections[i].used) used.push_back(i);
     const size_t few = radius_free ? 6 : 5;
     int best = found.empty() ? 0 : agreeing(sections, found.front().model);
-    if (best == static_cast<int>(used.size()) || used.size() <= few) return found;
+    if (!subsets || best == static_cast<int>(used.size()) || used.size() <= few) return found;
     // Some profiles show something else: search within small subsets, count who agrees, polish on all.
     std::mt19937 random(7u);
     int since_better = 0;  // once most profiles agree, a dozen subsets without a better answer are enough

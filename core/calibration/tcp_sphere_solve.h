@@ -57,8 +57,9 @@ struct Start {
     double cost = 0;  // robust, mm^2 per profile
 };
 // Different minima of the reduced problem over all starts, best first (at most four). `radius_free` lets r
-// move.
-std::vector<Start> global_start(const std::vector<Section>& sections, double radius, bool radius_free);
+// move. `subsets`: where profiles contradict the best, small subsets are searched too.
+std::vector<Start> global_start(const std::vector<Section>& sections, double radius, bool radius_free,
+                                bool subsets);
 
 // Two stages of the noise: of the points within a profile, and of the profiles' centres against the common
 // sphere, as an isotropic error of s_i (that is what an error of the robot's pose is).

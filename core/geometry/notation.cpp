@@ -5,43 +5,34 @@
 #include <cmath>
 
 #include "core/geometry/decompositions.h"
+#include "core/geometry/euler.h"
 
 namespace seamwright {
 namespace {
 
-Eigen::Matrix3d rot_x(double rad) {
-    return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
-}
-Eigen::Matrix3d rot_y(double rad) {
-    return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
-}
-Eigen::Matrix3d rot_z(double rad) {
-    return Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
+constexpr EulerConvention kKuka{EulerOrder::zyx, EulerTurns::intrinsic};
+constexpr EulerConvention kZyz{EulerOrder::zyz, EulerTurns::intrinsic};
 
-// Below this cosine (sine for ZYZ) the two outer axes are parallel to within rounding and only their sum is
-// known.
-constexpr double kLock = 1e-9;
+Eigen::Vector3d radians(double a_deg, double b_deg, double c_deg) {
+    return {rad_from_deg(a_deg), rad_from_deg(b_deg), rad_from_deg(c_deg)};
+}
 
 }  // namespace
 
 Eigen::Matrix3d rotation_from_kuka(const KukaAbc& abc) {
-    return rot_z(rad_from_deg(abc.a_deg)) * rot_y(rad_from_deg(abc.b_deg)) * rot_x(rad_from_deg(abc.c_deg));
+    return rotation_from_euler(kKuka, radians(abc.a_deg, abc.b_deg, abc.c_deg));
 }
 
 KukaAbc kuka_from_rotation(const Eigen::Matrix3d& r) {
-    const double cos_b = std::hypot(r(0, 0), r(1, 0));
-    const double b = std::atan2(-r(2, 0), cos_b);
-    if (cos_b < kLock) return {deg_from_rad(std::atan2(-r(0, 1), r(1, 1))), deg_from_rad(b), 0.0};
-    return {deg_from_rad(std::atan2(r(1, 0), r(0, 0))), deg_from_rad(b),
-            deg_from_rad(std::atan2(r(2, 1), r(2, 2)))};
+    const Eigen::Vector3d abc = euler_from_rotation(kKuka, r);
+    return {deg_from_rad(abc[0]), deg_from_rad(abc[1]), deg_from_rad(abc[2])};
 }
 
 Eigen::Matrix3d kuka_jacobian(const Eigen::Matrix3d& r) {
     // The columns are the axes that A, B and C turn about, in the outer frame: dw = M (dA, dB, dC).
     const KukaAbc abc = kuka_from_rotation(r);
-    const Eigen::Matrix3d ra = rot_z(rad_from_deg(abc.a_deg));
-    const Eigen::Matrix3d rb = rot_y(rad_from_deg(abc.b_deg));
+    const Eigen::Matrix3d ra = rotation_from_kuka({abc.a_deg, 0, 0});
+    const Eigen::Matrix3d rb = rotation_from_kuka({0, abc.b_deg, 0});
     Eigen::Matrix3d m;
     m.col(0) = Eigen::Vector3d::UnitZ();
     m.col(1) = ra * Eigen::Vector3d::UnitY();
@@ -81,17 +72,12 @@ Eigen::Vector3d ur_from_rotation(const Eigen::Matrix3d& r) {
 }
 
 Eigen::Matrix3d rotation_from_zyz(const Zyz& zyz) {
-    return rot_z(rad_from_deg(zyz.z1_deg)) * rot_y(rad_from_deg(zyz.y_deg)) * rot_z(rad_from_deg(zyz.z2_deg));
+    return rotation_from_euler(kZyz, radians(zyz.z1_deg, zyz.y_deg, zyz.z2_deg));
 }
 
 Zyz zyz_from_rotation(const Eigen::Matrix3d& r) {
-    const double sin_y = std::hypot(r(0, 2), r(1, 2));
-    const double y = std::atan2(sin_y, r(2, 2));
-    // At y = 0 or 180 degrees both outer axes fall together: R = Rz(z1) diag(c, 1, c), column 1 = (-sin z1,
-    // cos z1, 0).
-    if (sin_y < kLock) return {deg_from_rad(std::atan2(-r(0, 1), r(1, 1))), deg_from_rad(y), 0.0};
-    return {deg_from_rad(std::atan2(r(1, 2), r(0, 2))), deg_from_rad(y),
-            deg_from_rad(std::atan2(r(2, 1), -r(2, 0)))};
+    const Eigen::Vector3d zyz = euler_from_rotation(kZyz, r);
+    return {deg_from_rad(zyz[0]), deg_from_rad(zyz[1]), deg_from_rad(zyz[2])};
 }
 
 }  // namespace seamwright

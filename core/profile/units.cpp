@@ -32,14 +32,6 @@ Expected<void> check_span_millimetres(double span_mm, const Text& where) {
     return {};
 }
 
-std::optional<double> mm_of_unit(std::string_view unit) {
-    if (unit == "mm") return 1;
-    if (unit == "m") return 1000;
-    if (unit == "um") return 1e-3;
-    if (unit == "in") return 25.4;
-    return std::nullopt;
-}
-
 namespace {
 
 // At most three digits that count.

@@ -3,21 +3,16 @@
 // point and with a noise far below 2 mm, so that a contour in metres, inches or micrometres shows by what it
 // spans, by how close its points stand and by how they scatter.
 
-#include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/error.h"
+#include "core/geometry/length_unit.h"
 #include "core/profile/profile.h"
 
 namespace seamwright {
 
 // Error (input): points in the laser plane that span less than 1 mm, or more than 5 m. 0 (one point) passes.
 Expected<void> check_span_millimetres(double span_mm, const Text& where);
-
-// Units of length that profiles and poses come in: "mm", "m", "um", "in". nullopt: none of them.
-std::optional<double> mm_of_unit(std::string_view unit);
-inline constexpr const char* kLengthUnits[] = {"mm", "m", "um", "in"};
 
 // What a profile's numbers are like, whatever they mean. NaN (suspected: empty) below 10 points with a
 // return.

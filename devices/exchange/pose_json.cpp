@@ -8,6 +8,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
+#include "devices/exchange/written_pose.h"
 
 namespace seamwright {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr double kFarthest_mm = 1e5;
 constexpr double kFarthest_m = 50;
 
-Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where) {
+Expected<Eigen::Matrix4d> matrix_numbers(const nlohmann::json& json, const std::string& where) {
     Eigen::Matrix4d matrix;
     const bool rows = json.is_array() && !json.empty() && json[0].is_array();
     if (rows) {
@@ -31,7 +32,13 @@ Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where)
         if (!numbers) return tl::unexpected(numbers.error());
         for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[static_cast<std::size_t>(i)];
     }
-    return pose_from_matrix(matrix, where);
+    return matrix;
+}
+
+Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where) {
+    const auto matrix = matrix_numbers(json, where);
+    if (!matrix) return tl::unexpected(matrix.error());
+    return pose_from_matrix(*matrix, where);
 }
 
 Expected<Eigen::Matrix3d> from_abc(const nlohmann::json& json, const std::string& where) {
@@ -68,9 +75,11 @@ Expected<double> leading_number(std::string_view text, const std::string& where)
     return value;
 }
 
-}  // namespace
-
-Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) {
+// Which of a POSE's fields are there; exactly one form, or all that pose_json() writes.
+struct PoseFields {
+    bool xyz, abc, quat, matrix;  // else a rotation vector
+};
+Expected<PoseFields> pose_fields(const nlohmann::json& json, const std::string& where) {
     if (auto ok = only_fields(json, {"xyz", "abc", "quat_wxyz", "rotvec_rad", "matrix"}, where); !ok) {
         return tl::unexpected(ok.error());
     }
@@ -84,6 +93,15 @@ Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) 
         return input_error(xyz ? "has no rotation" : "has no translation", where,
                            "give xyz with one of abc, quat_wxyz, rotvec_rad, or matrix alone");
     }
+    return PoseFields{xyz, abc, quat, matrix};
+}
+
+}  // namespace
+
+Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) {
+    const auto form = pose_fields(json, where);
+    if (!form) return tl::unexpected(form.error());
+    const auto [xyz, abc, quat, matrix] = *form;
     Eigen::Vector3d t = Eigen::Vector3d::Zero();
     if (xyz) {
         const auto read = json_vector3(json, "xyz", where);
@@ -124,6 +142,49 @@ Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) 
                            "give radian");
     }
     return make_pose(rotation_exp(*w), t);
+}
+
+Expected<WrittenPose> written_pose(const nlohmann::json& json, const std::string& where) {
+    const auto form = pose_fields(json, where);
+    if (!form) return tl::unexpected(form.error());
+    const auto [xyz, abc, quat, matrix] = *form;
+    if (matrix && abc)
+        if (auto whole = parse_pose(json, where); !whole) return tl::unexpected(whole.error());
+    WrittenPose pose;
+    if (matrix && !abc) {
+        const auto m = matrix_numbers(json.at("matrix"), json_path(where, "matrix"));
+        if (!m) return tl::unexpected(m.error());
+        pose.as_given.rotation = RotationReading::matrix;
+        pose.numbers.form = RotationForm::matrix;
+        pose.numbers.position_in_last_row =
+            m->col(3).head<3>().isZero(1e-9) && !m->row(3).head<3>().isZero(1e-9);
+        pose.numbers.position = pose.numbers.position_in_last_row
+                                    ? Eigen::Vector3d(m->row(3).head<3>().transpose())
+                                    : Eigen::Vector3d(m->col(3).head<3>());
+        const bool homogeneous = pose.numbers.position_in_last_row || m->row(3).head<3>().isZero(1e-9);
+        if (!homogeneous || std::abs((*m)(3, 3) - 1) > 1e-9)
+            return input_error("the matrix has neither 0 0 0 1 as its last row nor as its last column",
+                               json_path(where, "matrix"));
+        for (std::size_t i = 0; i < 9; ++i)
+            pose.numbers.rotation[i] =
+                (*m)(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3));
+        return pose;
+    }
+    const auto t = json_vector3(json, "xyz", where);
+    if (!t) return tl::unexpected(t.error());
+    pose.numbers.position = *t;
+    const char* key = abc ? "abc" : quat ? "quat_wxyz" : "rotvec_rad";
+    const auto rotation = as_numbers(json.at(key), quat ? 4 : 3, json_path(where, key));
+    if (!rotation) return tl::unexpected(rotation.error());
+    std::copy(rotation->begin(), rotation->end(), pose.numbers.rotation.begin());
+    if (quat) {
+        pose.numbers.form = RotationForm::quaternion;
+        pose.as_given.rotation = RotationReading::quat_wxyz;
+    } else if (!abc) {
+        pose.as_given.rotation = RotationReading::rotation_vector;
+        pose.as_given.radian = true;
+    }
+    return pose;
 }
 
 nlohmann::json pose_json(const Pose& pose) {

@@ -4,6 +4,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
+#include "projects/calibrate/pose_lists.h"
 #include "projects/calibrate/sphere_profile_json.h"
 
 namespace seamwright {
@@ -80,7 +81,10 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
 
 }  // namespace
 
-Expected<CalibrateOutcome> check_drift_json(const json& data, const std::vector<std::string>& exclude) {
+Expected<CalibrateOutcome> check_drift_json(const json& written, const std::vector<std::string>& exclude) {
+    auto meant = with_usual_poses("drift", written);
+    if (!meant) return tl::unexpected(meant.error());
+    const json& data = meant->data();
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", "see calibrate drift --help");
     DriftLimits limits;
@@ -113,6 +117,7 @@ Expected<CalibrateOutcome> check_drift_json(const json& data, const std::vector<
     result["rms_after_mm"] = number_json(checked->rms_after_mm);
     result["not_determined"] = checked->not_determined;
     add_report(checked->report, result);
+    meant->put(result);
     outcome.exit_code = exit_code_for(checked->report.judgement.verdict);
     return outcome;
 }

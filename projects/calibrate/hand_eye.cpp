@@ -1,15 +1,15 @@
-#include "core/calibration/hand_eye.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/hand_eye_json.h"
 #include "projects/calibrate/methods.h"
+#include "projects/calibrate/pose_lists.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {
 
 using nlohmann::json;
 
-Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
-                                                   const std::vector<std::string>& exclude) {
+Expected<HandEyeData> parse_hand_eye_data(const json& data) {
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", "see calibrate hand-eye --help");
     auto mount_name = json_string(data, "mount", "");
@@ -20,7 +20,7 @@ Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
                            "write eye_in_hand or eye_to_hand");
     auto list = json_array(data, "pairs", "");
     if (!list) return tl::unexpected(list.error());
-    std::vector<HandEyePair> pairs;
+    HandEyeData set{*mount, {}};
     for (std::size_t i = 0; i < (*list)->size(); ++i) {
         const json& entry = (**list)[i];
         const std::string where = json_path("pairs", i);
@@ -36,17 +36,26 @@ Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
             if (!pose) return tl::unexpected(pose.error());
             *target = *pose;
         }
-        pairs.push_back(std::move(pair));
+        set.pairs.push_back(std::move(pair));
     }
-    auto solved = calibrate_hand_eye(*mount, pairs, exclude);
+    return set;
+}
+
+Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
+                                                   const std::vector<std::string>& exclude) {
+    auto meant = with_usual_poses("hand-eye", data);
+    if (!meant) return tl::unexpected(meant.error());
+    auto set = parse_hand_eye_data(meant->data());
+    if (!set) return tl::unexpected(set.error());
+    auto solved = calibrate_hand_eye(set->mount, set->pairs, exclude);
     if (!solved) return tl::unexpected(solved.error());
 
     CalibrateOutcome outcome;
     json& result = outcome.result;
     const bool ok = solved->status == HandEyeStatus::ok;
-    const bool in_hand = *mount == Mount::eye_in_hand;
+    const bool in_hand = set->mount == Mount::eye_in_hand;
     result["method"] = "hand-eye";
-    result["mount"] = std::string(name_of(*mount));
+    result["mount"] = std::string(name_of(set->mount));
     result["status"] = std::string(name_of(solved->status));
     result[in_hand ? "flange_from_camera" : "base_from_camera"] = ok ? pose_json(solved->x) : json(nullptr);
     result[in_hand ? "base_from_target" : "flange_from_target"] = ok ? pose_json(solved->y) : json(nullptr);
@@ -61,6 +70,7 @@ Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
     put_texts(result, "degenerate", solved->degenerate);
     put_texts(result, "notices", solved->notices);
     add_report(solved->report, result);
+    meant->put(result);
     outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
     return outcome;
 }

@@ -6,6 +6,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/pose_lists.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 
@@ -164,7 +165,8 @@ std::string calibration_report(const std::string& method, const json& data, cons
     }
     page.heading("Geometry");
     coverage_plot(page, data);
-    pose_plots(page, data, result);
+    const auto usual = with_usual_poses(method, data);
+    pose_plots(page, usual ? usual->data() : data, result);
     return page.html();
 }
 

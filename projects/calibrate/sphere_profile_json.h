@@ -11,4 +11,11 @@ namespace seamwright {
 Expected<SphereObservation> parse_sphere_observation(const nlohmann::json& entry, std::size_t index,
                                                      const std::string& where);
 
+// The data of calibrate_tcp_sphere_json() (methods.h).
+struct SphereData {
+    std::vector<SphereObservation> observations;
+    TcpSphereOptions options;
+};
+Expected<SphereData> parse_sphere_data(const nlohmann::json& data, const std::vector<std::string>& exclude);
+
 }  // namespace seamwright

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/calibration/camera.h"
+#include "core/geometry/pose_convention.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
@@ -14,6 +15,7 @@
 #include "projects/calibrate/camera_json.h"
 #include "projects/calibrate/methods.h"
 #include "projects/calibrate/plate_images.h"
+#include "projects/calibrate/pose_lists.h"
 #include "projects/calibrate/stripe_frames.h"
 #include "projects/file/stored_text.h"
 
@@ -26,7 +28,7 @@ namespace {
 
 // The pose that belongs to an image: the file of the same name, or the one with the same number
 // ("frame0007.png" and "pose0007.txt", "images/7.png" and "poses/7.yaml").
-Expected<std::optional<Pose>> pose_beside(const fs::path& image) {
+std::optional<fs::path> pose_file_beside(const fs::path& image) {
     const std::string stem = image.stem().string();
     std::string digits;
     for (auto i = stem.rbegin(); i != stem.rend() && std::isdigit(static_cast<unsigned char>(*i)); ++i)
@@ -37,12 +39,9 @@ Expected<std::optional<Pose>> pose_beside(const fs::path& image) {
         for (const auto& name : {stem, "pose" + digits, digits})
             for (const char* extension : {".txt", ".yaml", ".yml", ".json"}) {
                 const fs::path path = where / (name + extension);
-                if (name.empty() || !fs::is_regular_file(path, code)) continue;
-                auto pose = read_pose_file(path);
-                if (!pose) return tl::unexpected(pose.error());
-                return std::optional<Pose>(*pose);
+                if (!name.empty() && fs::is_regular_file(path, code)) return path;
             }
-    return std::optional<Pose>();
+    return std::nullopt;
 }
 
 Expected<std::vector<Eigen::Vector2d>> parse_pixels(const json& entry, const char* key,
@@ -258,13 +257,15 @@ Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardS
     StripeFrame f;
     f.id = path.stem().string();
     f.image = frame.image;
-    auto pose = pose_beside(path);
-    if (!pose) {
-        Error error = pose.error();
-        error.kind = ErrorKind::input;
-        return tl::unexpected(std::move(error));
+    if (const auto pose_file = pose_file_beside(path)) {
+        auto pose = read_pose_file(*pose_file);
+        if (!pose) {
+            Error error = pose.error();
+            error.kind = ErrorKind::input;
+            return tl::unexpected(std::move(error));
+        }
+        f.base_from_flange = *pose;
     }
-    f.base_from_flange = *pose;
     StripeObservation o = observe(f, spec);
     if (auto stripe = stripe_in_colour(path); !stripe)
         return tl::unexpected(stripe.error());
@@ -273,16 +274,13 @@ Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardS
     return o;
 }
 
-Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& directory,
-                                                          const std::string& board, double pitch_mm,
-                                                          const std::vector<std::string>& exclude) {
-    auto spec = parse_board(board, pitch_mm, "chessboard");
-    if (!spec) return tl::unexpected(spec.error());
-    auto images = plate_images(directory, exclude);
-    if (!images) return tl::unexpected(images.error());
+namespace {
+
+Expected<std::vector<StripeObservation>> observe_images(const std::vector<fs::path>& images,
+                                                        const BoardSpec& spec) {
     std::vector<StripeObservation> observations;
-    for (const auto& path : *images) {
-        auto read = read_stripe_frame(path, *spec);
+    for (const auto& path : images) {
+        auto read = read_stripe_frame(path, spec);
         if (!read) return tl::unexpected(read.error());
         if (!observations.empty() &&
             (read->width != observations.front().width || read->height != observations.front().height))
@@ -290,11 +288,46 @@ Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& dir
                                "give frames of one camera at one resolution");
         observations.push_back(std::move(*read));
     }
-    return calibrate_stripe_frames(observations, *spec, {});
+    return observations;
 }
 
-Expected<CalibrateOutcome> calibrate_stripe_camera_json(const json& data,
-                                                        const std::vector<std::string>& exclude) {
+}  // namespace
+
+Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& directory,
+                                                          const std::string& board, double pitch_mm,
+                                                          const std::vector<std::string>& exclude) {
+    auto spec = parse_board(board, pitch_mm, "chessboard");
+    if (!spec) return tl::unexpected(spec.error());
+    auto images = plate_images(directory, exclude);
+    if (!images) return tl::unexpected(images.error());
+    auto observations = observe_images(*images, *spec);
+    if (!observations) return tl::unexpected(observations.error());
+    return calibrate_stripe_frames(*observations, *spec, {});
+}
+
+Expected<json> stripe_folder_data(const std::string& directory, const std::string& board, double pitch_mm,
+                                  const std::vector<std::string>& exclude) {
+    auto spec = parse_board(board, pitch_mm, "chessboard");
+    if (!spec) return tl::unexpected(spec.error());
+    auto images = plate_images(directory, exclude);
+    if (!images) return tl::unexpected(images.error());
+    auto observations = observe_images(*images, *spec);
+    if (!observations) return tl::unexpected(observations.error());
+    json frames = json::array();
+    for (std::size_t i = 0; i < images->size(); ++i) {
+        const StripeObservation& o = (*observations)[i];
+        frames.push_back(stripe_frame_json(o));
+        const auto file = pose_file_beside((*images)[i]);
+        if (!o.base_from_flange || !file || file->extension() == ".json") continue;
+        const PoseNumbers n = write_pose(*o.base_from_flange, {.rotation = RotationReading::quat_wxyz});
+        frames.back()["base_from_flange"] = {
+            {"xyz", {n.position.x(), n.position.y(), n.position.z()}},
+            {"quat_wxyz", {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}}};
+    }
+    return json{{"board", board_json(*spec)}, {"frames", frames}};
+}
+
+Expected<StripeData> parse_stripe_data(const json& data) {
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", "see calibrate stripe-camera --help");
     auto board = json_field(data, "board", "");
@@ -303,13 +336,24 @@ Expected<CalibrateOutcome> calibrate_stripe_camera_json(const json& data,
     if (!spec) return tl::unexpected(spec.error());
     auto list = json_array(data, "frames", "");
     if (!list) return tl::unexpected(list.error());
-    std::vector<StripeObservation> observations;
+    StripeData set{*spec, {}};
     for (std::size_t i = 0; i < (*list)->size(); ++i) {
         auto o = parse_stripe_frame((**list)[i], *spec, i, json_path("frames", i));
         if (!o) return tl::unexpected(o.error());
-        observations.push_back(std::move(*o));
+        set.observations.push_back(std::move(*o));
     }
-    return calibrate_stripe_frames(observations, *spec, exclude);
+    return set;
+}
+
+Expected<CalibrateOutcome> calibrate_stripe_camera_json(const json& data,
+                                                        const std::vector<std::string>& exclude) {
+    auto meant = with_usual_poses("stripe-camera", data);
+    if (!meant) return tl::unexpected(meant.error());
+    auto set = parse_stripe_data(meant->data());
+    if (!set) return tl::unexpected(set.error());
+    auto outcome = calibrate_stripe_frames(set->observations, set->spec, exclude);
+    if (outcome) meant->put(outcome->result);
+    return outcome;
 }
 
 Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObservation>& observations,

@@ -21,8 +21,19 @@ Expected<StripeObservation> parse_stripe_frame(const nlohmann::json& entry, cons
 nlohmann::json board_json(const BoardSpec& spec);
 Expected<BoardSpec> parse_board_json(const nlohmann::json& value, const std::string& where);
 
+struct StripeData {
+    BoardSpec spec;
+    std::vector<StripeObservation> observations;
+};
+Expected<StripeData> parse_stripe_data(const nlohmann::json& data);
+
 // Image and the pose file beside it (see calibrate_stripe_camera_folder), observed.
 Expected<StripeObservation> read_stripe_frame(const std::filesystem::path& image, const BoardSpec& spec);
+
+// The folder of calibrate_stripe_camera_folder() (methods.h) as data; poses of text files as the quaternions that
+// they are written with.
+Expected<nlohmann::json> stripe_folder_data(const std::string& directory, const std::string& board,
+                                            double pitch_mm, const std::vector<std::string>& exclude);
 
 // Result as of calibrate_stripe_camera_folder().
 Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObservation>& observations,

@@ -4,6 +4,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
+#include "projects/calibrate/pose_lists.h"
 #include "projects/calibrate/sphere_profile_json.h"
 #include "projects/file/stored_text.h"
 
@@ -46,11 +47,11 @@ Expected<SphereObservation> parse_sphere_observation(const json& entry, std::siz
     return observation;
 }
 
-Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
-                                                     const std::vector<std::string>& exclude) {
+Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::string>& exclude) {
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", "see calibrate tcp-sphere --help");
-    TcpSphereOptions options;
+    SphereData sphere;
+    TcpSphereOptions& options = sphere.options;
     options.exclude = exclude;
     if (!data.contains("radius_mm"))
         return input_error("the sphere's radius is missing", "radius_mm",
@@ -67,13 +68,21 @@ Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
     }
     auto list = json_array(data, "observations", "");
     if (!list) return tl::unexpected(list.error());
-    std::vector<SphereObservation> observations;
     for (std::size_t i = 0; i < (*list)->size(); ++i) {
         auto observation = parse_sphere_observation((**list)[i], i, json_path("observations", i));
         if (!observation) return tl::unexpected(observation.error());
-        observations.push_back(std::move(*observation));
+        sphere.observations.push_back(std::move(*observation));
     }
-    auto solved = calibrate_tcp_sphere(observations, options);
+    return sphere;
+}
+
+Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
+                                                     const std::vector<std::string>& exclude) {
+    auto meant = with_usual_poses("tcp-sphere", data);
+    if (!meant) return tl::unexpected(meant.error());
+    auto sphere = parse_sphere_data(meant->data(), exclude);
+    if (!sphere) return tl::unexpected(sphere.error());
+    auto solved = calibrate_tcp_sphere(sphere->observations, sphere->options);
     if (!solved) return tl::unexpected(solved.error());
 
     CalibrateOutcome outcome;
@@ -108,6 +117,7 @@ Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
                              {"sigma_mm", number_json(p.sigma_mm)}});
     result["proposals"] = std::move(proposals);
     add_report(solved->report, result);
+    meant->put(result);
     outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
     return outcome;
 }

@@ -9,10 +9,14 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/calibrate/answer.h"
+#include "projects/calibrate/detect_convention.h"
 #include "projects/calibrate/example.h"
 #include "projects/calibrate/methods.h"
+#include "projects/calibrate/pose_lists.h"
 #include "projects/calibrate/report_page.h"
+#include "projects/calibrate/stripe_frames.h"
 #include "projects/file/project_file.h"
+#include "projects/file/stored_text.h"
 #include "projects/model/run.h"
 
 namespace seamwright::cli {
@@ -25,6 +29,8 @@ struct CalibrateArguments {
     std::string data, board, pattern = "chessboard", report, project, sensor, table, example;
     double pitch_mm = 0;
     Exclude exclude;
+    bool detect_convention = false;
+    std::vector<std::string> pose_convention;  // "CODE" or "LIST=CODE"
 };
 
 using FromJson = Expected<CalibrateOutcome> (*)(const json&, const Exclude&);
@@ -57,12 +63,28 @@ const Method kMethods[] = {
     {"drift", "Does a stored calibration still hold", check_drift_json, false, "measured.json"},
 };
 
-Expected<CalibrateOutcome> solve(const Method& method, const CalibrateArguments& a, json& data) {
+Expected<void> say_conventions(const Method& method, const CalibrateArguments& a, json& data) {
+    for (const std::string& said : a.pose_convention)
+        if (auto ok = say_convention(method.name, said, data); !ok) return ok;
+    return {};
+}
+
+// Leaves in `exclude` what is to be left out of `data`.
+Expected<CalibrateOutcome> solve(const Method& method, const CalibrateArguments& a, json& data,
+                                 Exclude& exclude) {
     const bool stripe = method.from_json == calibrate_stripe_camera_json;
     if (method.images && (std::filesystem::is_directory(a.data) || (stripe && !a.data.ends_with(".json")))) {
         if (a.board.empty() || !(a.pitch_mm > 0))
             return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm",
                                Text("calibrate {}", method.name));
+        if (stripe && (a.detect_convention || !a.pose_convention.empty())) {
+            auto frames = stripe_folder_data(a.data, a.board, a.pitch_mm, a.exclude);
+            if (!frames) return tl::unexpected(frames.error());
+            data = std::move(*frames);
+            exclude.clear();
+            if (auto ok = say_conventions(method, a, data); !ok) return tl::unexpected(ok.error());
+            return method.from_json(data, exclude);
+        }
         data = {{"folder", std::filesystem::absolute(a.data).string()},
                 {"board", a.board},
                 {"pitch_mm", a.pitch_mm},
@@ -73,6 +95,7 @@ Expected<CalibrateOutcome> solve(const Method& method, const CalibrateArguments&
     auto read = read_json_file(a.data);
     if (!read) return tl::unexpected(read.error());
     data = std::move(*read);
+    if (auto ok = say_conventions(method, a, data); !ok) return tl::unexpected(ok.error());
     if (!a.table.empty()) return calibrate_lut_json(data, a.exclude, a.table);
     return method.from_json(data, a.exclude);
 }
@@ -148,6 +171,44 @@ std::string text_of(const Method& method, const json& r) {
     return text;
 }
 
+// What the poses are written in, into the result. Numbers that are no poses as given are an answer of their own
+// where another convention fits; else `outcome` stays the error it is.
+Expected<std::string> detect(const Method& method, const json& data, const Exclude& exclude,
+                             Expected<CalibrateOutcome>& outcome) {
+    auto convention = detect_pose_convention(method.name, data, exclude);
+    if (!convention) return tl::unexpected(outcome ? convention.error() : outcome.error());
+    if (!outcome && convention->found.finding != ConventionFinding::named)
+        return tl::unexpected(outcome.error());
+    if (!outcome) {
+        const Text reason = outcome.error().text();
+        CalibrateOutcome refused;
+        refused.result = {{"method", method.name}, {"status", "undetermined"}, {"verdict", "undetermined"}};
+        put_text(refused.result, "reason", reason);
+        refused.exit_code = kExitVerdict;
+        outcome = std::move(refused);
+    }
+    outcome->result["convention"] = convention->result;
+    Text line = convention->found.sentence;
+    if (!convention->codes.empty()) {
+        std::string options;
+        for (const std::string& code : convention->codes) options += " --pose-convention " + code;
+        line = Text("{}; take it with{}", line, options);
+    }
+    return "convention: " + line.english() + "\n";
+}
+
+// A poor answer from poses may come from how they are written.
+void hint_at_convention(const Method& method, const json& data, json& result) {
+    const Verdict verdict = verdict_of(result);
+    const bool open = verdict == Verdict::undetermined && result.value("degenerate", json::array()).empty();
+    if (!can_detect_convention(method.name) || !(verdict == Verdict::poor || open)) return;
+    const auto lists = written_poses(method.name, data);
+    if ((!lists || lists->empty()) && result.value("poses", 0) == 0) return;
+    put_text(result, "cure",
+             joined(text_in(result, "cure"), "; ",
+                    "--detect-convention tells whether the poses are written in another convention"));
+}
+
 Expected<Answer> calibrate(const Method& method, const CalibrateArguments& a) {
     if (!a.example.empty()) {
         auto data = calibration_example(method.name);
@@ -165,13 +226,25 @@ Expected<Answer> calibrate(const Method& method, const CalibrateArguments& a) {
                            "give them, or see their layout with --help and --example FILE.json");
     if (a.project.empty() != a.sensor.empty())
         return usage_error("--store and --sensor belong together", "calibrate");
+    if (a.detect_convention && !can_detect_convention(method.name))
+        return usage_error("its data leave no residual that a convention of poses shows in",
+                           Text("calibrate {}", method.name),
+                           "ask of tcp-sphere, hand-eye or stripe-camera data of the same robot");
     json data;
-    auto outcome = solve(method, a, data);
+    Exclude exclude = a.exclude;
+    auto outcome = solve(method, a, data, exclude);
+    std::string convention;
+    if (a.detect_convention && !data.is_null()) {
+        auto said = detect(method, data, exclude, outcome);
+        if (!said) return tl::unexpected(said.error());
+        convention = std::move(*said);
+    }
     if (!outcome) return tl::unexpected(outcome.error());
+    if (!a.detect_convention) hint_at_convention(method, data, outcome->result);
     Answer answer;
     answer.json = std::move(outcome->result);
     answer.exit_code = outcome->exit_code;
-    answer.text = text_of(method, answer.json);
+    answer.text = text_of(method, answer.json) + convention;
     if (!a.report.empty()) {
         if (auto written = write_text_file(a.report, calibration_report(method.name, data, answer.json));
             !written)
@@ -219,6 +292,16 @@ void add_calibrate(CommandLine& line) {
         command->add_option("--store", a->project, "Keep result and data in this project")
             ->type_name("FILE.seam");
         command->add_option("--sensor", a->sensor, "The project's sensor that was calibrated");
+        command->add_flag("--detect-convention", a->detect_convention,
+                          "Where the answer is poor: solve with the poses read in every convention, and say "
+                          "whether one fits far better (nothing is taken)");
+        if (!pose_lists_of(method.name).empty())
+            command
+                ->add_option(
+                    "--pose-convention", a->pose_convention,
+                    "What the poses' numbers mean, e.g. euler-xyz-extrinsic,rad,m,inverse or quat-xyzw; "
+                    "LIST=CODE of another list than base_from_flange; may be repeated")
+                ->type_name("[LIST=]CODE");
         if (method.name == std::string("lut"))
             command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
         if (method.images) {

@@ -1,0 +1,120 @@
+// Every convention, cell after cell and at several levels of noise: named rightly or "cannot tell", never wrongly.
+
+#include <cstdio>
+#include <functional>
+#include <map>
+
+#include "tests/projects/calibrate/convention_cell.h"
+
+namespace seamwright {
+namespace {
+
+using namespace elsewhere;
+using simulation::Random;
+
+struct Tally {
+    int asked = 0, named = 0, cannot_tell = 0, wrong = 0;
+    void count(const ConventionAnswer& answer, const char* list, const std::string& code) {
+        ++asked;
+        const std::string verdict = answer.result.value("verdict", "");
+        if (verdict == "cannot_tell")
+            ++cannot_tell;
+        else if (verdict == "named" && answer.offer.size() == 1 && answer.offer.value(list, "") == code)
+            ++named;
+        else if (!(verdict == "as_given" && code == Writing{}.code()))
+            ++wrong;
+        else
+            ++named;
+    }
+};
+
+std::vector<Writing> writings() {
+    std::vector<Writing> all;
+    for (const bool fixed : {false, true})
+        for (const auto& axes : orders())
+            for (const bool radian : {false, true}) all.push_back({axes, fixed, radian});
+    const std::size_t plain = all.size();
+    for (std::size_t i = 0; i < plain; i += 5) {
+        all.push_back(all[i]);
+        all.back().inverse = true;
+        all.push_back(all[i]);
+        all.back().mm = 1000;
+        all.push_back(all[i]);
+        all.back().mm = 25.4;
+        all.back().inverse = true;
+    }
+    return all;
+}
+
+TEST(ConventionTrials, SphereInEveryWritingAndNoise) {
+    std::map<double, Tally> tallies;
+    unsigned seed = 100;
+    for (const double noise : {0.01, 0.05, 0.15})
+        for (const Writing& w : writings()) {
+            Random random(++seed);
+            simulation::SphereCell cell = simulation::any_cell(random);
+            cell.noise_mm = noise;
+            cell.robot_mm = noise;
+            cell.robot_deg = noise / 10;
+            const auto data = sphere_data(cell, simulation::sphere_observations(cell, 9, random),
+                                          [&](const Pose& p) { return misread(p, w); });
+            tallies[noise].count(asked("tcp-sphere", data), "base_from_flange", w.code());
+        }
+    for (const auto& [noise, t] : tallies) {
+        std::printf("sphere, noise %.2f mm: %d asked, %d named, %d cannot tell, %d wrong\n", noise, t.asked,
+                    t.named, t.cannot_tell, t.wrong);
+        EXPECT_EQ(t.wrong, 0) << noise;
+        EXPECT_GE(t.named, noise < 0.1 ? 0.9 * t.asked : 0.5 * t.asked) << noise;
+    }
+}
+
+TEST(ConventionTrials, HandEyeInEveryWritingAndNoise) {
+    std::map<double, Tally> tallies;
+    unsigned seed = 1000;
+    for (const double noise : {0.05, 0.2, 0.8})
+        for (const Writing& w : writings()) {
+            if (w.inverse && w.axes == "zyx" && !w.fixed && !w.radian && w.mm == 1) continue;
+            Random random(++seed);
+            simulation::HandEyeCell cell = simulation::any_hand_eye_cell(random);
+            cell.sigma_mm = noise;
+            cell.sigma_rad = noise / 150;
+            const auto robot = [&](const Pose& p) { return misread(p, w); };
+            const std::function<json(const Pose&)> written = robot,
+                                                   usual = [](const Pose&p) { return misread(p, {}); };
+            const auto data =
+                hand_eye_data(cell.mount, simulation::hand_eye_pairs(cell, 8, random), written, usual);
+            tallies[noise].count(asked("hand-eye", data), "base_from_flange", w.code());
+        }
+    for (const auto& [noise, t] : tallies) {
+        std::printf("hand-eye, noise %.2f mm: %d asked, %d named, %d cannot tell, %d wrong\n", noise, t.asked,
+                    t.named, t.cannot_tell, t.wrong);
+        EXPECT_EQ(t.wrong, 0) << noise;
+        EXPECT_GE(t.named, noise < 0.5 ? 0.9 * t.asked : 0.5 * t.asked) << noise;
+    }
+}
+
+// Small turns tell little: what is named must be right, however little that is.
+TEST(ConventionTrials, SmallTurnsAndFewPosesAreNeverNamedWrongly) {
+    Tally t;
+    unsigned seed = 5000;
+    for (const double tilt : {2.0, 6.0, 12.0})
+        for (const int poses : {4, 6, 12})
+            for (const Writing& w : writings()) {
+                if (w.radian || w.mm != 1) continue;
+                Random random(++seed);
+                simulation::HandEyeCell cell = simulation::any_hand_eye_cell(random);
+                cell.tilt_deg = tilt;
+                cell.turn_deg = tilt;
+                const std::function<json(const Pose&)> written = [&](const Pose&p) { return misread(p, w); },
+                                                       usual = [](const Pose&p) { return misread(p, {}); };
+                const auto data = hand_eye_data(cell.mount, simulation::hand_eye_pairs(cell, poses, random),
+                                                written, usual);
+                t.count(asked("hand-eye", data), "base_from_flange", w.code());
+            }
+    std::printf("small turns: %d asked, %d named, %d cannot tell, %d wrong\n", t.asked, t.named,
+                t.cannot_tell, t.wrong);
+    EXPECT_LE(t.wrong, t.asked / 100);
+}
+
+}  // namespace
+}  // namespace seamwright

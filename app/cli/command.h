@@ -59,7 +59,7 @@ void add_project_commands(CommandLine& line);  // new, info, check, export, mirr
 void add_import(CommandLine& line);
 void add_run(CommandLine& line);
 void add_record(CommandLine& line);
-void add_proof(CommandLine& line);      // zero-shift, known-shift
+void add_proof(CommandLine& line);  // zero-shift, known-shift
 void add_budget(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);

@@ -155,7 +155,12 @@ class TriggerRounds {
         const int total = options_.passes * static_cast<int>(moves.size());
         int done = 0;
         for (int round = 0; round < options_.passes; ++round) {
-            if (auto begun = robot.start_measuring(moves); !begun) return begun;
+            if (auto begun = robot.start_measuring(moves); !begun) {
+                Error error = begun.error();
+                if (error.mend.empty())
+                    error.mend = "load the program of the passes: seamwright measure-trigger --program DIR";
+                return tl::unexpected(std::move(error));
+            }
             for (const MeasuringMove& move : moves) {
                 if (auto passed = pass(robot, frames, move, *measurer, out); !passed) {
                     (void)robot.confirm(PartVerdict::failed, "trigger study");  // the pass's own Error counts

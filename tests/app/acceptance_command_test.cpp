@@ -125,7 +125,8 @@ TEST_F(AcceptanceCli, BadInputIsOneSentence) {
 
 // Robot and trigger: what is bad input, and what is not there.
 TEST_F(AcceptanceCli, RobotAndTriggerAreOfAProject) {
-    ASSERT_EQ(run_program({"new", "empty.seam"}, folder).exit_code, 0);
+    const std::string empty = (folder / "empty.seam").string();
+    ASSERT_EQ(run_program({"new", empty}, folder).exit_code, 0);
     const auto refused_by = [&](const std::vector<std::string>& arguments, const std::string& part,
                                 int code = 2) {
         const ProgramResult r = run_program(arguments, folder);
@@ -134,23 +135,23 @@ TEST_F(AcceptanceCli, RobotAndTriggerAreOfAProject) {
         EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
         EXPECT_EQ(r.out, "");
     };
-    refused_by({"acceptance", "empty.seam", "--study", "robot"}, "seamwright measure-robot");
-    refused_by({"acceptance", "empty.seam", "--study", "trigger"}, "seamwright measure-trigger");
+    refused_by({"acceptance", empty, "--study", "robot"}, "seamwright measure-robot");
+    refused_by({"acceptance", empty, "--study", "trigger"}, "seamwright measure-trigger");
     refused_by({"acceptance", "--data", write("v.csv", fifty(true)), "--study", "trigger"}, "FILE.seam");
-    refused_by({"acceptance", "empty.seam", "--study", "type1"}, "--tolerance-mm");
+    refused_by({"acceptance", empty, "--study", "type1"}, "--tolerance-mm");
     refused_by({"measure-robot", "none.seam"}, "none.seam", 3);
-    refused_by({"measure-robot", "empty.seam"}, "no enabled spot is calibrated");
-    refused_by({"measure-robot", "empty.seam", "--spot", "S1"}, "no spot \"S1\"");
-    refused_by({"measure-robot", "empty.seam", "--undo"}, "no study of the robot is stored");
-    refused_by({"measure-trigger", "empty.seam"}, "no enabled spot is calibrated");
-    refused_by({"measure-trigger", "empty.seam", "--undo"}, "no study of the trigger is stored");
-    refused_by({"measure-trigger", "empty.seam", "--program", "krc"}, "--brand");
+    refused_by({"measure-robot", empty}, "no enabled spot is calibrated");
+    refused_by({"measure-robot", empty, "--spot", "S1"}, "no spot \"S1\"");
+    refused_by({"measure-robot", empty, "--undo"}, "no study of the robot is stored");
+    refused_by({"measure-trigger", empty}, "no enabled spot is calibrated");
+    refused_by({"measure-trigger", empty, "--undo"}, "no study of the trigger is stored");
+    refused_by({"measure-trigger", empty, "--program", "krc"}, "--brand");
     for (const std::vector<std::string>& bad :
-         {std::vector<std::string>{"measure-robot", "empty.seam", "--returns", "4"},
-          {"measure-robot", "empty.seam", "--profiles", "1"},
-          {"measure-trigger", "empty.seam", "--travel-deg", "91"},
-          {"measure-trigger", "empty.seam", "--passes", "nan"},
-          {"measure-trigger", "empty.seam", "--speeds", "a,b,c"}})
+         {std::vector<std::string>{"measure-robot", empty, "--returns", "4"},
+          {"measure-robot", empty, "--profiles", "1"},
+          {"measure-trigger", empty, "--travel-deg", "91"},
+          {"measure-trigger", empty, "--passes", "nan"},
+          {"measure-trigger", empty, "--speeds", "a,b,c"}})
         EXPECT_EQ(run_program(bad, folder).exit_code, 2) << bad[2];
 }
 

@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr double kNearest_mm = 10, kFarthestBase_mm = 5e4, kFarthestRead_mm = 1e5;
+constexpr double kNearest_mm = 100, kFarthestBase_mm = 5e4, kFarthestRead_mm = 1e5;
 constexpr double kTurn = 2 * kPi + 1e-6;
 
 constexpr EulerConvention kFixedXyz{EulerOrder::xyz, EulerTurns::extrinsic};

@@ -64,7 +64,7 @@ PoseNumbers write_pose(const Pose& pose, const PoseConvention& convention);
 
 // The conventions in which a list of poses of one form can be meant, `as_given` first. Left out is what the
 // numbers themselves rule out: radian where an angle is more than a turn, a unit of length that puts every
-// position within 10 mm of its base or one beyond 50 m, transposed of angles.
+// position within 100 mm of its base or one beyond 50 m, transposed of angles.
 std::vector<PoseConvention> possible_conventions(std::span<const PoseNumbers> poses,
                                                  const PoseConvention& as_given);
 

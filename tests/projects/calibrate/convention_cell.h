@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "projects/calibrate/detect_convention.h"
 #include "projects/calibrate/methods.h"
 #include "tests/core/calibration/convention_data.h"
@@ -40,6 +42,8 @@ inline json matrix(const Pose& pose, bool transposed, bool whole) {
     return {{"matrix", rows}};
 }
 
+using WriteOne = std::function<json(const Pose&)>;
+
 template <class Write>
 json sphere_data(const simulation::SphereCell& cell, const std::vector<SphereObservation>& observations,
                  const Write& written) {
@@ -69,6 +73,27 @@ inline ConventionAnswer asked(const char* method, const json& data) {
     auto answer = detect_pose_convention(method, data, {});
     EXPECT_TRUE(answer.has_value()) << (answer ? "" : answer.error().sentence());
     return answer ? std::move(*answer) : ConventionAnswer{};
+}
+
+inline const WriteOne kAsTheHouse = [](const Pose& p) { return misread(p, {}); };
+inline WriteOne as(const Writing& writing) {
+    return [writing](const Pose& p) { return misread(p, writing); };
+}
+
+inline json sphere(unsigned seed, const WriteOne& written, int poses = 9, double noise_mm = 0.03,
+                   double robot_mm = 0.05) {
+    simulation::Random random(seed);
+    simulation::SphereCell cell = simulation::any_cell(random);
+    cell.noise_mm = noise_mm;
+    cell.robot_mm = robot_mm;
+    cell.robot_deg = robot_mm / 10;
+    return sphere_data(cell, simulation::sphere_observations(cell, poses, random), written);
+}
+
+inline json hand_eye(unsigned seed, const WriteOne& robot, const WriteOne& camera) {
+    simulation::Random random(seed);
+    const simulation::HandEyeCell cell = simulation::any_hand_eye_cell(random);
+    return hand_eye_data(cell.mount, simulation::hand_eye_pairs(cell, 10, random), robot, camera);
 }
 
 }  // namespace seamwright::elsewhere

@@ -4003,6 +4003,10 @@ ausgelassen</translation>
         <translation>Alle Einstellungen des Treibers</translation>
     </message>
     <message>
+        <source>Also what is left as the driver has it</source>
+        <translation>Auch, was bleibt, wie der Treiber es vorgibt</translation>
+    </message>
+    <message>
         <source>yes</source>
         <translation>ja</translation>
     </message>

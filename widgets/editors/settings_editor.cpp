@@ -206,6 +206,7 @@ SettingsEditor::SettingsEditor(QWidget* parent) : QWidget(parent), impl_(std::ma
     column->addWidget(impl_->help);
     impl_->all = new QPushButton(tr("All settings of the driver"), this);
     impl_->all->setObjectName("all_settings");
+    impl_->all->setToolTip(tr("Also what is left as the driver has it"));
     impl_->all->setCheckable(true);
     impl_->all->setMinimumHeight(style::kTargetPx);
     column->addWidget(impl_->all);
@@ -304,7 +305,8 @@ void SettingsEditor::set_table(const SettingTable& table) {
                 editor = row->text = new QLineEdit(row->line);
                 if (s.kind == SettingKind::number || s.kind == SettingKind::whole)
                     row->text->setAlignment(Qt::AlignRight);
-                row->text->setPlaceholderText(text_of(s.otherwise));
+                const QString absent = text_of(s.otherwise);
+                row->text->setPlaceholderText(absent.isEmpty() ? QStringLiteral("–") : absent);
                 connect(row->text, &QLineEdit::editingFinished, this, [this, r, wrote] {
                     if (!r->text->isModified()) return;
                     r->text->setModified(false);

@@ -80,8 +80,12 @@ TEST(ConventionTrials, SphereInEveryWritingAndNoise) {
 TEST(ConventionTrials, HandEyeInEveryWritingAndNoise) {
     std::map<double, Tally> tallies;
     unsigned seed = 1000;
-    for (const double noise : {0.05, 0.2, 0.8})
-        for (const Writing& w : writings()) {
+    const double levels[] = {0.05, 0.2, 0.8};
+    const std::vector<Writing> all = writings();
+    for (std::size_t level = 0; level < 3; ++level)
+        for (std::size_t i = level; i < all.size(); i += 3) {  // each writing at one level
+            const Writing& w = all[i];
+            const double noise = levels[level];
             if (w.inverse && w.axes == "zyx" && !w.fixed && !w.radian && w.mm == 1) continue;
             Random random(++seed);
             simulation::HandEyeCell cell = simulation::any_hand_eye_cell(random);
@@ -107,7 +111,7 @@ TEST(ConventionTrials, SmallTurnsAndFewPosesAreNeverNamedWrongly) {
     Tally t;
     unsigned seed = 5000;
     for (const double tilt : {2.0, 6.0, 12.0})
-        for (const int poses : {4, 6, 12})
+        for (const int poses : {4, 12})
             for (const Writing& w : writings()) {
                 if (w.radian || w.mm != 1) continue;
                 Random random(++seed);

@@ -25,7 +25,8 @@
 // (permission() `taken`). There is no release that could fall: a permission that goes while the path runs, by
 // a verdict, an alarm or the end of the program, ends the answers, and the robot stops with CommTimeout of
 // SeamwrightEgm.mod, its last correction in force until it stands. EGM tells no operating mode: without a
-// measuring link mode() is unknown, stopped or fault. EGM talks from EGMSetupUC to EGMReset: a robot that is not at its path is silent here.
+// measuring link mode() is unknown, stopped or fault. EGM talks from EGMSetupUC to EGMReset: a robot that is
+// not at its path is silent here.
 //
 // Settings: abb_egm_settings(). "frame": "sensor" tells the same shift along the axes of the sensor frame that
 // EGMActMove was given, for controllers that are set up so.

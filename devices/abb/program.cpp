@@ -127,10 +127,6 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
     return out;
 }
 
-}  // namespace
-
-namespace {
-
 // The measuring driver's program, with the settings in "measuring", and the module of EGM.
 Expected<std::vector<ProgramFile>> write_egm_program(const ProgramRequest& request) {
     int cycle_ms = 0;

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
+#include "app/cli/program_files.h"
 #include "app/cli/signal_watch.h"
-#include "devices/exchange/files.h"
 #include "devices/registry.h"
 #include "projects/acceptance/acceptance_page.h"
 #include "projects/acceptance/device_studies.h"
@@ -84,18 +84,10 @@ Expected<Answer> write_passes(const DeviceStudyArguments& a) {
     if (!request) return tl::unexpected(request.error());
     auto files = write_robot_program(a.brand, *request);
     if (!files) return tl::unexpected(files.error());
-    std::error_code failed;
-    std::filesystem::create_directories(a.program, failed);
-    if (failed)
-        return file_error(Text("the folder cannot be made: {}", failed.message()), a.program.string());
     Answer answer;
-    answer.json = {{"status", "ok"}, {"passes", request->moves.size()}, {"files", nlohmann::json::array()}};
-    for (const ProgramFile& f : *files) {
-        const auto path = a.program / f.name;
-        if (auto written = write_text_file(path, f.text); !written) return tl::unexpected(written.error());
-        answer.json["files"].push_back(path.string());
-        answer.text += path.string() + "\n";
-    }
+    answer.json = {{"status", "ok"}, {"passes", request->moves.size()}};
+    if (auto written = write_program_files(a.program, *files, answer); !written)
+        return tl::unexpected(written.error());
     return answer;
 }
 

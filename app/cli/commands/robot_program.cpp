@@ -5,8 +5,7 @@
 
 #include <filesystem>
 
-#include "app/cli/command.h"
-#include "devices/exchange/files.h"
+#include "app/cli/program_files.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
 #include "projects/station/measure.h"
@@ -29,17 +28,10 @@ Expected<Answer> write_program(const ProgramArguments& a) {
     if (!request) return tl::unexpected(request.error());
     auto files = write_robot_program(a.brand, *request);
     if (!files) return tl::unexpected(files.error());
-    std::error_code failed;
-    std::filesystem::create_directories(a.folder, failed);
-    if (failed) return file_error(Text("the folder cannot be made: {}", failed.message()), a.folder.string());
     Answer answer;
-    answer.json = {{"status", "ok"}, {"brand", a.brand}, {"files", nlohmann::json::array()}};
-    for (const ProgramFile& f : *files) {
-        const auto path = a.folder / f.name;
-        if (auto written = write_text_file(path, f.text); !written) return tl::unexpected(written.error());
-        answer.json["files"].push_back(path.string());
-        answer.text += path.string() + "\n";
-    }
+    answer.json = {{"status", "ok"}, {"brand", a.brand}};
+    if (auto written = write_program_files(a.folder, *files, answer); !written)
+        return tl::unexpected(written.error());
     answer.json["spots"] = request->moves.size();
     answer.json["frames"] = request->frames.size();
     answer.text += fmt::format("{} spots, {} frames\n", request->moves.size(), request->frames.size());

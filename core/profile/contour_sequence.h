@@ -57,4 +57,9 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
 // outlier_cost.
 void cheapest_sequence(Workspace& w, const Model& model);
 
+// Moves the borders between segments, by up to twelve points, to where the surfaces begin that they part.
+// `segment` per line of the sensor, as Profile::segment; the candidates have one per line. Points that both
+// sides or neither of them explain stay where they are.
+void settle_borders(const Workspace& w, const Model& model, std::vector<std::int32_t>& segment);
+
 }  // namespace seamwright::contour

@@ -442,6 +442,7 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
     const int pieces = verify(w, model);
     settle_doubtful(w, model);
     number_segments(w, model, pieces, options.min_segment_points, profile);
+    settle_borders(w, model, profile.segment);
     return {};
 }
 

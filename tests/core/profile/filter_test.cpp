@@ -199,6 +199,55 @@ TEST(Filter, BurstAtTheEndsAndAStepWithMissingReturns) {
     }
 }
 
+// A step in which the light of the edge falls on both sheets: up to three points stand in between.
+struct BlurredStep {
+    Profile profile;
+    int edge = 0, mixed = 0;
+};
+BlurredStep blurred_step(Maker& random, bool mirrored) {
+    BlurredStep s;
+    const double pitch = random.uniform(0.03, 0.2), noise = random.uniform(0.03, 0.3) * pitch;
+    const double height = random.uniform(5, 40) * pitch, part = random.uniform(0, 1);
+    s.mixed = int(random.uniform(0, 3.99));
+    s.edge = 50 + int(random.uniform(0, 60));
+    const int n = 200;
+    for (int i = 0; i < n; ++i) {
+        double z = i < s.edge ? height : 0;
+        if (i >= s.edge && i < s.edge + s.mixed) z = height * (1 - (i - s.edge + part) / s.mixed);
+        s.profile.x_mm.push_back((mirrored ? -i : i) * pitch);
+        s.profile.z_mm.push_back(z + noise * random.normal());
+    }
+    if (mirrored) {
+        std::reverse(s.profile.x_mm.begin(), s.profile.x_mm.end());
+        std::reverse(s.profile.z_mm.begin(), s.profile.z_mm.end());
+        s.edge = n - s.edge - s.mixed;
+    }
+    return s;
+}
+
+TEST(Filter, ASegmentBeginsWhereItsSurfaceBegins) {
+    for (const bool mirrored : {false, true}) {
+        Maker random(31);
+        int parted = 0, misplaced = 0, trials = 300;
+        for (int trial = 0; trial < trials; ++trial) {
+            BlurredStep s = blurred_step(random, mirrored);
+            ASSERT_TRUE(filter_profile(s.profile, {}));
+            const auto& segment = s.profile.segment;
+            const std::int32_t before = segment[std::size_t(s.edge - 25)],
+                               behind = segment[std::size_t(s.edge + s.mixed + 25)];
+            if (before == behind || before == kOutlier || behind == kOutlier) continue;
+            ++parted;
+            bool right = true;
+            for (int i = 2; i < 25; ++i)
+                right = right && segment[std::size_t(s.edge - i)] == before &&
+                        segment[std::size_t(s.edge + s.mixed - 1 + i)] == behind;
+            misplaced += !right;
+        }
+        EXPECT_GT(parted, 0.8 * trials);
+        EXPECT_LT(misplaced, 0.03 * parted) << (mirrored ? "mirrored" : "");
+    }
+}
+
 TEST(Filter, AGapOfMissingReturnsOnOneContourIsNoJump) {
     Maker random(7);
     Profile p;

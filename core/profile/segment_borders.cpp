@@ -1,0 +1,119 @@
+// Where a segment begins. The cheapest explanation of a step that a few points stand in may be two sharp
+// edges, one above the other, or a row of outliers: the pieces in between are too short to know a direction,
+// and the border between the segments comes to lie where the direction is known again, several points inside
+// of the surface that begins there. A straight line over the first points of a segment, taken backwards, says
+// which of the points before it are its own.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/profile/contour_sequence.h"
+
+namespace seamwright::contour {
+namespace {
+
+constexpr int kBorderFit = 8, kBorderFewest = 4;  // points of the line; fewer know none
+constexpr int kBorderMost = 12;                   // points that are looked at
+constexpr double kBorderShare = 0.5;              // of the points that both sides explain: nothing to decide
+
+// Straight line over the line number, for points beyond its end.
+struct BorderLine {
+    bool ok = false;
+    double line0 = 0, mean = 0, spread = 0, x = 0, z = 0, vx = 0, vz = 0, n = 0, limit2 = 0;
+
+    bool explains(const Candidate& p) const {
+        const double t = p.line - line0 - mean, length2 = vx * vx + vz * vz;
+        const double off = vx * (p.z - z - t * vz) - vz * (p.x - x - t * vx);
+        return off * off < limit2 * (1 + 1 / n + t * t / spread) * length2;
+    }
+};
+
+// Over the segment's points from candidate `c` inwards, `step` = 1 or -1.
+BorderLine border_line(const Workspace& w, const Model& m, const std::vector<std::int32_t>& segment, int c,
+                       int step) {
+    BorderLine e;
+    const int n = int(w.candidates.size());
+    const auto of = [&](int k) { return segment[std::size_t(w.candidates[std::size_t(k)].line)]; };
+    const std::int32_t own = of(c);
+    e.line0 = w.candidates[std::size_t(c)].line;
+    int points[kBorderFit], count = 0;
+    for (int k = c; k >= 0 && k < n && count < kBorderFit; k += step) {
+        if (of(k) == kOutlier) continue;
+        if (of(k) != own) break;
+        points[count++] = k;
+    }
+    if (count < kBorderFewest) return e;
+    e.n = count;
+    for (int k = 0; k < count; ++k) {
+        const Candidate& p = w.candidates[std::size_t(points[k])];
+        e.mean += (p.line - e.line0) / e.n, e.x += p.x / e.n, e.z += p.z / e.n;
+    }
+    for (int k = 0; k < count; ++k) {
+        const Candidate& p = w.candidates[std::size_t(points[k])];
+        const double t = p.line - e.line0 - e.mean;
+        e.spread += t * t, e.vx += t * (p.x - e.x), e.vz += t * (p.z - e.z);
+    }
+    e.vx /= e.spread, e.vz /= e.spread;
+    const double length2 = e.vx * e.vx + e.vz * e.vz;
+    if (!(length2 > 0)) return e;
+    e.limit2 = m.band * m.band * (e.vz * e.vz * m.sx2 + e.vx * e.vx * m.sz2) / length2;
+    e.ok = true;
+    return e;
+}
+
+// Gives the segment that ends at candidate `c` the points next to it, in the direction `step`, that its line
+// explains and their own segment's does not.
+void extend(const Workspace& w, const Model& m, std::vector<std::int32_t>& segment, int c, int step) {
+    const int n = int(w.candidates.size());
+    const auto of = [&](int k) -> std::int32_t& {
+        return segment[std::size_t(w.candidates[std::size_t(k)].line)];
+    };
+    const BorderLine line = border_line(w, m, segment, c, -step);
+    if (!line.ok) return;
+    const std::int32_t own = of(c);
+    std::int32_t other = kOutlier;
+    int end = c;  // the last one explained
+    for (int k = c + step, looked = 0; k >= 0 && k < n && looked < kBorderMost; k += step, ++looked) {
+        const std::int32_t s = of(k);
+        if (s != kOutlier && other != kOutlier && s != other) break;
+        if (s != kOutlier) other = s;
+        if (!line.explains(w.candidates[std::size_t(k)])) break;
+        end = k;
+    }
+    if (end == c) return;
+    // What the neighbour would have left must know a direction of its own, and not explain the points as well.
+    int next = end + step;
+    while (next >= 0 && next < n && of(next) == kOutlier) next += step;
+    const bool neighbour = next >= 0 && next < n && other != kOutlier && of(next) == other;
+    if (other != kOutlier && !neighbour) return;
+    if (neighbour) {
+        const BorderLine rest = border_line(w, m, segment, next, step);
+        if (!rest.ok) return;
+        int both = 0, all = 0;
+        for (int k = c + step; k != end + step; k += step)
+            ++all, both += rest.explains(w.candidates[std::size_t(k)]);
+        if (both > kBorderShare * all) return;
+    }
+    for (int k = c + step; k != end + step; k += step) of(k) = own;
+}
+
+}  // namespace
+
+void settle_borders(const Workspace& w, const Model& m, std::vector<std::int32_t>& segment) {
+    const int n = int(w.candidates.size());
+    const auto of = [&](int k) { return segment[std::size_t(w.candidates[std::size_t(k)].line)]; };
+    int last = -1;  // candidate with a segment
+    for (int k = 0; k < n; ++k) {
+        if (of(k) == kOutlier) continue;
+        if (last >= 0 && of(last) != of(k)) {
+            extend(w, m, segment, k, -1);
+            // `last` may have changed hands.
+            int end = k - 1;
+            while (end >= 0 && (of(end) == kOutlier || of(end) == of(k))) --end;
+            if (end >= 0) extend(w, m, segment, end, 1);
+        }
+        last = k;
+    }
+}
+
+}  // namespace seamwright::contour

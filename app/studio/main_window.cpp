@@ -43,6 +43,8 @@ namespace {
 
 constexpr int kPageWidth = 440;
 constexpr int kLayoutVersion = 1;
+constexpr int kDevices_ms = 250;
+constexpr std::chrono::milliseconds kRobotStale{3000};
 constexpr int kNextMargin_px = 64;  // icon and padding of the next-step button
 
 // A dock's head: name, full, float. A double click makes the dock full.
@@ -103,7 +105,9 @@ MainWindow::MainWindow(Studio& studio) : studio_(studio), desk_(studio.desk()) {
         if (!beginning_ || !desk_.station().connected) return;
         show_step(next_step(desk_.steps()));
     });
-    connect(&desk_, &Desk::station_changed, this, &MainWindow::refresh_status);
+    connect(&desk_, &Desk::station_changed, this, &MainWindow::refresh_devices);
+    connect(&devices_timer_, &QTimer::timeout, this, &MainWindow::refresh_devices);
+    devices_timer_.start(kDevices_ms);
     connect(&desk_, &Desk::runs_changed, this, &MainWindow::refresh_status);
     connect(&desk_, &Desk::events_changed, this, &MainWindow::refresh_status);
     connect(&desk_, &Desk::recovery_written, this, [this] {
@@ -507,22 +511,44 @@ void MainWindow::refresh_next() {
         }
 }
 
-void MainWindow::refresh_status() {
+// What is not renewed is not called ok: a sensor by the age of its newest frame, a robot by the age of what it
+// said last (a run asks it without telling here).
+void MainWindow::refresh_devices() {
     QStringList sensors, robots;
+    const auto seconds = [](auto age) {
+        return static_cast<int>(std::chrono::duration_cast<std::chrono::seconds>(age).count());
+    };
     for (const SensorState& s : desk_.station().sensors) {
-        sensors << (s.trouble.empty() ? tr("sensor %1 ok %2 /s, %3 dropped")
-                                            .arg(QString::fromStdString(s.id))
-                                            .arg(std::lround(desk_.live().rate_hz(s.id)))
-                                            .arg(s.counters.damaged + s.counters.underrun)
-                                      : tr("sensor %1 no frame").arg(QString::fromStdString(s.id)));
+        const QString id = QString::fromStdString(s.id);
+        const auto old = desk_.live().age(s.id);
+        if (old && *old > kStale)
+            sensors << tr("sensor %1 no frame since %2 s").arg(id).arg(seconds(*old));
+        else if (!s.trouble.empty() || !old)
+            sensors << tr("sensor %1 no frame").arg(id);
+        else
+            sensors << tr("sensor %1 ok %2 /s, %3 dropped")
+                           .arg(id)
+                           .arg(std::lround(desk_.live().rate_hz(s.id)))
+                           .arg(s.counters.damaged + s.counters.underrun);
     }
-    for (const RobotState& r : desk_.station().robots)
-        robots << (r.trouble.empty()
-                       ? tr("robot %1 %2 ok").arg(QString::fromStdString(r.id), shown_word(to_string(r.mode)))
-                       : tr("robot %1 silent").arg(QString::fromStdString(r.id)));
-    if (!desk_.station().connected) sensors = {tr("not connected")};
+    const auto asked = std::chrono::steady_clock::now() - desk_.station().asked;
+    const bool old = asked > kRobotStale && !desk_.worker().busy();
+    for (const RobotState& r : desk_.station().robots) {
+        const QString id = QString::fromStdString(r.id);
+        robots << (!r.trouble.empty() ? tr("robot %1 silent").arg(id)
+                   : old              ? tr("robot %1 no answer since %2 s").arg(id).arg(seconds(asked))
+                                      : tr("robot %1 %2 ok").arg(id, shown_word(to_string(r.mode))));
+    }
+    if (!desk_.station().connected) {
+        sensors = {tr("not connected")};
+        robots.clear();
+    }
     sensors_->setText(sensors.join("   "));
     robots_->setText(robots.join("   "));
+}
+
+void MainWindow::refresh_status() {
+    refresh_devices();
     QString push;
     if (const auto runs = desk_.runs())
         for (auto it = runs->rbegin(); it != runs->rend() && push.isEmpty(); ++it)

@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QMainWindow>
 #include <QStackedWidget>
+#include <QTimer>
 #include <array>
 #include <map>
 
@@ -51,6 +52,7 @@ class MainWindow : public QMainWindow {
     QDockWidget* add_dock(const QString& name, const QString& title, QWidget* view);
     void refresh_title();
     void refresh_status();
+    void refresh_devices();
     void refresh_next();
     void tell(const QString& sentence);
     void new_project();
@@ -80,6 +82,7 @@ class MainWindow : public QMainWindow {
     QDockWidget* full_ = nullptr;
     Step step_ = Step::cell;
     bool beginning_ = false;
+    QTimer devices_timer_;
     QByteArray default_layout_;
 };
 

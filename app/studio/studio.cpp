@@ -30,6 +30,7 @@ constexpr int kRecent = 10;
 Studio::Studio(QApplication& application, const StudioOptions& options)
     : application_(application), options_(options) {
     link_resources();
+    application_.installEventFilter(&wheel_guard_);
     settings_ = options.settings.isEmpty()
                     ? std::make_unique<QSettings>(QStringLiteral("seamwright"), QStringLiteral("studio"))
                     : std::make_unique<QSettings>(options.settings, QSettings::IniFormat);

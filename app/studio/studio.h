@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "widgets/desk/desk.h"
+#include "widgets/editors/wheel_guard.h"
 
 namespace seamwright {
 
@@ -50,6 +51,7 @@ class Studio : public QObject {
     QApplication& application_;
     StudioOptions options_;
     std::unique_ptr<QSettings> settings_;
+    WheelGuard wheel_guard_;
     QTranslator texts_, qt_texts_;
     Desk desk_;
     std::unique_ptr<MainWindow> window_;

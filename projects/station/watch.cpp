@@ -26,6 +26,34 @@ std::string_view to_string(WatchState state) {
     return "stopped";
 }
 
+std::string_view to_string(WatchLevel level) {
+    switch (level) {
+        case WatchLevel::info:
+            return "info";
+        case WatchLevel::warning:
+            return "warning";
+        case WatchLevel::alarm:
+            return "alarm";
+    }
+    return "alarm";
+}
+
+std::string_view name_of(const WatchHappening& happening) {
+    using namespace watched;
+    struct Name {
+        std::string_view operator()(const Connected&) const { return "connected"; }
+        std::string_view operator()(const Lost&) const { return "lost"; }
+        std::string_view operator()(const Back&) const { return "back"; }
+        std::string_view operator()(const RobotNotice&) const { return "robot"; }
+        std::string_view operator()(const Start&) const { return "start"; }
+        std::string_view operator()(const Missed&) const { return "missed"; }
+        std::string_view operator()(const SpotDone&) const { return "spot"; }
+        std::string_view operator()(const RunDone&) const { return "run"; }
+        std::string_view operator()(const Stopped&) const { return "stopped"; }
+    };
+    return std::visit(Name{}, happening);
+}
+
 namespace {
 
 class Watch {
@@ -46,7 +74,7 @@ class Watch {
             if (auto part = measure((*start)->part_id); !part) return tl::unexpected(part.error());
         }
         state_ = WatchState::stopped;
-        tell("info", "stopped", Text("stopped after {} parts", counts_.parts));
+        tell(WatchLevel::info, watched::Stopped{}, Text("stopped after {} parts", counts_.parts));
         return counts_;
     }
 
@@ -55,11 +83,9 @@ class Watch {
         return options_.cancel.stop_requested() || (options_.parts > 0 && counts_.parts >= options_.parts);
     }
 
-    void tell(std::string level, std::string event, Text text,
-              nlohmann::json data = nlohmann::json::object()) {
+    void tell(WatchLevel level, WatchHappening happening, Text text) {
         if (!options_.tell) return;
-        options_.tell({utc_now(), std::move(level), std::move(event), std::move(text), std::move(data),
-                       state_, counts_});
+        options_.tell({utc_now(), level, std::move(happening), std::move(text), state_, counts_});
     }
 
     void pause() {
@@ -81,8 +107,8 @@ class Watch {
             // file's Error.
             (void)station_.file().append_event(
                 {0, utc_now(), 0, EventKind::alarm, subject.english(), Text("lost: {}", error.text())});
-            tell("alarm", "lost", Text("{} is lost: {}", subject, error.text()),
-                 {{"device", subject.english()}});
+            tell(WatchLevel::alarm, watched::Lost{subject.english()},
+                 Text("{} is lost: {}", subject, error.text()));
         }
         pause();
     }
@@ -93,7 +119,7 @@ class Watch {
             (void)station_.file().append_event(
                 {0, utc_now(), 0, EventKind::note, "watch", "all devices answer again"});
             state_ = WatchState::waiting;
-            tell("info", "back", "all devices answer again");
+            tell(WatchLevel::info, watched::Back{}, "all devices answer again");
         }
         state_ = WatchState::waiting;
     }
@@ -106,7 +132,7 @@ class Watch {
             return false;
         }
         ready();
-        tell("info", "connected", "waiting for the robot's start signal");
+        tell(WatchLevel::info, watched::Connected{}, "waiting for the robot's start signal");
         return true;
     }
 
@@ -123,7 +149,7 @@ class Watch {
                              ? Expected<StartSignal>(std::exchange(called_, std::nullopt)->second)
                              : robot->wait_start(slice);
             for (const Text& notice : robot->take_notices())
-                tell("warning", "robot", Text("robot {}: {}", setup.id, notice));
+                tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", setup.id, notice));
             if (start) {
                 ready();
                 newest(*robot, setup.id, *start);
@@ -158,14 +184,14 @@ class Watch {
                        name(start), std::chrono::duration<double>(age).count());
         missed(id, start, why);
         if (auto told = robot.confirm(PartVerdict::refused, why.english()); !told)
-            tell("warning", "robot", Text("robot {}: {}", id, told.error().text()));
+            tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", id, told.error().text()));
         return true;
     }
 
     void missed(const std::string& id, const StartSignal& start, const Text& why) {
         ++counts_.missed;
         (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, "robot " + id, why});
-        tell("warning", "missed", why, {{"part", start.part_id}});
+        tell(WatchLevel::warning, watched::Missed{start.part_id}, why);
     }
 
     static std::string name(const StartSignal& start) {
@@ -175,8 +201,8 @@ class Watch {
     Expected<void> measure(const std::string& part_id) {
         state_ = WatchState::measuring;
         ++counts_.parts;
-        tell("info", "start", Text("part {}", part_id.empty() ? Text("(no name)") : Text(part_id)),
-             {{"part", part_id}});
+        tell(WatchLevel::info, watched::Start{part_id},
+             Text("part {}", part_id.empty() ? Text("(no name)") : Text(part_id)));
         RunOptions run;
         run.part_id = part_id;
         run.push = options_.push;
@@ -187,34 +213,25 @@ class Watch {
         run.hold = kHoldForEver;
         run.part_over = [&] { return part_called(); };
         run.progress = [&](const RunProgress& p) {
-            tell("info", "spot", p.text, {{"done", p.done}, {"total", p.total}});
+            tell(WatchLevel::info, watched::SpotDone{p.done, p.total}, p.text);
         };
         const auto begun = std::chrono::steady_clock::now();
         auto record = station_.run(run);
         if (!record) return tl::unexpected(record.error());
         const auto took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun);
-        const bool alarm = record->status == RunStatus::alarm;
-        const bool failed = record->status == RunStatus::device || record->status == RunStatus::cancelled;
-        (record->status == RunStatus::ok ? counts_.corrected
-         : alarm                         ? counts_.alarms
-         : failed                        ? counts_.failed
-                                         : counts_.refused) += 1;
+        const RunStatus status = record->status;
+        const bool alarm = status == RunStatus::alarm;
+        const bool failed = status == RunStatus::device || status == RunStatus::cancelled;
+        (status == RunStatus::ok ? counts_.corrected
+         : alarm                 ? counts_.alarms
+         : failed                ? counts_.failed
+                                 : counts_.refused) += 1;
         state_ = WatchState::waiting;
-        nlohmann::json data = {{"part", record->part_id},
-                               {"run", record->number},
-                               {"status", to_string(record->status)},
-                               {"seconds", took.count()},
-                               {"regions", nlohmann::json::array()}};
-        for (const RegionRecord& region : record->regions)
-            data["regions"].push_back({{"id", region.region_id},
-                                       {"passed", region.gate_passed},
-                                       {"push", to_string(region.push.status)},
-                                       {"release", to_string(region.push.release)},
-                                       {"refusals", region.refusals}});
-        tell(alarm || record->status == RunStatus::device ? "alarm"
-             : record->status == RunStatus::ok            ? "info"
-                                                          : "warning",
-             "run", Text("part {}: {}", record->part_id, record->message), std::move(data));
+        const auto done = std::make_shared<const RunRecord>(std::move(*record));
+        tell(alarm || status == RunStatus::device ? WatchLevel::alarm
+             : status == RunStatus::ok            ? WatchLevel::info
+                                                  : WatchLevel::warning,
+             watched::RunDone{done, took.count()}, Text("part {}: {}", done->part_id, done->message));
         return forget_old_runs();
     }
 

@@ -6,9 +6,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <stop_token>
 #include <string>
+#include <string_view>
+#include <variant>
 
 #include "core/text.h"
 #include "projects/station/station.h"
@@ -26,13 +28,44 @@ struct WatchCounts {
 enum class WatchState { connecting, waiting, measuring, lost, stopped };
 std::string_view to_string(WatchState state);
 
-// One thing that happened, for a log that machines read.
+enum class WatchLevel { info, warning, alarm };
+std::string_view to_string(WatchLevel level);
+
+// What can happen, each with what belongs to it.
+namespace watched {
+struct Connected {};  // all devices answer; waiting for a call
+struct Lost {
+    std::string device;  // told once, however long it lasts
+};
+struct Back {};         // all devices answer again
+struct RobotNotice {};  // a robot said something that is no call
+struct Start {
+    std::string part_id;
+};
+struct Missed {
+    std::string part_id;  // called, but not measured
+};
+struct SpotDone {
+    int done, total;
+};
+struct RunDone {
+    std::shared_ptr<const RunRecord> record;
+    double seconds;
+};
+struct Stopped {};
+}  // namespace watched
+using WatchHappening =
+    std::variant<watched::Connected, watched::Lost, watched::Back, watched::RobotNotice, watched::Start,
+                 watched::Missed, watched::SpotDone, watched::RunDone, watched::Stopped>;
+// connected | lost | back | robot | start | missed | spot | run | stopped
+std::string_view name_of(const WatchHappening& happening);
+
+// One thing that happened, for a screen and a log that machines read.
 struct WatchEvent {
-    std::string utc;    // ISO 8601
-    std::string level;  // info | warning | alarm
-    std::string event;  // connected | lost | back | robot | start | missed | spot | run | stopped
-    Text text;          // one sentence
-    nlohmann::json data = nlohmann::json::object();
+    std::string utc;  // ISO 8601
+    WatchLevel level = WatchLevel::info;
+    WatchHappening happening;
+    Text text;  // one sentence
     WatchState state = WatchState::connecting;
     WatchCounts counts;
 };

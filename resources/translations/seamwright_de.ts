@@ -943,7 +943,7 @@
     </message>
     <message>
         <source>Entry %1 mm, exit %2 mm, jitter ±%3 mm</source>
-        <translation>Einfahrt %1 mm, Ausfahrt %2 mm, Streuung ±%3 mm</translation>
+        <translation>Einfahrt %1&#xa0;mm, Ausfahrt %2&#xa0;mm, Streuung ±%3&#xa0;mm</translation>
     </message>
     <message>
         <source>Choose a spot.</source>
@@ -2746,6 +2746,14 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>There is no report.</source>
         <translation>Es gibt keinen Bericht.</translation>
+    </message>
+    <message>
+        <source>sensor %1 no frame since %2 s</source>
+        <translation>Sensor %1 kein Bild seit %2 s</translation>
+    </message>
+    <message>
+        <source>robot %1 no answer since %2 s</source>
+        <translation>Roboter %1 keine Antwort seit %2 s</translation>
     </message>
 </context>
 <context>
@@ -4572,6 +4580,18 @@ und %1 weitere</translation>
     <message>
         <source>Sensor %1 cannot be told to send a part of its image.</source>
         <translation>Sensor %1 kann keinen Ausschnitt seines Bilds senden.</translation>
+    </message>
+    <message>
+        <source>sensor %1   no frame since %2 s</source>
+        <translation>Sensor %1   kein Bild seit %2 s</translation>
+    </message>
+    <message>
+        <source>sensor %1   no frame yet</source>
+        <translation>Sensor %1   noch kein Bild</translation>
+    </message>
+    <message>
+        <source>sensor %1   not connected</source>
+        <translation>Sensor %1   nicht verbunden</translation>
     </message>
 </context>
 </TS>

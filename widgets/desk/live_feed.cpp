@@ -101,7 +101,21 @@ std::shared_ptr<const LiveSnapshot> LiveFeed::latest(const std::string& sensor_i
     return it->second->newest;
 }
 
+std::optional<std::chrono::milliseconds> LiveFeed::age(const std::string& sensor_id) const {
+    const std::lock_guard lock(mutex_);
+    const auto it = lanes_.find(sensor_id);
+    if (it == lanes_.end() || !it->second->newest) return std::nullopt;
+    return std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - it->second->last_seen);
+}
+
+bool LiveFeed::attached(const std::string& sensor_id) const {
+    const std::lock_guard lock(mutex_);
+    return lanes_.contains(sensor_id);
+}
+
 double LiveFeed::rate_hz(const std::string& sensor_id) const {
+    const auto old = age(sensor_id);
+    if (!old || *old > kStale) return 0;
     const std::lock_guard lock(mutex_);
     const auto it = lanes_.find(sensor_id);
     return it == lanes_.end() || !it->second->newest ? 0 : it->second->newest->rate_hz;
@@ -199,9 +213,9 @@ void LiveFeed::work(const std::stop_token& stop) {
                 const double rate = seconds > 1e-6 ? static_cast<double>(frames) / seconds : 0;
                 lane->rate_hz = lane->rate_hz > 0 ? 0.9 * lane->rate_hz + 0.1 * rate : rate;
             }
-            lane->last_seen = now;
             snapshot->rate_hz = lane->rate_hz;
             const std::lock_guard lock(mutex_);
+            lane->last_seen = now;
             lane->newest = std::move(snapshot);
             fresh = true;
         }

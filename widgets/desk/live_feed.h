@@ -45,6 +45,8 @@ struct LiveSnapshot {
     Text trouble;  // why there is no profile; empty when there is one
 };
 
+// A picture that is older is not live.
+inline constexpr std::chrono::milliseconds kStale{1000};
 inline constexpr std::chrono::milliseconds kShownFor{1000}, kHiddenPeriod{500}, kSearchAtLeast{200};
 inline constexpr double kSearchShare = 0.04;
 
@@ -60,7 +62,10 @@ class LiveFeed : public QObject {
     void set_recipe(const std::string& sensor_id, const LiveRecipe& recipe);
     // nullptr before the first frame. Whoever asks shows it.
     std::shared_ptr<const LiveSnapshot> latest(const std::string& sensor_id) const;
-    double rate_hz(const std::string& sensor_id) const;  // 0 before the second frame
+    // Since the newest frame; nothing before the first one and while the sensor is not attached.
+    std::optional<std::chrono::milliseconds> age(const std::string& sensor_id) const;
+    bool attached(const std::string& sensor_id) const;
+    double rate_hz(const std::string& sensor_id) const;  // 0 before the second frame and when it is stale
 
   signals:
     void arrived();  // at least one sensor has a newer snapshot; coalesced

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "devices/registry.h"
+#include "devices/silence.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
@@ -14,23 +15,83 @@ namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kLivePeriod{60}, kLiveFrame{400}, kRobotPeriod{500}, kRest{5};
+constexpr std::chrono::milliseconds kLivePeriod{60}, kLiveFrame{400}, kRobotPeriod{500};
+constexpr std::chrono::milliseconds kRetry{1000};  // of a sensor that gives no frames
 
 }  // namespace
 
-// Sensors running for the screen.
+// Sensors running for the screen, each on a thread of its own: one that does not answer keeps nobody waiting, and
+// asking it goes on as long as its silence may.
 struct StationWorker::Live {
     struct Sensor {
-        ProfileSource* source;
-        SoftwareTriggered by_software;
-        Text trouble;
-        bool ended = false;
+        ProfileSource* source = nullptr;
+        std::optional<SoftwareTriggered> by_software;  // while it runs
+        std::mutex mutex;
+        SensorState state;
+        std::jthread thread;  // goes first
+        bool given_up = false;
+        void leave() {
+            thread.request_stop();
+            const std::lock_guard lock(mutex);
+            given_up = !state.trouble.empty();
+            if (given_up) source->give_up();  // it may wait for a device that is not there
+        }
+        ~Sensor() {
+            leave();
+            if (thread.joinable()) thread.join();
+            if (by_software || given_up) source->stop();
+        }
     };
-    std::map<std::string, Sensor> sensors;
+    std::deque<Sensor> sensors;
+    std::vector<SensorState> states();
+    static void run(const std::stop_token& stop, Sensor& sensor);
     ~Live() {
-        for (auto& [id, sensor] : sensors) sensor.source->stop();
+        for (Sensor& sensor : sensors) sensor.leave();  // all at once, then one after the other
     }
 };
+
+namespace {
+
+// Settings as the device has them. One that does not answer is asked once.
+void read_settings(ProfileSource& sensor, SensorState& state) {
+    state.identity = sensor.identity();
+    state.counters = sensor.counters();
+    state.parameters = sensor.parameters();
+    for (const ParameterInfo& info : state.parameters) {
+        auto value = sensor.get(info.name);
+        if (value) {
+            state.values[info.name] = *value;
+        } else if (is_silence(value.error()) || value.error().code == ErrorCode::disconnected) {
+            state.trouble = value.error().text();
+            return;
+        }
+    }
+}
+
+// One picture for the screen.
+Expected<void> one_picture(ProfileSource& source, std::optional<SoftwareTriggered>& by_software) {
+    if (!by_software) {
+        auto taken = SoftwareTriggered::begin(source);
+        if (!taken) return tl::unexpected(taken.error());
+        if (auto started = source.start(); !started) return started;
+        by_software.emplace(std::move(*taken));
+    }
+    if (auto fired = source.trigger(""); !fired) return fired;
+    auto frame = source.wait_next(kLiveFrame);
+    if (!frame) return tl::unexpected(frame.error());
+    return {};
+}
+
+}  // namespace
+
+std::vector<SensorState> StationWorker::Live::states() {
+    std::vector<SensorState> all;
+    for (Sensor& sensor : sensors) {
+        const std::lock_guard lock(sensor.mutex);
+        all.push_back(sensor.state);
+    }
+    return all;
+}
 
 StationWorker::StationWorker(LiveFeed& feed, QObject* parent)
     : QObject(parent), feed_(feed), thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -402,22 +463,20 @@ void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std
 void StationWorker::publish(Station& station) {
     auto state = std::make_shared<StationState>();
     state->connected = station.connected();
+    state->asked = Clock::now();
     state->trouble = connect_trouble_;
-    for (const SensorSetup& setup : station.project().sensors) {
-        ProfileSource* sensor = station.sensor(setup.id);
-        if (!sensor) continue;
-        SensorState s;
-        s.id = setup.id;
-        s.identity = sensor->identity();
-        s.counters = sensor->counters();
-        s.parameters = sensor->parameters();
-        for (const ParameterInfo& info : s.parameters)
-            if (auto value = sensor->get(info.name)) s.values[info.name] = *value;
-        if (live_)
-            if (const auto it = live_->sensors.find(setup.id); it != live_->sensors.end())
-                s.trouble = it->second.trouble;
-        state->sensors.push_back(std::move(s));
+    if (live_) sensors_ = live_->states();
+    if (!live_) {
+        sensors_.clear();
+        for (const SensorSetup& setup : station.project().sensors)
+            if (ProfileSource* sensor = station.sensor(setup.id)) {
+                SensorState s;
+                s.id = setup.id;
+                read_settings(*sensor, s);
+                sensors_.push_back(std::move(s));
+            }
     }
+    state->sensors = sensors_;
     for (const RobotSetup& setup : station.project().robots) {
         RobotLink* robot = station.robot(setup.id);
         if (!robot) continue;
@@ -439,43 +498,60 @@ void StationWorker::stop_live() {
     live_.reset();
 }
 
-// One turn of the live sensors; returns within about a frame.
-void StationWorker::idle(Station& station) {
-    if (!station.connected()) return;
-    if (!live_) {
-        live_ = std::make_unique<Live>();
-        for (const SensorSetup& setup : station.project().sensors) {
-            ProfileSource* sensor = station.sensor(setup.id);
-            if (!sensor) continue;
-            auto by_software = SoftwareTriggered::begin(*sensor);
-            if (!by_software) continue;
-            if (auto started = sensor->start(); !started) continue;
-            live_->sensors.emplace(setup.id, Live::Sensor{sensor, std::move(*by_software), {}, false});
-        }
+void StationWorker::start_live(Station& station) {
+    if (!station.connected() || live_) return;
+    live_ = std::make_unique<Live>();
+    for (const SensorSetup& setup : station.project().sensors) {
+        ProfileSource* source = station.sensor(setup.id);
+        if (!source) continue;
+        Live::Sensor& sensor = live_->sensors.emplace_back();
+        sensor.source = source;
+        for (const SensorState& known : sensors_)
+            if (known.id == setup.id) sensor.state = known;
+        sensor.state.id = setup.id;
+        sensor.state.trouble = {};
+        sensor.thread = std::jthread([&sensor](const std::stop_token& stop) { Live::run(stop, sensor); });
     }
-    for (auto& [id, sensor] : live_->sensors) {
-        if (sensor.ended) continue;
-        if (auto fired = sensor.source->trigger(""); !fired) {
-            sensor.trouble = fired.error().text();
-            continue;
+}
+
+void StationWorker::Live::run(const std::stop_token& stop, Sensor& sensor) {
+    std::mutex mutex;
+    std::condition_variable_any rest;
+    auto settings_due = Clock::now();
+    while (!stop.stop_requested()) {
+        SensorState now;
+        {
+            const std::lock_guard lock(sensor.mutex);
+            now = sensor.state;
         }
-        auto frame = sensor.source->wait_next(kLiveFrame);
-        if (frame) {
-            sensor.trouble.clear();
-        } else {
-            sensor.trouble = frame.error().text();
-            sensor.ended = frame.error().code == ErrorCode::end_of_recording;
+        now.trouble = {};
+        auto next = Clock::now() + kLivePeriod / 2;
+        const auto seen = one_picture(*sensor.source, sensor.by_software);
+        if (!seen) {
+            now.trouble = seen.error().text();
+            next = Clock::now() + kRetry;
         }
+        if (now.trouble.empty() && Clock::now() >= settings_due && !stop.stop_requested()) {
+            read_settings(*sensor.source, now);
+            settings_due = Clock::now() + kRobotPeriod;
+        }
+        {
+            const std::lock_guard lock(sensor.mutex);
+            sensor.state = std::move(now);
+        }
+        if (!seen && seen.error().code == ErrorCode::end_of_recording) return;
+        std::unique_lock lock(mutex);
+        rest.wait_until(lock, stop, next, [] { return false; });
     }
 }
 
 void StationWorker::work(const std::stop_token& stop) {
-    auto next_live = Clock::now(), next_state = next_live;
+    auto next_state = Clock::now();
     while (!stop.stop_requested()) {
         Request request;
         {
             std::unique_lock lock(mutex_);
-            wake_.wait_until(lock, stop, std::min(next_live, Clock::now() + kLivePeriod), [&] {
+            wake_.wait_until(lock, stop, next_state, [&] {
                 return open_request_ || close_request_ || !queue_.empty() || newest_project_;
             });
             if (stop.stop_requested()) break;
@@ -520,7 +596,7 @@ void StationWorker::work(const std::stop_token& stop) {
                 const std::lock_guard lock(mutex_);
                 busy_ = false;
             }
-            next_live = Clock::now() + kLivePeriod;
+            next_state = Clock::now() + kRobotPeriod;
             continue;
         }
         if (request.task) {
@@ -533,15 +609,12 @@ void StationWorker::work(const std::stop_token& stop) {
             }
             publish(*station_);
             emit busy_changed(false, request.what);
-            next_live = Clock::now();
+            next_state = Clock::now();
             continue;
         }
-        if (Clock::now() >= next_live) {
-            idle(*station_);
-            next_live = Clock::now() + kLivePeriod / 2;
-        }
-        if (station_->connected() && Clock::now() >= next_state) {
-            publish(*station_);
+        start_live(*station_);
+        if (Clock::now() >= next_state) {
+            if (station_->connected()) publish(*station_);
             next_state = Clock::now() + kRobotPeriod;
         }
     }

@@ -2,11 +2,13 @@
 // The one thread that talks to the devices. It owns the Station; the screen queues requests and gets values
 // back by signals (queued into the receiver's thread). Nothing here blocks the caller, except close().
 //
-// While nothing is asked, the sensors run live (software triggers about every 60 ms where the sensor waits
-// for triggers, LiveFeed shows the newest frame) and the robots are asked for mode and pose twice a second.
+// While nothing is asked, the sensors run live, each on a thread of its own (software triggers about every 60 ms
+// where the sensor waits for triggers, LiveFeed shows the newest frame), and the robots are asked for mode and
+// pose twice a second. A sensor that does not answer is asked again every second and keeps no robot waiting.
 
 #include <QObject>
 #include <QString>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -46,7 +48,8 @@ struct StationState {
     bool connected = false;
     std::vector<SensorState> sensors;
     std::vector<RobotState> robots;
-    Text trouble;  // of the last attempt to connect
+    Text trouble;                                 // of the last attempt to connect
+    std::chrono::steady_clock::time_point asked;  // when this was so
 };
 
 struct PassResult {
@@ -114,7 +117,7 @@ class StationWorker : public QObject {
     using Task = std::function<void(Station&, const std::stop_token&)>;
     void post(const QString& what, Task task);
     void work(const std::stop_token& stop);
-    void idle(Station& station);
+    void start_live(Station& station);
     void stop_live();
     void publish(Station& station);
     void attach_feed(Station& station);
@@ -136,6 +139,7 @@ class StationWorker : public QObject {
     std::stop_source cancel_;
     std::optional<bool> push_answer_;
     std::unique_ptr<Live> live_;
+    std::vector<SensorState> sensors_;  // as last seen
     std::optional<Station> station_;
     Text connect_trouble_;
     std::jthread thread_;

@@ -64,8 +64,6 @@ ParameterEditor::ParameterEditor(const ParameterInfo& info, QWidget* parent)
         impl_->choice->setAccessibleName(name);
         impl_->choice->setAccessibleDescription(help);
         impl_->choice->setToolTip(help);
-        impl_->choice->setFocusPolicy(Qt::StrongFocus);
-        impl_->choice->installEventFilter(this);  // the wheel must not change a setting in passing
         setFocusProxy(impl_->choice);
         row->addWidget(impl_->choice, 1);
         connect(impl_->choice, &QComboBox::currentIndexChanged, this, [this](int index) {
@@ -136,11 +134,6 @@ void ParameterEditor::set_value(double value) {
 }
 
 bool ParameterEditor::eventFilter(QObject* watched, QEvent* event) {
-    if (impl_->choice && watched == impl_->choice && event->type() == QEvent::Wheel &&
-        !impl_->choice->hasFocus()) {
-        event->ignore();
-        return true;
-    }
     if (!impl_->line || watched != impl_->line) return QWidget::eventFilter(watched, event);
     const ParameterInfo& info = impl_->info;
     const auto commit = [this, &info] {

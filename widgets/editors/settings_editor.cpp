@@ -324,7 +324,6 @@ void SettingsEditor::set_table(const SettingTable& table) {
             editor->setAccessibleName(name.unit.isEmpty() ? name.name : name.name + ", " + name.unit);
             editor->setAccessibleDescription(help);
             editor->setToolTip(help);
-            editor->setFocusPolicy(Qt::StrongFocus);  // the wheel must not change a setting in passing
             editor->installEventFilter(this);
             label->setBuddy(editor);
             label->setToolTip(help);
@@ -357,10 +356,6 @@ bool SettingsEditor::eventFilter(QObject* watched, QEvent* event) {
     auto* widget = qobject_cast<QWidget*>(watched);
     if (event->type() == QEvent::FocusIn && widget)
         impl_->help->setText(widget->accessibleName() + ": " + widget->accessibleDescription());
-    if (event->type() == QEvent::Wheel && widget && !widget->hasFocus()) {
-        event->ignore();
-        return true;
-    }
     return QWidget::eventFilter(watched, event);
 }
 

@@ -19,7 +19,7 @@ Pose workobject_from_sensor(const Project& project, const Spot& spot) {
            (calibration ? calibration->flange_from_sensor : Pose::Identity());
 }
 
-static constexpr int kCaption_ms = 250;
+static constexpr int kCaption_ms = 250, kAge_ms = 200;
 
 // Docks behind others in a tab group are visible to Qt; nothing of them is on the screen.
 static bool seen(const QWidget* view) {
@@ -45,10 +45,47 @@ ViewFeeder::ViewFeeder(Desk& desk, Views views, QObject* parent)
     connect(views_.residuals, &ResidualBars::spot_picked, this,
             [this](const QString& id) { desk_.selection().select_spot(id.toStdString()); });
     connect(views_.camera, &CameraView::region_dragged, this, &ViewFeeder::crop);
+    connect(&age_timer_, &QTimer::timeout, this, &ViewFeeder::age);
+    age_timer_.start(kAge_ms);
     project();
     selected();
     robot();
     desk_.live().taken();
+}
+
+void ViewFeeder::caption(const QString& text, bool stale) {
+    if (text == caption_) return;
+    caption_ = text;
+    views_.profile->set_caption(text);
+    views_.camera->set_caption(text);
+    views_.profile->set_stale(stale);
+    views_.camera->set_stale(stale);
+}
+
+// What is not renewed is not shown as if it were: a picture that grows old turns grey and says since when,
+// one of a sensor that is not there any more goes.
+void ViewFeeder::age() {
+    const std::string sensor = shown_sensor(desk_, desk_.selection());
+    const QString name = QString::fromStdString(sensor);
+    const auto old = desk_.live().age(sensor);
+    if (old && *old <= kStale) return;
+    caption_age_.invalidate();  // the next picture's caption is due at once
+    if (old) {
+        caption(tr("sensor %1   no frame since %2 s").arg(name).arg(old->count() / 1000), true);
+        views_.profile->set_feature(std::nullopt);
+        return;
+    }
+    caption(sensor.empty()                  ? QString()
+            : desk_.live().attached(sensor) ? tr("sensor %1   no frame yet").arg(name)
+                                            : tr("sensor %1   not connected").arg(name),
+            false);
+    if (last_number_ == 0 && last_sensor_.empty()) return;
+    last_number_ = 0;
+    last_sensor_.clear();
+    views_.profile->set_profile({});
+    views_.profile->set_feature(std::nullopt);
+    views_.camera->set_frame({}, nullptr);
+    views_.align->set_live({});
 }
 
 void ViewFeeder::show_latest() {
@@ -89,22 +126,20 @@ void ViewFeeder::live() {
     last_sensor_ = sensor;
     last_number_ = snapshot->number;
     const auto dropped = snapshot->counters.damaged + snapshot->counters.underrun;
-    QString caption = tr("sensor %1   %2 /s   %3 dropped")
-                          .arg(QString::fromStdString(sensor))
-                          .arg(std::lround(snapshot->rate_hz))
-                          .arg(dropped);
-    if (!snapshot->trouble.empty()) caption += "   " + shown(snapshot->trouble);
+    QString text = tr("sensor %1   %2 /s   %3 dropped")
+                       .arg(QString::fromStdString(sensor))
+                       .arg(std::lround(snapshot->rate_hz))
+                       .arg(dropped);
+    if (!snapshot->trouble.empty()) text += "   " + shown(snapshot->trouble);
     // A rate that flickers by one is not worth laying the head of the plot out sixty times a second.
     const bool same_but_rate = sensor == captioned_sensor_ && dropped == captioned_dropped_ &&
                                snapshot->trouble == captioned_trouble_ && caption_age_.isValid();
-    if (caption != caption_ && !(same_but_rate && caption_age_.elapsed() < kCaption_ms)) {
+    if (text != caption_ && !(same_but_rate && caption_age_.elapsed() < kCaption_ms)) {
         caption_age_.start();
         captioned_sensor_ = sensor;
         captioned_dropped_ = dropped;
         captioned_trouble_ = snapshot->trouble;
-        caption_ = caption;
-        views_.profile->set_caption(caption);
-        views_.camera->set_caption(caption);
+        caption(text, false);
     }
     if (seen(views_.profile)) {
         views_.profile->set_profile(snapshot->profile);

@@ -4,6 +4,7 @@
 
 #include <QElapsedTimer>
 #include <QObject>
+#include <QTimer>
 #include <functional>
 #include <map>
 #include <string>
@@ -46,6 +47,8 @@ class ViewFeeder : public QObject {
 
   private:
     void live();
+    void age();
+    void caption(const QString& text, bool stale);
     void crop(const QRect& region_px);
     void selected();
     void project();
@@ -54,6 +57,7 @@ class ViewFeeder : public QObject {
     Views views_;
     std::map<std::string, Eigen::Vector3d> shifts_;
     std::vector<std::byte> shown_mesh_;
+    QTimer age_timer_;
     std::uint64_t last_number_ = 0;
     std::string last_sensor_;
     QString caption_;

@@ -142,7 +142,7 @@ class CameraSurface : public QWidget {
     QPointF to_pixel(const QPointF& w) const { return (w - origin_) / zoom_ - QPointF(0.5, 0.5); }
 
     GreyHistogram histogram;
-    bool peaks_shown = true, histogram_shown = true, region_tool = false;
+    bool peaks_shown = true, histogram_shown = true, region_tool = false, stale = false;
     QRect region;
 
   protected:
@@ -157,8 +157,10 @@ class CameraSurface : public QWidget {
             return;
         }
         painter.setRenderHint(QPainter::SmoothPixmapTransform, false);
+        painter.setOpacity(stale ? 0.4 : 1);
         painter.drawImage(QRectF(origin_, QSizeF(picture_.size()) * zoom_), picture_);
-        if (peaks_shown) paint_peaks(painter);
+        painter.setOpacity(1);
+        if (peaks_shown && !stale) paint_peaks(painter);
         if (!region.isNull()) {
             painter.setPen(QPen(QColor::fromRgb(style::kSkyBlue), 2, Qt::DashLine));
             painter.setBrush(Qt::NoBrush);
@@ -363,6 +365,11 @@ CameraView::~CameraView() = default;
 
 void CameraView::set_frame(const StripeImage& image, const StripePeaks* peaks) {
     impl_->surface->set_frame(image, peaks);
+}
+void CameraView::set_stale(bool stale) {
+    if (impl_->surface->stale == stale) return;
+    impl_->surface->stale = stale;
+    impl_->surface->changed();
 }
 void CameraView::set_peaks_shown(bool shown) {
     impl_->surface->peaks_shown = shown;

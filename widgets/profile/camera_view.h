@@ -33,6 +33,7 @@ class CameraView : public QWidget {
 
     // Pixels and peaks are copied; `peaks` may be null. An empty image clears the view.
     void set_frame(const StripeImage& image, const StripePeaks* peaks);
+    void set_stale(bool stale);  // the shown image is old: it is drawn pale
     void set_peaks_shown(bool shown);
     void set_histogram_shown(bool shown);
     void set_region_tool(bool on);

@@ -437,7 +437,10 @@ void ProfileCanvas::paint_live(QPainter& painter, const QRect&) {
         wide.setAlpha(90);
         paint_thin(painter, template_, wide, 7);
     }
-    paint_trace(painter, profile, live_);
+    if (stale)
+        paint_thin(painter, live_, style::axis(palette()), 1);
+    else
+        paint_trace(painter, profile, live_);
     last_painted_ = live_.bounds;
     paint_marks(painter);
     paint_measure(painter);

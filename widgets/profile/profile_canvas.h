@@ -19,7 +19,7 @@ class ProfileCanvas : public PlotCanvas {
     std::optional<Eigen::Vector2d> reference_point;
     std::optional<Feature> feature;
     std::optional<QRectF> window;
-    bool intensity_shown = false, residuals_shown = false, untouched = true;
+    bool intensity_shown = false, residuals_shown = false, untouched = true, stale = false;
     ProfilePlot::Tool tool = ProfilePlot::Tool::inspect;
 
     void profile_changed();  // takes the new trace into the next frame

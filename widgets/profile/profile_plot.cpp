@@ -36,6 +36,7 @@ ProfilePlot::ProfilePlot(QWidget* parent) : QWidget(parent), impl_(std::make_uni
     row->setContentsMargins(8, 2, 4, 2);
     row->setSpacing(0);
     impl_->caption = new QLabel(impl_->toolbar);
+    impl_->caption->setObjectName("sensor_state");
     impl_->caption->setAccessibleName(tr("Sensor state"));
     row->addWidget(impl_->caption);
     const auto button = [&](const QString& word, const QString& tip, bool checkable) {
@@ -77,6 +78,7 @@ void ProfilePlot::set_profile(const Profile& profile) {
         return;
     }
     impl_->canvas->profile = profile;
+    set_stale(false);
     impl_->canvas->profile_changed();
 }
 
@@ -89,6 +91,15 @@ void ProfilePlot::set_feature(const std::optional<Feature>& feature) {
     const bool was = impl_->canvas->feature.has_value();
     impl_->canvas->feature = feature;
     if (was || feature) impl_->canvas->request_live();
+}
+
+void ProfilePlot::set_stale(bool stale) {
+    if (impl_->canvas->stale == stale) return;
+    impl_->canvas->stale = stale;
+    impl_->canvas->request_live();
+}
+bool ProfilePlot::stale() const {
+    return impl_->canvas->stale;
 }
 
 void ProfilePlot::set_reference(const Profile& profile, const std::optional<Eigen::Vector2d>& reference_mm) {

@@ -35,6 +35,9 @@ class ProfilePlot : public QWidget {
     // screen stays; the newest one is shown when the freeze ends.
     void set_profile(const Profile& profile);
     void set_feature(const std::optional<Feature>& feature);
+    // The shown profile is old: it is drawn grey and thin, without segments, until the next one is set.
+    void set_stale(bool stale);
+    bool stale() const;
     // Of teaching: its contour thin beneath the live one, and the reference point (sensor frame x, z).
     void set_reference(const Profile& profile, const std::optional<Eigen::Vector2d>& reference_mm);
     void clear_reference();

@@ -44,7 +44,7 @@ void print_status(const WatchEvent& e) {
                     to_string(e.state), c.parts, c.corrected, c.refused, c.failed, c.alarms, c.lost, e.text);
     if (isatty(fileno(stderr)))
         fmt::print(stderr, "\r\x1b[K{}", line);
-    else if (e.event != "spot")
+    else if (!std::holds_alternative<watched::SpotDone>(e.happening))
         fmt::print(stderr, "{} {}\n", e.utc, line);
     std::fflush(stderr);
 }
@@ -54,14 +54,37 @@ json counts_json(const WatchCounts& c) {
             {"alarms", c.alarms}, {"outages", c.lost},        {"missed", c.missed}};
 }
 
+struct HappeningJson {
+    json operator()(const watched::Connected&) const { return json::object(); }
+    json operator()(const watched::Back&) const { return json::object(); }
+    json operator()(const watched::RobotNotice&) const { return json::object(); }
+    json operator()(const watched::Stopped&) const { return json::object(); }
+    json operator()(const watched::Lost& lost) const { return {{"device", lost.device}}; }
+    json operator()(const watched::Start& start) const { return {{"part", start.part_id}}; }
+    json operator()(const watched::Missed& missed) const { return {{"part", missed.part_id}}; }
+    json operator()(const watched::SpotDone& spot) const {
+        return {{"done", spot.done}, {"total", spot.total}};
+    }
+    json operator()(const watched::RunDone& run) const {
+        json regions = json::array();
+        for (const RegionRecord& region : run.record->regions)
+            regions.push_back({{"id", region.region_id},
+                               {"passed", region.gate_passed},
+                               {"push", to_string(region.push.status)},
+                               {"release", to_string(region.push.release)},
+                               {"refusals", region.refusals}});
+        return {{"part", run.record->part_id},
+                {"run", run.record->number},
+                {"status", to_string(run.record->status)},
+                {"seconds", run.seconds},
+                {"regions", std::move(regions)}};
+    }
+};
+
 json event_json(const WatchEvent& e) {
-    json line = {{"utc", e.utc},
-                 {"level", e.level},
-                 {"event", e.event},
-                 {"text", e.text},
-                 {"state", to_string(e.state)},
-                 {"counts", counts_json(e.counts)}};
-    line.update(e.data);
+    json line = {{"utc", e.utc},   {"level", to_string(e.level)}, {"event", name_of(e.happening)},
+                 {"text", e.text}, {"state", to_string(e.state)}, {"counts", counts_json(e.counts)}};
+    line.update(std::visit(HappeningJson{}, e.happening));
     return line;
 }
 
@@ -115,8 +138,9 @@ Expected<Answer> watch_project(const RunArguments& a) {
         print_status(e);
         if (*log) (*log)->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
         // The first good part proves it; one a part would only fill the file.
-        if (proven || e.event != "run" || e.data.value("status", "") != to_string(RunStatus::ok)) return;
-        proof = keep_headless_proof(*station, e.data.at("run"), e.data.at("part"), a.push);
+        const auto* run = std::get_if<watched::RunDone>(&e.happening);
+        if (proven || !run || run->record->status != RunStatus::ok) return;
+        proof = keep_headless_proof(*station, run->record->number, run->record->part_id, a.push);
         proven = true;
     };
     auto counts = watch(*station, options);

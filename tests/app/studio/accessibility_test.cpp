@@ -7,8 +7,11 @@
 
 #include <QMenu>
 #include <QMenuBar>
+#include <QSlider>
+#include <QSpinBox>
 #include <QToolButton>
 #include <QTreeWidget>
+#include <QWheelEvent>
 #include <filesystem>
 #include <set>
 
@@ -128,6 +131,40 @@ TEST_F(Accessibility, EverythingHasNameAndTooltipAndIsReachedByKeyboard) {
         EXPECT_EQ(QApplication::focusWidget(), rails[i]);
         EXPECT_EQ(window().step(), kSteps[static_cast<std::size_t>(i)]);
     }
+}
+
+// A wheel that passes over a box scrolls the page. Nothing of the project changes by it, on any page.
+TEST_F(Accessibility, TheWheelChangesNoValueWithoutTheFocus) {
+    Desk& desk = studio->desk();
+    desk.selection().select_spot(desk.project().spots.front().id);
+    int boxes = 0;
+    every_screen([&](const QString& where) {
+        window().setFocus();
+        if (QWidget* focused = QApplication::focusWidget()) focused->clearFocus();
+        for (QWidget* box : window().findChildren<QWidget*>()) {
+            const auto* number = qobject_cast<QAbstractSpinBox*>(box);
+            const auto* choice = qobject_cast<QComboBox*>(box);
+            const auto* slider = qobject_cast<QSlider*>(box);
+            if (!box->isVisible() || !box->isEnabled() || !(number || choice || slider)) continue;
+            const auto value = [&] {
+                return number   ? number->text()
+                       : choice ? choice->currentText()
+                                : QString::number(slider->value());
+            };
+            const QString before = value();
+            const QPointF at = QRectF(box->rect()).center();
+            for (const int turn : {120, -120, -120}) {
+                QWheelEvent wheel(at, box->mapToGlobal(at), {}, {0, turn}, Qt::NoButton, Qt::NoModifier,
+                                  Qt::NoScrollPhase, false);
+                QApplication::sendEvent(number ? box->findChild<QWidget*>() : box, &wheel);
+            }
+            EXPECT_EQ(value(), before) << where.toStdString() << " " << box->objectName().toStdString();
+            EXPECT_NE(box->focusPolicy(), Qt::WheelFocus) << box->objectName().toStdString();
+            ++boxes;
+        }
+    });
+    EXPECT_GT(boxes, 20);
+    EXPECT_FALSE(desk.modified());
 }
 
 TEST_F(Accessibility, EveryActionHasAWordATipAndAShortcutOfItsOwn) {

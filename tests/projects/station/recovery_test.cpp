@@ -31,10 +31,11 @@ class Recovery : public testing::TestWithParam<std::string> {
         options.cancel = stop.get_token();
         options.tell = [this](const WatchEvent& e) {
             const std::lock_guard lock(mutex);
-            log += fmt::format("{} {}: {}\n", e.utc, e.event, e.text);
+            log += fmt::format("{} {}: {}\n", e.utc, name_of(e.happening), e.text);
             counts = e.counts;
-            if (e.event == "start") started = Clock::now();
-            if (e.event == "run") ++runs, last_ok = e.data.value("status", "") == "ok";
+            if (std::holds_alternative<watched::Start>(e.happening)) started = Clock::now();
+            if (const auto* run = std::get_if<watched::RunDone>(&e.happening))
+                ++runs, last_ok = run->record->status == RunStatus::ok;
             told.notify_all();
         };
         watching = std::jthread([this] { (void)watch(*served->station, options); });

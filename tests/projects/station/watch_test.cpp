@@ -31,7 +31,8 @@ class Watching : public testing::Test {
         options.retry_first = std::chrono::milliseconds(1);
         options.retry_longest = std::chrono::milliseconds(4);
         options.tell = [this](const WatchEvent& e) {
-            if (e.event != "spot") told.push_back(e.level + " " + e.event);
+            if (!std::holds_alternative<watched::SpotDone>(e.happening))
+                told.push_back(fmt::format("{} {}", to_string(e.level), name_of(e.happening)));
             texts += e.text.english() + "\n";
         };
     }

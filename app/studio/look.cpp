@@ -145,6 +145,7 @@ void apply_look(QApplication& application, bool dark) {
         QMenuBar::item { padding: 6px 10px; }
         QFrame#card { border: 1px solid %2; border-radius: 4px; background: %3; }
         QFrame#trouble { border: 2px solid %5; border-radius: 4px; background: palette(base); }
+        QFrame#trouble[tone="plain"] { border: 2px solid %1; }
         QHeaderView::section { background: %3; border: none; border-bottom: 1px solid %2; padding: 4px 6px; }
         QStatusBar::item { border: none; }
         QMainWindow::separator { width: 6px; height: 6px; background: %2; }

@@ -563,7 +563,18 @@ void MainWindow::refresh_status() {
 }
 
 void MainWindow::tell(const QString& sentence) {
+    show_message(sentence, "alarm");
+}
+
+void MainWindow::tell_done(const QString& sentence) {
+    show_message(sentence, "plain");
+}
+
+void MainWindow::show_message(const QString& sentence, const char* tone) {
     trouble_text_->setText(sentence);
+    trouble_->setProperty("tone", tone);
+    trouble_->style()->unpolish(trouble_);
+    trouble_->style()->polish(trouble_);
     trouble_->show();
 }
 
@@ -651,7 +662,7 @@ void MainWindow::make_report() {
                              : write_pdf(*page, file.toStdString());
     if (!written) return tell(shown_error(tr("The file was not written."), written.error()));
     desk_.note(EventKind::note, "report", "hand-over report written to " + file.toStdString());
-    tell(tr("The report is in %1").arg(file));
+    tell_done(tr("The report is in %1").arg(file));
 }
 
 void MainWindow::mirror_project() {
@@ -672,7 +683,8 @@ void MainWindow::mirror_project() {
     mirrored->name = QFileInfo(file).completeBaseName().toStdString();
     if (auto made = desk_.create(file.toStdString(), *mirrored); !made)
         return tell(shown_error(tr("The project was not made."), made.error()));
-    tell(tr("This is the mirrored clone. Drive its spots slowly once, and teach their references again."));
+    tell_done(
+        tr("This is the mirrored clone. Drive its spots slowly once, and teach their references again."));
 }
 
 void MainWindow::reteach() {
@@ -682,8 +694,8 @@ void MainWindow::reteach() {
     const auto moved = desk_.reteach(dialog.exchange());
     if (!moved) return tell(shown_error(moved.error()));
     show_step(Step::prove);
-    tell(tr("%1 spots were led along. Drive each slowly once, then repeat the zero shift.")
-             .arg(moved->size()));
+    tell_done(tr("%1 spots were led along. Drive each slowly once, then repeat the zero shift.")
+                  .arg(moved->size()));
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

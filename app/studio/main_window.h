@@ -54,7 +54,9 @@ class MainWindow : public QMainWindow {
     void refresh_status();
     void refresh_devices();
     void refresh_next();
-    void tell(const QString& sentence);
+    void tell(const QString& sentence);       // of what went wrong
+    void tell_done(const QString& sentence);  // of what was done
+    void show_message(const QString& sentence, const char* tone);
     void new_project();
     void open_project();
     void save_as();

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -110,6 +111,18 @@ struct Evidence {
     std::int64_t setup = 0;  // ProjectFile::load_setup
     std::variant<FrozenContour, ZeroShift, KnownShift, HeadlessRun, RobotReturns, TriggerPasses> what;
 };
+
+// The runs that were measured for it: of a proof, not of production.
+inline std::set<std::int64_t> proof_runs(const std::vector<Evidence>& all) {
+    std::set<std::int64_t> runs;
+    for (const Evidence& evidence : all) {
+        if (const auto* zero = std::get_if<ZeroShift>(&evidence.what))
+            runs.insert(zero->runs.begin(), zero->runs.end());
+        if (const auto* known = std::get_if<KnownShift>(&evidence.what))
+            for (const ShiftTest& test : known->tests) runs.insert(test.run);
+    }
+    return runs;
+}
 
 // The words of the kinds on disk.
 inline constexpr std::string_view kFrozenContour = "frozen contour", kZeroShift = "zero shift",

@@ -3876,6 +3876,17 @@ ausgelassen</translation>
         <source>Region, verdict</source>
         <translation>Bereich, Urteil</translation>
     </message>
+    <message>
+        <source>Part %1 is measured and waits for your answer below.</source>
+        <translation>Teil %1 ist vermessen und wartet unten auf Ihre Antwort.</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n refused</source>
+        <translation>
+            <numerusform>%n abgelehnt</numerusform>
+            <numerusform>%n abgelehnt</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>seamwright::SceneView</name>
@@ -4551,10 +4562,6 @@ und %1 weitere</translation>
         </translation>
     </message>
     <message>
-        <source>all within limits</source>
-        <translation>alle innerhalb der Grenzen</translation>
-    </message>
-    <message>
         <source>History over parts</source>
         <translation>Verlauf über Teile</translation>
     </message>
@@ -4569,6 +4576,17 @@ und %1 weitere</translation>
     <message>
         <source>History chart</source>
         <translation>Verlaufsdiagramm</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n without a value, the others within limits</source>
+        <translation>
+            <numerusform>%n ohne Wert, die anderen innerhalb der Grenzen</numerusform>
+            <numerusform>%n ohne Wert, die anderen innerhalb der Grenzen</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>all values within limits</source>
+        <translation>alle Werte innerhalb der Grenzen</translation>
     </message>
 </context>
 <context>

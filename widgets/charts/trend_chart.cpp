@@ -115,6 +115,11 @@ void TrendChart::Impl::rebuild() {
         text->setColor(style::alarm(palette));
         text->setFont(canvas->font());
     };
+    int missing = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(parts); ++i)
+        missing += std::none_of(series.begin(), series.end(), [&](const TrendSeries& one) {
+            return i < one.values.size() && std::isfinite(one.values[i]);
+        });
     limit_line(limits.lower, TrendChart::tr("lower limit"));
     limit_line(limits.upper, TrendChart::tr("upper limit"));
     if (marked >= 0 && marked < parts) {
@@ -134,7 +139,9 @@ void TrendChart::Impl::rebuild() {
     else if (beyond_count > 0)
         text += "   " + TrendChart::tr("%n beyond limits", nullptr, beyond_count);
     else if (limits.lower || limits.upper)
-        text += "   " + TrendChart::tr("all within limits");
+        text += "   " + (missing > 0 ? TrendChart::tr("%n without a value, the others within limits", nullptr,
+                                                      missing)
+                                     : TrendChart::tr("all values within limits"));
     if (marked >= 0 && marked < parts) text += "   " + labels[static_cast<std::size_t>(marked)];
     title->setText(text);
     canvas->request_replot();

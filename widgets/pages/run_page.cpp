@@ -214,16 +214,14 @@ RunPage::RunPage(Desk& desk, const Views& views)
         measure_push_->setEnabled(free);
     });
     connect(views_.trend, &TrendChart::part_opened, this, [this](int index) {
-        if (!isVisible() || index < 0 ||
-            index >= static_cast<int>(std::min<std::size_t>(summaries_.size(), kCharted)))
-            return;
-        const auto& s = summaries_[std::min<std::size_t>(summaries_.size(), kCharted) - 1 -
-                                   static_cast<std::size_t>(index)];
-        if (auto run = desk_.run(s.number)) show_run(std::make_shared<const RunRecord>(std::move(*run)));
+        if (!isVisible() || index < 0 || index >= static_cast<int>(charted_.size())) return;
+        if (auto run = desk_.run(charted_[static_cast<std::size_t>(index)]))
+            show_run(std::make_shared<const RunRecord>(std::move(*run)));
     });
     connect(&desk_, &Desk::opened, this, [this] {
         shown_.reset();
         confirm_->hide();
+        differences_->hide();
     });
 }
 
@@ -328,6 +326,10 @@ void RunPage::show_run(std::shared_ptr<const RunRecord> run) {
 
 void RunPage::ask(const std::shared_ptr<const RunRecord>& judged) {
     show_run(judged);
+    set_verdict(*verdict_,
+                tr("Part %1 is measured and waits for your answer below.")
+                    .arg(QString::fromStdString(judged->part_id)),
+                Tone::attention);
     QVector<QStringList> rows;
     std::set<std::string> robots;
     for (const RegionRecord& region : judged->regions) {
@@ -383,10 +385,19 @@ void RunPage::show_history() {
         const double most = desk_.project().regions[static_cast<std::size_t>(at)].limits.translation_mm;
         if (std::isfinite(most)) limits = {-most, most};
     }
-    const std::size_t newest = std::min<std::size_t>(summaries_.size(), kCharted);
-    for (std::size_t i = newest; i-- > 0;) {
-        auto run = desk_.run(summaries_[i].number);
-        labels.push_back(QString::number(summaries_[i].number));
+    // A proof's shifts are made on purpose and say nothing of how the parts come.
+    const auto proofs = proof_runs(desk_.facts().evidence);
+    charted_.clear();
+    for (const RunSummary& s : summaries_) {
+        if (charted_.size() == kCharted) break;
+        if (!proofs.contains(s.number)) charted_.push_back(s.number);
+    }
+    std::reverse(charted_.begin(), charted_.end());
+    int refused = 0;
+    for (const std::int64_t number : charted_) {
+        auto run = desk_.run(number);
+        refused += run && run->status == RunStatus::refused;
+        labels.push_back(QString::number(number));
         Eigen::Vector3d t = Eigen::Vector3d::Constant(std::nan(""));
         if (run)
             for (const RegionRecord& r : run->regions)
@@ -394,8 +405,9 @@ void RunPage::show_history() {
                     t = r.correction->displacement.workobject_from_movedworkobject.translation();
         for (int k = 0; k < 3; ++k) series[static_cast<std::size_t>(k)].values.push_back(t[k]);
     }
-    views_.trend->set_data(tr("Displacement of region %1").arg(QString::fromStdString(id)),
-                           QStringLiteral("mm"), labels, series, limits);
+    QString title = tr("Displacement of region %1").arg(QString::fromStdString(id));
+    if (refused > 0) title += "   " + tr("%n refused", nullptr, refused);
+    views_.trend->set_data(title, QStringLiteral("mm"), labels, series, limits);
     std::vector<double> all;
     for (const TrendSeries& s : series) all.insert(all.end(), s.values.begin(), s.values.end());
     views_.histogram->set_data(tr("Displacement, X Y Z"), QStringLiteral("mm"), all, limits);

@@ -36,6 +36,7 @@ class RunPage : public StepPage {
     QTableWidget *regions_, *spots_, *frames_, *history_, *differences_;
     std::shared_ptr<const RunRecord> shown_;
     std::vector<RunSummary> summaries_;
+    std::vector<std::int64_t> charted_;  // runs of the trend, in its order
 };
 
 }  // namespace seamwright

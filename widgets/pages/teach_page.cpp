@@ -257,11 +257,13 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
             after.reference_mm = taught->spot.reference_mm;
             after.reference_profile = taught->spot.reference_profile;
             after.curve.reset();
-            if (done(desk_.edit(after, tr("reference"))))
+            if (done(desk_.edit(after, tr("reference")))) {
+                spread_of_ = after;
                 spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
                                      .arg(taught->measurements.size())
                                      .arg(number(taught->spread_mm.x(), 4), number(taught->spread_mm.y(), 4))
                                      .arg(taught->left_out));
+            }
         });
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
@@ -287,6 +289,10 @@ void TeachPage::refresh() {
     const Spot* s = spot();
     const bool connected = desk_.station().connected;
     inspector_->setVisible(s != nullptr);
+    // The spread belongs to the measurement of this reference, at this pose.
+    if (!s || s->id != spread_of_.id || s->reference_mm != spread_of_.reference_mm ||
+        !measured_alike(*s, spread_of_))
+        spread_->clear();
     for (QPushButton* b : {duplicate_, rename_, up_, down_, remove_}) b->setEnabled(s);
     measure_->setEnabled(s && connected);
     if (!s) return;

@@ -48,6 +48,7 @@ class TeachPage : public StepPage {
     QPushButton *add_via_, *remove_via_;
     QComboBox *sensor_, *robot_, *kind_;
     QLabel *kind_help_, *reference_, *spread_;
+    Spot spread_of_;  // as it was when measured
     QSpinBox* repeats_;
     QVBoxLayout *parameters_, *fields_;
     QWidget* inspector_;

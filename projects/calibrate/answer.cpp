@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/calibration/lookup_table_calibration.h"
+#include "core/calibration/table/lookup_table_calibration.h"
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/calibration/camera.h"
+#include "core/calibration/camera/camera.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "core/calibration/board.h"
-#include "core/calibration/camera.h"
-#include "core/calibration/circle_section.h"
+#include "core/calibration/board/board.h"
+#include "core/calibration/camera/camera.h"
+#include "core/calibration/sphere/circle_section.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/apex_pair.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/calibration/hand_eye.h"
+#include "core/calibration/pose/hand_eye.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/hand_eye_json.h"

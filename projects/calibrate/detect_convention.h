@@ -1,5 +1,5 @@
 #pragma once
-// The detective of core/calibration/convention_detective.h over a calibration's data: which convention are its
+// The detective of core/calibration/pose/convention_detective.h over a calibration's data: which convention are its
 // poses written in? Nothing is changed by asking.
 //
 // {"verdict":"named|as_given|cannot_tell","sentence","tried" (readings),
@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/calibration/convention_detective.h"
+#include "core/calibration/pose/convention_detective.h"
 
 namespace seamwright {
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/calibration/drift_check.h"
+#include "core/calibration/sphere/drift_check.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/calibration/hand_eye.h"
+#include "core/calibration/pose/hand_eye.h"
 
 namespace seamwright {
 

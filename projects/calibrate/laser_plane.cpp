@@ -1,4 +1,4 @@
-#include "core/calibration/laser_plane.h"
+#include "core/calibration/stripe/laser_plane.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/camera_json.h"

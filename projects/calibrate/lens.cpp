@@ -1,6 +1,6 @@
 #include <charconv>
 
-#include "core/calibration/lens.h"
+#include "core/calibration/camera/lens.h"
 #include "devices/exchange/json_fields.h"
 #include "projects/calibrate/camera_json.h"
 #include "projects/calibrate/methods.h"

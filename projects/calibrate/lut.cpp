@@ -1,4 +1,4 @@
-#include "core/calibration/lookup_table_calibration.h"
+#include "core/calibration/table/lookup_table_calibration.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"
 #include "projects/calibrate/methods.h"

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/calibration/drift_check.h"
+#include "core/calibration/sphere/drift_check.h"
 
 namespace seamwright {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/calibration/plate.h"
+#include "core/calibration/pose/plate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/calibration/board.h"
+#include "core/calibration/board/board.h"
 #include "core/error.h"
 
 namespace seamwright {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/calibration/convention_detective.h"
+#include "core/calibration/pose/convention_detective.h"
 
 namespace seamwright {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/calibration/tcp_sphere.h"
+#include "core/calibration/sphere/tcp_sphere.h"
 
 namespace seamwright {
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "core/calibration/static_chain.h"
+#include "core/calibration/pose/static_chain.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <tuple>
 
-#include "core/calibration/camera.h"
+#include "core/calibration/camera/camera.h"
 #include "core/geometry/pose_convention.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/image_file.h"

@@ -10,7 +10,7 @@
 
 #include <filesystem>
 
-#include "core/calibration/stripe_camera.h"
+#include "core/calibration/stripe/stripe_camera.h"
 #include "projects/calibrate/methods.h"
 
 namespace seamwright {

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "core/calibration/tcp_sphere.h"
+#include "core/calibration/sphere/tcp_sphere.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"

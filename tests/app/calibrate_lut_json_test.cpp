@@ -4,7 +4,7 @@
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/lookup_table_file.h"
 #include "projects/calibrate/methods.h"
-#include "tests/core/calibration/camera_scene.h"
+#include "tests/core/calibration/camera/camera_scene.h"
 #include "tests/devices/temporary_folder.h"
 
 namespace seamwright {

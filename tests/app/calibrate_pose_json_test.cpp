@@ -3,8 +3,8 @@
 
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods.h"
-#include "tests/core/calibration/hand_eye_simulation.h"
-#include "tests/core/calibration/sphere_simulation.h"
+#include "tests/core/calibration/pose/hand_eye_simulation.h"
+#include "tests/core/calibration/sphere/sphere_simulation.h"
 
 namespace seamwright {
 namespace {

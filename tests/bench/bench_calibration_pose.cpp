@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <ctime>
 
-#include "tests/core/calibration/hand_eye_simulation.h"
-#include "tests/core/calibration/sphere_simulation.h"
+#include "tests/core/calibration/pose/hand_eye_simulation.h"
+#include "tests/core/calibration/sphere/sphere_simulation.h"
 
 namespace seamwright {
 namespace {

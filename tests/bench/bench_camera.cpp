@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <opencv2/calib3d.hpp>
 
-#include "core/calibration/camera.h"
-#include "tests/core/calibration/camera_scene.h"
+#include "core/calibration/camera/camera.h"
+#include "tests/core/calibration/camera/camera_scene.h"
 
 namespace seamwright {
 namespace {

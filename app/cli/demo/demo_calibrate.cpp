@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "app/cli/demo/demo.h"
-#include "core/calibration/lens.h"
-#include "core/calibration/stripe_camera.h"
-#include "core/calibration/tcp_sphere.h"
+#include "core/calibration/camera/lens.h"
+#include "core/calibration/sphere/tcp_sphere.h"
+#include "core/calibration/stripe/stripe_camera.h"
 #include "core/profile/filter.h"
 #include "core/profile/peaks.h"
 #include "devices/exchange/pose_json.h"

@@ -5,8 +5,8 @@
 
 #include <tuple>
 
-#include "tests/core/calibration/hand_eye_simulation.h"
-#include "tests/core/calibration/sphere_simulation.h"
+#include "tests/core/calibration/pose/hand_eye_simulation.h"
+#include "tests/core/calibration/sphere/sphere_simulation.h"
 
 namespace seamwright {
 namespace {

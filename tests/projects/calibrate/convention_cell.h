@@ -1,5 +1,5 @@
 #pragma once
-// Calibration data whose poses are written by another robot (tests/core/calibration/convention_data.h).
+// Calibration data whose poses are written by another robot (tests/core/calibration/pose/convention_data.h).
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "projects/calibrate/detect_convention.h"
 #include "projects/calibrate/methods.h"
-#include "tests/core/calibration/convention_data.h"
-#include "tests/core/calibration/hand_eye_simulation.h"
-#include "tests/core/calibration/sphere_simulation.h"
+#include "tests/core/calibration/pose/convention_data.h"
+#include "tests/core/calibration/pose/hand_eye_simulation.h"
+#include "tests/core/calibration/sphere/sphere_simulation.h"
 
 namespace seamwright::elsewhere {
 

@@ -1,0 +1,23 @@
+#pragma once
+// The detectors behind find_board, on OpenCV images. Private to core/calibration/board.
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "core/calibration/board/board.h"
+
+namespace seamwright::detail {
+
+// 8-bit copy of any depth.
+cv::Mat grey_of(const StripeImage& image);
+// 255 where a long thin piece is saturated: the laser stripe.
+cv::Mat stripe_mask(const cv::Mat& grey);
+// The stripe painted over with its surroundings.
+cv::Mat without_stripe(const cv::Mat& grey, const cv::Mat& stripe);
+// Contrast stretched between quantiles of the pixels outside `ignore`, then value^gamma.
+cv::Mat stretched(const cv::Mat& grey, const cv::Mat& ignore, double gamma);
+
+std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spec);
+std::optional<FoundBoard> find_charuco(const cv::Mat& grey, const BoardSpec& spec);
+
+}  // namespace seamwright::detail

@@ -1,0 +1,584 @@
+#include "core/calibration/pose/hand_eye.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/calibration/pose/hand_eye_start.h"
+#include "core/calibration/pose_set.h"
+#include "core/calibration/statistics.h"
+#include "core/geometry/decompositions.h"
+
+namespace seamwright {
+namespace {
+
+using hand_eye::Closed;
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
+
+constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact data stay finite
+constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
+constexpr double kUndetermined_mm = 20.0, kUndetermined_rad = 0.05;
+constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
+
+struct Chain {
+    std::vector<Pose> a, c;
+    std::vector<bool> used;
+    size_t size() const { return a.size(); }
+    size_t used_count() const { return static_cast<size_t>(std::count(used.begin(), used.end(), true)); }
+};
+
+struct Scales {
+    double mm = 1, rad = 0.01;
+};
+
+Eigen::Vector3d residual_mm(const Chain& chain, size_t i, const Pose& x, const Pose& y) {
+    return chain.a[i] * (x * chain.c[i].translation()) - y.translation();
+}
+Eigen::Vector3d residual_rad(const Chain& chain, size_t i, const Pose& x, const Pose& y) {
+    return rotation_log(y.linear().transpose() * chain.a[i].linear() * x.linear() * chain.c[i].linear());
+}
+
+void jacobians(const Chain& chain, size_t i, const Pose& x, const Pose& y, Matrix3x12& jt, Matrix3x12& jr) {
+    const Eigen::Matrix3d ra = chain.a[i].linear();
+    jt.setZero();
+    jt.leftCols<3>() = ra;
+    jt.middleCols<3>(3) = -ra * skew(x.linear() * chain.c[i].translation());
+    jt.middleCols<3>(6) = -Eigen::Matrix3d::Identity();
+    jr.setZero();
+    // log(Exp(d) E) = r + J_l^-1(r) d, J_l^-1 = I - [r]x / 2 to first order in the residual r.
+    const Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() - 0.5 * skew(residual_rad(chain, i, x, y));
+    jr.middleCols<3>(3) = turn * y.linear().transpose() * ra;
+    jr.middleCols<3>(9) = -turn * y.linear().transpose();
+}
+
+// Geman-McClure over whole pairs: q = |r_t|^2/s_t^2 + |r_r|^2/s_r^2, cost q k / (q + k); k infinite = least
+// squares.
+double pair_square(const Chain& chain, size_t i, const Pose& x, const Pose& y, const Scales& s) {
+    return residual_mm(chain, i, x, y).squaredNorm() / (s.mm * s.mm) +
+           residual_rad(chain, i, x, y).squaredNorm() / (s.rad * s.rad);
+}
+double cost_of(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
+    double cost = 0;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        const double q = pair_square(chain, i, x, y, s);
+        cost += std::isinf(k) ? q : q * k / (q + k);
+    }
+    return cost;
+}
+
+struct Normal {
+    Matrix12 translation = Matrix12::Zero(), rotation = Matrix12::Zero();  // each divided by its variance
+    Vector12 gradient = Vector12::Zero();
+    Matrix12 sum() const { return translation + rotation; }
+};
+
+Normal normal_equations(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
+    Normal normal;
+    Matrix3x12 jt, jr;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        jacobians(chain, i, x, y, jt, jr);
+        double weight = 1;
+        if (!std::isinf(k)) {
+            const double q = pair_square(chain, i, x, y, s);
+            weight = k / (q + k) * k / (q + k);
+        }
+        const double wt = weight / (s.mm * s.mm), wr = weight / (s.rad * s.rad);
+        normal.translation.noalias() += (wt * jt.transpose()).lazyProduct(jt);
+        normal.rotation.noalias() += (wr * jr.transpose()).lazyProduct(jr);
+        normal.gradient.noalias() += wt * jt.transpose() * residual_mm(chain, i, x, y) +
+                                     wr * jr.transpose() * residual_rad(chain, i, x, y);
+    }
+    return normal;
+}
+
+double refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int iterations) {
+    double cost = cost_of(chain, x, y, s, k), lambda = 1e-6;
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+        const Normal normal = normal_equations(chain, x, y, s, k);
+        const Matrix12 h = normal.sum();
+        const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+        bool moved = false;
+        double gain = 0;
+        for (int attempt = 0; attempt < 10; ++attempt) {
+            Matrix12 damped = scale.asDiagonal() * h * scale.asDiagonal();
+            damped.diagonal().array() += lambda + 1e-14;
+            const Vector12 step =
+                -(scale.asDiagonal() * solve_symmetric(damped, scale.asDiagonal() * normal.gradient));
+            const Pose next_x = retract(x, step.head<6>()), next_y = retract(y, step.tail<6>());
+            const double next = cost_of(chain, next_x, next_y, s, k);
+            if (next <= cost) {
+                gain = cost - next;
+                x = next_x;
+                y = next_y;
+                cost = next;
+                lambda = std::max(1e-12, lambda * 0.1);
+                moved = true;
+                break;
+            }
+            lambda = std::max(1e-9, lambda * 10);
+        }
+        if (!moved || gain <= 1e-12 * cost) break;
+    }
+    return cost;
+}
+
+double hand_eye_median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// Axis sigmas from medians of squared norms (chi-squared with three degrees of freedom has median 2.366).
+Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
+    std::vector<double> t, r;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        t.push_back(residual_mm(chain, i, x, y).squaredNorm());
+        r.push_back(residual_rad(chain, i, x, y).squaredNorm());
+    }
+    return {std::max(kSmallest_mm, std::sqrt(hand_eye_median(t) / 2.366)),
+            std::max(kSmallest_rad, std::sqrt(hand_eye_median(r) / 2.366))};
+}
+
+// Variance components by the hat matrix' share of each group: s^2 = sum r^2 / (3 n - tr(H^-1 H_group)).
+Scales estimated_scales(const Chain& chain, const Pose& x, const Pose& y, const Scales& s) {
+    const Normal normal = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity());
+    const Matrix12 sum = normal.sum();
+    const double p_t = solve_symmetric(sum, normal.translation).trace(),
+                 p_r = solve_symmetric(sum, normal.rotation).trace();
+    double squares_t = 0, squares_r = 0;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        squares_t += residual_mm(chain, i, x, y).squaredNorm();
+        squares_r += residual_rad(chain, i, x, y).squaredNorm();
+    }
+    const double rows = 3 * static_cast<double>(chain.used_count());
+    return {std::max(kSmallest_mm, std::sqrt(squares_t / std::max(1.0, rows - p_t))),
+            std::max(kSmallest_rad, std::sqrt(squares_r / std::max(1.0, rows - p_r)))};
+}
+
+// Least squares with the two scales estimated along.
+Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales) {
+    for (int round = 0; round < 8; ++round) {
+        refine(chain, x, y, scales, std::numeric_limits<double>::infinity(), 30);
+        const Scales next = estimated_scales(chain, x, y, scales);
+        const double change = std::abs(
+            std::log((next.mm / next.rad) / (scales.mm / scales.rad)));  // only the ratio moves the solution
+        scales = next;
+        if (change < 1e-4) break;
+    }
+    return scales;
+}
+
+// Sum of absolute residuals with angles on the lever of the camera's distance: one number for all closed
+// forms.
+double absolute_cost(const Chain& chain, const Pose& x, const Pose& y, double lever) {
+    double sum = 0;
+    for (size_t i = 0; i < chain.size(); ++i)
+        if (chain.used[i])
+            sum +=
+                std::hypot(residual_mm(chain, i, x, y).norm(), lever * residual_rad(chain, i, x, y).norm());
+    return sum;
+}
+
+Chain subset(const Chain& chain, const std::vector<size_t>& pick) {
+    Chain part;
+    for (const size_t i : pick) {
+        part.a.push_back(chain.a[i]);
+        part.c.push_back(chain.c[i]);
+        part.used.push_back(true);
+    }
+    return part;
+}
+
+struct Began {
+    Closed closed;
+    double cost = std::numeric_limits<double>::infinity();
+};
+
+Began best_start(const Chain& chain) {
+    std::vector<size_t> used;
+    double lever = 0;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        used.push_back(i);
+        lever += chain.c[i].translation().norm();
+    }
+    lever = std::max(50.0, lever / static_cast<double>(used.size()));
+    Began best;
+    const auto consider = [&](const std::vector<size_t>& pick) {
+        const Chain part = subset(chain, pick);
+        for (const auto& closed : hand_eye::closed_forms(part.a, part.c)) {
+            const double cost = absolute_cost(chain, closed.x, closed.y, lever);
+            if (cost < best.cost) best = {closed, cost};
+        }
+    };
+    consider(used);
+    // Subsets pay when some pair is grossly wrong: a mean residual that the median does not know.
+    const size_t few = 4;
+    if (used.size() <= few) return best;
+    std::vector<double> each;
+    for (const size_t i : used)
+        each.push_back(std::hypot(residual_mm(chain, i, best.closed.x, best.closed.y).norm(),
+                                  lever * residual_rad(chain, i, best.closed.x, best.closed.y).norm()));
+    const double middle = hand_eye_median(each);
+    if (*std::max_element(each.begin(), each.end()) < 3 * middle + 1e-9) return best;
+    std::mt19937 random(11u);
+    for (int trial = 0; trial < 60; ++trial) {
+        std::vector<size_t> pick = used;
+        for (size_t k = 0; k < few; ++k) std::swap(pick[k], pick[k + random() % (pick.size() - k)]);
+        pick.resize(few);
+        consider(pick);
+    }
+    return best;
+}
+
+struct Determination {
+    Matrix12 inverse = Matrix12::Zero();
+    double worst_mm = 0, worst_rad = 0;  // sigma of X with the noise floor
+};
+
+// The covariance as the pairs themselves scatter (Liang and Zeger's sandwich, each residual freed from its own
+// other pairs see it), in the directions in which it is the larger: a camera knows the target's distance and
+// tilt ten times worse than its place across, and a turn and a shift of one pair err together.
+Matrix12 by_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales& s,
+                  const Matrix12& isotropic) {
+    Matrix12 meat = Matrix12::Zero();
+    Matrix3x12 jt, jr;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        jacobians(chain, i, x, y, jt, jr);
+        Eigen::Matrix<double, 6, 12> j;
+        j << jt / s.mm, jr / s.rad;
+        Vector6 r;
+        r << residual_mm(chain, i, x, y) / s.mm, residual_rad(chain, i, x, y) / s.rad;
+        // I - J C J^T; a pair that alone knows something has no residual there.
+        const SymmetricEigen left = symmetric_eigen(Matrix6::Identity() - j * isotropic * j.transpose());
+        const Vector6 alone = left.vectors.transpose() * r;
+        const Vector6 others = left.vectors * alone.cwiseQuotient(left.values.cwiseMax(0.05).cwiseSqrt());
+        const Vector12 pull = j.transpose() * others;
+        meat.noalias() += pull * pull.transpose();
+    }
+    const Eigen::LLT<Matrix12> root(isotropic);
+    if (root.info() != Eigen::Success) return isotropic;
+    const Matrix12 l = root.matrixL();
+    const SymmetricEigen ratio = symmetric_eigen(l.transpose() * meat * l);
+    // Where the pairs scatter alike the largest ratio comes out near (1 + sqrt(12 / n))^2 by chance; its root is
+    // taken off before it counts, so that such pairs are not stated too unsure.
+    const double chance = 1 + std::sqrt(12.0 / std::max(1.0, static_cast<double>(chain.used_count())));
+    return l * ratio.vectors * (ratio.values / chance).cwiseMax(1).asDiagonal() * ratio.vectors.transpose() *
+           l.transpose();
+}
+
+Determination determination(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
+    const Scales floor{std::max(scales.mm, kFloor_mm), std::max(scales.rad, kFloor_rad)};
+    const auto inverse_of = [&](const Scales& s) {
+        const Matrix12 h = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity()).sum();
+        const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+        const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * h * scale.asDiagonal());
+        const Vector12 inverse = eigen.values.cwiseMax(1e-15).cwiseInverse();
+        return Matrix12(scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() *
+                        eigen.vectors.transpose() * scale.asDiagonal());
+    };
+    Determination result;
+    const Matrix12 floored = inverse_of(floor);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> t(Eigen::Matrix3d(floored.topLeftCorner<3, 3>()));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> w(Eigen::Matrix3d(floored.block<3, 3>(3, 3)));
+    result.worst_mm = std::sqrt(std::max(0.0, t.eigenvalues()[2]));
+    result.worst_rad = std::sqrt(std::max(0.0, w.eigenvalues()[2]));
+    result.inverse = by_pairs(chain, x, y, scales, inverse_of(scales));
+    return result;
+}
+
+std::vector<Text> degenerate_words(const std::vector<Pose>& base_from_flange) {
+    const auto spread = orientation_spread(base_from_flange);
+    if (spread.spread_rad[0] < rad_from_deg(5))
+        return {
+            "all poses share one orientation: rotate the flange about two of its axes by 20 degrees or more"};
+    if (spread.spread_rad[1] < rad_from_deg(5))
+        return {Text(
+            "the poses turn about the flange's {} axis only: rotate about another axis by 20 degrees or more",
+            axis_name(spread.axes.col(0)))};
+    return {};
+}
+
+Expected<void> check_input(const std::vector<HandEyePair>& pairs, const std::vector<std::string>& exclude,
+                           std::vector<bool>& used) {
+    std::vector<std::string> ids;
+    std::vector<Pose> robot, camera, kept;
+    for (const auto& pair : pairs) {
+        ids.push_back(pair.id);
+        robot.push_back(pair.base_from_flange);
+        camera.push_back(pair.camera_from_target);
+    }
+    if (auto ok = check_ids(ids, exclude, "pairs"); !ok) return ok;
+    if (auto ok = check_rigid(robot, ids, "base_from_flange of"); !ok) return ok;
+    if (auto ok = check_rigid(camera, ids, "camera_from_target of"); !ok) return ok;
+    if (auto ok = check_millimetres(robot, "base_from_flange of the pairs"); !ok) return ok;
+    if (auto ok = check_millimetres(camera, "camera_from_target of the pairs"); !ok) return ok;
+    used.assign(pairs.size(), true);
+    for (size_t i = 0; i < pairs.size(); ++i) {
+        if (std::find(exclude.begin(), exclude.end(), ids[i]) != exclude.end())
+            used[i] = false;
+        else
+            kept.push_back(robot[i]);
+    }
+    const auto first = first_equal_pose(kept);
+    int distinct = 0;
+    for (size_t i = 0; i < first.size(); ++i) distinct += first[i] == static_cast<int>(i) ? 1 : 0;
+    if (distinct < kHandEyeFewestPairs)
+        return input_error(
+            kept.size() < static_cast<size_t>(kHandEyeFewestPairs)
+                ? Text("{} pairs are too few", kept.size())
+                : Text("only {} of the {} robot poses differ from one another", distinct, kept.size()),
+            "pairs", Text("give at least {} different poses, better eight or more", kHandEyeFewestPairs));
+    return {};
+}
+
+Chain chain_of(Mount mount, const std::vector<HandEyePair>& pairs, const std::vector<bool>& used) {
+    Chain chain;
+    chain.used = used;
+    for (const auto& pair : pairs) {
+        chain.a.push_back(mount == Mount::eye_in_hand ? pair.base_from_flange
+                                                      : pair.base_from_flange.inverse());
+        chain.c.push_back(pair.camera_from_target);
+    }
+    return chain;
+}
+
+// A wrong pair is far outside what the others say: leave the worst out, solve again, as long as enough
+// remain.
+void leave_out_wrong_pairs(Chain& chain, Pose& x, Pose& y, Scales& scales) {
+    const size_t start_count = chain.used_count();
+    while (chain.used_count() > 5 && chain.used_count() * 3 > start_count * 2) {
+        size_t worst = chain.size();
+        double worst_square = 0;
+        for (size_t i = 0; i < chain.size(); ++i) {
+            if (!chain.used[i]) continue;
+            const double q = pair_square(chain, i, x, y, scales);
+            if (q > worst_square) {
+                worst_square = q;
+                worst = i;
+            }
+        }
+        // Solve without it and judge it by what the others then say of it.
+        Chain without = chain;
+        without.used[worst] = false;
+        Pose x_without = x, y_without = y;
+        const Scales scales_without = solve(without, x_without, y_without, scales);
+        const double n = static_cast<double>(without.used_count());
+        const double redundancy = 6 * n - 12;
+        const double f = pair_square(without, worst, x_without, y_without, scales_without) / 6;
+        const double limit = (chi_squared_quantile(0.9999, 6) / 6) * (1 + 12 / redundancy) * (1 + 6 / n);
+        if (f < limit) return;
+        chain = without;
+        x = x_without;
+        y = y_without;
+        scales = scales_without;
+    }
+}
+
+HoldOut verify(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
+    HoldOut result;
+    if (chain.used_count() < 4) return result;
+    double squares_t = 0, squares_r = 0;
+    Chain rest = chain;
+    for (size_t i = 0; i < chain.size(); ++i) {
+        if (!chain.used[i]) continue;
+        rest.used[i] = false;
+        Pose rx = x, ry = y;
+        refine(rest, rx, ry, scales, std::numeric_limits<double>::infinity(), 20);
+        rest.used[i] = true;
+        const double t = residual_mm(chain, i, rx, ry).norm(), r = residual_rad(chain, i, rx, ry).norm();
+        squares_t += t * t;
+        squares_r += r * r;
+        result.max_mm = std::isnan(result.max_mm) ? t : std::max(result.max_mm, t);
+        ++result.folds;
+    }
+    result.left_out = 1;
+    result.rms_mm = std::sqrt(squares_t / result.folds);
+    result.rms_deg = deg_from_rad(std::sqrt(squares_r / result.folds));
+    return result;
+}
+
+// The usual mistake of a first set-up: one direction reversed. A^-1 Y C^-1 = X says the same as A X C = Y, so
+// the other mount, and camera_from_target inverted, cannot be told apart.
+Text likely_mistake(Mount mount, const std::vector<HandEyePair>& pairs, const std::vector<bool>& used,
+                    double rms_mm) {
+    const Mount other = mount == Mount::eye_in_hand ? Mount::eye_to_hand : Mount::eye_in_hand;
+    const Chain chain = chain_of(other, pairs, used);
+    const Closed start = best_start(chain).closed;
+    double squares = 0;
+    for (size_t i = 0; i < chain.size(); ++i)
+        if (used[i]) squares += residual_mm(chain, i, start.x, start.y).squaredNorm();
+    if (!(std::sqrt(squares / static_cast<double>(chain.used_count())) < 0.2 * rms_mm)) return {};
+    return Text(
+        "the pairs fit as {}, or with camera_from_target inverted: the mount or the direction of one list "
+        "seems wrong",
+        name_of(other));
+}
+
+}  // namespace
+
+std::string_view name_of(Mount mount) {
+    return mount == Mount::eye_in_hand ? "eye_in_hand" : "eye_to_hand";
+}
+
+std::optional<Mount> mount_named(std::string_view name) {
+    if (name == "eye_in_hand") return Mount::eye_in_hand;
+    if (name == "eye_to_hand") return Mount::eye_to_hand;
+    return std::nullopt;
+}
+
+std::string_view name_of(HandEyeStatus status) {
+    return status == HandEyeStatus::ok ? "ok" : "undetermined";
+}
+
+Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEyePair>& pairs,
+                                           const std::vector<std::string>& exclude) {
+    std::vector<bool> used;
+    if (auto ok = check_input(pairs, exclude, used); !ok) return tl::unexpected(ok.error());
+    Chain chain = chain_of(mount, pairs, used);
+    const std::vector<bool> wanted = used;
+
+    HandEyeResult result;
+    auto& report = result.report;
+    const Began began = best_start(chain);
+    result.start = began.closed.name;
+    Pose x = began.closed.x, y = began.closed.y;
+    if (!std::isfinite(began.cost)) {
+        x = y = Pose::Identity();
+        result.start = "none";
+    }
+    // Robust first, so that a wrong pair cannot pull the least squares before it is seen.
+    Scales scales = scales_from_medians(chain, x, y);
+    for (const double k : {100.0, 30.0, 30.0}) {
+        refine(chain, x, y, scales, k, 30);
+        scales = scales_from_medians(chain, x, y);
+    }
+    if (chain.used_count() > 5) {
+        // Pairs beyond any doubt go at once.
+        std::vector<double> squares;
+        for (size_t i = 0; i < chain.size(); ++i)
+            squares.push_back(chain.used[i] ? pair_square(chain, i, x, y, scales) : 0);
+        Chain fewer = chain;
+        for (size_t i = 0; i < chain.size(); ++i)
+            if (squares[i] > 400 &&
+                (residual_mm(chain, i, x, y).norm() > 0.1 || residual_rad(chain, i, x, y).norm() > 1e-3))
+                fewer.used[i] = false;
+        if (fewer.used_count() >= 5 && fewer.used_count() * 3 > chain.used_count() * 2) chain = fewer;
+    }
+    scales = solve(chain, x, y, scales);
+    leave_out_wrong_pairs(chain, x, y, scales);
+
+    std::vector<Pose> robot;
+    for (size_t i = 0; i < pairs.size(); ++i)
+        if (chain.used[i]) robot.push_back(pairs[i].base_from_flange);
+    result.degenerate = degenerate_words(robot);
+    const Determination known = determination(chain, x, y, scales);
+    report.poses.resize(pairs.size());
+    std::string wrong;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+        auto& pose = report.poses[i];
+        pose.id = pairs[i].id;
+        pose.used = chain.used[i];
+        pose.excluded = !wanted[i];
+        if (pose.excluded) {
+            pose.note = "excluded by the user";
+        } else if (!chain.used[i]) {
+            pose.note = "contradicts what the other pairs agree on: wrong robot pose or wrong target pose";
+            wrong += (wrong.empty() ? "" : ", ") + pose.id;
+        }
+    }
+    if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
+
+    const double n = static_cast<double>(chain.used_count());
+    double squares_t = 0, squares_r = 0;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+        if (!chain.used[i]) continue;
+        squares_t += residual_mm(chain, i, x, y).squaredNorm();
+        squares_r += residual_rad(chain, i, x, y).squaredNorm();
+    }
+    result.rms_mm = std::sqrt(squares_t / n);
+    result.rms_deg = deg_from_rad(std::sqrt(squares_r / n));
+    result.sigma_mm = scales.mm;
+    result.sigma_deg = deg_from_rad(scales.rad);
+    result.pairs_used = static_cast<int>(n);
+
+    if (!(known.worst_mm < kUndetermined_mm) || !(known.worst_rad < kUndetermined_rad)) {
+        result.status = HandEyeStatus::undetermined;
+        report.judgement = {Verdict::undetermined, "",
+                            "take more poses, rotated about two axes of the flange by 20 degrees or more"};
+        if (!result.degenerate.empty()) {
+            report.judgement.reason = result.degenerate.front();
+            return result;
+        }
+        report.judgement.reason = Text("the pairs leave the camera open to {:.3g} mm and {:.3g} degrees",
+                                       known.worst_mm, deg_from_rad(known.worst_rad));
+        double squares = 0;
+        for (size_t i = 0; i < pairs.size(); ++i)
+            if (wanted[i]) squares += residual_mm(chain, i, x, y).squaredNorm();
+        const Text mistake =
+            likely_mistake(mount, pairs, wanted, std::sqrt(squares / static_cast<double>(pairs.size())));
+        if (!mistake.empty()) report.judgement.cure = mistake;
+        return result;
+    }
+
+    result.status = HandEyeStatus::ok;
+    result.x = x;
+    result.y = y;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+        report.poses[i].rms_mm = residual_mm(chain, i, x, y).norm();
+        report.poses[i].deg = deg_from_rad(residual_rad(chain, i, x, y).norm());
+    }
+    const double student = student_quantile(0.975, std::max(1.0, 6 * n - 12)) / 1.959964;
+    const Matrix12 covariance = known.inverse * student * student;
+    result.covariance_x = covariance.topLeftCorner<6, 6>();
+    result.covariance_y = covariance.bottomRightCorner<6, 6>();
+    const auto add = [&report](const std::string& prefix, const Pose& pose) {
+        const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear()) * (180 / kPi);
+        static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
+        for (int k = 0; k < 3; ++k) report.parameters.push_back({prefix + names[k], t[k], "mm", 0});
+        for (int k = 0; k < 3; ++k) report.parameters.push_back({prefix + names[3 + k], w[k], "deg", 0});
+    };
+    add("", x);
+    add("target_", y);
+    Vector12 unit = Vector12::Ones();
+    unit.segment<3>(3).setConstant(180 / kPi);
+    unit.tail<3>().setConstant(180 / kPi);
+    report.covariance = unit.asDiagonal() * covariance * unit.asDiagonal();
+    finish_statistics(report);
+    report.hold_out = verify(chain, x, y, scales);
+
+    const double check_mm = std::isnan(report.hold_out.rms_mm) ? result.rms_mm : report.hold_out.rms_mm;
+    const double check_deg = std::isnan(report.hold_out.rms_deg) ? result.rms_deg : report.hold_out.rms_deg;
+    const double sigma_mm = std::sqrt(result.covariance_x.topLeftCorner<3, 3>().diagonal().maxCoeff());
+    const Text fit("poses not used fit to {:.2f} mm and {:.3f} degrees rms", check_mm, check_deg);
+    result.fits = check_mm <= kUsableHand_mm && check_deg <= kUsableHand_deg;
+    if (!result.fits || 3 * sigma_mm > 2 * kUsableHand_mm) {
+        const Text mistake = likely_mistake(mount, pairs, wanted, result.rms_mm);
+        report.judgement = {Verdict::poor, fit,
+                            mistake.empty()
+                                ? Text("check robot poses, the target's size and the camera's intrinsics")
+                                : mistake};
+    } else if (check_mm > kGoodHand_mm || check_deg > kGoodHand_deg || 3 * sigma_mm > kGoodHand_mm || n < 6) {
+        report.judgement = {Verdict::usable,
+                            n < 6 ? Text("only {:.0f} poses, little to check with; {}", n, fit) : fit,
+                            "take more poses with larger rotations, still and well lit"};
+    } else {
+        report.judgement = {Verdict::good, fit, ""};
+    }
+    return result;
+}
+
+}  // namespace seamwright

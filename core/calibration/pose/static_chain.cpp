@@ -1,0 +1,132 @@
+#include "core/calibration/pose/static_chain.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/calibration/pose_set.h"
+#include "core/geometry/decompositions.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kGoodChain_mm = 0.1, kUsableChain_mm = 0.3;  // three sigma of the working point
+
+Expected<void> check_link(const UncertainPose& link, const Text& where) {
+    if (auto pose = pose_from_matrix(link.pose.matrix(), where); !pose) return tl::unexpected(pose.error());
+    if (!link.covariance.allFinite())
+        return input_error("the covariance holds a value that is not a finite number", where);
+    const double scale = std::max(1e-12, link.covariance.cwiseAbs().maxCoeff());
+    if ((link.covariance - link.covariance.transpose()).cwiseAbs().maxCoeff() > 1e-6 * scale)
+        return input_error("the covariance is not symmetric", where);
+    // Rows and columns of millimetres and radians differ much in size: judge the correlation matrix.
+    const Vector6 inverse = link.covariance.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr(
+        [](double s) { return s > 0 ? 1 / s : 0.0; });
+    const Matrix6 correlation = inverse.asDiagonal() * link.covariance * inverse.asDiagonal();
+    if (link.covariance.diagonal().minCoeff() < 0 || symmetric_eigen(correlation).values[0] < -1e-6)
+        return input_error(
+            "the covariance is not positive (a variance below zero or a correlation above one)", where);
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 6; ++k)
+            if (link.covariance(i, i) == 0 && link.covariance(i, k) != 0)
+                return input_error("the covariance couples a value that has no variance", where);
+    return {};
+}
+
+double largest_sigma(const Pose& pose, const Matrix6& covariance, const Eigen::Vector3d& point) {
+    Eigen::Matrix<double, 3, 6> j;
+    j.leftCols<3>().setIdentity();
+    j.rightCols<3>() = -skew(pose.linear() * point);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+        Eigen::Matrix3d(j * covariance * j.transpose()));
+    return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+}
+
+}  // namespace
+
+UncertainPose operator*(const UncertainPose& a, const UncertainPose& b) {
+    return {a.pose * b.pose, covariance_of_product(a.pose, a.covariance, b.pose, b.covariance)};
+}
+
+UncertainPose inverse(const UncertainPose& a) {
+    return {a.pose.inverse(), covariance_of_inverse(a.pose, a.covariance)};
+}
+
+Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& sensors,
+                                             const StaticChainOptions& options) {
+    std::vector<std::string> ids;
+    for (const auto& sensor : sensors) ids.push_back(sensor.id);
+    if (sensors.empty()) return input_error("there is no sensor", "sensors", "give at least one");
+    if (auto ok = check_ids(ids, options.exclude, "sensors"); !ok) return tl::unexpected(ok.error());
+    std::vector<Pose> cameras, worlds;
+    for (const auto& sensor : sensors) {
+        const Text where("sensor '{}', ", sensor.id);
+        if (auto ok = check_link(sensor.world_from_plate, joined(where, "", "world_from_plate")); !ok)
+            return tl::unexpected(ok.error());
+        if (auto ok = check_link(sensor.plate_from_camera, joined(where, "", "plate_from_camera")); !ok)
+            return tl::unexpected(ok.error());
+        if (auto ok = check_link(sensor.camera_from_laser, joined(where, "", "camera_from_laser")); !ok)
+            return tl::unexpected(ok.error());
+        if (!sensor.working_point_mm.allFinite())
+            return input_error("the working point is not finite", joined(where, "", "working_point_mm"));
+        cameras.push_back(sensor.plate_from_camera.pose);
+    }
+    if (auto ok = check_millimetres(cameras, "plate_from_camera of the sensors"); !ok)
+        return tl::unexpected(ok.error());
+    if (options.reference_from_world)
+        if (auto ok = check_link(*options.reference_from_world, "reference_from_world"); !ok)
+            return tl::unexpected(ok.error());
+
+    StaticChainResult result;
+    result.judgement = {Verdict::good, "", ""};
+    for (const auto& sensor : sensors) {
+        if (std::find(options.exclude.begin(), options.exclude.end(), sensor.id) != options.exclude.end())
+            continue;
+        StaticSensorResult one;
+        one.id = sensor.id;
+        const UncertainPose reference = options.reference_from_world.value_or(UncertainPose{});
+        const UncertainPose links[] = {reference, sensor.world_from_plate, sensor.plate_from_camera,
+                                       sensor.camera_from_laser};
+        one.world_from_laser = links[0] * links[1] * links[2] * links[3];
+        one.working_sigma_mm = largest_sigma(one.world_from_laser.pose, one.world_from_laser.covariance,
+                                             sensor.working_point_mm);
+        // Share of each link: its own error alone, the others exact.
+        double sum = 0;
+        for (int k = 0; k < 4; ++k) {
+            UncertainPose chain;
+            for (int i = 0; i < 4; ++i)
+                chain = chain *
+                        UncertainPose{links[i].pose, i == k ? links[i].covariance : Matrix6::Zero().eval()};
+            one.shares[k] = std::pow(largest_sigma(chain.pose, chain.covariance, sensor.working_point_mm), 2);
+            sum += one.shares[k];
+        }
+        for (double& share : one.shares) share = sum > 0 ? share / sum : 0;
+        const auto largest =
+            std::max_element(std::begin(one.shares), std::end(one.shares)) - std::begin(one.shares);
+        static constexpr const char* names[] = {
+            "the reference in the world", "the plate's place in the world", "the camera's pose on the plate",
+            "the laser plane in the camera"};
+        const double three = 3 * one.working_sigma_mm;
+        const Text figure("sensor {}: three sigma at the working point {:.3f} mm", one.id, three);
+        if (sum == 0)
+            one.judgement = {Verdict::usable,
+                             Text("sensor {}: no covariance was given, the accuracy is unknown", one.id),
+                             "give the covariance of each link"};
+        else if (three > kUsableChain_mm)
+            one.judgement = {Verdict::poor, figure,
+                             Text("most of it is {}: calibrate that better", Text(names[largest]))};
+        else if (three > kGoodChain_mm)
+            one.judgement = {Verdict::usable, figure, Text("most of it is {}", Text(names[largest]))};
+        else
+            one.judgement = {Verdict::good, figure, ""};
+        if (result.sensors.empty() || one.judgement.verdict > result.judgement.verdict)
+            result.judgement = one.judgement;
+        result.sensors.push_back(std::move(one));
+    }
+    if (result.sensors.empty()) return input_error("every sensor is excluded", "sensors");
+    return result;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,597 @@
+#include "core/calibration/sphere/tcp_sphere.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/calibration/pose_set.h"
+#include "core/calibration/sphere/tcp_sphere_advice.h"
+#include "core/calibration/sphere/tcp_sphere_solve.h"
+#include "core/calibration/statistics.h"
+#include "core/median.h"
+
+namespace seamwright {
+namespace {
+
+using namespace tcp_sphere;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kFewestSections = 4;  // three numbers a profile against nine unknowns, and one to check with
+constexpr double kNoiseFloor_mm =
+    0.02;  // no sensor on a robot is better; keeps noise-free data from looking sure
+constexpr double kUndeterminedSigma_mm = 2.0;             // a direction weaker than this is not determined
+constexpr double kGoodTcp_mm = 0.1, kUsableTcp_mm = 0.5;  // three sigma at the working distance
+constexpr double kPoorFit_mm = 0.5;
+
+Expected<void> check_input(const std::vector<SphereObservation>& observations,
+                           const TcpSphereOptions& options) {
+    std::vector<std::string> ids;
+    std::vector<Pose> poses;
+    for (const auto& observation : observations) {
+        ids.push_back(observation.id);
+        poses.push_back(observation.base_from_flange);
+        if (observation.profile.x_mm.size() != observation.profile.z_mm.size())
+            return input_error("the profile has different numbers of x and z",
+                               Text("observation '{}'", observation.id));
+    }
+    if (auto ok = check_ids(ids, options.exclude, "observations"); !ok) return ok;
+    if (options.radius_mm && !(std::isfinite(*options.radius_mm) && *options.radius_mm > 0))
+        return input_error("the sphere's radius is not a positive number", "radius_mm",
+                           "give it in millimetres or null");
+    if (auto ok = check_rigid(poses, ids, "base_from_flange of"); !ok) return ok;
+    if (auto ok = check_millimetres(poses, "observations"); !ok) return ok;
+    if (options.nominal_flange_from_sensor)
+        if (auto ok = check_rigid({*options.nominal_flange_from_sensor}, {"nominal"}, "flange_from_sensor");
+            !ok)
+            return ok;
+
+    const std::set<std::string> excluded(options.exclude.begin(), options.exclude.end());
+    std::vector<Pose> kept;
+    for (size_t i = 0; i < poses.size(); ++i)
+        if (!excluded.contains(ids[i])) kept.push_back(poses[i]);
+    if (static_cast<int>(kept.size()) < kTcpSphereFewestPoses)
+        return input_error(Text("{} poses are too few", kept.size()), "observations",
+                           Text("give at least {}, better nine or more", kTcpSphereFewestPoses));
+    const auto first = first_equal_pose(kept);
+    int distinct = 0;
+    for (size_t i = 0; i < first.size(); ++i) distinct += first[i] == static_cast<int>(i) ? 1 : 0;
+    if (distinct < kTcpSphereFewestPoses)
+        return input_error(
+            Text("only {} of the {} poses differ from one another", distinct, kept.size()), "observations",
+            Text("give at least {} different poses, better nine or more", kTcpSphereFewestPoses));
+
+    // Extents of the points, for units: a sensor's field is centimetres, a sphere's radius is millimetres.
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    size_t finite = 0;
+    for (const auto& observation : observations) {
+        for (size_t i = 0; i < observation.profile.size(); ++i) {
+            const double x = observation.profile.x_mm[i];
+            if (!std::isfinite(x) || !std::isfinite(observation.profile.z_mm[i])) continue;
+            low = std::min(low, x);
+            high = std::max(high, x);
+            ++finite;
+        }
+    }
+    if (finite == 0) return input_error("no profile holds a single point", "observations");
+    if (high - low < 0.5)
+        return input_error(
+            Text("all profile points lie within {:.3g} in x: these look like metres, not millimetres",
+                 high - low),
+            "observations", "give profile points in millimetres (times 1000)");
+    if (options.radius_mm && *options.radius_mm < 0.5)
+        return input_error(Text("a radius of {:.3g} mm looks like metres", *options.radius_mm), "radius_mm",
+                           "give it in millimetres (times 1000)");
+    return {};
+}
+
+double point_squares(const Section& section, const Model& model) {
+    const Eigen::Vector3d s = centre_in_sensor(section, model);
+    double sum = 0;
+    for (size_t i = 0; i < section.x.size(); ++i) {
+        const double dx = section.x[i] - s.x(), dz = section.z[i] - s.z();
+        const double e = std::sqrt(dx * dx + s.y() * s.y() + dz * dz) - model.radius;
+        sum += e * e;
+    }
+    return sum;
+}
+
+double section_rms(const Section& section, const Model& model) {
+    return section.x.empty() ? kNaN : std::sqrt(point_squares(section, model) / section.count());
+}
+
+size_t used_count(const std::vector<Section>& sections) {
+    return static_cast<size_t>(
+        std::count_if(sections.begin(), sections.end(), [](const Section& s) { return s.used; }));
+}
+
+// Profiles that contradict the sphere which the others agree on (they show something else, or their pose is
+// wrong) stop being used, the worst first. Returns whether the set has changed.
+bool leave_out_contradictions(std::vector<Section>& sections, const Model& model) {
+    std::vector<double> rms;
+    for (const auto& section : sections)
+        if (section.used) rms.push_back(section_rms(section, model));
+    const double limit = std::max(6 * median(rms), 0.15);
+    Section* worst = nullptr;
+    double worst_rms = limit;
+    for (auto& section : sections) {
+        if (!section.used) continue;
+        const double value = section_rms(section, model);
+        if (value > worst_rms) {
+            worst_rms = value;
+            worst = &section;
+        }
+    }
+    if (worst == nullptr || used_count(sections) <= static_cast<size_t>(kFewestSections)) return false;
+    worst->used = false;
+    return true;
+}
+
+// One wrong pose bends least squares towards itself, so its own residual shows little: leave each out in
+// turn. The one whose absence explains the disagreement (F test of its three numbers, guarded against picking
+// the largest of many) and which the others then miss by more than 0.15 mm stops being used.
+bool leave_out_wrong_pose(std::vector<Section>& sections, const Model& model, bool radius_free) {
+    const size_t used = used_count(sections);
+    const double unknowns = radius_free ? 10 : 9;
+    const double redundancy = 3.0 * static_cast<double>(used - 1) - unknowns;
+    if (redundancy < 3) return false;
+    double all = 0, own = 0, points = 0;
+    for (const auto& section : sections) {
+        if (!section.used) continue;
+        all += disagreement(section, model) / section.count();
+        own += section.own_squares;
+        points += section.count();
+    }
+    const double mean_count = points / static_cast<double>(used);
+    const double floor = own / points / mean_count * redundancy;
+    Section* suspect = nullptr;
+    double least = all;
+    Model model_without = model;
+    for (auto& section : sections) {
+        if (!section.used) continue;
+        section.used = false;
+        Model candidate = model;
+        const double rest =
+            solve_reduced(sections, candidate, radius_free, std::numeric_limits<double>::infinity(), 20) *
+            static_cast<double>(used - 1);
+        section.used = true;
+        if (rest < least) {
+            least = rest;
+            suspect = &section;
+            model_without = candidate;
+        }
+    }
+    if (suspect == nullptr) return false;
+    const double f = (all - least) / 3 / (std::max(least, floor) / redundancy);
+    if (f < outlier_limit(redundancy) || section_rms(*suspect, model_without) < 0.15) return false;
+    suspect->used = false;
+    return true;
+}
+
+// A profile in which something else was taken for the sphere: look again, only near where the sphere must be.
+void look_again(Section& section, const Model& model, const CircleSectionLimits& limits) {
+    const Eigen::Vector3d s = centre_in_sensor(section, model);
+    if (std::abs(s.y()) > 0.98 * model.radius) return;
+    Profile near = *section.profile;
+    for (size_t i = 0; i < near.size(); ++i) {
+        const double dx = near.x_mm[i] - s.x(), dz = near.z_mm[i] - s.z();
+        const double e = std::sqrt(dx * dx + s.y() * s.y() + dz * dz) - model.radius;
+        if (!(std::abs(e) < 0.5)) near.z_mm[i] = kNaN;
+    }
+    const auto circle = find_circle_section(near, limits);
+    if (!circle) return;
+    Section again = section;
+    take_inliers(again, *circle);
+    if (section_rms(again, model) < 0.15) {
+        take_inliers(section, *circle);
+        section.used = true;
+    }
+}
+
+// Rounds of: common sphere without the contradicting profiles, exact on the statistics.
+void settle(std::vector<Section>& sections, Model& model, bool radius_free, const CircleSectionLimits& limits,
+            const std::vector<bool>& excluded) {
+    const auto drop = [&] {
+        for (size_t round = 0; round < sections.size(); ++round) {
+            solve_reduced(sections, model, radius_free, std::numeric_limits<double>::infinity(), 40);
+            if (!leave_out_contradictions(sections, model) &&
+                !leave_out_wrong_pose(sections, model, radius_free))
+                break;
+        }
+    };
+    // The robust start has already decided who agrees: begin from its residuals, or one gross profile would
+    // bend the least squares before it can be seen.
+    while (leave_out_contradictions(sections, model)) {
+    }
+    drop();
+    bool changed = false;
+    for (size_t i = 0; i < sections.size(); ++i) {
+        if (sections[i].used || excluded[sections[i].observation]) continue;
+        look_again(sections[i], model, limits);
+        changed = changed || sections[i].used;
+    }
+    if (changed) drop();
+}
+
+MirroredAxis judge_axes(const std::vector<Section>& sections,
+                        const std::vector<SphereObservation>& observations, const TcpSphereOptions& options,
+                        const Model& model, std::vector<Text>& notices) {
+    double side = 0, descending = 0, ascending = 0, used = 0;
+    for (const auto& section : sections) {
+        if (!section.used) continue;
+        used += 1;
+        side += section.circle.mean_side;
+        int steps = 0;
+        const auto& x = observations[section.observation].profile.x_mm;
+        for (size_t k = 1; k < section.circle.inliers.size(); ++k) {
+            const auto a = static_cast<size_t>(section.circle.inliers[k - 1]);
+            const auto b = static_cast<size_t>(section.circle.inliers[k]);
+            steps += x[b] > x[a] ? 1 : -1;
+        }
+        const double share = steps / std::max(1.0, section.count() - 1);
+        descending += share < -0.8 ? 1 : 0;
+        ascending += share > 0.8 ? 1 : 0;
+    }
+    if (used == 0) return MirroredAxis::none;
+    if (options.nominal_flange_from_sensor) {
+        // Half a turn about Z is what mirrored x looks like, half a turn about X mirrored z.
+        const Eigen::Matrix3d turn =
+            options.nominal_flange_from_sensor->linear().transpose() * model.flange_from_sensor.linear();
+        const auto angle_to = [&](double x, double y, double z) {
+            return rotation_log(turn * Eigen::Vector3d(x, y, z).asDiagonal()).norm();
+        };
+        const double plain = angle_to(1, 1, 1), about_z = angle_to(-1, -1, 1), about_x = angle_to(1, -1, -1);
+        if (about_z < plain && about_z < about_x && about_z < rad_from_deg(45)) {
+            notices.push_back(
+                "the profile's x axis is mirrored: the sensor comes out turned half about Z against its "
+                "nominal mounting");
+            return MirroredAxis::x;
+        }
+        if (about_x < plain && about_x < rad_from_deg(45)) {
+            notices.push_back(
+                "the profile's z axis is mirrored: the sensor comes out turned half about X against its "
+                "nominal mounting");
+            return MirroredAxis::z;
+        }
+        if (plain < rad_from_deg(45)) return MirroredAxis::none;
+    }
+    if (side / used < -0.15) {
+        notices.push_back(
+            "the profile's z axis is mirrored or counts away from the sensor: the sphere's visible cap lies "
+            "towards -z; "
+            "flange_from_sensor holds for the profile as delivered, with its Y axis reversed");
+        return MirroredAxis::z;
+    }
+    if (descending > 0.8 * used && ascending == 0) {
+        notices.push_back(
+            "the profile's x axis looks mirrored: x falls along the order of the points in every profile; "
+            "flange_from_sensor holds for the profile as delivered, with its Y axis reversed if x is indeed "
+            "mirrored");
+        return MirroredAxis::x;
+    }
+    return MirroredAxis::none;
+}
+
+HoldOut verify(const std::vector<Section>& sections, const Model& model, bool radius_free) {
+    HoldOut result;
+    std::vector<size_t> used;
+    for (size_t i = 0; i < sections.size(); ++i)
+        if (sections[i].used) used.push_back(i);
+    if (used.size() < static_cast<size_t>(kFewestSections) + 1) return result;
+    const size_t folds = std::min<size_t>(used.size(), 9);
+    double squares = 0, points = 0, largest = 0, turn = 0, turns = 0;
+    std::vector<Section> rest = sections;
+    for (size_t fold = 0; fold < folds; ++fold) {
+        int left_out = 0;
+        for (size_t k = fold; k < used.size(); k += folds) {
+            rest[used[k]].used = false;
+            ++left_out;
+        }
+        Model model_of_rest = model;
+        solve_points(rest, model_of_rest, radius_free);
+        for (size_t k = fold; k < used.size(); k += folds) {
+            const auto& section = sections[used[k]];
+            const double s = point_squares(section, model_of_rest);
+            squares += s;
+            points += section.count();
+            largest = std::max(largest, std::sqrt(s / section.count()));
+            rest[used[k]].used = true;
+        }
+        turn += std::pow(angle_rad(model_of_rest.flange_from_sensor, model.flange_from_sensor), 2);
+        turns += 1;
+        result.left_out = std::max(result.left_out, left_out);
+    }
+    result.folds = static_cast<int>(folds);
+    result.rms_mm = std::sqrt(squares / points);
+    result.max_mm = largest;
+    result.rms_deg = deg_from_rad(std::sqrt(turn / turns));
+    return result;
+}
+
+void write_poses(const std::vector<SphereObservation>& observations, const std::vector<Section>& sections,
+                 const std::vector<bool>& excluded, const Model* model, CalibrationReport& report) {
+    report.poses.resize(observations.size());
+    for (size_t i = 0; i < observations.size(); ++i) {
+        report.poses[i].id = observations[i].id;
+        report.poses[i].used = false;
+        report.poses[i].excluded = excluded[i];
+        report.poses[i].note =
+            excluded[i] ? "excluded by the user" : "no circle of the sphere found in this profile";
+    }
+    for (const auto& section : sections) {
+        auto& pose = report.poses[section.observation];
+        pose.used = section.used;
+        if (section.used)
+            pose.note.clear();
+        else if (!excluded[section.observation])
+            pose.note =
+                "contradicts the sphere that the other poses agree on: wrong pose, or something else in the "
+                "profile";
+        if (model == nullptr) continue;
+        pose.rms_mm = section_rms(section, *model);
+        // The turn of the flange that would explain where this profile sees the centre.
+        const double offset = section.best.head<2>().norm();
+        const Eigen::Vector3d s = centre_in_sensor(section, *model);
+        const Eigen::Vector2d miss(s.x() - section.circle.x_mm - section.best[0],
+                                   s.z() - section.circle.z_mm - section.best[1]);
+        const double distance = (section.flange_from_base * model->centre_base).norm();
+        pose.deg =
+            std::isfinite(offset) && distance > 1 ? deg_from_rad(std::atan2(miss.norm(), distance)) : kNaN;
+    }
+}
+
+void write_statistics(const Model& model, const Matrix10& covariance, bool radius_free,
+                      TcpSphereResult& result) {
+    result.covariance = covariance.topLeftCorner<6, 6>();
+    result.centre_covariance = covariance.block<3, 3>(6, 6);
+    result.radius_sigma_mm = radius_free ? std::sqrt(std::max(0.0, covariance(9, 9))) : 0;
+    Eigen::Matrix<double, 3, 6> lever;
+    lever.leftCols<3>().setIdentity();
+    lever.rightCols<3>() = -skew(model.flange_from_sensor.linear() * result.working_point_mm);
+    const Eigen::Matrix3d at_work = lever * result.covariance * lever.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(at_work);
+    result.working_sigma_mm = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+
+    auto& report = result.report;
+    const Eigen::Vector3d t = model.flange_from_sensor.translation();
+    const Eigen::Vector3d w = rotation_log(model.flange_from_sensor.linear()) * (180 / kPi);
+    const Eigen::Vector3d& c = model.centre_base;
+    report.parameters = {
+        {"x", t.x(), "mm", 0},        {"y", t.y(), "mm", 0},        {"z", t.z(), "mm", 0},
+        {"rx", w.x(), "deg", 0},      {"ry", w.y(), "deg", 0},      {"rz", w.z(), "deg", 0},
+        {"centre_x", c.x(), "mm", 0}, {"centre_y", c.y(), "mm", 0}, {"centre_z", c.z(), "mm", 0}};
+    if (radius_free) report.parameters.push_back({"radius", model.radius, "mm", 0});
+    const auto n = static_cast<Eigen::Index>(report.parameters.size());
+    Vector10 unit = Vector10::Ones();
+    unit.segment<3>(3).setConstant(180 / kPi);
+    report.covariance = (unit.asDiagonal() * covariance * unit.asDiagonal()).topLeftCorner(n, n);
+    finish_statistics(report);
+}
+
+}  // namespace
+
+std::string_view name_of(TcpSphereStatus status) {
+    switch (status) {
+        case TcpSphereStatus::ok:
+            return "ok";
+        case TcpSphereStatus::undetermined:
+            return "undetermined";
+        case TcpSphereStatus::not_converged:
+            return "not_converged";
+    }
+    return "undetermined";
+}
+
+std::string_view name_of(MirroredAxis axis) {
+    switch (axis) {
+        case MirroredAxis::none:
+            return "none";
+        case MirroredAxis::x:
+            return "x";
+        case MirroredAxis::z:
+            return "z";
+    }
+    return "none";
+}
+
+Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservation>& observations,
+                                               const TcpSphereOptions& options) {
+    if (auto ok = check_input(observations, options); !ok) return tl::unexpected(ok.error());
+    const bool radius_free = !options.radius_mm.has_value();
+    std::vector<bool> excluded(observations.size());
+    for (size_t i = 0; i < observations.size(); ++i)
+        excluded[i] = std::find(options.exclude.begin(), options.exclude.end(), observations[i].id) !=
+                      options.exclude.end();
+
+    CircleSectionLimits limits;
+    if (!radius_free) {
+        limits.largest_radius_mm = 1.01 * *options.radius_mm + 0.1;
+        limits.smallest_radius_mm = 0.12 * *options.radius_mm;
+    }
+    TcpSphereResult result;
+    std::vector<Section> sections;
+    std::vector<double> radii;
+    for (size_t i = 0; i < observations.size(); ++i) {
+        const auto circle = find_circle_section(observations[i].profile, limits);
+        if (!circle) continue;
+        Section section;
+        section.observation = i;
+        section.flange_from_base = observations[i].base_from_flange.inverse();
+        section.profile = &observations[i].profile;
+        section.used = !excluded[i];
+        take_inliers(section, *circle);
+        if (section.used) radii.push_back(circle->radius_mm);
+        sections.push_back(std::move(section));
+    }
+    auto& judgement = result.report.judgement;
+    if (static_cast<int>(radii.size()) < kFewestSections) {
+        result.status = TcpSphereStatus::not_converged;
+        write_poses(observations, sections, excluded, nullptr, result.report);
+        judgement = {Verdict::undetermined, Text("the sphere was found in {} profiles only", radii.size()),
+                     radius_free ? "let the laser cut the sphere in every pose"
+                                 : "let the laser cut the sphere in every pose, and check its radius"};
+        return result;
+    }
+
+    // Rims of other things can be rounder than the sphere is large: the second largest cut bounds the radius.
+    std::sort(radii.begin(), radii.end());
+    const double radius = options.radius_mm.value_or(radii[radii.size() - 2]);
+    const auto starts = global_start(sections, radius, radius_free, options.thorough);
+    if (starts.empty()) {
+        result.status = TcpSphereStatus::not_converged;
+        write_poses(observations, sections, excluded, nullptr, result.report);
+        judgement = {Verdict::undetermined, "no sphere common to the profiles was found",
+                     "record the poses again"};
+        return result;
+    }
+    const size_t candidates = used_count(sections);
+    Model model = starts.front().model;
+    settle(sections, model, radius_free, limits, excluded);
+    solve_points(sections, model, radius_free);
+
+    double used = 0;
+    for (const auto& section : sections) {
+        if (!section.used) continue;
+        used += 1;
+        result.working_point_mm += centre_in_sensor(section, model);
+    }
+    result.working_point_mm /= used;
+    const int unknowns = radius_free ? 10 : 9;
+    const System system = accumulate(sections, model, true);
+    result.rms_mm = std::sqrt(system.squares / system.count);
+    const Determination known =
+        determination(system.information, model, result.working_point_mm, radius_free);
+    const NoiseLevels noise = noise_levels(sections, model, known.inverse, radius_free);
+    result.noise_mm = std::sqrt(noise.point_variance);
+    const double floor_sigma = std::max({result.rms_mm, result.noise_mm, kNoiseFloor_mm});
+    result.weakest_sigma_mm = floor_sigma * known.weakest;
+
+    // Does another, different solution fit about as well?
+    double second_cost = std::numeric_limits<double>::infinity();
+    double between = 0;
+    for (const auto& section : sections)
+        if (section.used) between += disagreement(section, model);
+    const double first_mean = between / system.count;
+    result.poses_freedom = noise.redundancy;
+    result.poses_variance_mm2 = between / std::max(1.0, noise.redundancy);
+    for (size_t k = 1; k < starts.size(); ++k) {
+        Model other = starts[k].model;
+        const double cost =
+            solve_reduced(sections, other, radius_free, std::numeric_limits<double>::infinity(), 60);
+        const bool different = angle_rad(other.flange_from_sensor, model.flange_from_sensor) > 0.02 ||
+                               distance_mm(other.flange_from_sensor, model.flange_from_sensor) > 5;
+        if (different) second_cost = std::min(second_cost, cost);
+    }
+    const double rival_limit = std::max(first_mean * (1 + 60 / std::max(1.0, noise.redundancy)), 0.02 * 0.02);
+    const bool ambiguous = second_cost < rival_limit;
+
+    result.degenerate = degenerate_pose_words(sections, model, radius_free);
+    const bool weak = !(result.weakest_sigma_mm < kUndeterminedSigma_mm);
+    if (options.thorough && (weak || result.weakest_sigma_mm * 3 > kUsableTcp_mm || used < 9))
+        result.proposals = propose_poses(sections, model, system.information, result.working_point_mm,
+                                         radius_free, floor_sigma, weak ? 3 : 1);
+    if (weak || ambiguous) {
+        result.status = TcpSphereStatus::undetermined;
+        write_poses(observations, sections, excluded, nullptr, result.report);
+        judgement.verdict = Verdict::undetermined;
+        if (weak) {
+            judgement.reason =
+                result.degenerate.empty()
+                    ? Text("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
+                    : result.degenerate.front();
+            if (!result.proposals.empty())
+                judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
+        } else {
+            judgement.reason = "two different sensor positions explain these profiles about equally well";
+            judgement.cure =
+                "take more poses in other orientations and with the sphere elsewhere in the view";
+        }
+        return result;
+    }
+    if (!weak && result.weakest_sigma_mm * 3 < kUsableTcp_mm) result.degenerate.clear();
+
+    result.status = TcpSphereStatus::ok;
+    result.flange_from_sensor = model.flange_from_sensor;
+    result.centre_base_mm = model.centre_base;
+    result.radius_mm = model.radius;
+    // Sandwich for the points' noise; the poses' own error is added when they disagree by more (see
+    // tcp_sphere.h).
+    Matrix10 covariance =
+        known.inverse * system.meat * known.inverse * (system.count / std::max(1.0, system.count - unknowns));
+    if (noise.poses_disagree) {
+        const double student = student_quantile(0.975, noise.redundancy) / 1.959964;
+        covariance = student * student *
+                     (known.inverse * noise.point_variance +
+                      covariance_of_centres(sections, model, known.inverse, noise.centre_variance));
+    }
+    write_statistics(model, covariance, radius_free, result);
+    write_poses(observations, sections, excluded, &model, result.report);
+    if (options.thorough) result.report.hold_out = verify(sections, model, radius_free);
+    result.mirrored = judge_axes(sections, observations, options, model, result.notices);
+
+    // Verdict.
+    const double three_sigma = 3 * result.working_sigma_mm;
+    const double hold_out = result.report.hold_out.rms_mm;
+    std::string rejected;
+    for (const auto& pose : result.report.poses)
+        if (!pose.used && !pose.excluded) rejected += (rejected.empty() ? "" : ", ") + pose.id;
+    if (!rejected.empty()) result.notices.push_back(Text("not used: {}", rejected));
+    if (noise.poses_disagree)
+        result.notices.push_back(
+            Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
+                 "less exact than the "
+                 "profiles, and the stated sigma counts that in",
+                 std::sqrt(noise.ratio)));
+    double free_radius = kNaN;
+    if (!radius_free && noise.poses_disagree && result.rms_mm > 0.1) {
+        Model free_model = model;
+        const double fixed_cost = between / system.count;
+        const double free_cost =
+            solve_reduced(sections, free_model, true, std::numeric_limits<double>::infinity(), 100);
+        if (free_cost < 0.2 * fixed_cost && std::abs(free_model.radius - model.radius) > 0.05)
+            free_radius = free_model.radius;
+    }
+    // With less than six poses left a wrong one among them still fits; leaving it out shows it.
+    const double hold_out_limit = used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
+    const bool few_agree = used < 0.5 * static_cast<double>(candidates);
+    const bool bad_fit = result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit;
+    result.fits = !std::isfinite(free_radius) && !few_agree && !bad_fit;
+    if (std::isfinite(free_radius)) {
+        judgement = {Verdict::poor,
+                     Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
+                          free_radius, model.radius),
+                     "check the radius (was the diameter given?)"};
+    } else if (few_agree) {
+        judgement = {Verdict::poor, "most profiles contradict the solution found from the others",
+                     "check the robot poses and that the sphere did not move"};
+    } else if (bad_fit) {
+        judgement = {Verdict::poor,
+                     Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
+                          result.rms_mm, hold_out),
+                     "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
+    } else if (three_sigma > kUsableTcp_mm) {
+        judgement = {Verdict::poor, Text("three sigma at the working distance are {:.2f} mm", three_sigma),
+                     result.proposals.empty()
+                         ? Text("take more poses")
+                         : Text("take more poses, first: {}", result.proposals.front().words)};
+    } else if (three_sigma > kGoodTcp_mm) {
+        judgement = {Verdict::usable,
+                     Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}", three_sigma,
+                          kGoodTcp_mm),
+                     result.proposals.empty()
+                         ? Text("take more poses")
+                         : Text("take more poses, first: {}", result.proposals.front().words)};
+    } else if (used < kTcpSphereFewestPoses) {
+        judgement = {Verdict::usable, Text("only {:.0f} of the poses could be used", used),
+                     "take more poses that show the sphere"};
+    } else {
+        judgement = {Verdict::good, Text("three sigma at the working distance are {:.3f} mm", three_sigma),
+                     ""};
+    }
+    return result;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,183 @@
+#include "core/calibration/stripe/laser_plane.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "core/calibration/camera/camera.h"
+#include "core/calibration/pose_set.h"
+#include "core/profile/units.h"
+
+namespace seamwright {
+namespace {
+
+CameraPoints view_of(const std::vector<LaserPair>& pairs, const std::vector<char>& used, int without = -1) {
+    CameraPoints view;
+    view.id = "pairs";
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (used[i] && static_cast<int>(i) != without) {
+            view.object_mm.emplace_back(pairs[i].laser_mm.x(), 0, pairs[i].laser_mm.y());
+            view.pixel.push_back(pairs[i].pixel);
+        }
+    return view;
+}
+
+double residual_px(const CameraModel& camera, const Pose& pose, const LaserPair& pair) {
+    return (camera.project(pose * Eigen::Vector3d(pair.laser_mm.x(), 0, pair.laser_mm.y())) - pair.pixel)
+        .norm();
+}
+
+// Width of the points across their main direction relative to along it.
+double flatness(const CameraPoints& view) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : view.object_mm) mean += p / static_cast<double>(view.object_mm.size());
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const auto& p : view.object_mm) scatter += (p - mean) * (p - mean).transpose();
+    const Eigen::Vector3d l = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues();
+    return l(2) > 0 ? std::sqrt(std::max(0.0, l(1)) / l(2)) : 0;
+}
+
+}  // namespace
+
+Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
+                                                 const std::vector<LaserPair>& pairs,
+                                                 const std::vector<std::string>& exclude) {
+    std::vector<std::string> ids;
+    for (const auto& p : pairs) ids.push_back(p.id);
+    if (auto ok = check_ids(ids, exclude, "pairs"); !ok) return tl::unexpected(ok.error());
+    LaserPlaneResult result;
+    auto& report = result.report;
+    std::vector<char> used(pairs.size(), 1);
+    double extent = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!pairs[i].pixel.allFinite() || !pairs[i].laser_mm.allFinite() || pairs[i].laser_mm.norm() > 1e6)
+            return input_error("the pair is not made of finite numbers", "pairs[" + pairs[i].id + "]",
+                               "leave it out");
+        used[i] = std::count(exclude.begin(), exclude.end(), pairs[i].id) == 0;
+        report.poses.emplace_back();
+        report.poses.back().id = pairs[i].id;
+        report.poses.back().used = used[i];
+        report.poses.back().excluded = !used[i];
+        if (!used[i]) report.poses.back().note = "excluded";
+        extent = std::max(extent, (pairs[i].laser_mm - pairs[0].laser_mm).norm());
+    }
+    const auto count = [&] { return static_cast<int>(std::count(used.begin(), used.end(), 1)); };
+    if (count() < 4)
+        return input_error(Text("{} pairs are too few, at least 4 are needed", count()), "pairs",
+                           "place the body in 10 or more positions over the whole field of view");
+    if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
+    static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
+    const auto undetermined = [&](const Text& why) {
+        report.judgement = {Verdict::undetermined, why,
+                            "spread the body's positions over the whole field of view, near and far"};
+        for (int i = 0; i < 6; ++i)
+            report.parameters.push_back({names[i], std::numeric_limits<double>::quiet_NaN(),
+                                         i < 3 ? "mm" : "deg", std::numeric_limits<double>::quiet_NaN()});
+        return result;
+    };
+    if (flatness(view_of(pairs, used)) < 0.01)
+        return undetermined("the points lie on one line of the laser plane");
+    auto solved = locate_target(camera, view_of(pairs, used));
+    if (!solved) return undetermined(solved.error().what);
+
+    // The pair whose removal helps most, while the gain is far beyond what noise gives.
+    for (int round = 0; count() >= 6 && round < static_cast<int>(pairs.size()) / 4 + 1; ++round) {
+        const double n = count();
+        const double cost = n * solved->rms_px * solved->rms_px;
+        int worst = -1;
+        double least = cost;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            if (!used[i]) continue;
+            const auto rest = locate_target(camera, view_of(pairs, used, static_cast<int>(i)));
+            if (!rest) continue;
+            const double c = (n - 1) * rest->rms_px * rest->rms_px;
+            if (c < least) least = c, worst = static_cast<int>(i);
+        }
+        const double freedom = 2 * (n - 1) - 6;
+        if (worst < 0 || (cost - least) / 2 < 20 * std::max(least / freedom, 1e-12)) break;
+        used[static_cast<std::size_t>(worst)] = 0;
+        auto& p = report.poses[static_cast<std::size_t>(worst)];
+        p.used = false;
+        p.note = "contradicts the other pairs and was left out";
+        auto again = locate_target(camera, view_of(pairs, used));
+        if (!again) break;
+        solved = again;
+    }
+    const CameraPoints view = view_of(pairs, used);
+    if (flatness(view) < 0.01) return undetermined("the points lie on one line of the laser plane");
+    result.camera_from_laser = solved->camera_from_target;
+    result.covariance = solved->covariance;
+    result.rms_px = solved->rms_px;
+    const Eigen::Vector3d w = rotation_log(result.camera_from_laser.linear());
+    Matrix6 scale = Matrix6::Identity();
+    scale.bottomRightCorner<3, 3>() *= deg_from_rad(1);
+    for (int i = 0; i < 6; ++i)
+        report.parameters.push_back(
+            {names[i], i < 3 ? result.camera_from_laser.translation()(i) : deg_from_rad(w(i - 3)),
+             i < 3 ? "mm" : "deg", 0});
+    report.covariance = scale * result.covariance * scale;
+    finish_statistics(report);
+
+    double hold = 0, hold_mm = 0, hold_mm_max = 0;
+    int folds = 0;
+    SensorModel model{camera, result.camera_from_laser, {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        report.poses[i].rms_px = residual_px(camera, result.camera_from_laser, pairs[i]);
+        if (const auto xz = model.to_laser(pairs[i].pixel))
+            report.poses[i].rms_mm = (*xz - pairs[i].laser_mm).norm();
+        if (!used[i] || count() < 6) continue;
+        const auto rest = locate_target(camera, view_of(pairs, used, static_cast<int>(i)));
+        if (!rest) continue;
+        const double e = residual_px(camera, rest->camera_from_target, pairs[i]);
+        const SensorModel other{camera, rest->camera_from_target, {}};
+        if (const auto xz = other.to_laser(pairs[i].pixel)) {
+            const double mm = (*xz - pairs[i].laser_mm).norm();
+            hold_mm += mm * mm;
+            hold_mm_max = std::max(hold_mm_max, mm);
+        }
+        hold += e * e;
+        ++folds;
+    }
+    if (folds) {
+        report.hold_out.folds = folds;
+        report.hold_out.left_out = 1;
+        report.hold_out.rms_px = std::sqrt(hold / folds);
+        report.hold_out.rms_mm = std::sqrt(hold_mm / folds);
+        report.hold_out.max_mm = hold_mm_max;
+    }
+    const double sigma_mm = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace());
+    const double sigma_deg = deg_from_rad(std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace()));
+    std::string left_out;
+    for (const auto& p : report.poses)
+        if (!p.used && !p.excluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
+    const char* more = "add pairs in the corners of the field of view, near and far";
+    if (!(sigma_mm < 5) || !(sigma_deg < 2)) {
+        report.parameters.clear();
+        report.covariance.resize(0, 0);
+        return undetermined(
+            Text("the pairs leave the pose open (sigma {:.1f} mm, {:.1f} degrees)", sigma_mm, sigma_deg));
+    }
+    if (result.rms_px > 3)
+        report.judgement = {Verdict::poor, Text("the pairs fit to {:.1f} px only", result.rms_px),
+                            "check the camera and that pixels and laser points belong together"};
+    else if (!left_out.empty())
+        report.judgement = {Verdict::usable,
+                            Text("the pair {} contradicts the others and was left out", left_out),
+                            "measure it again"};
+    else if (count() < 10)
+        report.judgement = {Verdict::usable, Text("{} pairs are few", count()),
+                            "take 10 or more over the whole field of view"};
+    else if (sigma_mm > 1 || sigma_deg > 0.3)
+        report.judgement = {Verdict::usable,
+                            Text("the pose is known to {:.2f} mm and {:.2f} degrees", sigma_mm, sigma_deg),
+                            more};
+    else
+        report.judgement = {Verdict::good,
+                            Text("{} pairs fit to {:.2f} px, sigma {:.2f} mm and {:.3f} degrees", count(),
+                                 result.rms_px, sigma_mm, sigma_deg),
+                            ""};
+    return result;
+}
+
+}  // namespace seamwright

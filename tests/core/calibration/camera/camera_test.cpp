@@ -1,0 +1,237 @@
+#include "core/calibration/camera/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <opencv2/calib3d.hpp>
+
+#include "tests/core/calibration/camera/camera_scene.h"
+
+namespace seamwright {
+namespace {
+
+using test::camera_640;
+using test::plate;
+using test::view_of;
+using test::views_of;
+using testing::HasSubstr;
+
+constexpr CameraFreedom kFull{true, true, 3, true};
+
+CameraOptions excluding(const std::string& id) {
+    CameraOptions o;
+    o.exclude = {id};
+    return o;
+}
+
+TEST(CameraProjection, DerivativesMatchDifferences) {
+    Intrinsics k;
+    k << 540, 543, 325, 236, -0.25, 0.08, 0.0012, -0.0008, 0.02;
+    const Eigen::Vector3d p(80, -60, 400);
+    Eigen::Vector2d pixel;
+    Eigen::Matrix<double, 2, 3> by_point;
+    Eigen::Matrix<double, 2, 9> by_k;
+    project_with_jacobian(k, p, pixel, &by_point, &by_k);
+    EXPECT_LT((pixel - camera_of(k, 640, 480).project(p)).norm(), 1e-9);
+    const auto at = [](const Intrinsics& kk, const Eigen::Vector3d& q) {
+        Eigen::Vector2d u;
+        project_with_jacobian(kk, q, u, nullptr, nullptr);
+        return u;
+    };
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d d = 1e-4 * Eigen::Vector3d::Unit(i);
+        EXPECT_LT((by_point.col(i) - (at(k, p + d) - at(k, p - d)) / 2e-4).norm(), 1e-6);
+    }
+    for (int i = 0; i < 9; ++i) {
+        const Intrinsics d = 1e-5 * Intrinsics::Unit(i);
+        EXPECT_LT((by_k.col(i) - (at(k + d, p) - at(k - d, p)) / 2e-5).norm(), 1e-4) << i;
+    }
+}
+
+TEST(CameraCalibration, ExactDataGivesTheTruth) {
+    std::mt19937 random(1);
+    const auto truth = camera_640();
+    const auto r = calibrate_camera(views_of(truth, 8, random, 30, 0), {{}, kFull, 6});
+    ASSERT_TRUE(r);
+    EXPECT_NEAR(r->camera.fx, truth.fx, 1e-4);
+    EXPECT_NEAR(r->camera.fy, truth.fy, 1e-4);
+    EXPECT_NEAR(r->camera.cx, truth.cx, 1e-4);
+    EXPECT_NEAR(r->camera.cy, truth.cy, 1e-4);
+    EXPECT_NEAR(r->camera.k1, truth.k1, 1e-5);
+    EXPECT_NEAR(r->camera.p1, truth.p1, 1e-7);
+    EXPECT_LT(r->rms_px, 1e-6);
+}
+
+// cv::calibrateCamera minimises the same sum: the same answer, independently programmed.
+TEST(CameraCalibration, AgreesWithOpenCV) {
+    std::mt19937 random(2);
+    const auto data = views_of(camera_640(), 10, random, 30, 0.2);
+    const auto r = calibrate_camera(data, {{}, kFull, 0});
+    ASSERT_TRUE(r);
+    std::vector<std::vector<cv::Point3f>> object;
+    std::vector<std::vector<cv::Point2f>> image;
+    for (const auto& v : data.views) {
+        object.emplace_back();
+        image.emplace_back();
+        for (std::size_t i = 0; i < v.pixel.size(); ++i) {
+            object.back().emplace_back(v.object_mm[i].x(), v.object_mm[i].y(), v.object_mm[i].z());
+            image.back().emplace_back(v.pixel[i].x(), v.pixel[i].y());
+        }
+    }
+    cv::Mat k, d;
+    std::vector<cv::Mat> rv, tv;
+    const double rms = cv::calibrateCamera(object, image, {640, 480}, k, d, rv, tv);
+    EXPECT_LE(r->rms_px, rms * (1 + 1e-6));
+    EXPECT_NEAR(r->camera.fx, k.at<double>(0, 0), 0.02);
+    EXPECT_NEAR(r->camera.fy, k.at<double>(1, 1), 0.02);
+    EXPECT_NEAR(r->camera.cx, k.at<double>(0, 2), 0.02);
+    EXPECT_NEAR(r->camera.k1, d.at<double>(0), 1e-3);
+}
+
+TEST(CameraCalibration, ModelChoiceKeepsTheTruthInside) {
+    std::mt19937 random(3);
+    const auto truth = camera_640();
+    const auto r = calibrate_camera(views_of(truth, 12, random, 35, 0.15), {});
+    ASSERT_TRUE(r);
+    EXPECT_TRUE(r->freedom.centre);
+    EXPECT_GE(r->freedom.radial, 2);
+    EXPECT_NEAR(r->camera.fx, truth.fx, 4 * r->report.parameters[0].sigma);
+    EXPECT_NEAR(r->camera.cy, truth.cy, 4 * r->report.parameters[3].sigma);
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::good) << r->report.judgement.reason;
+    EXPECT_NEAR(r->sigma_px, 0.15, 0.01);
+    EXPECT_GT(r->report.hold_out.rms_px, 0.15);
+}
+
+TEST(CameraCalibration, NamesAWrongPoint) {
+    std::mt19937 random(4);
+    auto data = views_of(camera_640(), 8, random, 30, 0.1);
+    data.views[2].pixel[17] += Eigen::Vector2d(6, -4);
+    const auto r = calibrate_camera(data, {});
+    ASSERT_TRUE(r);
+    EXPECT_FALSE(r->point_used[2][17]);
+    EXPECT_THAT(r->report.poses[2].note, HasSubstr("17"));
+    EXPECT_NEAR(r->camera.fx, 540, 2);
+}
+
+TEST(CameraCalibration, ParallelPlatesAreUndetermined) {
+    std::mt19937 random(5);
+    const auto camera = camera_640();
+    CameraData data;
+    data.width = 640, data.height = 480;
+    std::normal_distribution<double> n(0, 0.1);
+    for (int i = 0; i < 6; ++i) {
+        CameraPoints v;
+        v.id = std::to_string(i);
+        const Pose pose = make_pose(Eigen::Matrix3d::Identity(), {-100.0 + 4 * i, -60, 400.0 + 5 * i});
+        for (const auto& p : plate(9, 6, 25)) {
+            v.object_mm.push_back(p);
+            v.pixel.push_back(camera.project(pose * p) + Eigen::Vector2d(n(random), n(random)));
+        }
+        data.views.push_back(v);
+    }
+    const auto r = calibrate_camera(data, {});
+    ASSERT_TRUE(r);
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::undetermined) << r->report.judgement.reason;
+    EXPECT_EQ(r->report.covariance.size(), 0);
+    EXPECT_FALSE(r->report.judgement.cure.empty());
+}
+
+TEST(CameraCalibration, ABodyNeedsOneViewOnly) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> u(-1, 1);
+    std::vector<Eigen::Vector3d> body;
+    for (int i = 0; i < 60; ++i) body.emplace_back(80 * u(random), 80 * u(random), 80 * u(random));
+    CameraModel camera = camera_640();
+    camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0;
+    CameraData data;
+    data.width = 640, data.height = 480;
+    data.views.push_back(view_of(camera, body, random, 40, 420, 0, "body"));
+    const auto r = calibrate_camera(data, {{}, CameraFreedom{true, true, 0, false}, 6});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_NEAR(r->camera.fx, camera.fx, 1e-3);
+    EXPECT_NEAR(r->camera.cx, camera.cx, 1e-3);
+}
+
+TEST(CameraCalibration, BadInputIsOneSentence) {
+    std::mt19937 random(7);
+    const auto good = views_of(camera_640(), 6, random, 30, 0.1);
+    const auto refused = [](const CameraData& d, const CameraOptions& o = {}) {
+        const auto r = calibrate_camera(d, o);
+        EXPECT_FALSE(r);
+        return r ? std::string() : r.error().sentence();
+    };
+    EXPECT_THAT(refused({}), HasSubstr("pixels"));
+    auto d = good;
+    d.views.clear();
+    EXPECT_THAT(refused(d), HasSubstr("no view"));
+    d = good;
+    d.views.resize(1);
+    EXPECT_THAT(refused(d), HasSubstr("too few"));
+    d = good;
+    for (auto& v : d.views) v.pixel = good.views[0].pixel, v.object_mm = good.views[0].object_mm;
+    EXPECT_THAT(refused(d), HasSubstr("too few"));
+    d = good;
+    d.views[3].pixel[5].x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(refused(d), HasSubstr("finite"));
+    d = good;
+    d.views[3].pixel[5].x() = 1e300;
+    EXPECT_THAT(refused(d), HasSubstr("outside"));
+    d = good;
+    d.views[1].pixel.pop_back();
+    EXPECT_THAT(refused(d), HasSubstr("one pixel per point"));
+    d = good;
+    for (auto& v : d.views)
+        for (auto& p : v.object_mm) p *= 0.001;
+    EXPECT_THAT(refused(d), HasSubstr("metres"));
+    d = good;
+    for (auto& p : d.views[0].object_mm) p.y() = 0;
+    EXPECT_THAT(refused(d), HasSubstr("one line"));
+    EXPECT_THAT(refused(good, excluding("nobody")), HasSubstr("nobody"));
+    d = good;
+    d.views[1].id = d.views[0].id;
+    EXPECT_FALSE(refused(d).empty());
+}
+
+TEST(CameraCalibration, ExcludedAndDoubledViewsTakeNoPart) {
+    std::mt19937 random(8);
+    auto data = views_of(camera_640(), 8, random, 30, 0.1);
+    auto bad = data.views[0];
+    bad.id = "bad";
+    for (auto& p : bad.pixel) p = {640 - p.x(), 0.5 * p.y()};
+    data.views.push_back(bad);
+    data.views.push_back(data.views[1]);
+    data.views.back().id = "twin";
+    const auto r = calibrate_camera(data, excluding("bad"));
+    ASSERT_TRUE(r);
+    EXPECT_FALSE(r->report.poses[8].used);
+    EXPECT_FALSE(r->report.poses[9].used);
+    EXPECT_THAT(r->report.poses[9].note, HasSubstr("v1"));
+    EXPECT_NEAR(r->camera.fx, 540, 2);
+}
+
+TEST(LocateTarget, FindsThePoseAndItsCovariance) {
+    std::mt19937 random(9);
+    const auto camera = camera_640();
+    int inside = 0;
+    for (int i = 0; i < 300; ++i) {
+        Pose truth;
+        const auto view = view_of(camera, plate(7, 6, 10), random, 45, 300, 0.2, "t", &truth);
+        const auto t = locate_target(camera, view);
+        ASSERT_TRUE(t);
+        const Vector6 e = difference(t->camera_from_target, truth);
+        EXPECT_LT(e.head<3>().norm(), 3) << i;
+        const double q = e.dot(t->covariance.ldlt().solve(e));
+        inside += q < 12.59;  // 95 % of chi-squared with 6 degrees of freedom
+    }
+    EXPECT_GT(inside, 275);
+}
+
+TEST(Homography, RefusesTheDegenerate) {
+    EXPECT_FALSE(homography_dlt({{0, 0}, {1, 0}, {2, 0}}, {{0, 0}, {1, 0}, {2, 0}}));
+    EXPECT_FALSE(
+        homography_dlt({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}}, {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}}));
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -1,0 +1,248 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/calibration/camera/lens.h"
+#include "core/calibration/stripe/laser_plane.h"
+#include "tests/core/calibration/camera/camera_scene.h"
+
+namespace seamwright {
+namespace {
+
+using testing::HasSubstr;
+
+// Straight lines over the image, bent by K1, K2 about a centre (normalised by half the diagonal, 400 px).
+LensData bent_lines(double k1, double k2, double noise_px, unsigned seed, bool corner_only = false) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> n(0, 1);
+    CameraModel lens;
+    lens.fx = lens.fy = 400, lens.cx = 330, lens.cy = 232, lens.k1 = k1, lens.k2 = k2;
+    LensData d{640, 480, {}};
+    const auto add = [&](Eigen::Vector2d a, Eigen::Vector2d b) {
+        std::vector<Eigen::Vector2d> line;
+        for (int i = 0; i <= 60; ++i) {
+            const Eigen::Vector2d p = a + (b - a) * (i / 60.0);
+            const Eigen::Vector2d q = lens.project({(p.x() - 330) / 400, (p.y() - 232) / 400, 1});
+            if (q.x() > 0 && q.y() > 0 && q.x() < 639 && q.y() < 479)
+                line.push_back(q + noise_px * Eigen::Vector2d(n(random), n(random)));
+        }
+        if (line.size() >= 5) d.lines.push_back(line);
+    };
+    if (corner_only) {
+        for (int i = 0; i < 5; ++i) add({10, 10.0 + 8 * i}, {60, 14.0 + 8 * i});
+        return d;
+    }
+    for (int i = 0; i < 7; ++i) add({0, 20.0 + 72 * i}, {640, 40.0 + 66 * i});
+    for (int i = 0; i < 7; ++i) add({30.0 + 95 * i, 0}, {50.0 + 90 * i, 480});
+    return d;
+}
+
+TEST(Lens, MakesBentLinesStraight) {
+    const auto r = calibrate_lens(bent_lines(-0.2, 0.05, 0.1, 1), {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::good) << r->report.judgement.reason;
+    EXPECT_NEAR(r->lens.k1, -0.2, 5 * r->report.parameters[2].sigma);
+    EXPECT_NEAR(r->lens.k2, 0.05, 5 * r->report.parameters[3].sigma);
+    EXPECT_NEAR(r->lens.cx, 330, 5 * r->report.parameters[0].sigma);
+    EXPECT_NEAR(r->lens.cy, 232, 5 * r->report.parameters[1].sigma);
+    EXPECT_GT(r->straightness_before_px, 1);
+    EXPECT_NEAR(r->straightness_after_px, 0.1, 0.01);
+    EXPECT_NEAR(r->k1_px, r->lens.k1 / (400.0 * 400.0), 1e-12);
+}
+
+TEST(Lens, AStraightLensStaysStraight) {
+    const auto r = calibrate_lens(bent_lines(0, 0, 0.1, 2), {});
+    ASSERT_TRUE(r);
+    EXPECT_LT(r->corner_shift_px, 5 * r->corner_sigma_px + 0.2);
+}
+
+TEST(Lens, OneCornerIsNotTheField) {
+    const auto r = calibrate_lens(bent_lines(-0.2, 0, 0.1, 3, true), {});
+    ASSERT_TRUE(r);
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::undetermined);
+    EXPECT_EQ(r->report.covariance.size(), 0);
+}
+
+TEST(Lens, ALineLeftOutIsStillJudged) {
+    auto d = bent_lines(-0.2, 0.05, 0.1, 1);
+    for (std::size_t i = 30; i < d.lines[3].size(); ++i) d.lines[3][i].y() += 4;  // over an edge of the plate
+    const auto r = calibrate_lens(d, {.exclude = {3, 5}});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_FALSE(r->report.poses[3].used);
+    EXPECT_GT(r->report.poses[3].rms_px, 0.5);
+    EXPECT_NEAR(r->report.poses[5].rms_px, 0.1, 0.03) << "it took no part and fits";
+}
+
+// Stripes of a sensor: all in one direction, dense, and bent by hardly more than their noise. A cost that the
+// lens can lower by stretching the image leads to its fold here, thousands of pixels away.
+TEST(Lens, NoiseIsNotTakenForADistortion) {
+    CameraModel lens;
+    lens.fx = lens.fy = 820, lens.cx = 640, lens.cy = 512, lens.k1 = -0.003;  // 2.46 px in the corners
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> n(0, 0.13);
+        LensData d{1280, 1024, {}};
+        for (int i = 0; i < 11; ++i) {
+            auto& line = d.lines.emplace_back();
+            for (int u = 200; u < 1080; u += 2) {
+                const double v = 512 + 75 * (i - 5) + (i % 3 - 1) * 0.02 * (u - 640);
+                const Eigen::Vector2d q = lens.project({(u - 640) / 820.0, (v - 512) / 820.0, 1});
+                line.emplace_back(q.x(), q.y() + n(random));
+            }
+        }
+        const auto r = calibrate_lens(d, {});
+        ASSERT_TRUE(r) << "seed " << seed << ": " << r.error().sentence();
+        EXPECT_LE(r->report.judgement.verdict, Verdict::usable) << seed << r->report.judgement.reason;
+        EXPECT_LT(r->corner_shift_px, 2.46 + 4 * r->corner_sigma_px) << seed;
+        EXPECT_NEAR(r->straightness_after_px, 0.13, 0.01) << seed;
+    }
+}
+
+// A reflection of a stretch of the stripe: beside it, tilted, and by a tracker taken for it.
+void reflect(std::vector<Eigen::Vector2d>& line, std::size_t from, std::size_t to, double shift_px,
+             double tilt) {
+    for (std::size_t i = from; i < to; ++i)
+        line[i].y() += shift_px + tilt * (static_cast<double>(i) - static_cast<double>(from));
+}
+
+TEST(Lens, ReflectionsOnSomeLinesDoNotBendTheLens) {
+    const auto clean = calibrate_lens(bent_lines(-0.2, 0.05, 0.1, 1), {});
+    ASSERT_TRUE(clean);
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        LensData d = bent_lines(-0.2, 0.05, 0.1, seed);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> u(-1, 1);
+        for (const std::size_t line : {0u, 2u, 3u, 5u}) {
+            auto& points = d.lines[line];
+            const auto from =
+                static_cast<std::size_t>(0.3 * (1 + u(random)) * static_cast<double>(points.size()));
+            reflect(points, from, from + points.size() * 2 / 5, std::copysign(25 + 13 * u(random), u(random)),
+                    0.5 * u(random));
+            std::erase_if(points, [](const auto& p) { return p.y() < 0 || p.y() > 480; });
+        }
+        const auto r = calibrate_lens(d, {});
+        ASSERT_TRUE(r) << "seed " << seed << ": " << r.error().sentence();
+        EXPECT_EQ(r->report.judgement.verdict, Verdict::good) << seed << ": " << r->report.judgement.reason;
+        EXPECT_NEAR(r->lens.k1, -0.2, 5 * r->report.parameters[2].sigma) << seed;
+        EXPECT_NEAR(r->lens.k2, 0.05, 5 * r->report.parameters[3].sigma) << seed;
+        EXPECT_LT(r->straightness_after_px, 0.12) << seed;
+        EXPECT_THAT(r->report.poses[3].note, HasSubstr("lie off it")) << seed;
+    }
+}
+
+TEST(Lens, ALineThatIsNoneIsLeftOutAndNamed) {
+    LensData d = bent_lines(-0.2, 0.05, 0.1, 1);
+    for (auto& p : d.lines[4]) p.y() += 6 * std::pow((p.x() - 330) / 330, 4);  // the plate is not flat there
+    auto& ragged = d.lines[9];
+    for (std::size_t i = 0; i < ragged.size(); ++i)
+        if (i % 9 < 4) ragged[i].x() += 40 + 17.0 * static_cast<double>(i % 7);  // hardly a line at all
+    const auto r = calibrate_lens(d, {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_FALSE(r->report.poses[4].used);
+    EXPECT_THAT(r->report.poses[4].note, HasSubstr("stays bent"));
+    EXPECT_FALSE(r->report.poses[9].used);
+    EXPECT_THAT(r->report.poses[9].note, HasSubstr("lie on one line"));
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::good);
+    EXPECT_THAT(r->report.judgement.reason, HasSubstr("left out as no straight lines: 4, 9"));
+    EXPECT_NEAR(r->lens.k1, -0.2, 5 * r->report.parameters[2].sigma);
+    for (const std::size_t i : {0u, 3u, 5u, 8u, 10u}) EXPECT_TRUE(r->report.poses[i].used) << i;
+}
+
+TEST(Lens, LinesThatNoLensStraightensGiveAVerdictNotAnError) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        LensData d{640, 480, {}};
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> u(0, 1);
+        for (int i = 0; i < 6; ++i) {
+            auto& line = d.lines.emplace_back();
+            for (int k = 0; k < 40; ++k) line.emplace_back(16.0 * k, 480 * u(random));
+        }
+        const auto r = calibrate_lens(d, {});
+        ASSERT_TRUE(r) << "seed " << seed << ": " << r.error().sentence();
+        EXPECT_GE(r->report.judgement.verdict, Verdict::poor) << seed;
+    }
+}
+
+TEST(Lens, RefusesBadLines) {
+    auto d = bent_lines(-0.1, 0, 0.1, 4);
+    d.lines[2][3].x() = std::nan("");
+    EXPECT_FALSE(calibrate_lens(d, {}));
+    EXPECT_FALSE(calibrate_lens({}, {}));
+    EXPECT_FALSE(calibrate_lens({640, 480, {}}, {}));
+    EXPECT_FALSE(calibrate_lens({640, 480, {{{1, 1}, {2, 2}}}}, {}));
+    LensOptions o;
+    o.exclude = {99};
+    EXPECT_FALSE(calibrate_lens(bent_lines(-0.1, 0, 0.1, 5), o));
+}
+
+std::vector<LaserPair> pairs_of(const CameraModel& camera, const Pose& camera_from_laser, int count,
+                                double noise, std::mt19937& random) {
+    std::uniform_real_distribution<double> u(-1, 1);
+    std::normal_distribution<double> n(0, 1);
+    std::vector<LaserPair> out;
+    while (static_cast<int>(out.size()) < count) {
+        const Eigen::Vector2d xz(70 * u(random), 60 * u(random));
+        const Eigen::Vector2d q = camera.project(camera_from_laser * Eigen::Vector3d(xz.x(), 0, xz.y()));
+        if (!q.allFinite() || q.x() < 0 || q.y() < 0 || q.x() > 639 || q.y() > 479) continue;
+        out.push_back({std::to_string(out.size()), q + noise * Eigen::Vector2d(n(random), n(random)), xz});
+    }
+    return out;
+}
+
+const Pose kLaser = make_pose(rotation_exp({1.0, 0.2, 0.15}), {10, -5, 320});
+
+TEST(LaserPlane, ExactPairsGiveTheTruth) {
+    std::mt19937 random(1);
+    const auto camera = test::camera_640();
+    const auto r = calibrate_laser_plane(camera, pairs_of(camera, kLaser, 12, 0, random), {});
+    ASSERT_TRUE(r) << r.error().sentence();
+    EXPECT_LT(distance_mm(r->camera_from_laser, kLaser), 1e-5);
+    EXPECT_LT(angle_rad(r->camera_from_laser, kLaser), 1e-7);
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::good) << r->report.judgement.reason;
+}
+
+TEST(LaserPlane, CovarianceIsTheScatter) {
+    std::mt19937 random(2);
+    const auto camera = test::camera_640();
+    Vector6 mean = Vector6::Zero();
+    double inside = 0, counted = 0;
+    for (int i = 0; i < 300; ++i) {
+        const auto r = calibrate_laser_plane(camera, pairs_of(camera, kLaser, 40, 0.2, random), {});
+        ASSERT_TRUE(r);
+        const Vector6 e = difference(r->camera_from_laser, kLaser);
+        mean += e / 300;
+        for (int k = 0; k < 6; ++k)
+            inside += std::abs(e(k)) < 1.96 * std::sqrt(r->covariance(k, k)), ++counted;
+    }
+    EXPECT_NEAR(inside / counted, 0.95, 0.03);
+    EXPECT_LT(mean.head<3>().norm(), 0.1);
+}
+
+TEST(LaserPlane, NamesTheWrongPair) {
+    std::mt19937 random(3);
+    const auto camera = test::camera_640();
+    auto pairs = pairs_of(camera, kLaser, 12, 0.2, random);
+    pairs[7].pixel += Eigen::Vector2d(25, 10);
+    const auto r = calibrate_laser_plane(camera, pairs, {});
+    ASSERT_TRUE(r);
+    EXPECT_FALSE(r->report.poses[7].used);
+    EXPECT_THAT(r->report.judgement.reason, HasSubstr("7"));
+    EXPECT_LT(distance_mm(r->camera_from_laser, kLaser), 3);
+}
+
+TEST(LaserPlane, ALineOfPointsIsUndetermined) {
+    std::mt19937 random(4);
+    const auto camera = test::camera_640();
+    std::vector<LaserPair> pairs;
+    for (int i = 0; i < 12; ++i) {
+        const Eigen::Vector2d xz(-55 + 10 * i, 5 + 2.0 * i);
+        pairs.push_back({std::to_string(i), camera.project(kLaser * Eigen::Vector3d(xz.x(), 0, xz.y())), xz});
+    }
+    const auto r = calibrate_laser_plane(camera, pairs, {});
+    ASSERT_TRUE(r);
+    EXPECT_EQ(r->report.judgement.verdict, Verdict::undetermined);
+    pairs.resize(3);
+    EXPECT_FALSE(calibrate_laser_plane(camera, pairs, {}));
+}
+
+}  // namespace
+}  // namespace seamwright

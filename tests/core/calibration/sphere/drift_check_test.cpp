@@ -1,0 +1,163 @@
+#include "core/calibration/sphere/drift_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/core/calibration/sphere/sphere_simulation.h"
+
+namespace seamwright {
+namespace {
+
+using namespace simulation;
+using ::testing::HasSubstr;
+
+// Views of each sphere through a sensor that has moved by `change` on its flange.
+std::vector<DriftMeasurement> measure(const SphereCell& cell, const Pose& change, int spheres, Random& random,
+                                      int views = 2) {
+    std::vector<DriftMeasurement> list;
+    for (int k = 0; k < spheres; ++k) {
+        SphereCell now = cell;
+        now.centre_base += Eigen::Vector3d(k == 1 ? 90 : 0, k == 2 ? 80 : 0, 15 * k);
+        now.flange_from_sensor = change * cell.flange_from_sensor;
+        for (const auto& observation : sphere_observations(now, views, random)) {
+            auto m =
+                drift_measurement(observation, cell.radius, cell.flange_from_sensor, now.centre_base, 0.01);
+            EXPECT_TRUE(m.has_value());
+            if (!m) continue;
+            m->id = "sphere" + std::to_string(k) + observation.id;
+            list.push_back(*m);
+        }
+    }
+    return list;
+}
+
+TEST(DriftCheck, HoldsWhenNothingHasChanged) {
+    int holds = 0;
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        Random random(seed);
+        SphereCell cell = any_cell(random);
+        const auto result = check_drift(measure(cell, Pose::Identity(), 3, random, 4));
+        ASSERT_TRUE(result.has_value());
+        holds += result->status == DriftStatus::holds ? 1 : 0;
+        EXPECT_NE(result->status, DriftStatus::drifted) << seed << " " << result->report.judgement.reason;
+    }
+    EXPECT_GE(holds, 45);
+}
+
+TEST(DriftCheck, SeesAShiftAndATurnWithTheirSize) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        Random random(seed + 60);
+        SphereCell cell = any_cell(random);
+        // A knock: turned by 0.4 degrees about the sensor's own place and shifted by 0.6 mm.
+        const Eigen::Matrix3d turn = rotation_exp(rad_from_deg(0.4) * Eigen::Vector3d(0.6, -0.64, 0.48));
+        const Eigen::Vector3d pivot = cell.flange_from_sensor.translation();
+        const Pose change = make_pose(turn, pivot + Eigen::Vector3d(0.4, -0.2, 0.4) - turn * pivot);
+        const auto result = check_drift(measure(cell, change, 3, random));
+        ASSERT_TRUE(result.has_value());
+        EXPECT_EQ(result->status, DriftStatus::drifted) << seed;
+        EXPECT_EQ(result->report.judgement.verdict, Verdict::poor);
+        EXPECT_GT(result->chi_squared, result->chi_squared_limit);
+        EXPECT_NEAR(result->change_mm, 0.6, 0.3) << seed;
+        EXPECT_LT(result->rms_after_mm, 0.7 * result->rms_before_mm);
+        if (result->not_determined.empty()) {
+            EXPECT_NEAR(result->change_deg, 0.4, 4 * result->sigma_deg) << seed;
+        }
+    }
+}
+
+TEST(DriftCheck, ExactMeasurementsGiveTheExactChange) {
+    const Pose change = make_pose(rotation_exp({0.01, -0.02, 0.03}), {1.5, -2, 0.7});
+    std::vector<DriftMeasurement> list;
+    const Eigen::Vector3d places[] = {{0, 0, 200}, {40, 0, 210}, {0, 35, 190}, {-20, 10, 220}};
+    for (int i = 0; i < 4; ++i) {
+        DriftMeasurement m;
+        m.id = std::to_string(i);
+        m.base_from_flange = make_pose(rotation_exp({0.1 * i, 0.2, -0.1 * i}), {900 + 10.0 * i, 100, 500});
+        m.measured_flange_mm = places[i];
+        m.known_base_mm = m.base_from_flange * (change * places[i]);
+        list.push_back(m);
+    }
+    const auto result = check_drift(list);
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->status, DriftStatus::drifted);
+    EXPECT_LT(distance_mm(result->change, change), 1e-7);
+    EXPECT_LT(angle_rad(result->change, change), 1e-9);
+    EXPECT_LT(result->rms_after_mm, 1e-7);
+    EXPECT_TRUE(result->not_determined.empty());
+}
+
+TEST(DriftCheck, OnePlaceCannotSeeATurnAndSaysSo) {
+    std::vector<DriftMeasurement> list(1);
+    list[0].id = "a";
+    list[0].base_from_flange = make_pose(Eigen::Matrix3d::Identity(), {900, 100, 500});
+    list[0].measured_flange_mm = {0, 0, 200};
+    list[0].known_base_mm = {900, 100, 700};
+    list[0].covariance = 1e-4 * Eigen::Matrix3d::Identity();
+    const auto result = check_drift(list);
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->status, DriftStatus::undetermined) << "a turn about that place would not show";
+    EXPECT_EQ(result->not_determined.size(), 3u);
+    EXPECT_THAT(result->report.judgement.reason, HasSubstr("turn about"));
+    list[0].covariance = Eigen::Matrix3d::Identity();
+    EXPECT_EQ(check_drift(list)->status, DriftStatus::undetermined);
+}
+
+// Whatever the turn, "holds" may not be said beyond the limits: over sizes about the limit and measurements
+// from fine to rough.
+TEST(DriftCheck, HoldsIsSaidOfNothingThatIsBeyondTheLimits) {
+    const DriftLimits limits;
+    int drifted = 0, undetermined = 0;
+    for (unsigned seed = 0; seed < 120; ++seed) {
+        Random random(seed + 400);
+        SphereCell cell = any_cell(random);
+        cell.noise_mm = 0.01 * (1 + seed % 8);
+        const double angle_deg = limits.rotation_deg * (1.5 + 0.5 * (seed % 4));
+        Eigen::Vector3d axis(normal(random, 1), normal(random, 1), normal(random, 1));
+        const Eigen::Matrix3d turn = rotation_exp(rad_from_deg(angle_deg) * axis.normalized());
+        const Eigen::Vector3d pivot = cell.flange_from_sensor * cell.working_point;
+        const auto result =
+            check_drift(measure(cell, make_pose(turn, pivot - turn * pivot), 3, random), limits);
+        ASSERT_TRUE(result.has_value());
+        EXPECT_NE(result->status, DriftStatus::holds)
+            << seed << ": " << angle_deg << " degrees, " << result->report.judgement.reason;
+        drifted += result->status == DriftStatus::drifted ? 1 : 0;
+        undetermined += result->status == DriftStatus::undetermined ? 1 : 0;
+    }
+    EXPECT_GT(drifted, 20);
+    EXPECT_GT(undetermined, 5);
+}
+
+TEST(DriftCheck, AMovedTargetIsNoDriftOfTheSensor) {
+    Random random(9);
+    SphereCell cell = any_cell(random);
+    auto list = measure(cell, Pose::Identity(), 3, random);
+    list[0].known_base_mm += Eigen::Vector3d(3, 0, 0);
+    list[1].known_base_mm -= Eigen::Vector3d(3, 2, 0);
+    const auto result = check_drift(list);
+    ASSERT_TRUE(result.has_value());
+    EXPECT_THAT(result->report.judgement.reason, HasSubstr("no rigid change"));
+    EXPECT_EQ(result->report.judgement.verdict, Verdict::poor);
+}
+
+TEST(DriftCheck, RefusesBadInput) {
+    EXPECT_FALSE(check_drift({}).has_value());
+    DriftMeasurement m;
+    m.id = "a";
+    m.base_from_flange.translation() = Eigen::Vector3d(500, 0, 0);
+    EXPECT_FALSE(check_drift({m, m}).has_value());
+    m.covariance(0, 0) = -1;
+    EXPECT_FALSE(check_drift({m}).has_value());
+    m.covariance.setIdentity();
+    m.known_base_mm.x() = std::nan("");
+    EXPECT_FALSE(check_drift({m}).has_value());
+    m.known_base_mm.setZero();
+    m.base_from_flange.translation() *= 1e-3;
+    EXPECT_THAT(check_drift({m}).error().sentence(), HasSubstr("metres"));
+    SphereObservation empty;
+    empty.id = "e";
+    empty.base_from_flange.translation() = Eigen::Vector3d(500, 0, 0);
+    EXPECT_FALSE(drift_measurement(empty, 10, Pose::Identity(), Eigen::Vector3d::Zero(), 0.01).has_value());
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -1,0 +1,125 @@
+#pragma once
+// The smooth map of lookup_table_calibration.h and its statistics. Private to core/calibration/table.
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/calibration/stripe/laser_plane.h"
+
+namespace seamwright::lookup_table {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// The pairs in use.
+struct Samples {
+    std::vector<Eigen::Vector2d> pixel, laser;
+};
+Samples chosen(const std::vector<LaserPair>& pairs, const std::vector<char>& used);
+
+Eigen::Vector2d through(const Eigen::Matrix3d& h, const Eigen::Vector2d& p);
+
+class SmoothMap {
+  public:
+    // Degrees to choose from. False: too few samples, or a horizon between them.
+    bool fit(const Samples& s, int least_degree, int most_degree);
+
+    Eigen::Vector2d at(const Eigen::Vector2d& pixel) const {
+        const Eigen::Vector3d q = h_ * corrected(pixel).homogeneous();
+        if (!(q.z() * side_ > 0)) return {kNaN, kNaN};
+        return q.hnormalized();
+    }
+    // d(x, z)/d(u, v), mm per px.
+    Eigen::Matrix2d slope(const Eigen::Vector2d& p) const {
+        constexpr double h = 0.5;
+        Eigen::Matrix2d j;
+        j.col(0) = (at(p + Eigen::Vector2d(h, 0)) - at(p - Eigen::Vector2d(h, 0))) / (2 * h);
+        j.col(1) = (at(p + Eigen::Vector2d(0, h)) - at(p - Eigen::Vector2d(0, h))) / (2 * h);
+        return j;
+    }
+    // d(x, z)/d(corrected pixel): carries noise() into the laser plane.
+    Eigen::Matrix2d homography_slope(const Eigen::Vector2d& pixel) const {
+        const Eigen::Vector3d q = h_ * corrected(pixel).homogeneous();
+        const Eigen::Vector2d xz = q.hnormalized();
+        return (h_.topLeftCorner<2, 2>() - xz * h_.block<1, 2>(2, 0)) / q.z();
+    }
+    // How far a pair lies from the map, in corrected px; NaN beyond the horizon.
+    Eigen::Vector2d miss(const Eigen::Vector2d& pixel, const Eigen::Vector2d& laser) const {
+        const Eigen::Vector3d q = inverse_ * laser.homogeneous();
+        if (!(q.z() * inverse_side_ > 0)) return {kNaN, kNaN};
+        return q.hnormalized() - corrected(pixel);
+    }
+    // Row whose products are the covariance of the map between two places, in units of noise().
+    Eigen::VectorXd spread_row(const Eigen::Vector2d& p) const {
+        const Eigen::Vector2d c = (p - mean_) / scale_;
+        const Eigen::VectorXd r =
+            r_.transpose().triangularView<Eigen::Lower>().solve(monomials(c, degree_).transpose());
+        Eigen::VectorXd out(r.size() + shrink_.size());
+        out.head(r.size()) = r;
+        if (shrink_.size() > 0)
+            out.tail(shrink_.size()) =
+                ((kernel(c) * rotate_).transpose() - cross_.transpose() * r).cwiseProduct(shrink_);
+        return out;
+    }
+    const Eigen::Matrix2d& noise() const { return noise_; }  // covariance of a pair's miss(), px^2
+    // Residual over sqrt(1 - leverage) as a square in units of the noise, and the leave-one-out error in px.
+    double studentised(std::size_t i, const Eigen::Matrix2d& noise_inverse) const {
+        const auto k = static_cast<Eigen::Index>(i);
+        const Eigen::Vector2d e = residual_.row(k).transpose();
+        return e.dot(noise_inverse * e) / std::max(1 - leverage_(k), 1e-9);
+    }
+    Eigen::Vector2d left_out_error(std::size_t i) const {
+        const auto k = static_cast<Eigen::Index>(i);
+        return residual_.row(k).transpose() / std::max(1 - leverage_(k), 1e-9);
+    }
+    int degree() const { return degree_; }
+    double effective() const { return effective_; }
+    double freedom() const { return static_cast<double>(residual_.rows()) - effective_; }
+
+  private:
+    Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
+    double scale_ = 1, side_ = 1, inverse_side_ = 1;
+    Eigen::Matrix3d h_ = Eigen::Matrix3d::Identity(), inverse_ = Eigen::Matrix3d::Identity();
+    int degree_ = 0;
+    std::vector<Eigen::Vector2d> knots_;
+    Eigen::MatrixXd poly_, bend_;         // coefficients of u and v
+    Eigen::MatrixXd r_, cross_, rotate_;  // of spread_row()
+    Eigen::VectorXd shrink_;
+    Eigen::MatrixXd residual_;
+    Eigen::VectorXd leverage_;
+    Eigen::Matrix2d noise_ = Eigen::Matrix2d::Zero();
+    double effective_ = 0;
+
+    static Eigen::Index terms(int degree) { return (degree + 1) * (degree + 2) / 2; }
+    static Eigen::RowVectorXd monomials(const Eigen::Vector2d& c, int degree) {
+        Eigen::RowVectorXd row(terms(degree));
+        Eigen::Index at = 0;
+        for (int total = 0; total <= degree; ++total)
+            for (int k = 0; k <= total; ++k) {
+                double value = 1;
+                for (int i = 0; i < total - k; ++i) value *= c.x();
+                for (int i = 0; i < k; ++i) value *= c.y();
+                row(at++) = value;
+            }
+        return row;
+    }
+    static double bending(double square) { return square > 0 ? 0.5 * square * std::log(square) : 0; }
+    Eigen::RowVectorXd kernel(const Eigen::Vector2d& c) const {
+        Eigen::RowVectorXd row(static_cast<Eigen::Index>(knots_.size()));
+        for (std::size_t j = 0; j < knots_.size(); ++j)
+            row(static_cast<Eigen::Index>(j)) = bending((c - knots_[j]).squaredNorm());
+        return row;
+    }
+    Eigen::Vector2d corrected(const Eigen::Vector2d& pixel) const {
+        const Eigen::Vector2d c = (pixel - mean_) / scale_;
+        Eigen::Vector2d out = pixel + (monomials(c, degree_) * poly_).transpose();
+        if (!knots_.empty()) out += (kernel(c) * bend_).transpose();
+        return out;
+    }
+    void choose_knots(const std::vector<Eigen::Vector2d>& places);
+};
+
+}  // namespace seamwright::lookup_table

@@ -1,4 +1,5 @@
 #include "app/cli/feature_setting.h"
+#include "core/features/kinds/feature_registry.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -7,7 +7,7 @@
 #include "core/alignment/alignment.h"
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
-#include "core/features/registration.h"
+#include "core/features/registration/registration.h"
 #include "core/panel/panel_fit.h"
 
 namespace seamwright::cli {

@@ -1,5 +1,6 @@
 #include "app/studio/demo_project.h"
 
+#include "core/features/kinds/feature_registry.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/door.h"

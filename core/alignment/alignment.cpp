@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "core/correction/contour_fit.h"
-#include "core/features/contour_model.h"
-#include "core/features/registration.h"
+#include "core/features/contour/contour_model.h"
+#include "core/features/registration/registration.h"
 #include "core/median.h"
 
 namespace seamwright {

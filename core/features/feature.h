@@ -39,7 +39,7 @@ struct Feature {
     std::vector<Eigen::Vector2d> rivals_mm;  // ambiguous: the places between which nothing decides
 };
 
-// What is taught at a spot. `kind` names an entry of the registry (below).
+// What is taught at a spot. `kind` names an entry of the registry (kinds/feature_registry.h).
 struct FeatureRecipe {
     std::string kind = "contour-end";  // contour-end | corner | circle | extremum | template | sensor-point
     ParameterValues parameters;        // as described by the kind
@@ -58,17 +58,12 @@ class FeatureFinder {
     virtual Feature find(const Profile& profile) const = 0;
 };
 
-// The registry: adding a kind is one file and one line in feature_registry.cpp.
+// A row of the registry (kinds/feature_registry.h).
 struct FeatureKind {
     std::string_view name;
     std::string_view help;
     std::vector<ParameterInfo> parameters;
     Expected<std::unique_ptr<FeatureFinder>> (*make)(const FeatureRecipe&);
 };
-const std::vector<FeatureKind>& feature_kinds();
-const FeatureKind* feature_kind(std::string_view name);  // nullptr when unknown
-
-// Validates the recipe against its kind, then prepares it.
-Expected<std::unique_ptr<FeatureFinder>> make_feature_finder(const FeatureRecipe& recipe);
 
 }  // namespace seamwright

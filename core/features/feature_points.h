@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/features/contour_model.h"
+#include "core/features/contour/contour_model.h"
 #include "core/features/feature.h"
 
 namespace seamwright {

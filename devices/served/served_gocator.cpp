@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/number_text.h"
 #include "core/profile/filter.h"
 #include "core/profile/peaks.h"

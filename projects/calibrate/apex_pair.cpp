@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/features/apex.h"
+#include "core/features/contour/apex.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/stripe_line_points.h"

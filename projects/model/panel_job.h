@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/correction/correction.h"
-#include "core/features/gap_flush.h"
+#include "core/features/gap/gap_flush.h"
 #include "core/geometry/pose.h"
 #include "core/panel/panel_fit.h"
 #include "core/profile/profile.h"

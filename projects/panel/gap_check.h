@@ -1,6 +1,6 @@
 #pragma once
 // The gap check on a pass along the contour: profiles of one sensor, each with the pose at which the robot
-// stood, measured by core/features/gap_scan.h in the work object. The pass comes from a capture (`seamwright
+// stood, measured by core/features/gap/gap_scan.h in the work object. The pass comes from a capture (`seamwright
 // record` while the robot travels), or the robot is sent along it step by step.
 //
 // Pose of a captured profile: its own, else between the robot's poses and triggers of the capture before and
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/features/gap_scan.h"
+#include "core/features/gap/gap_scan.h"
 #include "devices/capture/capture_file.h"
 #include "projects/model/project.h"
 #include "projects/station/station.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/features/kinds/feature_registry.h"
 #include "core/number_text.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/station/measure.h"

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/correction/nuisance.h"
+#include "core/features/kinds/feature_registry.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/features/kinds/feature_registry.h"
 #include "core/panel/double_head.h"
 
 namespace seamwright {

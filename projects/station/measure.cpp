@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/correction/travel.h"
+#include "core/features/kinds/feature_registry.h"
 
 namespace seamwright {
 namespace {

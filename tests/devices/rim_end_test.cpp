@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 #include "core/profile/peaks.h"
 #include "devices/simulated/cell.h"

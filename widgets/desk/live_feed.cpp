@@ -1,6 +1,7 @@
 #include "widgets/desk/live_feed.h"
 
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {

@@ -3,6 +3,7 @@
 #include <QInputDialog>
 #include <cmath>
 
+#include "core/features/kinds/feature_registry.h"
 #include "devices/registry.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"

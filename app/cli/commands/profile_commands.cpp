@@ -12,6 +12,7 @@
 #include "app/cli/feature_setting.h"
 #include "app/cli/no_return_option.h"
 #include "app/cli/result_json.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
 #include "devices/exchange/profile_csv.h"

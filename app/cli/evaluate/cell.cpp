@@ -7,6 +7,7 @@
 #include "core/alignment/alignment.h"
 #include "core/correction/travel.h"
 #include "core/evaluation/statistics.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 #include "devices/simulated/door.h"
 #include "devices/simulated/profile_cut.h"

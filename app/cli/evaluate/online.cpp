@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/correction/path_blend.h"
+#include "core/features/kinds/feature_registry.h"
 #include "devices/simulated/door.h"
 #include "devices/simulated/profile_cut.h"
 

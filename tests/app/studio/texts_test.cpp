@@ -11,6 +11,7 @@
 
 #include "core/correction/correction.h"
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/text.h"
 #include "devices/registry.h"
 #include "projects/model/run.h"

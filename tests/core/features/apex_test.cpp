@@ -1,4 +1,4 @@
-#include "core/features/apex.h"
+#include "core/features/contour/apex.h"
 
 #include <gtest/gtest.h>
 

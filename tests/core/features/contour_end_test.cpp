@@ -11,6 +11,7 @@
 
 #include "contours.h"
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 
 namespace seamwright::test {
 namespace {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "contour_scenes.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 
 namespace seamwright::scenes {

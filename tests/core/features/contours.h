@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/features/registration.h"
+#include "core/features/registration/registration.h"
 #include "core/geometry/pose.h"
 #include "core/profile/profile.h"
 

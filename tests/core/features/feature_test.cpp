@@ -2,6 +2,7 @@
 // covariances are in features_long_test.cpp.
 
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 #include <random>
 
 #include "contours.h"
-#include "core/features/gap_flush.h"
+#include "core/features/gap/gap_flush.h"
 #include "tests/allocations.h"
 
 namespace seamwright::test {

@@ -7,7 +7,8 @@
 
 #include "contours.h"
 #include "core/features/feature.h"
-#include "core/features/gap_flush.h"
+#include "core/features/gap/gap_flush.h"
+#include "core/features/kinds/feature_registry.h"
 
 namespace seamwright::test {
 namespace {

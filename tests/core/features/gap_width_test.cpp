@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/features/gap_flush.h"
+#include "core/features/gap/gap_flush.h"
 #include "core/profile/filter.h"
 
 namespace seamwright {

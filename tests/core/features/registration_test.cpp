@@ -1,7 +1,7 @@
 // Laws, known answers and hostile input of the registration. Success rates and statistics over many scenes
 // are in registration_long_test.cpp.
 
-#include "core/features/registration.h"
+#include "core/features/registration/registration.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 #include <algorithm>
 
 #include "contours.h"
-#include "core/features/contour_model.h"
+#include "core/features/contour/contour_model.h"
+#include "core/features/contour/reduce_contour.h"
 
 namespace seamwright::test {
 namespace {

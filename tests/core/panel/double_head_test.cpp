@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "core/features/gap_flush.h"
+#include "core/features/gap/gap_flush.h"
 
 namespace seamwright {
 namespace {

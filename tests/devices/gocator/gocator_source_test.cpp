@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/features/feature.h"
+#include "core/features/kinds/feature_registry.h"
 #include "core/profile/peaks.h"
 #include "devices/gocator/gocator.h"
 #include "devices/net/socket.h"

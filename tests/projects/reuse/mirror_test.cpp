@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/features/kinds/feature_registry.h"
 #include "devices/simulated/mesh_file.h"
 #include "projects/station/check.h"
 #include "projects/station/measure.h"

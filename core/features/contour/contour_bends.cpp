@@ -1,0 +1,205 @@
+#include "core/features/contour/contour_bends.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/features/contour/contour_model.h"
+
+namespace seamwright {
+namespace {
+
+constexpr std::size_t kNodes = 600;
+constexpr double kStretchCost = 60;
+constexpr int kFewestNodes = 3;
+constexpr int kManyNodes = 12;          // of a stretch that knows the noise
+constexpr double kTurnSigma = 6;        // what a turn must be beside its own uncertainty
+constexpr double kNoiseOfStep = 0.005;  // floor of the noise, in steps between nodes
+constexpr double kShortStretch = 0.25;  // of the stretches beside: part of a radius
+constexpr double kMeetAway = 0.5;       // of the shorter stretch: so far off its end lines may meet
+constexpr double kMoreNoise = 1.1;
+constexpr double kMeetSigma = 8;
+
+enum class Joint : std::uint8_t { smooth, bend, jump };
+
+double turn_between(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+}
+
+}  // namespace
+
+void ContourBends::take_nodes(std::span<const double> x, std::span<const double> z) {
+    const std::size_t n = std::min(x.size(), z.size());
+    const std::size_t group = n <= kNodes ? 1 : (n + kNodes - 1) / kNodes;
+    node_x_.clear();
+    node_z_.clear();
+    node_first_.clear();
+    const auto middle = [&](std::span<const double> values, std::size_t first, std::size_t count) {
+        scratch_.assign(values.begin() + std::ptrdiff_t(first),
+                        values.begin() + std::ptrdiff_t(first + count));
+        const auto at = scratch_.begin() + std::ptrdiff_t(count / 2);
+        std::nth_element(scratch_.begin(), at, scratch_.end());
+        if (count % 2) return *at;
+        return 0.5 * (*at + *std::max_element(scratch_.begin(), at));
+    };
+    for (std::size_t first = 0; first < n; first += group) {
+        const std::size_t count = std::min(group, n - first);
+        node_first_.push_back(static_cast<int>(first));
+        node_x_.push_back(middle(x, first, count));
+        node_z_.push_back(middle(z, first, count));
+    }
+    node_first_.push_back(static_cast<int>(n));
+}
+
+ContourBends::Stretch ContourBends::stretch(int first, int last) const {
+    const double m = last - first + 1;
+    std::array<double, 5> s;
+    for (std::size_t j = 0; j < 5; ++j)
+        s[j] = (sums_[std::size_t(last) + 1][j] - sums_[std::size_t(first)][j]) / m;
+    const double xx = s[2] - s[0] * s[0], xz = s[3] - s[0] * s[1], zz = s[4] - s[1] * s[1];
+    const double angle = 0.5 * std::atan2(2 * xz, xx - zz);
+    Stretch r;
+    r.first = first;
+    r.last = last;
+    r.centre = {s[0] + node_x_[0], s[1] + node_z_[0]};
+    r.direction = {std::cos(angle), std::sin(angle)};
+    const auto node = [&](int i) {
+        return Eigen::Vector2d(node_x_[std::size_t(i)], node_z_[std::size_t(i)]);
+    };
+    if (r.direction.dot(node(last) - node(first)) < 0) r.direction = -r.direction;
+    r.begin = r.direction.dot(node(first) - r.centre);
+    r.end = r.direction.dot(node(last) - r.centre);
+    return r;
+}
+
+// The division of least cost, its stretches of four nodes and more.
+void ContourBends::divide() {
+    const int n = static_cast<int>(node_x_.size());
+    sums_.assign(static_cast<std::size_t>(n) + 1, {});
+    double way = 0;
+    for (int i = 0; i < n; ++i) {
+        const double x = node_x_[std::size_t(i)] - node_x_[0], z = node_z_[std::size_t(i)] - node_z_[0];
+        const auto& b = sums_[std::size_t(i)];
+        sums_[std::size_t(i) + 1] = {b[0] + x, b[1] + z, b[2] + x * x, b[3] + x * z, b[4] + z * z};
+        if (i > 0)
+            way += std::hypot(node_x_[std::size_t(i)] - node_x_[std::size_t(i) - 1],
+                              node_z_[std::size_t(i)] - node_z_[std::size_t(i) - 1]);
+    }
+    noise_ = std::max(contour_noise_mm(node_x_, node_z_, scratch_), kNoiseOfStep * way / std::max(n - 1, 1));
+    // Smallest eigenvalue of the scatter: the sum of squared distances from the line.
+    const auto misfit = [&](int a, int b) {
+        const double m = b - a;
+        std::array<double, 5> s;
+        for (std::size_t j = 0; j < 5; ++j) s[j] = sums_[std::size_t(b)][j] - sums_[std::size_t(a)][j];
+        const double xx = s[2] - s[0] * s[0] / m, xz = s[3] - s[0] * s[1] / m, zz = s[4] - s[1] * s[1] / m;
+        return std::max(0.5 * (xx + zz) - std::hypot(0.5 * (xx - zz), xz), 0.0);
+    };
+    for (const bool again : {false, true}) {
+        cost_.assign(static_cast<std::size_t>(n) + 1, std::numeric_limits<double>::infinity());
+        from_.assign(static_cast<std::size_t>(n) + 1, 0);
+        cost_[0] = 0;
+        const double unit = 1 / (noise_ * noise_);
+        for (int b = 1; b <= n; ++b)
+            for (int a = 0; a < b; ++a) {
+                if (cost_[std::size_t(a)] + kStretchCost >= cost_[std::size_t(b)]) continue;
+                const double c = cost_[std::size_t(a)] + kStretchCost + (b - a > 2 ? misfit(a, b) * unit : 0);
+                if (c < cost_[std::size_t(b)]) cost_[std::size_t(b)] = c, from_[std::size_t(b)] = a;
+            }
+        // Noise that runs from point to point shows in the long stretches only.
+        double square = 0, freedom = 0;
+        for (int b = n; b > 0; b = from_[std::size_t(b)])
+            if (const int a = from_[std::size_t(b)]; b - a >= kManyNodes)
+                square += misfit(a, b), freedom += b - a - 2;
+        const double rms = freedom > 0 ? std::sqrt(square / freedom) : 0;
+        if (again || !(rms > kMoreNoise * noise_)) break;
+        noise_ = rms;
+    }
+    stretches_.clear();
+    for (int b = n; b > 0; b = from_[std::size_t(b)])
+        if (b - from_[std::size_t(b)] >= kFewestNodes)
+            stretches_.push_back(stretch(from_[std::size_t(b)], b - 1));
+    std::reverse(stretches_.begin(), stretches_.end());
+}
+
+const std::vector<Bend>& ContourBends::find(std::span<const double> x, std::span<const double> z,
+                                            double least_angle_rad, double blend_mm) {
+    bends_.clear();
+    take_nodes(x, z);
+    if (node_x_.size() < 2 * kFewestNodes) return bends_;
+    divide();
+    std::erase_if(stretches_, [&](const Stretch& s) { return s.length() < 2 * blend_mm; });
+    const std::size_t m = stretches_.size();
+    if (m < 2) return bends_;
+
+    // Where the lines of two stretches meet, and whether that is between them.
+    const auto meet = [&](const Stretch& a, const Stretch& b, Eigen::Vector2d& place) {
+        const double sine = a.direction.x() * b.direction.y() - a.direction.y() * b.direction.x();
+        const Eigen::Vector2d d = b.centre - a.centre;
+        const double s = (d.x() * b.direction.y() - d.y() * b.direction.x()) / sine;
+        const double t = (d.x() * a.direction.y() - d.y() * a.direction.x()) / sine;
+        place = a.centre + s * a.direction;
+        const double free = 2 * blend_mm + kMeetAway * std::min(a.length(), b.length()) +
+                            kMeetSigma * noise_ / std::abs(sine);
+        return std::abs(s - a.end) < free && std::abs(t - b.begin) < free;
+    };
+    joint_.assign(m, static_cast<std::uint8_t>(Joint::smooth));  // behind every stretch
+    for (std::size_t i = 0; i + 1 < m; ++i) {
+        const Stretch &a = stretches_[i], &b = stretches_[i + 1];
+        const double turn = turn_between(a.direction, b.direction);
+        Joint joint = Joint::smooth;
+        Eigen::Vector2d place;
+        const auto uncertain = [&](const Stretch& s) {
+            const double nodes = s.last - s.first + 1, length = std::max(s.length(), noise_);
+            return 12 * noise_ * noise_ / (nodes * length * length);
+        };
+        if (std::abs(turn) >= std::max(least_angle_rad, kTurnSigma * std::sqrt(uncertain(a) + uncertain(b))))
+            joint = meet(a, b, place) ? Joint::bend : Joint::jump;
+        else {
+            // One beside the other: a step.
+            const Eigen::Vector2d gap = b.centre + b.begin * b.direction - a.centre - a.end * a.direction;
+            const double off = std::abs(a.direction.x() * gap.y() - a.direction.y() * gap.x());
+            if (off > kMeetSigma * noise_ + std::abs(std::sin(turn)) * gap.norm()) joint = Joint::jump;
+        }
+        joint_[i] = static_cast<std::uint8_t>(joint);
+    }
+    const auto is = [&](std::size_t i, Joint j) { return joint_[i] == static_cast<std::uint8_t>(j); };
+    // A short stretch between bends to one side belongs to a radius.
+    const auto of_radius = [&](std::size_t i) {
+        if (i == 0 || i + 1 >= m || !is(i - 1, Joint::bend) || !is(i, Joint::bend)) return false;
+        const double before = turn_between(stretches_[i - 1].direction, stretches_[i].direction);
+        const double after = turn_between(stretches_[i].direction, stretches_[i + 1].direction);
+        if (before * after <= 0) return false;
+        double left = 0, right = 0;
+        for (std::size_t k = 0; k < m; ++k) {
+            if (k < i) left = std::max(left, stretches_[k].length());
+            if (k > i) right = std::max(right, stretches_[k].length());
+        }
+        return stretches_[i].length() < kShortStretch * std::min(left, right);
+    };
+    for (std::size_t i = 0; i + 1 < m; ++i) {
+        if (!is(i, Joint::bend)) continue;
+        std::size_t end = i + 1;
+        double turn = turn_between(stretches_[i].direction, stretches_[end].direction);
+        while (of_radius(end)) {
+            turn += turn_between(stretches_[end].direction, stretches_[end + 1].direction);
+            ++end;
+        }
+        std::size_t first = i, last = end;
+        while (first > 0 && is(first - 1, Joint::smooth)) --first;
+        while (last + 1 < m && is(last, Joint::smooth)) ++last;
+        Bend bend;
+        bend.turn_rad = turn;
+        if (std::abs(turn) < std::numbers::pi && meet(stretches_[i], stretches_[end], bend.place)) {
+            const int before = stretches_[i].last, behind = stretches_[end].first;
+            bend.first = node_first_[std::size_t(stretches_[first].first)];
+            bend.last = node_first_[std::size_t(stretches_[last].last) + 1] - 1;
+            bend.split = node_first_[std::size_t((before + 1 + behind + (behind > before)) / 2)];
+            bends_.push_back(bend);
+        }
+        i = end - 1;
+    }
+    return bends_;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,284 @@
+#include "core/features/end/contour_sheets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numbers.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kHoleLines = 6;
+constexpr double kByChance = 1e-5;
+constexpr int kStepSide = 12, kStepShort = 6, kStepFewest = 4, kStepBetween = 1;
+constexpr double kStepSigma = 6;
+constexpr double kGoesOn = 5;   // sigma
+constexpr double kCloseUp = 4;  // sigma
+constexpr double kRisen = 0.75;
+constexpr double kStepRms = 1.6;  // sigma: a side that is no line
+constexpr double kSteepWall = 2;  // slope: what stands between two sheets is no surface to follow
+constexpr double kShadow = 0.6;   // of a step's height: so far a higher sheet may hide the lower one
+constexpr double kCoverSigma = 4;
+constexpr std::size_t kFragments = 4;  // pieces between a sheet and the one that hides it
+constexpr int kFewestEmpty = 3;
+constexpr int kFewestLines = 256;  // of a sensor: fewer that lie evenly about x = 0 do so by chance
+constexpr int kRimLines = 5;       // an end nearer to the field's rim is none
+
+}  // namespace
+
+// Straight line over the line number through the points from..to, taken at `at`, by the running sums.
+ContourSheets::Side ContourSheets::side(int from, int to, double at) const {
+    Side s;
+    const double n = to - from + 1;
+    if (n < kStepFewest) return s;
+    Sums m;
+    for (std::size_t j = 0; j < m.size(); ++j) m[j] = (sums_[to + 1][j] - sums_[from][j]) / n;
+    const double kk = m[3] - m[0] * m[0], kx = m[4] - m[0] * m[1], kz = m[5] - m[0] * m[2];
+    s.vx = kx / kk, s.vz = kz / kk;
+    const double ahead = at - m[0];
+    s.x = m[1] + ahead * s.vx, s.z = m[2] + ahead * s.vz;
+    s.variance = (1 + ahead * ahead / kk) / n;
+    const double xx = m[6] - m[1] * m[1], xz = m[7] - m[1] * m[2], zz = m[8] - m[2] * m[2];
+    const double square = s.vx * s.vx * zz - 2 * s.vx * s.vz * xz + s.vz * s.vz * xx;
+    const double length2 = std::max(s.vx * s.vx + s.vz * s.vz, 1e-24);
+    s.rms = std::sqrt(std::max(square / length2, 0.0) * n / (n - 2));
+    s.spacing = std::sqrt(length2);
+    s.ok = true;
+    return s;
+}
+
+// How far the lines before and behind miss each other behind point i, `between` points standing there.
+ContourSheets::Jump ContourSheets::jump(int i, int between, int points) const {
+    Jump j;
+    const int next = i + 1 + between, n = static_cast<int>(all_x_.size());
+    if (next >= n || line_[next] - line_[i] > kHoleLines) return j;
+    if (between == 0 && run_[next] == 1) return j;
+    int from = i - std::min(run_[i], points) + 1, to = next;
+    while (to + 1 < n && to - next + 1 < points && run_[to + 1] > 1) ++to;
+    for (int k = from; k < i; ++k)
+        if (cut_[k]) from = k + 1;
+    for (int k = to - 1; k >= next; --k)
+        if (cut_[k]) to = k;
+    const double at = 0.5 * (line_[i] + line_[next]) - first_line_;
+    const Side a = side(from, i, at), b = side(next, to, at);
+    if (!a.ok || !b.ok) return j;
+    const double gx = b.x - a.x, gz = b.z - a.z;
+    const double off_a = std::abs(a.vx * gz - a.vz * gx) / a.spacing;
+    const double off_b = std::abs(b.vx * gz - b.vz * gx) / b.spacing;
+    j.height = std::min(off_a, off_b);
+    const double dx = all_x_[next] - all_x_[i], dz = all_z_[next] - all_z_[i];
+    j.risen =
+        std::min(std::abs(a.vx * dz - a.vz * dx) / a.spacing, std::abs(b.vx * dz - b.vz * dx) / b.spacing);
+    j.lines = line_[next] - line_[i];
+    j.spread = std::sqrt(a.variance + b.variance);
+    j.rms = std::max(a.rms, b.rms);
+    j.longer = std::max(a.spacing, b.spacing);
+    j.shorter = std::min(a.spacing, b.spacing);
+    return j;
+}
+
+// Height of the step, or 0 where noise, a sharp edge or a flank explains it.
+double ContourSheets::step(const Jump& over_all, int i, int between) const {
+    if (!(over_all.height > 0)) return 0;
+    if (over_all.height < 0.3 * kStepSigma * noise_ * over_all.spread) return 0;
+    const auto bent = [&](const Jump& j) { return j.rms > kStepRms * noise_ + 0.02 * pitch_.distance; };
+    const Jump close = jump(i, between, kStepShort);
+    const Jump& j = bent(over_all) ? close : over_all;
+    if (!(j.height > 0) || bent(j)) return 0;
+    // On a radius the lines miss each other the less the shorter they are.
+    if (close.height < kCloseUp * noise_ * close.spread) return 0;
+    if (!(j.height > std::max(kStepSigma * noise_ * j.spread, j.lines * j.longer))) return 0;
+    // On a flank the points themselves rise by less than the lines miss each other.
+    if (j.risen < kRisen * j.height - 3 * noise_) return 0;
+    return between > 0 && j.height < kSteepWall * j.lines * j.shorter ? 0 : j.height;
+}
+
+// Of neighbouring places the highest.
+void ContourSheets::find_steps() {
+    const int n = static_cast<int>(all_x_.size());
+    // Coordinates from the middle of the list, where the sums keep their digits.
+    sums_.assign(static_cast<std::size_t>(n) + 1, Sums{});
+    run_.assign(static_cast<std::size_t>(n), 1);
+    const double k0 = n > 0 ? line_[n / 2] : 0, x0 = n > 0 ? all_x_[n / 2] : 0,
+                 z0 = n > 0 ? all_z_[n / 2] : 0;
+    for (int i = 0; i < n; ++i) {
+        const double k = line_[i] - k0, x = all_x_[i] - x0, z = all_z_[i] - z0;
+        const Sums term{k, x, z, k * k, k * x, k * z, x * x, x * z, z * z};
+        for (std::size_t j = 0; j < term.size(); ++j) sums_[i + 1][j] = sums_[i][j] + term[j];
+        if (i > 0 && line_[i] - line_[i - 1] <= kHoleLines && !pitch_.is_gap(all_x_[i] - all_x_[i - 1], 0))
+            run_[i] = std::min(run_[i - 1] + 1, kStepSide);
+    }
+    first_line_ = k0;
+    jumps_.clear();
+    scratch_.clear();
+    for (int i = 0; i + 1 < n; ++i) {
+        jumps_.push_back(jump(i, 0, kStepSide));
+        if (jumps_.back().spread > 0) scratch_.push_back(jumps_.back().height / jumps_.back().spread);
+    }
+    // What the lines miss each other by all over the profile is noise, however its points depend on another.
+    if (scratch_.size() >= 8) {
+        const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+        std::nth_element(scratch_.begin(), middle, scratch_.end());
+        noise_ = std::max(noise_, kMadToSigma * *middle);
+    }
+    height_.assign(static_cast<std::size_t>(n), 0);
+    for (int i = 0; i + 1 < n; ++i) height_[i] = step(jumps_[i], i, 0);
+    for (int i = 0; i + 1 < n; ++i) {
+        const double best = height_[i];
+        if (best == 0) continue;
+        const int from = std::max(0, i - kStepSide / 2), to = std::min(n - 2, i + kStepSide / 2);
+        if (std::any_of(&height_[from], &height_[to] + 1, [&](double h) { return h > best; })) continue;
+        cut_[i] = 1;
+    }
+    for (int between = 1; between <= kStepBetween; ++between)
+        for (int i = 0; i + between + 1 < n; ++i) {
+            // A jump that is not far from one already says whether it is worth looking.
+            if (!(jumps_[i].height > 0.3 * kStepSigma * noise_ * jumps_[i].spread)) continue;
+            bool free = true;
+            for (int k = std::max(0, i - kStepSide / 2); k <= std::min(n - 1, i + between + kStepSide / 2);
+                 ++k)
+                free = free && !cut_[k] && !mixed_[k];
+            if (!free || step(jump(i, between, kStepSide), i, between) == 0) continue;
+            cut_[i] = cut_[i + between] = 1;
+            for (int k = 1; k <= between; ++k) mixed_[i + k] = 1;
+        }
+}
+
+void ContourSheets::divide(const Profile& profile) {
+    const int n = static_cast<int>(all_x_.size());
+    whole_.clear();
+    cut_.assign(static_cast<std::size_t>(n), 0);
+    mixed_.assign(static_cast<std::size_t>(n), 0);
+    // Lines without return between two points of one segment, not counting those that the filter rejected.
+    const auto missing = [&](int i) {
+        int lines = 0;
+        for (int k = line_[i] + 1; k < line_[i + 1]; ++k)
+            lines +=
+                !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
+        // Lines that were not delivered at all show in x.
+        if (line_[i + 1] - line_[i] == 1 &&
+            pitch_.is_gap(all_x_[i + 1] - all_x_[i], all_z_[i + 1] - all_z_[i]))
+            lines = static_cast<int>(std::abs(all_x_[i + 1] - all_x_[i]) / std::max(pitch_.along_x, 1e-12));
+        return lines;
+    };
+    double runs = 0, pairs = 0;
+    for (int i = 0; i + 1 < n; ++i)
+        if (segment_[i] == segment_[i + 1]) ++pairs, runs += missing(i) > 0;
+    const double share = (runs + 0.5) / (pairs + 1);
+    const int hole = std::max(
+        kHoleLines, share < 1
+                        ? static_cast<int>(std::ceil(std::log(kByChance / std::max(n, 1)) / std::log(share)))
+                        : 1000);
+    find_steps();
+    // The filter's own border beside a step stands for the same step, a few points off.
+    const auto beside_step = [&](int i) {
+        for (int k = std::max(0, i - kStepSide / 2); k <= std::min(n - 1, i + kStepSide / 2); ++k)
+            if (cut_[k]) return true;
+        return false;
+    };
+    // A border of the filter where nothing is missing and one side continues the other: noise made it.
+    const auto goes_on = [&](int i) {
+        const Jump& j = jumps_[std::size_t(i)];
+        return j.spread > 0 && missing(i) == 0 && j.height < kGoesOn * noise_ * j.spread;
+    };
+    for (int i = 0, first = 0; i < n; ++i) {
+        if (mixed_[i]) {
+            first = i + 1;
+            continue;
+        }
+        const bool broken = i + 1 == n || cut_[i] || missing(i) >= hole ||
+                            (segment_[i] != segment_[i + 1] && !beside_step(i) && !goes_on(i));
+        if (!broken) continue;
+        whole_.push_back({first, i - first + 1, SheetEnd::open, SheetEnd::open});
+        first = i + 1;
+    }
+}
+
+void ContourSheets::judge_ends(const Profile& profile, const SensorField& field) {
+    const int lines = static_cast<int>(std::min(profile.x_mm.size(), profile.z_mm.size()));
+    const int n = static_cast<int>(all_x_.size());
+    if (n == 0) return;
+    // Does the profile say where the field ends? One that lists lines without return does; a few holes in it
+    // may be anything.
+    int empty = 0;
+    const auto is_empty = [&](int k) {
+        return !std::isfinite(profile.x_mm[std::size_t(k)]) || !std::isfinite(profile.z_mm[std::size_t(k)]);
+    };
+    for (int k = 0; k < lines; ++k) empty += is_empty(k);
+    bool told = empty >= kFewestEmpty || is_empty(0) || is_empty(lines - 1);
+    if (!told) {
+        const double a = profile.x_mm.front(), b = profile.x_mm.back();
+        told = std::abs(a + b) <= 1.5 * pitch_.along_x + 3 * noise_ && lines >= kFewestLines;
+    }
+    const double beside = kRimLines * pitch_.along_x;
+    const auto at_rim = [&](int i) {
+        return (told && (line_[i] < kRimLines || line_[i] >= lines - kRimLines)) ||
+               all_x_[i] < field.x_min + beside || all_x_[i] > field.x_max - beside;
+    };
+    for (std::size_t s = 0; s < whole_.size(); ++s) {
+        Sheet& sheet = whole_[s];
+        const int first = sheet.first, last = first + sheet.count - 1;
+        if (at_rim(first)) sheet.before = SheetEnd::field;
+        if (at_rim(last)) sheet.after = SheetEnd::field;
+        // Fragments may lie between a sheet and what hides it.
+        const auto hides = [&](int end, int place) {
+            const double rise = all_z_[end] - all_z_[place];
+            return rise > kCoverSigma * noise_ + pitch_.along_x &&
+                   std::abs(all_x_[end] - all_x_[place]) <= kShadow * rise + kRimLines * pitch_.along_x;
+        };
+        for (std::size_t t = s; t-- > 0 && s - t <= kFragments && sheet.before == SheetEnd::open;)
+            if (hides(whole_[t].first + whole_[t].count - 1, first)) sheet.before = SheetEnd::covered;
+        for (std::size_t t = s + 1; t < whole_.size() && t - s <= kFragments && sheet.after == SheetEnd::open;
+             ++t)
+            if (hides(whole_[t].first, last)) sheet.after = SheetEnd::covered;
+    }
+}
+
+void ContourSheets::gather(const Profile& profile, const FeatureWindow& window, const SensorField& field) {
+    all_x_.clear();
+    all_z_.clear();
+    line_.clear();
+    segment_.clear();
+    const bool marked = profile.filtered();
+    const std::size_t lines = std::min(profile.x_mm.size(), profile.z_mm.size());
+    for (std::size_t i = 0; i < lines; ++i) {
+        const double px = profile.x_mm[i], pz = profile.z_mm[i];
+        if (!std::isfinite(px) || !std::isfinite(pz) || (marked && profile.segment[i] == kOutlier)) continue;
+        all_x_.push_back(px);
+        all_z_.push_back(pz);
+        line_.push_back(static_cast<int>(i));
+        segment_.push_back(marked ? profile.segment[i] : 0);
+    }
+    pitch_ = contour_pitch(all_x_, all_z_, scratch_);
+    noise_ = contour_noise_mm(all_x_, all_z_, scratch_);
+    if (!marked)
+        for (std::size_t i = 1; i < all_x_.size(); ++i) {
+            const double dx = all_x_[i] - all_x_[i - 1], dz = all_z_[i] - all_z_[i - 1];
+            segment_[i] = segment_[i - 1] + (pitch_.is_gap(dx, dz) || pitch_.is_wall(dx, dz));
+        }
+    divide(profile);
+    judge_ends(profile, field);
+
+    x_.clear();
+    z_.clear();
+    sheets_.clear();
+    for (const Sheet& whole : whole_) {
+        bool before_inside = false;
+        for (int i = whole.first; i < whole.first + whole.count; ++i) {
+            const bool inside = window.contains(all_x_[i], all_z_[i]);
+            if (inside) {
+                if (!before_inside)
+                    sheets_.push_back({static_cast<int>(x_.size()), 0,
+                                       i == whole.first ? whole.before : SheetEnd::window, whole.after});
+                x_.push_back(all_x_[i]);
+                z_.push_back(all_z_[i]);
+                ++sheets_.back().count;
+            } else if (before_inside) {
+                sheets_.back().after = SheetEnd::window;
+            }
+            before_inside = inside;
+        }
+    }
+}
+
+}  // namespace seamwright

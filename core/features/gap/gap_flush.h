@@ -1,0 +1,92 @@
+#pragma once
+// Gap and flush between two parts in one profile, as body and panel shops measure them (methods.md 2, 6).
+//
+//     reference side            other side
+//     ______________           /------------   flush > 0: the other side stands proud
+//                   \         |
+//                    |<- gap->|
+//
+// The line of the reference side's surface, fitted beside its edge, gives the directions: u along the surface
+// into the gap, n across it on the side of the sensor (+z). Each part's edge is its outermost place along u:
+// a fold's roundest point where that is seen, else the last return and half of what the contour advances
+// along u from one line to the next. The other
+// side's surface line, fitted beside its edge, is continued to that edge.
+//     gap   = u . (other edge - reference edge)                       negative when the parts overlap
+//           or, as a feeler gauge finds it, the distance of the two edges with that sign
+//           (GapBy::edge_distance)
+//     flush = n . (other surface at its edge - reference line)        positive when the other side stands
+//     proud
+//
+// Noise model: independent noise across each surface, estimated from each line's residuals; an edge is spread
+// evenly over that advance a along u, at least over a third of the pitch (variance a^2 / 12 each; a sensor's
+// noise is in z and moves it by its part along u as well), and known to a point's noise across. Covariance of
+// (gap, flush) in mm^2.
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/features/contour/line_fit.h"
+#include "core/features/feature_points.h"
+#include "core/features/gap/gap_sides.h"
+#include "core/text.h"
+
+namespace seamwright {
+
+enum class GapFlushStatus {
+    ok,
+    no_points,       // fewer usable points than two surfaces need
+    not_found,       // no two sides: the contour is not broken
+    ill_conditioned  // a surface line is too short or not straight
+};
+std::string_view to_string(GapFlushStatus status);
+
+enum class GapBy { along_surface, edge_distance };
+
+struct GapFlushSettings {
+    enum class Reference { left, right } reference = Reference::left;
+    GapBy gap_by = GapBy::along_surface;
+    FeatureWindow window{-1e5, 1e5, -1e5, 1e5};
+    double surface_mm = 5;      // length of surface that a line takes
+    double edge_skip_mm = 1.5;  // beside the edge, left out of the line: the fold's radius
+    int minimum_points = 8;     // per side; shorter pieces (the gap's ground, dirt) are no side
+};
+
+// Refuses an empty window and lengths or counts that are no surface.
+Expected<void> check(const GapFlushSettings& settings);
+
+struct GapFlush {
+    GapFlushStatus status = GapFlushStatus::not_found;
+    double gap_mm = 0, flush_mm = 0;
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of (gap, flush)
+    Eigen::Vector2d reference_edge_mm = Eigen::Vector2d::Zero(), other_edge_mm = Eigen::Vector2d::Zero();
+    // The surfaces at their edges: flush and the gap along the surface are n and u of their difference.
+    Eigen::Vector2d reference_point_mm = Eigen::Vector2d::Zero(), other_point_mm = Eigen::Vector2d::Zero();
+    Eigen::Vector2d along = Eigen::Vector2d::UnitX();  // u
+    Text message;                                      // empty when ok
+};
+
+// Allocates nothing after the first calls; one thread per object. `profile` as for features; settings as
+// check() passes them. Sides: gap_sides.h.
+class GapFlushGauge {
+  public:
+    explicit GapFlushGauge(const GapFlushSettings& settings) : settings_(settings) {}
+    GapFlush measure(const Profile& profile);
+
+  private:
+    struct Side {
+        LineFit line;
+        Eigen::Vector2d edge;
+        double edge_variance = 0;  // along u
+    };
+    bool measure_line(const GapPart& part, double edge_along_x, double inward, LineFit& line);
+    void measure_edge(const GapPart& part, const Eigen::Vector2d& u, double pitch, Side& side);
+
+    GapFlushSettings settings_;
+    GapSides sides_;
+    LineWorkspace workspace_;
+    std::vector<double> x_, z_;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,306 @@
+// Circle: the centre of a round piece of contour (a bead, a pin, a fixed sphere), robust against the rest of
+// it.
+//
+// Start: circles through three points at growing distances along the contour, the one with the most points
+// within the noise of its rim wins (fixed places, so the answer is always the same); only circles of allowed
+// radius whose points span minimum_arc_deg compete, since a straight fits any large circle. Then the sum of
+// squared distances from the rim is minimised (Gauss-Newton; the algebraic fit is biased to small radii on
+// short arcs) over the points within 3.5 robust sigma, until the set stands still. With a known radius only
+// the centre is fitted.
+//
+// Covariance: sigma^2 (J^T J)^-1 of the centre, sigma from the residuals. On a short arc the centre is hardly
+// determined along the arc's bisector (with a free radius the variance grows with the inverse fourth power of
+// the arc): below minimum_arc_deg, or when the centre's sigma exceeds a tenth of the radius, the answer is
+// ill_conditioned.
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/features/feature_points.h"
+#include "core/features/kinds/feature_kinds.h"
+#include "core/geometry/pose.h"
+#include "core/numbers.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kFewestOnArc = 6;
+
+std::vector<ParameterInfo> circle_parameters() {
+    return with_window({
+        {"radius_mm", "mm", 0, 1e5, 0, 3, "The radius when it is known; 0 fits it."},
+        {"radius_min_mm", "mm", 0, 1e5, 0.2, 3, "Free radius: the smallest that is accepted."},
+        {"radius_max_mm", "mm", 0, 1e5, 500, 3, "Free radius: the largest that is accepted."},
+        {"minimum_arc_deg", "deg", 1, 360, 25, 1, "The least arc that must be seen."},
+    });
+}
+
+struct Circle {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    double radius = 0;
+    double distance(double x, double z) const { return std::hypot(x - centre.x(), z - centre.y()) - radius; }
+};
+
+class CircleFinder final : public FeatureFinder {
+  public:
+    CircleFinder(FeatureWindow window, double known, double smallest, double largest, double arc)
+        : window_(window), known_(known), smallest_(smallest), largest_(largest), minimum_arc_(arc) {}
+
+    Feature find(const Profile& profile) const override {
+        Feature feature;
+        points_.gather(profile, window_);
+        const int n = static_cast<int>(points_.x.size());
+        if (n < kFewestOnArc) {
+            feature.status = FeatureStatus::no_points;
+            feature.message = Text("{} points in the window, a circle needs {}", n, kFewestOnArc);
+            return feature;
+        }
+        Circle circle;
+        double arc = 0;
+        if (!start(circle, arc)) {
+            feature.message = "no round piece of contour in the window";
+            return feature;
+        }
+        return refine(feature, circle);
+    }
+
+  private:
+    bool through(int i, int j, int k, Circle& circle) const {
+        const Eigen::Vector2d a(points_.x[i], points_.z[i]);
+        const Eigen::Vector2d b = Eigen::Vector2d(points_.x[j], points_.z[j]) - a;
+        const Eigen::Vector2d c = Eigen::Vector2d(points_.x[k], points_.z[k]) - a;
+        const double cross = 2 * (b.x() * c.y() - b.y() * c.x());
+        if (!(std::abs(cross) > 1e-12 * (b.squaredNorm() + c.squaredNorm()))) return false;
+        const double bb = b.squaredNorm(), cc = c.squaredNorm();
+        const Eigen::Vector2d centre((c.y() * bb - b.y() * cc) / cross, (b.x() * cc - c.x() * bb) / cross);
+        circle.centre = a + centre;
+        circle.radius = centre.norm();
+        if (known_ > 0) {
+            if (circle.radius < 0.7 * known_ || circle.radius > 1.4 * known_) return false;
+            // Keep the middle of the arc and put the centre at the known distance from it.
+            const Eigen::Vector2d m(points_.x[j], points_.z[j]);
+            circle.centre = m + (circle.centre - m) * (known_ / circle.radius);
+            circle.radius = known_;
+            return true;
+        }
+        return circle.radius >= smallest_ && circle.radius <= largest_;
+    }
+
+    // The longest row of points within `tolerance` of the rim, in contour order; a few misses in between are
+    // dirt or missing returns. Returns its number of points and the angle that it spans.
+    int longest_run(const Circle& circle, double tolerance, double& arc) const {
+        constexpr int kMisses = 6;
+        const int n = static_cast<int>(points_.x.size());
+        int best = 0, count = 0, misses = 0;
+        double turned = 0, best_turned = 0, last = 0;
+        for (int i = 0; i < n; ++i) {
+            const double dx = points_.x[i] - circle.centre.x(), dz = points_.z[i] - circle.centre.y();
+            const double low = std::max(0.0, circle.radius - tolerance), high = circle.radius + tolerance;
+            const double r2 = dx * dx + dz * dz;
+            if (r2 < low * low || r2 > high * high) {
+                if (count > 0 && ++misses > kMisses) count = 0;
+                continue;
+            }
+            const double angle = std::atan2(dz, dx);
+            if (count == 0) {
+                turned = 0;
+            } else {
+                turned += std::abs(std::remainder(angle - last, 2 * kPi));
+            }
+            last = angle;
+            misses = 0;
+            ++count;
+            if (count > best) {
+                best = count;
+                best_turned = turned;
+            }
+        }
+        arc = std::min(best_turned, 2 * kPi);
+        return best;
+    }
+
+    bool start(Circle& best, double& best_arc) const {
+        const int n = static_cast<int>(points_.x.size());
+        const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
+        const double tolerance = std::max(3 * noise, 1e-6);
+        int best_count = 0, best_any = 0;
+        Circle any;
+        const auto try_circle = [&](const Circle& c) {
+            double arc = 0;
+            const int count = longest_run(c, tolerance, arc);
+            if (count < kFewestOnArc) return;
+            if (arc >= minimum_arc_) {
+                if (count > best_count) {
+                    best_count = count;
+                    best = c;
+                    best_arc = arc;
+                }
+            } else if (count > best_any) {
+                best_any = count;
+                any = c;
+            }
+        };
+        Circle c;
+        for (const double share : {1.0, 0.6, 0.35, 0.2, 0.1, 0.05}) {
+            const int span = std::max(kFewestOnArc - 1, static_cast<int>(share * (n - 1)));
+            if (span > n - 1) continue;
+            const int places = static_cast<int>(std::min(48.0, 3 / share));
+            for (int p = 0; p < places; ++p) {
+                const int i = places > 1 ? (n - 1 - span) * p / (places - 1) : 0;
+                if (through(i, i + span / 2, i + span, c)) try_circle(c);
+                if (through(i + span / 8, i + (5 * span) / 8, i + span - span / 8, c)) try_circle(c);
+                if (share == 1.0 && p > 0) break;
+            }
+        }
+        if (best_count > 0) return true;
+        // Something round, but not enough of it: the refinement will say how badly it is determined.
+        if (best_any < std::max(kFewestOnArc, n / 3)) return false;
+        best = any;
+        return true;
+    }
+
+    // Straights that cross the rim leave short rows, and where a straight joins the arc its first points
+    // still lie within the noise, all on one side: short rows go, long ones lose their ends where the contour
+    // goes on.
+    void trim_rows() const {
+        const int n = static_cast<int>(keep_.size());
+        constexpr int kMisses = 6;
+        int longest = 0;
+        rows_.clear();
+        for (int i = 0; i < n; ++i) {
+            if (!keep_[i]) continue;
+            if (rows_.empty() || i - rows_.back()[1] > kMisses) rows_.push_back({i, i, 0});
+            rows_.back()[1] = i;
+            longest = std::max(longest, ++rows_.back()[2]);
+        }
+        for (const auto& row : rows_) {
+            const int cut = row[2] < 0.15 * longest ? row[2] : std::max(2, static_cast<int>(0.06 * row[2]));
+            const bool ends_before = row[0] == 0, ends_after = row[1] == n - 1;
+            if (cut == row[2]) {
+                for (int i = row[0]; i <= row[1]; ++i) keep_[i] = 0;
+                continue;
+            }
+            for (int i = row[0]; !ends_before && i < row[0] + cut; ++i) keep_[i] = 0;
+            for (int i = row[1]; !ends_after && i > row[1] - cut; --i) keep_[i] = 0;
+        }
+    }
+
+    Feature refine(Feature feature, Circle circle) const {
+        const int n = static_cast<int>(points_.x.size());
+        const int unknowns = known_ > 0 ? 2 : 3;
+        keep_.assign(static_cast<std::size_t>(n), 0);
+        double gate = 0;
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        double rss = 0;
+        int used = 0;
+        for (int round = 0; round < 30; ++round) {
+            // The set is chosen while it still moves much; then it stays, so that the end is a true minimum.
+            if (round < 12) {
+                scratch_.clear();
+                const double first = std::max(6 * contour_noise_mm(points_.x, points_.z, scratch_), 1e-6);
+                if (round == 0) gate = first;
+                scratch_.clear();
+                for (int i = 0; i < n; ++i) {
+                    const double d = std::abs(circle.distance(points_.x[i], points_.z[i]));
+                    if (d <= gate) scratch_.push_back(d);
+                }
+                if (scratch_.size() < kFewestOnArc) break;
+                const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
+                std::nth_element(scratch_.begin(), middle, scratch_.end());
+                gate = std::max(std::min(3.5 * kMadToSigma * *middle * 1.05, first), 1e-9);
+                for (int i = 0; i < n; ++i)
+                    keep_[i] = std::abs(circle.distance(points_.x[i], points_.z[i])) <= gate;
+                trim_rows();
+            }
+            normal.setZero();
+            Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+            rss = 0;
+            used = 0;
+            for (int i = 0; i < n; ++i) {
+                if (!keep_[i]) continue;
+                const double dx = points_.x[i] - circle.centre.x(), dz = points_.z[i] - circle.centre.y();
+                const double rho = std::hypot(dx, dz);
+                if (!(rho > 0)) continue;
+                const Eigen::Vector3d row(-dx / rho, -dz / rho, known_ > 0 ? 0 : -1);
+                const double e = rho - circle.radius;
+                normal += row * row.transpose();
+                gradient += e * row;
+                rss += e * e;
+                ++used;
+            }
+            if (used < kFewestOnArc) break;
+            if (known_ > 0) normal(2, 2) = 1;
+            const Eigen::Vector3d step = -normal.ldlt().solve(gradient);
+            if (!step.allFinite()) break;
+            const double most = 0.3 * circle.radius;
+            const double size = step.norm();
+            const double scale = size > most ? most / size : 1;
+            circle.centre += scale * step.head<2>();
+            if (known_ <= 0) circle.radius += scale * step.z();
+            if (round >= 12 && size < 1e-9 * (1 + circle.radius)) break;
+        }
+        feature.points_used = used;
+        if (used < kFewestOnArc || !circle.centre.allFinite()) {
+            feature.status = FeatureStatus::not_found;
+            feature.message = "no round piece of contour in the window";
+            return feature;
+        }
+        const double sigma2 = rss / std::max(1, used - unknowns);
+        feature.rms_mm = std::sqrt(rss / used);
+        feature.point_mm = circle.centre;
+        const Eigen::Matrix3d covariance = sigma2 * normal.ldlt().solve(Eigen::Matrix3d::Identity());
+        feature.covariance_mm2 = covariance.topLeftCorner<2, 2>();
+        if (known_ <= 0 && (circle.radius < smallest_ || circle.radius > largest_)) {
+            feature.status = FeatureStatus::not_found;
+            feature.message = Text("the radius of {:.3g} mm is not within the limits", circle.radius);
+            return feature;
+        }
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+        eigen.computeDirect(feature.covariance_mm2);
+        const double worst = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+        double arc = 0;
+        longest_run(circle, std::max(gate, 1e-9), arc);
+        if (arc < minimum_arc_ || !(worst < 0.1 * circle.radius)) {
+            feature.status = FeatureStatus::ill_conditioned;
+            feature.message =
+                Text("the arc of {:.0f} degrees is too short: the centre is uncertain by {:.2g} mm",
+                     deg_from_rad(arc), worst);
+            return feature;
+        }
+        feature.status = FeatureStatus::ok;
+        return feature;
+    }
+
+    FeatureWindow window_;
+    double known_, smallest_, largest_, minimum_arc_;
+    mutable FeaturePoints points_;
+    mutable std::vector<double> scratch_;
+    mutable std::vector<std::array<int, 3>> rows_;  // first, last, count
+    mutable std::vector<std::uint8_t> keep_;
+};
+
+Expected<std::unique_ptr<FeatureFinder>> make_circle(const FeatureRecipe& recipe) {
+    const auto infos = circle_parameters();
+    const auto window = FeatureWindow::from(recipe.parameters, infos);
+    if (!window) return tl::unexpected(window.error());
+    auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
+    if (!(value("radius_min_mm") < value("radius_max_mm")))
+        return input_error("the limits of the radius are empty", "radius_min_mm",
+                           "give a minimum below the maximum");
+    return std::make_unique<CircleFinder>(*window, value("radius_mm"), value("radius_min_mm"),
+                                          value("radius_max_mm"), rad_from_deg(value("minimum_arc_deg")));
+}
+
+}  // namespace
+
+FeatureKind circle_kind() {
+    return {"circle", "The centre of a round piece of contour.", circle_parameters(), &make_circle};
+}
+
+}  // namespace seamwright

@@ -1,0 +1,40 @@
+#include "core/features/kinds/feature_registry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/features/kinds/feature_kinds.h"
+
+namespace seamwright {
+
+const std::vector<FeatureKind>& feature_kinds() {
+    static const std::vector<FeatureKind> kinds{
+        contour_end_kind(), corner_kind(),   circle_kind(),
+        extremum_kind(),    template_kind(), sensor_point_kind(),
+    };
+    return kinds;
+}
+
+const FeatureKind* feature_kind(std::string_view name) {
+    const auto& kinds = feature_kinds();
+    const auto it =
+        std::find_if(kinds.begin(), kinds.end(), [&](const FeatureKind& k) { return k.name == name; });
+    return it == kinds.end() ? nullptr : &*it;
+}
+
+Expected<std::unique_ptr<FeatureFinder>> make_feature_finder(const FeatureRecipe& recipe) {
+    const FeatureKind* kind = feature_kind(recipe.kind);
+    if (!kind) {
+        std::string known;
+        for (const FeatureKind& k : feature_kinds())
+            known += (known.empty() ? "" : ", ") + std::string(k.name);
+        return input_error(Text("unknown kind of feature \"{}\"", recipe.kind), "kind",
+                           Text("known are: {}", known));
+    }
+    if (auto valid = validate(recipe.parameters, kind->parameters, std::string(kind->name)); !valid)
+        return tl::unexpected(valid.error());
+    return kind->make(recipe);
+}
+
+}  // namespace seamwright

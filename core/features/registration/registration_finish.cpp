@@ -1,0 +1,178 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/features/registration/registration_kernel.h"
+#include "core/numbers.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kFewestOnWall = 5;
+
+// One linearisation of the finish.
+struct Normal {
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+};
+
+Eigen::Vector3d solve_truncated(const Normal& normal, double length) {
+    // Millimetre and radian are made alike by the template's length; directions without information stay put.
+    const Eigen::Vector3d scale(1, 1, 1 / length);
+    const Eigen::Matrix3d h = scale.asDiagonal() * normal.hessian * scale.asDiagonal();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(h);
+    const double smallest = 1e-7 * eigen.eigenvalues()[2];
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d g = scale.cwiseProduct(normal.gradient);
+    for (int k = 0; k < 3; ++k)
+        if (eigen.eigenvalues()[k] > smallest)
+            step -=
+                eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(g) / eigen.eigenvalues()[k]);
+    return scale.cwiseProduct(step);
+}
+
+}  // namespace
+
+void ContourMatcher::Impl::collect(const CentredPose& pose, double gate, int stride) const {
+    matches.clear();
+    const double x0 = model.lower().x() - gate, x1 = model.upper().x() + gate;
+    const double z0 = model.lower().y() - gate, z1 = model.upper().y() + gate;
+    for (std::size_t i = 0; i < scene.x.size(); i += static_cast<std::size_t>(stride)) {
+        const double ex = scene.x[i] - pose.dx, ez = scene.z[i] - pose.dz;
+        const double qx = pose.cosine * ex + pose.sine * ez, qz = -pose.sine * ex + pose.cosine * ez;
+        if (qx < x0 || qx > x1 || qz < z0 || qz > z1) continue;
+        const ContourModel::Foot foot = model.nearest(qx, qz, gate);
+        if (foot.edge >= 0) matches.push_back({static_cast<int>(i), foot});
+    }
+}
+
+// A tilted wall is seen as a row of neighbouring points. Single points on it are clutter, and would fix what
+// nothing fixes.
+void ContourMatcher::Impl::drop_sparse_walls() const {
+    if (jumps.empty()) return;
+    wall_hits.assign(model.edges().size(), 0);
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+        const int edge = matches[i].foot.edge;
+        if (!model.edges()[edge].wall) continue;
+        const bool neighbours =
+            i > 0 && matches[i - 1].foot.edge == edge && matches[i - 1].scene + 1 == matches[i].scene;
+        wall_hits[edge] += neighbours ? kFewestOnWall : 1;
+    }
+    std::erase_if(matches, [&](const Match& m) {
+        return model.edges()[m.foot.edge].wall && wall_hits[m.foot.edge] < kFewestOnWall;
+    });
+}
+
+void ContourMatcher::Impl::collect_jumps(const CentredPose& pose, double gate) const {
+    jump_matches.clear();
+    for (std::size_t number = 0; number < jumps.size(); ++number) {
+        const JumpEnd& t = jumps[number];
+        double best = std::numeric_limits<double>::infinity();
+        JumpMatch match{};
+        for (const JumpEnd& s : scene.jumps) {
+            if (s.height < 0.5 * t.height || s.height > 2 * t.height) continue;
+            const double ex = s.x - pose.dx, ez = s.z - pose.dz;
+            const double qx = pose.cosine * ex + pose.sine * ez - t.x,
+                         qz = -pose.sine * ex + pose.cosine * ez - t.z;
+            const double outwards = (pose.cosine * s.tx + pose.sine * s.tz) * t.tx +
+                                    (-pose.sine * s.tx + pose.cosine * s.tz) * t.tz;
+            if (outwards < 0.7) continue;
+            const double outside = qx * t.tx + qz * t.tz, across = qz * t.tx - qx * t.tz;
+            if (std::abs(outside) > gate + 2 * (s.pitch + t.pitch) ||
+                std::abs(across) > gate + 0.5 * t.height)
+                continue;
+            const double d = std::hypot(outside, across);
+            if (d >= best) continue;
+            best = d;
+            match.jump = static_cast<int>(number);
+            // Moving the template's point (x, z) by (vx, vz) and a turn w: residual falls by t . (v + w (-z,
+            // x)).
+            match.row = {-t.tx, -t.tz, -(-t.tx * t.z + t.tz * t.x)};
+            match.residual = outside;
+            match.variance = (s.pitch * s.pitch + t.pitch * t.pitch) / 12 + scene.sigma_mm * scene.sigma_mm +
+                             model.sigma_mm() * model.sigma_mm();
+        }
+        if (best < std::numeric_limits<double>::infinity()) jump_matches.push_back(match);
+    }
+}
+
+ContourMatcher::Impl::Finish ContourMatcher::Impl::finish(const CentredPose& start, double gate, int stride,
+                                                          int most_iterations) const {
+    Finish result;
+    result.pose = start;
+    const double floor = smallest_gate(), cap = largest_final_gate();
+    const double half = 0.5 * model.extent_mm();
+    double current = gate;
+    bool settled = false;  // the gate is final
+    double last_step = std::numeric_limits<double>::infinity();
+    int growing = 0;
+    for (int it = 0; it < most_iterations; ++it) {
+        ++iterations;
+        collect(result.pose, current, stride);
+        if (settled && stride == 1) drop_sparse_walls();
+        if (matches.size() < static_cast<std::size_t>(kFewestRegistrationPoints)) break;
+        sizes.clear();
+        for (const Match& m : matches) sizes.push_back(std::abs(m.foot.residual));
+        if (!settled) {
+            const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+            std::nth_element(sizes.begin(), middle, sizes.end());
+            result.sigma = kMadToSigma * *middle;
+        }
+        // Biweight while the gate closes; then every partner counts alike, which is what the covariance
+        // assumes.
+        Normal normal;
+        double weight_sum = 0;
+        const double over = 1 / (current * current);
+        for (const Match& m : matches) {
+            const RegistrationRow row = registration_row(model.edges()[m.foot.edge], m.foot.u);
+            double w = 1;
+            if (!settled) {
+                w = 1 - m.foot.residual * m.foot.residual * over;
+                w = w > 0 ? w * w : 0;
+            }
+            weight_sum += w;
+            normal.hessian.noalias() += w * row.across * row.across.transpose();
+            normal.gradient += w * m.foot.residual * row.across;
+        }
+        if (!(weight_sum > 0)) break;
+        if (!jumps.empty()) {
+            collect_jumps(result.pose, current);
+            const double variance = std::max(result.sigma * result.sigma, 1e-10);
+            for (const JumpMatch& j : jump_matches) {
+                normal.hessian.noalias() += variance / j.variance * j.row * j.row.transpose();
+                normal.gradient += variance / j.variance * j.residual * j.row;
+            }
+        }
+        Eigen::Vector3d step = solve_truncated(normal, half);
+        // The turn's Jacobian is taken at the curve's point in the template's frame; shifts are turned to the
+        // scene.
+        double size = std::hypot(step.x(), step.y()) + std::abs(step.z()) * half;
+        if (!std::isfinite(size)) break;
+        const double most = std::max(current, 0.05);
+        if (size > most) {
+            step *= most / size;
+            size = most;
+        }
+        const CentredPose& p = result.pose;
+        result.pose = CentredPose(p.dx + p.cosine * step.x() - p.sine * step.y(),
+                                  p.dz + p.sine * step.x() + p.cosine * step.y(), p.phi + step.z());
+        if (settled) {
+            // Partners change with every step, so the last digits may go round in a circle: stop when steps
+            // are far below the noise of the result or no longer shrink.
+            const double noise = result.sigma / std::sqrt(double(matches.size()));
+            if (size < std::max((stride > 1 ? 0.2 : 0.02) * noise, 1e-9)) break;
+            growing = size >= last_step ? growing + 1 : 0;
+            if (growing >= 3) break;
+            last_step = size;
+        } else {
+            const double target = std::clamp(4 * result.sigma, floor, std::max(floor, cap));
+            const double next = std::max(target, 0.5 * current);
+            settled = next >= 0.98 * current || (next == target && size < 0.5 * target);
+            if (next < current) current = next;
+        }
+    }
+    result.gate = current;
+    return result;
+}
+
+}  // namespace seamwright

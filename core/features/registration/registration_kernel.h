@@ -1,0 +1,159 @@
+#pragma once
+// The inside of the ContourMatcher, shared by the sources that make it up: the finish
+// (registration_finish.cpp), what speaks for and against a pose (registration_support.cpp), the verdict
+// (registration_verdict.cpp), and the order of things (registration.cpp).
+//
+// Twists and rows are in the template's frame: shift along x, shift along z (mm), turn about the template's
+// centroid (rad).
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/features/contour/contour_model.h"
+#include "core/features/registration/registration.h"
+#include "core/features/registration/registration_search.h"
+
+namespace seamwright {
+
+inline constexpr int kFewestRegistrationPoints = 5;
+// Slopes below this (rms, radian) say nothing about where along the contour we are.
+inline constexpr double kStraight_rad = 2e-3;
+
+// Row of the Jacobian of the residual, and of the motion along the curve there.
+struct RegistrationRow {
+    Eigen::Vector3d across, along;
+};
+inline RegistrationRow registration_row(const ContourModel::Edge& edge, double u) {
+    const double bend = edge.curvature * u;
+    const double norm = 1 / std::sqrt(1 + bend * bend);
+    const double tx = (edge.tx - bend * edge.tz) * norm, tz = (edge.tz + bend * edge.tx) * norm;
+    const double qx = edge.cx + u * edge.tx, qz = edge.cz + u * edge.tz;
+    // normal (-tz, tx); turning moves the curve's point q by (-qz, qx) per radian.
+    return {{tz, -tx, -(tz * qz + tx * qx)}, {-tx, -tz, -(-tx * qz + tz * qx)}};
+}
+
+struct ContourMatcher::Impl {
+    ContourModel model;
+    RegistrationSearch search;
+    Eigen::Vector2d reference = Eigen::Vector2d::Zero();
+    std::vector<double> arc;  // [edges] length before the edge
+    std::vector<JumpEnd> jumps;
+
+    // The template's three directions, from the least determined one on; each moves its farthest parts by
+    // about a millimetre per unit. `information` of a direction is what the template's points tell about it,
+    // in points' worth, its noise taken off: of a straight line nothing is left for the motion along it.
+    struct Direction {
+        Eigen::Vector3d twist = Eigen::Vector3d::Zero();
+        double information = 0;
+        bool determined = false;
+    };
+    std::array<Direction, 3> directions;
+    double fit_variance = 0;   // of the template's curve, in parts of one point's
+    double weakest_share = 1;  // information of the least beside that of the best determined one
+    // The contour in bins of about half a pitch, then one for each jump.
+    int bins = 1;
+    std::vector<std::array<float, 3>> bin_information;  // [bins + jumps]
+    std::vector<float> bin_across;                      // [bins] |tangent along x|
+
+    // Buffers that live as long as the matcher: after the first calls nothing is allocated.
+    struct Match {
+        int scene = 0;
+        ContourModel::Foot foot;
+    };
+    // The same jump in template and scene: says where along the upper surface we are, within a pitch of each.
+    struct JumpMatch {
+        int jump;
+        Eigen::Vector3d row;
+        double residual, variance;
+    };
+    struct Finish {
+        CentredPose pose;
+        double gate = 0;  // final
+        double sigma = 0;
+        double cost = 0;  // once rated
+    };
+    // What speaks for a pose.
+    struct Support {
+        CentredPose pose;
+        double gate = 0, sigma = 0;
+        double share = 0;                         // of the template's length that has a partner
+        std::array<double, 3> informed{1, 1, 1};  // of each direction's information, on what has a partner
+        // Sum over the template's points, as dense as the scene's, of (residual / sigma)^2, at most kMissing
+        // each: minus twice the logarithm of the likelihood, up to a constant. `missing` is the part of those
+        // without a partner.
+        double cost = 0, missing = 0;
+        // The same of the scene's points near the template, less its expectation for points that lie on it:
+        // what is missing takes no part.
+        double contradicted = 0;
+        int on = 0, off = 0;  // scene points near the template that lie on it, that do not
+        double least_informed() const { return *std::min_element(informed.begin(), informed.end()); }
+    };
+    mutable RegistrationSearch finder;
+    mutable SceneContour scene;
+    mutable std::vector<SearchCandidate> candidates, along;
+    mutable std::vector<Finish> finishes;
+    mutable std::vector<Match> matches;
+    mutable std::vector<JumpMatch> jump_matches;
+    mutable std::vector<int> wall_hits;                  // [edges]
+    mutable std::vector<Eigen::Vector3d> wall_gradient;  // [edges]
+    mutable std::vector<double> sizes;
+    mutable std::vector<float> bin_residual2;  // [bins] negative: no partner
+    mutable std::vector<std::array<Eigen::Vector3d, 3>> influence;
+    mutable int iterations = 0;
+
+    double noise_mm() const { return std::hypot(model.sigma_mm(), scene.sigma_mm); }
+    // Noise larger than this hides any shape of the template's size.
+    double smallest_gate() const { return std::min(4 * noise_mm(), std::max(0.06 * model.extent_mm(), 0.1)); }
+    // A gate beyond the noise lets a shape pass that is a little another one.
+    double largest_final_gate() const {
+        return std::max(smallest_gate(), std::min(std::max(0.25, 1.5 * smallest_gate()),
+                                                  std::max(0.02 * model.extent_mm(), 0.1)));
+    }
+    // A flank so steep that neighbours on it lie far apart: its points are on it, so its place is known.
+    bool sampled_wall(std::size_t edge) const {
+        const auto& e = model.edges()[edge];
+        for (const int other : {e.previous, e.next})
+            if (other >= 0 && model.edges()[other].wall &&
+                std::abs(e.tx * model.edges()[other].tx + e.tz * model.edges()[other].tz) > 0.98)
+                return true;
+        return false;
+    }
+    // Greatest distance between the two poses of a point of the template's box.
+    double apart_mm(const CentredPose& a, const CentredPose& b) const {
+        double most = 0;
+        for (const double x : {model.lower().x(), model.upper().x()})
+            for (const double z : {model.lower().y(), model.upper().y()})
+                most = std::max(most, (a * Eigen::Vector2d(x, z) - b * Eigen::Vector2d(x, z)).norm());
+        return most;
+    }
+
+    void learn_directions();
+    void collect(const CentredPose& pose, double gate, int stride) const;
+    void drop_sparse_walls() const;
+    void collect_jumps(const CentredPose& pose, double gate) const;
+    Finish finish(const CentredPose& start, double gate, int stride, int most_iterations) const;
+    Support support(const Finish& finish, double sigma, int stride) const;
+    // What the scene's points say about a motion along the twist within a search step: held where they speak
+    // against it to either side; the likeliest shift (in units of the twist) and its variance.
+    struct Held {
+        bool held = false;
+        double shift = 0, variance = 0;
+    };
+    Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
+    void follow(Finish& finish, Support& support, double sigma) const;
+    // By how much the cost of the second must exceed that of the first to be told from it.
+    static double telling_difference(const Support& first);
+    Registration conclude(const Finish& finish, const Support& support, double sigma) const;
+
+    // False: fewer points than the least within reach of the window.
+    bool gather(const Profile& profile, const SearchWindow& window) const;
+    void search_places(const SearchWindow& window) const;  // fills `finishes`
+    bool within(const SearchWindow& window, const CentredPose& pose) const;
+};
+
+}  // namespace seamwright

@@ -1,0 +1,224 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/features/registration/registration_kernel.h"
+
+namespace seamwright {
+namespace {
+
+// Stated sigma of an undetermined motion, in mm at the template's farther parts.
+constexpr double kUndetermined_mm = 1e3;
+// The template counts as found when at least this share of its length has a partner...
+constexpr double kSmallestShare = 0.5;
+// ... and at least this share of what fixes each of its directions.
+constexpr double kSmallestInformationShare = 0.35;
+
+// Slopes worth fewer points than this may be chance.
+constexpr double kFewPoints = 10;
+
+}  // namespace
+
+Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating, double sigma) const {
+    Registration result;
+    CentredPose pose = found.pose;
+    const Eigen::Vector2d& o = model.origin();
+    const auto set_pose = [&] {
+        const Eigen::Vector2d turned(pose.cosine * o.x() - pose.sine * o.y(),
+                                     pose.sine * o.x() + pose.cosine * o.y());
+        result.scene_from_template = {pose.dx + o.x() - turned.x(), pose.dz + o.y() - turned.y(), pose.phi};
+        return turned;
+    };
+    set_pose();
+    result.inlier_share = rating.share;
+    result.iterations = iterations;
+
+    collect(pose, rating.gate, 1);
+    drop_sparse_walls();
+    const auto n = static_cast<double>(matches.size());
+    result.inliers = static_cast<int>(matches.size());
+    if (matches.size() < static_cast<std::size_t>(kFewestRegistrationPoints)) {
+        result.status = RegistrationStatus::no_match;
+        return result;
+    }
+    // Linearisation, in the template's frame: shift (x, z), turn about the centroid.
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), tilt = Eigen::Matrix3d::Zero();
+    double rss = 0;
+    // Noise across the contour as a function of its inclination: variance = level + slope * nz^2. A
+    // triangulation sensor is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn
+    // contour may be noisy alike in all directions. Level and slope come from a regression of the squared
+    // residuals.
+    double s1 = 0, s2 = 0, sr = 0;
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const double nz2 = edge.tx * edge.tx, r2 = m.foot.residual * m.foot.residual;
+        s1 += nz2;
+        s2 += nz2 * nz2;
+        sr += nz2 * r2;
+        rss += r2;
+    }
+    const double mean_nz2 = s1 / n, spread_nz2 = s2 / n - mean_nz2 * mean_nz2;
+    const double mean_r2 = rss / n;
+    double noise_slope = spread_nz2 > 1e-3 ? (sr / n - mean_nz2 * mean_r2) / spread_nz2 : 0;
+    noise_slope = std::clamp(noise_slope, 0.0, mean_nz2 > 0 ? mean_r2 / mean_nz2 : 0.0);
+    const double noise_level = mean_r2 - noise_slope * mean_nz2;
+    // Relative to the mean; the template, recorded with the same kind of sensor, is taken to behave alike.
+    const auto relative = [&](const ContourModel::Edge& edge) {
+        return mean_r2 > 0 ? std::max((noise_level + noise_slope * edge.tx * edge.tx) / mean_r2, 0.02) : 1.0;
+    };
+
+    const double template_variance = model.sigma_mm() * model.sigma_mm();
+    // How every template point's noise enters the gradient: polynomials over windows of points, as difference
+    // arrays.
+    const int points = static_cast<int>(model.x().size());
+    influence.assign(static_cast<std::size_t>(points) + 1,
+                     {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+    const double middle = 0.5 * points;
+    double value_variance = 0, relative_sum = 0;
+    Eigen::Matrix3d gradient_covariance = Eigen::Matrix3d::Zero();
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const RegistrationRow row = registration_row(edge, m.foot.u);
+        const double level = relative(edge);
+        information.noalias() += row.across * row.across.transpose();
+        gradient_covariance.noalias() += level * row.across * row.across.transpose();
+        relative_sum += level;
+        const ContourModel::Weights w = model.weights(edge, m.foot.u);
+        tilt.noalias() += w.slope_variance * level * row.along * row.along.transpose();
+        value_variance += w.value_variance * level;
+        // a0 + a1 (k - c) + a2 (k - c)^2 as a polynomial in k - middle.
+        const double c = edge.centre - middle;
+        const double size = std::sqrt(level);
+        const std::array<double, 3> poly{w.a0 - w.a1 * c + w.a2 * c * c, w.a1 - 2 * w.a2 * c, w.a2};
+        for (int j = 0; j < 3; ++j) {
+            influence[edge.first][j] += size * poly[j] * row.across;
+            influence[edge.first + edge.count][j] -= size * poly[j] * row.across;
+        }
+    }
+    result.rms_mm = std::sqrt(mean_r2);
+    result.noise_mm = std::max(std::hypot(scene.sigma_mm, model.sigma_mm()), 0.1 * model.pitch().distance);
+    collect_jumps(pose, rating.gate);
+    // residual^2 = scene noise^2 + template noise^2 * (variance of its fitted value)
+    const double scene_variance =
+        std::max(rss / std::max(1.0, n - 3) - template_variance * value_variance / n, 0.05 * mean_r2);
+    gradient_covariance *= scene_variance * n / relative_sum;
+    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                       Eigen::Vector3d::Zero()};
+    for (int k = 0; k < points; ++k) {
+        for (int j = 0; j < 3; ++j) sum[j] += influence[k][j];
+        const double t = k - middle;
+        const Eigen::Vector3d g = sum[0] + t * sum[1] + t * t * sum[2];
+        gradient_covariance.noalias() += template_variance * g * g.transpose();
+    }
+
+    for (const JumpMatch& j : jump_matches) {
+        const double weight = std::max(found.sigma * found.sigma, 1e-10) / j.variance;
+        information.noalias() += weight * j.row * j.row.transpose();
+        gradient_covariance.noalias() += weight * weight * j.variance * j.row * j.row.transpose();
+    }
+    // A wall's place in the template is known to a pitch, alike for all scene points on it.
+    wall_gradient.assign(model.edges().size(), Eigen::Vector3d::Zero());
+    for (const Match& m : matches)
+        if (model.edges()[m.foot.edge].wall)
+            wall_gradient[m.foot.edge] += registration_row(model.edges()[m.foot.edge], m.foot.u).across;
+    for (std::size_t e = 0; e < model.edges().size(); ++e)
+        if (model.edges()[e].wall && !sampled_wall(e))
+            gradient_covariance.noalias() += model.pitch().along_x * model.pitch().along_x / 12 *
+                                             wall_gradient[e] * wall_gradient[e].transpose();
+
+    // Directions that only the template's own noise seems to fix are not fixed: take its share out.
+    tilt *= template_variance;
+    const double half = 0.5 * model.extent_mm();
+    const Eigen::Vector3d scale(1, 1, 1 / half);
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
+    const Eigen::Vector3d weak = scale.cwiseProduct(eigen.eigenvectors().col(0));
+    const double seen = eigen.eigenvalues()[0];
+    const double false_part = weak.dot(tilt * weak);
+    // Points on the same fitted piece share its slope's error.
+    const double per_window = model.pitch().along_x / scene.pitch.along_x;
+    auto weak_scatter = [&](const Eigen::Vector3d& v) {
+        double scatter = 0;
+        for (const Match& m : matches) {
+            const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+            const double part = template_variance * relative(edge) *
+                                model.weights(edge, m.foot.u).slope_variance *
+                                std::pow(registration_row(edge, m.foot.u).along.dot(v), 2);
+            scatter += 2 * part * part * std::max(1.0, edge.count * per_window);
+        }
+        return scatter;
+    };
+    const bool unsure = seen - false_part < n * kStraight_rad * kStraight_rad +
+                                                4 * std::sqrt(weak_scatter(weak)) + 0.5 * false_part;
+
+    // Where the slopes leave it open, what the points say about a small motion along the direction decides.
+    const bool open = unsure || !directions[0].determined;
+    Held place;
+    const bool thin = jump_matches.empty() && seen - false_part < kFewPoints;
+    if (open || thin) place = held(found, rating, sigma, weak);
+    const bool sliding = (open || thin) && !place.held;
+    place.held = place.held && open;
+    if (place.held) pose = moved_along(pose, weak, place.shift);
+    const Eigen::Vector2d turned = set_pose();
+    const Eigen::Matrix2d r =
+        (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
+    Eigen::Matrix3d to_scene = Eigen::Matrix3d::Identity();
+    to_scene.topLeftCorner<2, 2>() = r;
+    // d = centroid motion + o - R o, so a turn moves d by -(dR/dphi) o.
+    to_scene(0, 2) = turned.y();
+    to_scene(1, 2) = -turned.x();
+
+    Eigen::Matrix3d usable = information - tilt;
+    Eigen::Matrix3d covariance;
+    {
+        const Eigen::Vector3d w = eigen.eigenvectors().col(0);
+        // Held by the points, not by the slopes: the rest is solved without this direction.
+        const Eigen::Matrix3d rest =
+            Eigen::Matrix3d::Identity() - (place.held ? 1.0 : 0.0) * Eigen::Matrix3d(w * w.transpose());
+        const Eigen::Matrix3d s = rest * scale.asDiagonal() * usable * scale.asDiagonal() * rest;
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> e(s);
+        // An undetermined direction gets a very large variance, finite so that callers can keep computing.
+        const double least = 1e-9 * std::max(e.eigenvalues()[2], 1e-12);
+        const Eigen::Vector3d inverse = e.eigenvalues().cwiseMax(least).cwiseInverse();
+        const Eigen::Matrix3d inv = scale.asDiagonal() *
+                                    (e.eigenvectors() * inverse.asDiagonal() * e.eigenvectors().transpose()) *
+                                    scale.asDiagonal();
+        const Eigen::Matrix3d solved = scale.asDiagonal() * rest * scale.cwiseInverse().asDiagonal() * inv;
+        covariance = solved * gradient_covariance * solved.transpose();
+        if (place.held) covariance += place.variance * weak * weak.transpose();
+    }
+    result.covariance = to_scene * covariance * to_scene.transpose();
+
+    // Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of
+    // it).
+    const bool scatter = rating.off > 1.5 * rating.on || result.rms_mm > 0.45 * rating.gate;
+    // What fixes a direction must be there, or it is not known in it, however well the rest fits. Where most
+    // of it is hidden, what is left must hold the direction.
+    int unmet = 0, least = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (rating.informed[k] >= kSmallestInformationShare) continue;
+        if (held(found, rating, sigma, directions[k].twist).held) continue;
+        ++unmet;
+        if (rating.informed[k] < rating.informed[least]) least = k;
+    }
+    if (rating.share < kSmallestShare || scatter || unmet > 1) {
+        result.status = RegistrationStatus::no_match;
+    } else if (sliding || unmet > 0) {
+        result.status = RegistrationStatus::sliding;
+        const Eigen::Vector3d free = sliding ? weak : directions[least].twist;
+        result.covariance +=
+            kUndetermined_mm * kUndetermined_mm * (to_scene * free) * (to_scene * free).transpose();
+        Eigen::Vector2d q = reference - o;
+        Eigen::Vector2d motion(free.x() - free.z() * q.y(), free.y() + free.z() * q.x());
+        if (!(motion.norm() > 0.1 * free.head<2>().norm() + 0.1 * std::abs(free.z()) * half))
+            motion = free.head<2>();
+        motion = r * motion;
+        result.sliding_direction =
+            motion.norm() > 0 ? Eigen::Vector2d(motion.normalized()) : Eigen::Vector2d(1, 0);
+    } else {
+        result.status = RegistrationStatus::ok;
+    }
+    return result;
+}
+
+}  // namespace seamwright

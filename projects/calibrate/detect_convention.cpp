@@ -7,10 +7,10 @@
 #include "core/calibration/pose/hand_eye.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/hand_eye_json.h"
-#include "projects/calibrate/pose_lists.h"
-#include "projects/calibrate/sphere_profile_json.h"
-#include "projects/calibrate/stripe_frames.h"
+#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/hand_eye_json.h"
+#include "projects/calibrate/methods/sphere_profile_json.h"
+#include "projects/calibrate/methods/stripe_frames.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {

@@ -6,8 +6,8 @@
 #include "core/geometry/pose.h"
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/camera_json.h"
-#include "projects/calibrate/target_views.h"
+#include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/session/target_views.h"
 
 namespace seamwright {
 namespace {

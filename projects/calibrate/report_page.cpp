@@ -6,7 +6,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/pose_lists.h"
+#include "projects/calibrate/input/pose_lists.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 namespace {

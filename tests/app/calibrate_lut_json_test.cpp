@@ -3,7 +3,7 @@
 
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/lookup_table_file.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 #include "tests/core/calibration/camera/camera_scene.h"
 #include "tests/devices/temporary_folder.h"
 

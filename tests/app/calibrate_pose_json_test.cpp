@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 #include "tests/core/calibration/pose/hand_eye_simulation.h"
 #include "tests/core/calibration/sphere/sphere_simulation.h"
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "projects/calibrate/capture.h"
-#include "projects/calibrate/guide.h"
+#include "projects/calibrate/session/capture.h"
+#include "projects/calibrate/session/guide.h"
 
 namespace seamwright {
 

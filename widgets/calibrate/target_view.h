@@ -5,7 +5,7 @@
 #include <QWidget>
 
 #include "devices/frame.h"
-#include "projects/calibrate/capture.h"
+#include "projects/calibrate/session/capture.h"
 
 class QPainter;
 

@@ -10,7 +10,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
-#include "projects/calibrate/answer.h"
+#include "projects/calibrate/session/answer.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
 

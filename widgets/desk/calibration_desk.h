@@ -1,5 +1,5 @@
 #pragma once
-// A guided calibration at the desk: the session (projects/calibrate/session.h) with the devices, undo and
+// A guided calibration at the desk: the session (projects/calibrate/session/session.h) with the devices, undo and
 // redo, solving in the background and looking at the live picture for the target. No widget.
 //
 // Solving starts by itself with every change once there are captures enough, and again when something changed
@@ -19,8 +19,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "projects/calibrate/capture.h"
-#include "projects/calibrate/guide.h"
+#include "projects/calibrate/session/capture.h"
+#include "projects/calibrate/session/guide.h"
 #include "widgets/desk/desk.h"
 
 namespace seamwright {

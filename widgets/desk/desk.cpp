@@ -7,7 +7,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/mesh_file.h"
-#include "projects/calibrate/session.h"
+#include "projects/calibrate/session/session.h"
 #include "projects/file/project_json.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/geometry/notation.h"
-#include "projects/calibrate/answer.h"
+#include "projects/calibrate/session/answer.h"
 #include "projects/file/stored_text.h"
 #include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"

@@ -14,7 +14,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/replay/recording.h"
-#include "projects/calibrate/answer.h"
+#include "projects/calibrate/session/answer.h"
 #include "projects/file/project_file.h"
 #include "projects/reuse/exchange.h"
 

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "projects/calibrate/detect_convention.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 #include "tests/core/calibration/pose/convention_data.h"
 #include "tests/core/calibration/pose/hand_eye_simulation.h"
 #include "tests/core/calibration/sphere/sphere_simulation.h"

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "projects/calibrate/pose_lists.h"
+#include "projects/calibrate/input/pose_lists.h"
 #include "tests/projects/calibrate/convention_cell.h"
 
 namespace seamwright {

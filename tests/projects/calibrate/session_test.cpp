@@ -9,9 +9,9 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "projects/calibrate/answer.h"
-#include "projects/calibrate/capture.h"
-#include "projects/calibrate/guide.h"
+#include "projects/calibrate/session/answer.h"
+#include "projects/calibrate/session/capture.h"
+#include "projects/calibrate/session/guide.h"
 #include "projects/reuse/simulated_truth.h"
 
 namespace seamwright {

@@ -5,9 +5,9 @@
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/camera_json.h"
-#include "projects/calibrate/methods.h"
-#include "projects/calibrate/plate_images.h"
+#include "projects/calibrate/input/plate_images.h"
+#include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 

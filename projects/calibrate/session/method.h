@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parameter.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 

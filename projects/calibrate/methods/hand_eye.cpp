@@ -1,8 +1,8 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/hand_eye_json.h"
-#include "projects/calibrate/methods.h"
-#include "projects/calibrate/pose_lists.h"
+#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/hand_eye_json.h"
+#include "projects/calibrate/methods/methods.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {

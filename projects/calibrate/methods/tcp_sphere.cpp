@@ -3,9 +3,9 @@
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods.h"
-#include "projects/calibrate/pose_lists.h"
-#include "projects/calibrate/sphere_profile_json.h"
+#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/methods/sphere_profile_json.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {

@@ -1,8 +1,8 @@
-#include "projects/calibrate/guide.h"
+#include "projects/calibrate/session/guide.h"
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "projects/calibrate/target_views.h"
+#include "projects/calibrate/session/target_views.h"
 
 namespace seamwright {
 namespace {

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "core/calibration/stripe/stripe_camera.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 

@@ -5,7 +5,7 @@
 #include <stop_token>
 
 #include "devices/frame.h"
-#include "projects/calibrate/session.h"
+#include "projects/calibrate/session/session.h"
 
 namespace seamwright {
 

@@ -1,7 +1,7 @@
 #pragma once
 // What a solution becomes: a calibration of the project, compared with the one before.
 
-#include "projects/calibrate/session.h"
+#include "projects/calibrate/session/session.h"
 
 namespace seamwright {
 

@@ -1,4 +1,4 @@
-#include "projects/calibrate/capture.h"
+#include "projects/calibrate/session/capture.h"
 
 #include <fmt/format.h>
 
@@ -11,12 +11,12 @@
 #include "core/calibration/sphere/circle_section.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/apex_pair.h"
-#include "projects/calibrate/camera_json.h"
-#include "projects/calibrate/plate_images.h"
-#include "projects/calibrate/sphere_profile_json.h"
-#include "projects/calibrate/stripe_frames.h"
-#include "projects/calibrate/stripe_line_points.h"
+#include "projects/calibrate/input/plate_images.h"
+#include "projects/calibrate/input/stripe_line_points.h"
+#include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/sphere_profile_json.h"
+#include "projects/calibrate/methods/stripe_frames.h"
+#include "projects/calibrate/session/apex_pair.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 

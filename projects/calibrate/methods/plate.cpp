@@ -5,7 +5,7 @@
 
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {

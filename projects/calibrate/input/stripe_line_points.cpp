@@ -1,4 +1,4 @@
-#include "projects/calibrate/stripe_line_points.h"
+#include "projects/calibrate/input/stripe_line_points.h"
 
 #include "core/calibration/camera/bent_line.h"
 #include "core/profile/filter.h"

@@ -1,4 +1,4 @@
-#include "projects/calibrate/method.h"
+#include "projects/calibrate/session/method.h"
 
 #include <algorithm>
 #include <cassert>

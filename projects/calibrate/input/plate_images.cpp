@@ -1,4 +1,4 @@
-#include "projects/calibrate/plate_images.h"
+#include "projects/calibrate/input/plate_images.h"
 
 #include <algorithm>
 #include <charconv>

@@ -2,8 +2,8 @@
 
 #include "core/calibration/camera/lens.h"
 #include "devices/exchange/json_fields.h"
-#include "projects/calibrate/camera_json.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 

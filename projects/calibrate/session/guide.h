@@ -2,7 +2,7 @@
 // Leading a person through a session: which pose to take next, and how field of view and orientations are
 // covered.
 
-#include "projects/calibrate/session.h"
+#include "projects/calibrate/session/session.h"
 
 namespace seamwright {
 

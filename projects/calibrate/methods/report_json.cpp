@@ -2,7 +2,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {

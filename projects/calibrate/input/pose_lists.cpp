@@ -1,4 +1,4 @@
-#include "projects/calibrate/pose_lists.h"
+#include "projects/calibrate/input/pose_lists.h"
 
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"

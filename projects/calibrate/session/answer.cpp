@@ -1,4 +1,4 @@
-#include "projects/calibrate/answer.h"
+#include "projects/calibrate/session/answer.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/camera_json.h"
+#include "projects/calibrate/methods/camera_json.h"
 #include "projects/file/stored_text.h"
 #include "projects/station/measure.h"
 

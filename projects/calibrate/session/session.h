@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/text.h"
-#include "projects/calibrate/method.h"
+#include "projects/calibrate/session/method.h"
 #include "projects/model/project.h"
 
 namespace seamwright {

@@ -1,4 +1,4 @@
-#include "projects/calibrate/target_views.h"
+#include "projects/calibrate/session/target_views.h"
 
 namespace seamwright {
 

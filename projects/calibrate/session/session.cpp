@@ -1,4 +1,4 @@
-#include "projects/calibrate/session.h"
+#include "projects/calibrate/session/session.h"
 
 #include <fmt/format.h>
 

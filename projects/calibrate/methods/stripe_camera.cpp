@@ -12,11 +12,11 @@
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/camera_json.h"
-#include "projects/calibrate/methods.h"
-#include "projects/calibrate/plate_images.h"
-#include "projects/calibrate/pose_lists.h"
-#include "projects/calibrate/stripe_frames.h"
+#include "projects/calibrate/input/plate_images.h"
+#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/methods/stripe_frames.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {
@@ -276,11 +276,21 @@ Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardS
 
 namespace {
 
-Expected<std::vector<StripeObservation>> observe_images(const std::vector<fs::path>& images,
-                                                        const BoardSpec& spec) {
+struct ObservedFolder {
+    BoardSpec spec;
+    std::vector<fs::path> images;
+    std::vector<StripeObservation> observations;  // one an image
+};
+
+Expected<ObservedFolder> observe_folder(const std::string& directory, const std::string& board,
+                                        double pitch_mm, const std::vector<std::string>& exclude) {
+    auto spec = parse_board(board, pitch_mm, "chessboard");
+    if (!spec) return tl::unexpected(spec.error());
+    auto images = plate_images(directory, exclude);
+    if (!images) return tl::unexpected(images.error());
     std::vector<StripeObservation> observations;
-    for (const auto& path : images) {
-        auto read = read_stripe_frame(path, spec);
+    for (const auto& path : *images) {
+        auto read = read_stripe_frame(path, *spec);
         if (!read) return tl::unexpected(read.error());
         if (!observations.empty() &&
             (read->width != observations.front().width || read->height != observations.front().height))
@@ -288,7 +298,7 @@ Expected<std::vector<StripeObservation>> observe_images(const std::vector<fs::pa
                                "give frames of one camera at one resolution");
         observations.push_back(std::move(*read));
     }
-    return observations;
+    return ObservedFolder{*spec, std::move(*images), std::move(observations)};
 }
 
 }  // namespace
@@ -296,35 +306,27 @@ Expected<std::vector<StripeObservation>> observe_images(const std::vector<fs::pa
 Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& directory,
                                                           const std::string& board, double pitch_mm,
                                                           const std::vector<std::string>& exclude) {
-    auto spec = parse_board(board, pitch_mm, "chessboard");
-    if (!spec) return tl::unexpected(spec.error());
-    auto images = plate_images(directory, exclude);
-    if (!images) return tl::unexpected(images.error());
-    auto observations = observe_images(*images, *spec);
-    if (!observations) return tl::unexpected(observations.error());
-    return calibrate_stripe_frames(*observations, *spec, {});
+    const auto folder = observe_folder(directory, board, pitch_mm, exclude);
+    if (!folder) return tl::unexpected(folder.error());
+    return calibrate_stripe_frames(folder->observations, folder->spec, {});
 }
 
 Expected<json> stripe_folder_data(const std::string& directory, const std::string& board, double pitch_mm,
                                   const std::vector<std::string>& exclude) {
-    auto spec = parse_board(board, pitch_mm, "chessboard");
-    if (!spec) return tl::unexpected(spec.error());
-    auto images = plate_images(directory, exclude);
-    if (!images) return tl::unexpected(images.error());
-    auto observations = observe_images(*images, *spec);
-    if (!observations) return tl::unexpected(observations.error());
+    const auto folder = observe_folder(directory, board, pitch_mm, exclude);
+    if (!folder) return tl::unexpected(folder.error());
     json frames = json::array();
-    for (std::size_t i = 0; i < images->size(); ++i) {
-        const StripeObservation& o = (*observations)[i];
+    for (std::size_t i = 0; i < folder->images.size(); ++i) {
+        const StripeObservation& o = folder->observations[i];
         frames.push_back(stripe_frame_json(o));
-        const auto file = pose_file_beside((*images)[i]);
+        const auto file = pose_file_beside(folder->images[i]);
         if (!o.base_from_flange || !file || file->extension() == ".json") continue;
         const PoseNumbers n = write_pose(*o.base_from_flange, {.rotation = RotationReading::quat_wxyz});
         frames.back()["base_from_flange"] = {
             {"xyz", {n.position.x(), n.position.y(), n.position.z()}},
             {"quat_wxyz", {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}}};
     }
-    return json{{"board", board_json(*spec)}, {"frames", frames}};
+    return json{{"board", board_json(folder->spec)}, {"frames", frames}};
 }
 
 Expected<StripeData> parse_stripe_data(const json& data) {

@@ -1,7 +1,7 @@
 #include "core/calibration/table/lookup_table_calibration.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 

@@ -1,4 +1,4 @@
-#include "projects/calibrate/apex_pair.h"
+#include "projects/calibrate/session/apex_pair.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include "core/features/contour/apex.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/stripe_line_points.h"
+#include "projects/calibrate/input/stripe_line_points.h"
 
 namespace seamwright {
 namespace {

@@ -1,8 +1,8 @@
 #include "core/calibration/stripe/laser_plane.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/camera_json.h"
-#include "projects/calibrate/methods.h"
+#include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 

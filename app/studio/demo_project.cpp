@@ -3,8 +3,8 @@
 #include "core/features/kinds/feature_registry.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "devices/simulated/door.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/door.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/measure.h"
 

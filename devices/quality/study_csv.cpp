@@ -9,10 +9,10 @@
 
 #include "core/number_text.h"
 #include "core/profile/units.h"
-#include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
-#include "devices/exchange/point_table.h"
-#include "devices/exchange/profile_layout.h"
+#include "devices/exchange/tables/csv_table.h"
+#include "devices/exchange/tables/point_table.h"
+#include "devices/exchange/tables/profile_layout.h"
 
 namespace seamwright {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "devices/exchange/image_file.h"
-#include "devices/exchange/pose_table.h"
-#include "devices/exchange/profile_layout.h"
+#include "devices/exchange/tables/pose_table.h"
+#include "devices/exchange/tables/profile_layout.h"
 
 namespace seamwright {
 

@@ -7,7 +7,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/host_time.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 
 namespace seamwright {
 namespace {

@@ -19,9 +19,9 @@
 #include "devices/exchange/settings.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
-#include "devices/simulated/door.h"
-#include "devices/simulated/random.h"
-#include "devices/simulated/renderer.h"
+#include "devices/simulated/scene/door.h"
+#include "devices/simulated/scene/random.h"
+#include "devices/simulated/scene/renderer.h"
 
 namespace seamwright {
 

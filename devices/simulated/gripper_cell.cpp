@@ -14,8 +14,8 @@ namespace {
 constexpr double kFlankDepth_mm = 8, kSheet_mm = 60;  // of sheet beside the edge: more than a sensor sees
 constexpr double kHeadTilt_deg = 20;
 
-enum Stream : std::uint64_t { kArrival = 1, kFrame = 2, kSurface = 3 };
-std::uint64_t stream_seed(std::uint64_t seed, Stream stream, std::uint64_t number) {
+enum GripperStream : std::uint64_t { kGripperArrival = 1, kGripperFrame = 2, kGripperSurface = 3 };
+std::uint64_t gripper_seed(std::uint64_t seed, GripperStream stream, std::uint64_t number) {
     return hash64(hash64(seed, stream), number);
 }
 
@@ -243,17 +243,17 @@ void GripperCell::render(const std::string& head, const Pose& base_from_flange, 
           vertices);
     place(panel_mesh_, panel.bend, panel.workobject_from_movedworkobject, vertices);
     tree_.move_vertices(std::move(vertices));
-    exposure.seed = stream_seed(settings_.common.seed, kFrame, number);
+    exposure.seed = gripper_seed(settings_.common.seed, kGripperFrame, number);
     frame.pixels.resize(renderer_.image_bytes());
     renderer_.render(tree_, settings_.heads.at(head), exposure,
-                     stream_seed(settings_.common.seed, kSurface, 0), frame.pixels);
+                     gripper_seed(settings_.common.seed, kGripperSurface, 0), frame.pixels);
     const auto& o = renderer_.optics();
     frame.image = {frame.pixels.data(), o.width, o.height,
                    static_cast<std::size_t>(o.width) * (o.bit_depth > 8 ? 2 : 1), o.bit_depth};
 }
 
 Pose GripperCell::arrived(const Pose& commanded) {
-    Random random(stream_seed(settings_.common.seed, kArrival, arrivals_++));
+    Random random(gripper_seed(settings_.common.seed, kGripperArrival, arrivals_++));
     Vector6 scatter;
     scatter << settings_.common.robot.repeatability_mm * random.normal3(),
         rad_from_deg(settings_.common.robot.repeatability_deg) * random.normal3();

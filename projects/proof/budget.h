@@ -1,5 +1,5 @@
 #pragma once
-// The uncertainty budget of a region (GUM, JCGM 100; methods in core/correction/budget.h), measurand by measurand:
+// The uncertainty budget of a region (GUM, JCGM 100; methods in core/correction/budget/budget.h), measurand by measurand:
 // the deviation across the bead at the region's worst path point (path_direction.h), and the six degrees of freedom.
 // Beside it, where asked for, JCGM 101's Monte Carlo of the whole correction, both of its passes.
 //
@@ -19,8 +19,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/correction/budget.h"
-#include "core/correction/monte_carlo.h"
+#include "core/correction/budget/budget.h"
+#include "core/correction/budget/monte_carlo.h"
 #include "projects/model/project.h"
 
 namespace seamwright {

@@ -8,9 +8,9 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
-#include "devices/exchange/point_table.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/exchange/profile_csv.h"
+#include "devices/exchange/tables/point_table.h"
+#include "devices/exchange/tables/profile_csv.h"
 #include "projects/file/project_json.h"
 #include "projects/station/measure.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/features/kinds/feature_registry.h"
 #include "core/number_text.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "projects/station/measure.h"
 
 namespace seamwright {

@@ -8,7 +8,7 @@
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/gripper_cell.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 
 namespace seamwright {
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "devices/simulated/gap_part.h"
+#include "devices/simulated/scene/gap_part.h"
 #include "projects/model/project.h"
 
 namespace seamwright {
@@ -18,7 +18,7 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
 // those of the cell, without "head"; the job's frame is added to them.
 Expected<Project> simulated_panel_project(const nlohmann::json& settings);
 
-// The simulated cell before two sheets with a gap (devices/simulated/gap_part.h), as a project: calibrated by
+// The simulated cell before two sheets with a gap (devices/simulated/scene/gap_part.h), as a project: calibrated by
 // construction, spots S1 .. S4 along the gap for the gap check. The sheets are written to `mesh_file` (PLY),
 // which must not be there yet. `settings`: those of the cell (cell.h), without "mesh" and "scene".
 Expected<Project> simulated_gap_project(nlohmann::json settings, const std::vector<GapStation>& gap,

@@ -11,7 +11,7 @@
 
 #include "core/correction/path_blend.h"
 #include "core/text.h"
-#include "devices/exchange/path_csv.h"
+#include "devices/exchange/tables/path_csv.h"
 #include "projects/model/project.h"
 #include "projects/model/run.h"
 

@@ -13,8 +13,8 @@
 #include <fstream>
 #include <thread>
 
-#include "devices/exchange/csv_table.h"
 #include "devices/exchange/json_fields.h"
+#include "devices/exchange/tables/csv_table.h"
 #include "tests/devices/temporary_folder.h"
 
 namespace seamwright {

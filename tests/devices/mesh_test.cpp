@@ -1,12 +1,12 @@
-#include "devices/simulated/mesh.h"
+#include "devices/simulated/scene/mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "devices/simulated/door.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/door.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "tests/devices/temporary_folder.h"
 
 namespace seamwright {

@@ -1,6 +1,6 @@
 // The application path in the robots' notations: round trip, equal meaning, hostile text.
 
-#include "devices/exchange/path_csv.h"
+#include "devices/exchange/tables/path_csv.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

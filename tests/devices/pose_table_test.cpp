@@ -1,4 +1,4 @@
-#include "devices/exchange/pose_table.h"
+#include "devices/exchange/tables/pose_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "devices/exchange/profile_csv.h"
+#include "devices/exchange/tables/profile_csv.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "devices/exchange/profile_layout.h"
+#include "devices/exchange/tables/profile_layout.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

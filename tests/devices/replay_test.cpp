@@ -8,7 +8,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/exchange/profile_csv.h"
+#include "devices/exchange/tables/profile_csv.h"
 #include "devices/registry.h"
 #include "devices/replay/recording.h"
 #include "tests/devices/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "devices/simulated/swept_rim.h"
+#include "devices/simulated/scene/swept_rim.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/geometry/pose.h"
-#include "devices/simulated/door.h"
-#include "devices/simulated/profile_cut.h"
+#include "devices/simulated/scene/door.h"
+#include "devices/simulated/scene/profile_cut.h"
 
 namespace seamwright {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/alignment/alignment.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/measure.h"
 #include "projects/station/teach.h"

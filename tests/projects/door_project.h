@@ -6,7 +6,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/model/project.h"
 
 namespace seamwright {

@@ -12,7 +12,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/net/socket.h"
 #include "devices/served/wire_camera.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/station/acquire.h"
 #include "projects/station/station.h"
 #include "projects/station/teach.h"

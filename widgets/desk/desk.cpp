@@ -6,7 +6,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "projects/calibrate/session/session.h"
 #include "projects/file/project_json.h"
 #include "projects/station/fields.h"

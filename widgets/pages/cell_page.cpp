@@ -7,7 +7,7 @@
 
 #include "devices/exchange/json_fields.h"
 #include "devices/registry.h"
-#include "devices/simulated/random.h"
+#include "devices/simulated/scene/random.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
 #include "widgets/editors/parameter_editor.h"

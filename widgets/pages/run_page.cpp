@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/geometry/notation.h"
-#include "devices/exchange/csv_table.h"
 #include "devices/exchange/files.h"
+#include "devices/exchange/tables/csv_table.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "widgets/scene/scene_managers.h"
 
 namespace seamwright {

@@ -18,7 +18,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/simulated/random.h"
+#include "devices/simulated/scene/random.h"
 #include "projects/panel/panel_station.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/check.h"

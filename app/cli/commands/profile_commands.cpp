@@ -15,7 +15,7 @@
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 #include "core/profile/units.h"
-#include "devices/exchange/profile_csv.h"
+#include "devices/exchange/tables/profile_csv.h"
 #include "projects/file/project_file.h"
 
 namespace seamwright::cli {

@@ -8,10 +8,10 @@
 
 #include "devices/cell_server.h"
 #include "devices/exchange/files.h"
-#include "devices/exchange/path_csv.h"
 #include "devices/exchange/pose_json.h"
+#include "devices/exchange/tables/path_csv.h"
 #include "devices/net/socket.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/file/project_file.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"

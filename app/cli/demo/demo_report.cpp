@@ -5,7 +5,7 @@
 
 #include "app/cli/demo/demo.h"
 #include "app/cli/result_json.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 

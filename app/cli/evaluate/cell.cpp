@@ -9,9 +9,9 @@
 #include "core/evaluation/statistics.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
-#include "devices/simulated/door.h"
-#include "devices/simulated/profile_cut.h"
-#include "devices/simulated/swept_rim.h"
+#include "devices/simulated/scene/door.h"
+#include "devices/simulated/scene/profile_cut.h"
+#include "devices/simulated/scene/swept_rim.h"
 
 namespace seamwright::cli {
 namespace {

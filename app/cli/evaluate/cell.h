@@ -1,7 +1,7 @@
 #pragma once
 // The simulated cell of the evaluation: spots on a part, taught and measured by the functions of a run
 // (filter_profile, the feature's finder, fit_contour_curve, solve_region) on profiles cut from the part's
-// mesh with noise per point (devices/simulated/profile_cut.h). Read-only once made; any number of threads.
+// mesh with noise per point (devices/simulated/scene/profile_cut.h). Read-only once made; any number of threads.
 
 #include <atomic>
 #include <cstdint>
@@ -14,9 +14,9 @@
 #include "core/correction/correction.h"
 #include "core/error.h"
 #include "core/features/feature.h"
-#include "devices/simulated/mesh.h"
-#include "devices/simulated/random.h"
-#include "devices/simulated/renderer.h"
+#include "devices/simulated/scene/mesh.h"
+#include "devices/simulated/scene/random.h"
+#include "devices/simulated/scene/renderer.h"
 
 namespace seamwright::cli {
 

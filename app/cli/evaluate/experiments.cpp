@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/geometry/decompositions.h"
-#include "devices/simulated/profile_cut.h"
+#include "devices/simulated/scene/profile_cut.h"
 
 namespace seamwright::cli {
 namespace {

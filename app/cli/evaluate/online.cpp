@@ -5,8 +5,8 @@
 
 #include "core/correction/path_blend.h"
 #include "core/features/kinds/feature_registry.h"
-#include "devices/simulated/door.h"
-#include "devices/simulated/profile_cut.h"
+#include "devices/simulated/scene/door.h"
+#include "devices/simulated/scene/profile_cut.h"
 
 namespace seamwright::cli {
 namespace {

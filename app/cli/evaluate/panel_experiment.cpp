@@ -6,7 +6,7 @@
 
 #include "core/panel/panel_fit.h"
 #include "core/panel/servoing.h"
-#include "devices/simulated/random.h"
+#include "devices/simulated/scene/random.h"
 
 namespace seamwright::cli {
 namespace {

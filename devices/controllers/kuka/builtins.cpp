@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/number_text.h"
-#include "devices/controllers/kuka/arguments.h"
+#include "devices/controllers/kuka/krl/arguments.h"
 #include "devices/controllers/kuka/robot.h"
 
 namespace seamwright::krl {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "devices/controllers/kuka/krl_value.h"
+#include "devices/controllers/kuka/krl/krl_value.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/controller.h"
 

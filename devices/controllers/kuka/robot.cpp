@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "devices/controllers/kuka/arguments.h"
+#include "devices/controllers/kuka/krl/arguments.h"
 
 namespace seamwright::krl {
 namespace {

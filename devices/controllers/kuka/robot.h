@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "devices/controllers/kuka/eki_channel.h"
-#include "devices/controllers/kuka/machine.h"
+#include "devices/controllers/kuka/krl/machine.h"
 #include "devices/simulated/arm.h"
 #include "devices/simulated/cell.h"
 

@@ -8,7 +8,7 @@
 #include <pugixml.hpp>
 #include <set>
 
-#include "devices/controllers/kuka/arguments.h"
+#include "devices/controllers/kuka/krl/arguments.h"
 
 namespace seamwright::krl {
 namespace {

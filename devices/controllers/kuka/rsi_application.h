@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "devices/controllers/cyclic/simulated_path.h"
-#include "devices/controllers/kuka/machine.h"
+#include "devices/controllers/kuka/krl/machine.h"
 #include "devices/robot_program.h"
 
 namespace seamwright::krl {

@@ -20,7 +20,7 @@
 #include "app/studio/command_palette.h"
 #include "app/studio/studio.h"
 #include "devices/simulated/cell.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "projects/file/project_file.h"
 #include "projects/station/acquire.h"
 #include "tests/app/studio/person.h"

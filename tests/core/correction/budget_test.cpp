@@ -1,15 +1,15 @@
 // The budget's shares are the covariance that the correction states, each share what its source alone does, and
 // drawn corrections scatter as it says.
 
-#include "core/correction/budget.h"
+#include "core/correction/budget/budget.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/correction/budget/monte_carlo.h"
 #include "core/correction/forecast.h"
-#include "core/correction/monte_carlo.h"
 #include "core/correction/travel.h"
 #include "tests/core/correction/trials.h"
 

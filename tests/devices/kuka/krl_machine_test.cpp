@@ -1,6 +1,6 @@
 // The interpreter is strict: what a real controller refuses, it refuses.
 
-#include "devices/controllers/kuka/machine.h"
+#include "devices/controllers/kuka/krl/machine.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "devices/capture/recorder.h"
-#include "devices/simulated/gap_part.h"
-#include "devices/simulated/profile_cut.h"
+#include "devices/simulated/scene/gap_part.h"
+#include "devices/simulated/scene/profile_cut.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/projects/sample_project.h"
 

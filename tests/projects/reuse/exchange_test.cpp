@@ -6,7 +6,7 @@
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "devices/exchange/profile_csv.h"
+#include "devices/exchange/tables/profile_csv.h"
 #include "projects/proof/replay.h"
 #include "projects/station/check.h"
 #include "projects/station/station.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/features/kinds/feature_registry.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "projects/station/check.h"
 #include "projects/station/measure.h"
 #include "tests/projects/fake_cell.h"

@@ -8,7 +8,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/proof/replay.h"
 #include "projects/reuse/exchange.h"
 #include "projects/station/station.h"

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/evaluation/statistics.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/station/measure.h"
 
 namespace seamwright {

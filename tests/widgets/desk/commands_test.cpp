@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "devices/simulated/cell.h"
-#include "devices/simulated/mesh_file.h"
+#include "devices/simulated/scene/mesh_file.h"
 #include "tests/widgets/desk/desk_fixture.h"
 
 namespace seamwright {

@@ -4,7 +4,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "devices/simulated/door.h"
+#include "devices/simulated/scene/door.h"
 #include "projects/reuse/simulated_truth.h"
 #include "tests/widgets/desk/desk_fixture.h"
 

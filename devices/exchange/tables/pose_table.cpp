@@ -1,0 +1,480 @@
+#include "devices/exchange/tables/pose_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/geometry/notation.h"
+#include "core/profile/units.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/exchange/tables/csv_table.h"
+#include "devices/exchange/tables/point_table.h"
+#include "devices/exchange/tables/profile_layout.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kFarthestPose_mm = 1e5;
+constexpr double kNearForMillimetres = 100;  // no robot measures with its flange within 100 mm of its base
+constexpr std::size_t kPoseLimit = 1'000'000;
+
+struct PoseRow {
+    std::string name, at;
+    std::vector<double> numbers;
+};
+
+// The numbers of a pose: 3 of the position, then those of the rotation; or 12 or 16 of a matrix.
+struct PoseForm {
+    std::string convention;
+    double mm = 0;   // of a unit of length; 0: not known
+    double rad = 0;  // of a unit of angle; 0: not known
+};
+
+bool is_name_column(const std::string& n) {
+    for (const char* known : {"name", "file", "filename", "spot", "spotid", "id", "point", "profile", "frame",
+                              "label", "image", "pose", "no", "nr", "index", "number"})
+        if (n == known) return true;
+    return false;
+}
+
+Expected<Eigen::Matrix3d> rotation(const PoseForm& form, const std::vector<double>& n,
+                                   const std::string& at) {
+    const double deg = form.rad * 180 / kPi;
+    if (form.convention == "kuka-abc") return rotation_from_kuka({n[3] * deg, n[4] * deg, n[5] * deg});
+    if (form.convention == "fanuc-wpr" || form.convention == "rpy")
+        return rotation_from_fanuc({n[3] * deg, n[4] * deg, n[5] * deg});
+    if (form.convention == "ur-rotvec") return rotation_exp(form.rad * Eigen::Vector3d(n[3], n[4], n[5]));
+    if (form.convention == "zyz") return rotation_from_zyz({n[3] * deg, n[4] * deg, n[5] * deg});
+    if (form.convention == "quat-wxyz") return rotation_from_abb({n[3], n[4], n[5], n[6]}, at);
+    return rotation_from_abb({n[6], n[3], n[4], n[5]}, at);
+}
+
+Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row) {
+    const auto& n = row.numbers;
+    if (form.convention == "matrix") {
+        Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+        for (std::size_t i = 0; i < n.size(); ++i)
+            m(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
+        if (n.size() == 16 && m.col(3).head<3>().isZero(1e-9) && !m.row(3).head<3>().isZero(1e-9))
+            return input_error("the position stands in the last row of the matrix", row.at,
+                               "write it transposed");
+        m.col(3).head<3>() *= form.mm;
+        if (m.col(3).head<3>().cwiseAbs().maxCoeff() > kFarthestPose_mm)
+            return input_error("the position exceeds 100 m", row.at, "say the unit with --pose-unit");
+        return pose_from_matrix(m, row.at);
+    }
+    const Eigen::Vector3d t = form.mm * Eigen::Vector3d(n[0], n[1], n[2]);
+    if (t.cwiseAbs().maxCoeff() > kFarthestPose_mm)
+        return input_error("the position exceeds 100 m", row.at, "say the unit with --pose-unit");
+    auto r = rotation(form, n, row.at);
+    if (!r) return tl::unexpected(r.error());
+    return make_pose(*r, t);
+}
+
+// Units that neither person nor header named: usual ones, unless the numbers speak against them.
+Expected<void> settle_units(PoseForm& form, const std::vector<PoseRow>& rows, const std::string& where) {
+    const bool matrix = form.convention == "matrix";
+    double farthest = 0, widest = 0;
+    for (const PoseRow& row : rows) {
+        for (std::size_t i = 0; i < 3; ++i)
+            farthest = std::max(farthest, std::abs(row.numbers[matrix ? 4 * i + 3 : i]));
+        for (std::size_t i = 3; !matrix && i < 6; ++i) widest = std::max(widest, std::abs(row.numbers[i]));
+    }
+    if (form.mm == 0) {
+        if (farthest > 0 && farthest < kNearForMillimetres)
+            return input_error(
+                Text("no position is farther than {:.4g}, which looks like metres or inches", farthest),
+                where, "say the unit with --pose-unit mm, m or in");
+        if (farthest > kFarthestPose_mm)
+            return input_error(Text("positions reach {:.4g}, which looks like micrometres", farthest), where,
+                               "say the unit with --pose-unit mm or um");
+        form.mm = 1;
+    }
+    const bool angles = !matrix && !form.convention.starts_with("quat");
+    if (angles && form.rad == 0) {
+        const bool radian = form.convention == "ur-rotvec";
+        if (radian ? widest > 2 * kPi + 1e-6 : widest > 0 && widest <= 2 * kPi)
+            return input_error(
+                Text("no angle exceeds {:.4g}, which looks like {}", widest, radian ? "degrees" : "radian"),
+                where, "say the unit with --pose-angle deg or rad");
+        form.rad = radian ? 1 : kPi / 180;
+    }
+    return {};
+}
+
+Expected<void> check_width(PoseForm& form, std::size_t width, const std::string& where) {
+    if (form.convention.empty()) {
+        if (width == 12 || width == 16) {
+            form.convention = "matrix";
+        } else if (width == 6) {
+            return input_error("six numbers are a pose in several ways", where,
+                               "say which with --pose-convention kuka-abc, fanuc-wpr, rpy, ur-rotvec or zyz");
+        } else if (width == 7) {
+            return input_error("a quaternion begins or ends with w", where,
+                               "say which with --pose-convention quat-wxyz or quat-xyzw");
+        }
+    }
+    const bool fits = form.convention == "matrix"           ? width == 12 || width == 16
+                      : form.convention.starts_with("quat") ? width == 7
+                                                            : width == 6;
+    if (!fits)
+        return input_error(form.convention.empty()
+                               ? Text("{} numbers are no pose", width)
+                               : Text("{} numbers are no pose of the form {}", width, form.convention),
+                           where, "give x, y, z and a rotation, or a 4x4 matrix");
+    return {};
+}
+
+// What a header says: which column is the name, and which are the numbers in the order of the convention.
+struct PoseHeader {
+    std::optional<std::size_t> name;
+    std::vector<std::size_t> numbers;
+};
+
+Expected<PoseHeader> read_header(const std::vector<std::string_view>& fields, PoseForm& form,
+                                 const std::string& at) {
+    std::map<std::string, std::size_t> columns;
+    PoseHeader header;
+    std::string length_unit, angle_unit;
+    std::vector<ColumnName> names;
+    for (std::size_t c = 0; c < fields.size(); ++c) {
+        names.push_back(column_name(fields[c]));
+        if (!header.name && is_name_column(names[c].name))
+            header.name = c;
+        else
+            columns.emplace(names[c].name, c);
+    }
+    static const std::pair<const char*, std::vector<const char*>> rotations[] = {
+        {"kuka-abc", {"a", "b", "c"}},           {"fanuc-wpr", {"w", "p", "r"}},
+        {"rpy", {"roll", "pitch", "yaw"}},       {"quat-wxyz", {"qw", "qx", "qy", "qz"}},
+        {"quat-wxyz", {"q1", "q2", "q3", "q4"}}, {"", {"rx", "ry", "rz"}}};
+    const auto take = [&](const std::vector<const char*>& wanted) {
+        std::vector<std::size_t> found;
+        for (const char* name : wanted)
+            if (const auto it = columns.find(name); it != columns.end()) found.push_back(it->second);
+        return found.size() == wanted.size() ? found : std::vector<std::size_t>{};
+    };
+    header.numbers = take({"x", "y", "z"});
+    if (header.numbers.empty())
+        return input_error("the header names no columns x, y and z", at,
+                           "name them x, y, z and a rotation, or leave the header out");
+    length_unit = names[header.numbers[0]].unit;
+    for (const auto& [convention, wanted] : rotations) {
+        const auto found = take(wanted);
+        if (found.empty()) continue;
+        angle_unit = names[found[0]].unit;
+        header.numbers.insert(header.numbers.end(), found.begin(), found.end());
+        const bool same = convention == std::string("fanuc-wpr") && form.convention == "rpy";
+        if (!form.convention.empty() && *convention && form.convention != convention && !same)
+            return input_error(Text("the header names {}, --pose-convention {}", convention, form.convention),
+                               at);
+        if (form.convention.empty()) form.convention = convention;
+        break;
+    }
+    if (header.numbers.size() == 3)
+        return input_error("the header names no rotation that is known", at,
+                           "name it a,b,c or w,p,r or roll,pitch,yaw or qw,qx,qy,qz or rx,ry,rz");
+    if (form.mm == 0) form.mm = mm_of_unit(length_unit).value_or(0);
+    if (form.rad == 0) form.rad = angle_unit == "deg" ? kPi / 180 : angle_unit == "rad" ? 1 : 0;
+    return header;
+}
+
+char separator_of(std::string_view text) {
+    for (const char sign : {';', '\t', ','})
+        if (text.find(sign) != std::string_view::npos) {
+            // "1,5 2,5": the commas are the decimal signs of numbers between blanks
+            if (sign != ',' || text.find(", ") != std::string_view::npos ||
+                text.find('.') != std::string_view::npos)
+                return sign;
+            const auto line = text.substr(0, text.find('\n'));
+            return text_fields(line, ' ').size() >= 4 ? ' ' : sign;
+        }
+    return ' ';
+}
+
+Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
+    const auto json = parse_json(text, where);
+    if (!json) return tl::unexpected(json.error());
+    PoseTable table;
+    table.understood = "JSON poses";
+    if (json->is_array()) {
+        for (std::size_t i = 0; i < json->size(); ++i) {
+            auto pose = parse_pose((*json)[i], json_path(where, i));
+            if (!pose) return tl::unexpected(pose.error());
+            table.poses.push_back({"", *pose, json_path(where, i)});
+        }
+    } else if (json->is_object()) {
+        for (const auto& [name, value] : json->items()) {
+            auto pose = parse_pose(value, where + ": " + csv::shown(name));
+            if (!pose) return tl::unexpected(pose.error());
+            table.poses.push_back({name, *pose, where + ": " + csv::shown(name)});
+        }
+    }
+    if (table.poses.empty())
+        return input_error("there are no poses", where, "give {\"NAME\": POSE, ..} or [POSE, ..]");
+    return table;
+}
+
+}  // namespace
+
+Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& where) {
+    PoseTable table;
+    table.names_bind = false;
+    const auto positions = text.find("/POS");
+    if (positions == std::string_view::npos) return input_error("the program has no /POS", where);
+    std::size_t line = 1 + static_cast<std::size_t>(std::count(
+                               text.begin(), text.begin() + static_cast<std::ptrdiff_t>(positions), '\n'));
+    std::string_view rest = text.substr(positions);
+    std::string frames;
+    for (std::size_t at; (at = rest.find("P[")) != std::string_view::npos;) {
+        line += static_cast<std::size_t>(
+            std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+        rest.remove_prefix(at);
+        const auto close = rest.find(']'), open = rest.find('{'), end = rest.find('}');
+        NamedPose pose;
+        pose.at = fmt::format("{}, line {}", where, line);
+        if (close == rest.npos || open == rest.npos || end == rest.npos || close > open || open > end)
+            return input_error("the position does not end", pose.at, "the file is cut short");
+        const std::string_view label = rest.substr(2, close - 2),
+                               body = rest.substr(open + 1, end - open - 1);
+        const auto colon = label.find(':');
+        pose.name = csv::trimmed(colon == label.npos ? label : label.substr(colon + 1));
+        const auto after = [&](std::string_view key, char sign) -> std::optional<std::string_view> {
+            for (std::size_t from = 0; (from = body.find(key, from)) != body.npos; from += key.size()) {
+                const bool starts =
+                    from == 0 || std::string_view(" \t\r\n,;:").find(body[from - 1]) != body.npos;
+                const auto value = csv::blanks_off(body.substr(from + key.size()));
+                if (starts && value.starts_with(sign)) {
+                    const auto v = csv::blanks_off(value.substr(1));
+                    return v.substr(0, v.find_first_of(" \t\r\n,;"));
+                }
+            }
+            return std::nullopt;
+        };
+        if (after("J1", '='))
+            return input_error("is given in joint angles", pose.at, "store it as Cartesian");
+        std::array<double, 6> values{};
+        const char* keys[] = {"X", "Y", "Z", "W", "P", "R"};
+        for (std::size_t i = 0; i < 6; ++i) {
+            const auto value = after(keys[i], '=');
+            double number = 0;
+            if (!value || !text_number(*value, false, number) || std::isnan(number))
+                return input_error(Text("{} is {}", keys[i], value ? "no number" : "missing"), pose.at);
+            values[i] = number;
+        }
+        const std::string here = fmt::format("UF {}, UT {}", csv::shown(after("UF", ':').value_or("?")),
+                                             csv::shown(after("UT", ':').value_or("?")));
+        if (!frames.empty() && frames != here)
+            return input_error(Text("is in {}, those before in {}", here, frames), pose.at,
+                               "give poses of one user frame and one tool");
+        frames = here;
+        PoseForm form{"fanuc-wpr", 1, kPi / 180};
+        auto read = pose_of(form, {pose.name, pose.at, {values.begin(), values.end()}});
+        if (!read) return tl::unexpected(read.error());
+        pose.pose = *read;
+        table.poses.push_back(std::move(pose));
+        line += static_cast<std::size_t>(
+            std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+        rest.remove_prefix(end);
+        if (table.poses.size() > kPoseLimit) return input_error("there are more poses than a million", where);
+    }
+    if (table.poses.empty()) return input_error("there are no positions behind /POS", where);
+    table.understood = fmt::format(
+        "FANUC positions in {} (taken as the flange in the robot's base: a tool or user frame that is not "
+        "zero "
+        "must be undone first)",
+        frames);
+    return table;
+}
+
+Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& where,
+                                     const PoseLayout& layout) {
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        return input_error("the text is UTF-16", where, "save it as UTF-8 or plain ASCII");
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    PoseForm form{layout.convention, 0, 0};
+    if (!layout.convention.empty() && std::find(std::begin(kPoseConventions), std::end(kPoseConventions),
+                                                layout.convention) == std::end(kPoseConventions))
+        return usage_error(Text("\"{}\" is no convention of poses", csv::shown(layout.convention)),
+                           "--pose-convention");
+    if (!layout.unit.empty()) {
+        const auto mm = mm_of_unit(layout.unit);
+        if (!mm)
+            return usage_error(Text("\"{}\" is no unit of length", csv::shown(layout.unit)), "--pose-unit");
+        form.mm = *mm;
+    }
+    if (!layout.angle.empty()) {
+        if (layout.angle != "deg" && layout.angle != "rad")
+            return usage_error(Text("\"{}\" is no unit of angle", csv::shown(layout.angle)), "--pose-angle");
+        form.rad = layout.angle == "deg" ? kPi / 180 : 1;
+    }
+    const auto start = text.find_first_not_of(" \t\r\n");
+    if (start == text.npos) return input_error("the file is empty", where);
+    if (text[start] == '{' || text.substr(start, 2) == "[{") return from_json(text, where);
+    if (text.find("/POS") != text.npos && text.find("/PROG") != text.npos) return parse_fanuc_ls(text, where);
+
+    const char separator = separator_of(text);
+    const bool decimal_comma = separator != ',' && text.find(',') != text.npos && text.find('.') == text.npos;
+    std::vector<PoseRow> rows;
+    std::optional<PoseHeader> header;
+    std::size_t width = 0;
+    csv::Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+        const std::string_view bare = csv::blanks_off(line);
+        const std::string at = fmt::format("{}, line {}", where, lines.number());
+        if (bare.empty()) continue;
+        const bool comment = bare.starts_with("#") || bare.starts_with("%") || bare.starts_with("//");
+        auto fields = text_fields(comment ? bare.substr(bare.find_first_not_of("#%/ \t") == bare.npos
+                                                            ? bare.size()
+                                                            : bare.find_first_not_of("#%/ \t"))
+                                          : bare,
+                                  separator);
+        if (!fields.empty() && fields.back().empty()) fields.pop_back();
+        double first = 0, last = 0;
+        const bool numbers = fields.size() >= 2 && text_number(fields.back(), decimal_comma, last) &&
+                             text_number(fields[fields.size() - 2], decimal_comma, first);
+        if (!numbers && rows.empty() && !header && fields.size() >= 6) {
+            auto read = read_header(fields, form, at);
+            if (read) {
+                header = std::move(*read);
+                width = fields.size();
+            } else if (!comment) {
+                return tl::unexpected(read.error());
+            }
+            continue;
+        }
+        if (comment) continue;
+        if (width == 0) width = fields.size();
+        if (fields.size() != width)
+            return input_error(Text("has {} fields where the other lines have {}", fields.size(), width), at);
+        PoseRow row;
+        row.at = at;
+        std::vector<std::size_t> order;
+        if (header) {
+            order = header->numbers;
+            if (header->name) row.name = fields[*header->name];
+        } else {
+            double ignored = 0;
+            const bool odd = width == 7 && layout.convention != "quat-wxyz" &&
+                             layout.convention != "quat-xyzw" && !layout.convention.empty();
+            const bool named = !text_number(fields[0], decimal_comma, ignored) || odd || width == 8 ||
+                               width == 13 || width == 17;
+            if (named) row.name = fields[0];
+            for (std::size_t i = named ? 1 : 0; i < width; ++i) order.push_back(i);
+        }
+        for (const std::size_t i : order) {
+            double value = 0;
+            if (!text_number(fields[i], decimal_comma, value) || std::isnan(value))
+                return input_error(Text("\"{}\" is no number", csv::shown(fields[i])), at);
+            row.numbers.push_back(value);
+        }
+        rows.push_back(std::move(row));
+        if (rows.size() > 4 * kPoseLimit) return input_error("there are more poses than a million", where);
+    }
+    if (rows.empty()) return input_error("there are no poses", where);
+    if (width == 4 && !header) {  // stacked 4x4
+        if (rows.size() % 4 != 0)
+            return input_error(Text("{} rows of four numbers are no 4x4 matrices", rows.size()), where);
+        std::vector<PoseRow> stacked;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (rows[i].numbers.size() != 4) return input_error("is no row of a 4x4 matrix", rows[i].at);
+            if (i % 4 == 0) stacked.push_back({"", rows[i].at, {}});
+            stacked.back().numbers.insert(stacked.back().numbers.end(), rows[i].numbers.begin(),
+                                          rows[i].numbers.end());
+        }
+        rows = std::move(stacked);
+    }
+    if (auto ok = check_width(form, rows.front().numbers.size(), rows.front().at); !ok)
+        return tl::unexpected(ok.error());
+    if (auto ok = settle_units(form, rows, where); !ok) return tl::unexpected(ok.error());
+    PoseTable table;
+    std::set<std::string> names;
+    for (const PoseRow& row : rows) {
+        auto pose = pose_of(form, row);
+        if (!pose) return tl::unexpected(pose.error());
+        if (!row.name.empty() && !names.insert(row.name).second)
+            return input_error(Text("the pose \"{}\" is given twice", csv::shown(row.name)), row.at);
+        table.poses.push_back({row.name, *pose, row.at});
+    }
+    table.understood = fmt::format("{} poses by {}, {}, {} mm a unit", table.poses.size(),
+                                   names.empty() ? "order" : "name", form.convention, form.mm);
+    return table;
+}
+
+Expected<PoseTable> read_pose_table(const std::filesystem::path& path, const PoseLayout& layout) {
+    const auto text = read_text_file(path);
+    if (!text) return tl::unexpected(text.error());
+    return parse_pose_table(*text, path.string(), layout);
+}
+
+Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayout& layout) {
+    const std::string extension = path.extension().string();
+    if (extension != ".txt") return read_pose_file(path);
+    const auto text = read_text_file(path, std::size_t{1} << 20);
+    if (!text) return tl::unexpected(text.error());
+    const auto numbers = [&] {
+        std::size_t count = 0, at = 0;
+        constexpr std::string_view separators = "()[], \t\r\n;";
+        while ((at = text->find_first_not_of(separators, at)) != std::string::npos) {
+            ++count;
+            at = std::min(text->find_first_of(separators, at), text->size());
+        }
+        return count;
+    }();
+    const bool usual = numbers != 6 && numbers != 12 && numbers != 16 && layout == PoseLayout{};
+    if (usual) return read_pose_file(path);
+    auto table = parse_pose_table(*text, path.string(), layout);
+    if (!table) return tl::unexpected(table.error());
+    if (table->poses.size() != 1)
+        return input_error(Text("holds {} poses beside one frame", table->poses.size()), path.string());
+    return table->poses.front().pose;
+}
+
+Expected<std::vector<Pose>> poses_of_frames(const PoseTable& table, std::span<const std::string> frames,
+                                            const std::string& where) {
+    const bool named =
+        std::any_of(table.poses.begin(), table.poses.end(), [](const auto& p) { return !p.name.empty(); });
+    const auto ending_number = [](std::string_view s) -> std::optional<long> {
+        std::size_t from = s.size();
+        while (from > 0 && std::isdigit(static_cast<unsigned char>(s[from - 1]))) --from;
+        if (from == s.size() || s.size() - from > 9) return std::nullopt;
+        return std::stol(std::string(s.substr(from)));
+    };
+    std::vector<Pose> poses;
+    std::string missing;
+    for (const std::string& frame : frames) {
+        const std::string stem = std::filesystem::path(frame).stem().string();
+        const NamedPose* found = nullptr;
+        for (const NamedPose& pose : table.poses)
+            if (!pose.name.empty() && (pose.name == frame || pose.name == stem)) found = &pose;
+        for (const NamedPose& pose : table.poses) {  // "7" of frame0007
+            const bool number =
+                !pose.name.empty() && pose.name.find_first_not_of("0123456789") == std::string::npos;
+            if (!found && number && ending_number(pose.name) == ending_number(stem)) found = &pose;
+        }
+        if (found)
+            poses.push_back(found->pose);
+        else if (missing.empty())
+            missing = frame;
+    }
+    if (named && missing.empty()) return poses;
+    if (named && table.names_bind)
+        return input_error(Text("names no pose of {}", missing), where,
+                           "name the poses as the frames' files, or leave the names out");
+    if (table.poses.size() != frames.size())
+        return input_error(Text("holds {} poses for {} frames", table.poses.size(), frames.size()), where,
+                           "give one pose a frame in the frames' order, or name them as the files");
+    poses.clear();
+    for (const NamedPose& pose : table.poses) poses.push_back(pose.pose);
+    return poses;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,280 @@
+#include "devices/exchange/tables/profile_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "core/profile/no_return.h"
+#include "core/profile/units.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/tables/csv_table.h"
+#include "devices/exchange/tables/point_table.h"
+#include "devices/exchange/tables/profile_csv.h"
+
+namespace seamwright {
+namespace {
+
+constexpr double kFarthestPoint_mm = 1e6;
+
+bool is_one_of(const std::string& name, std::initializer_list<const char*> known) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+}
+bool names_x(const std::string& n) {
+    return is_one_of(n, {"x", "xpos", "xposition", "xcoordinate", "xcoord", "xvalue", "position", "lateral"});
+}
+bool names_y(const std::string& n) {
+    return is_one_of(n, {"y", "ypos", "yposition", "ycoordinate", "ycoord", "yvalue"});
+}
+bool names_z(const std::string& n) {
+    return is_one_of(n, {"z", "zpos", "zposition", "zcoordinate", "zcoord", "zvalue", "height", "range",
+                         "distance", "depth"});
+}
+bool names_profile(const std::string& n) {
+    return is_one_of(n, {"profile", "profileindex", "profileno", "profilenumber", "profileid", "profilenr",
+                         "scan", "scanindex", "frame", "frameindex", "frameno", "framenumber", "slice"});
+}
+bool names_counter(const std::string& n) {  // of profiles or of points
+    return is_one_of(n, {"index", "idx", "i", "no", "nr", "n", "number", "line"});
+}
+bool names_intensity(const std::string& n) {
+    return is_one_of(n,
+                     {"intensity", "grey", "gray", "brightness", "amplitude", "reflectance", "reflectivity"});
+}
+
+bool constant(const std::vector<double>& column) {
+    return std::all_of(column.begin(), column.end(),
+                       [&](double v) { return std::abs(v - column.front()) < 1e-9 || std::isnan(v); });
+}
+// Holds still over several points, then steps on: as the number or the travel of a profile does.
+bool steps(const std::vector<double>& column) {
+    std::size_t runs = 1;
+    for (std::size_t i = 1; i < column.size(); ++i) {
+        if (std::isnan(column[i]) || std::isnan(column[i - 1])) return false;
+        if (column[i] != column[i - 1]) ++runs;
+    }
+    return column.size() >= 5 * runs;
+}
+
+struct PointRoles {
+    std::optional<std::size_t> x, y, z, profile, intensity;
+};
+
+Expected<std::size_t> column_called(const PointTable& table, std::string_view word,
+                                    const std::string& where) {
+    word = csv::trimmed(word);
+    double number = 0;
+    if (text_number(word, false, number) && number >= 1 &&
+        number <= static_cast<double>(table.columns.size()) && number == std::floor(number))
+        return static_cast<std::size_t>(number) - 1;
+    for (std::size_t c = 0; c < table.names.size(); ++c)
+        if (table.names[c] == word || column_name(table.names[c]).name == column_name(word).name) return c;
+    std::string there;
+    for (const std::string& name : table.names) there += (there.empty() ? "" : ", ") + csv::shown(name);
+    return input_error(Text("there is no column \"{}\"", csv::shown(word)), where,
+                       there.empty() ? Text("the columns are 1 to {}", table.columns.size())
+                                     : Text("the columns are {}", there));
+}
+
+std::string named_columns(const PointTable& table) {
+    std::string text;
+    for (const std::string& name : table.names) text += (text.empty() ? "" : ", ") + csv::shown(name);
+    return text;
+}
+
+Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& layout,
+                                  const std::string& where) {
+    PointRoles found;
+    std::optional<std::size_t> counter;
+    for (std::size_t c = 0; c < table.names.size(); ++c) {
+        const std::string name = column_name(table.names[c]).name;
+        const auto take = [&](std::optional<std::size_t>& role) {
+            if (!role) role = c;
+        };
+        if (names_x(name)) take(found.x);
+        if (names_y(name)) take(found.y);
+        if (names_z(name)) take(found.z);
+        if (names_profile(name)) take(found.profile);
+        if (names_counter(name)) take(counter);
+        if (names_intensity(name)) take(found.intensity);
+    }
+    if (!found.profile && counter && steps(table.columns[*counter]) && !constant(table.columns[*counter]))
+        found.profile = counter;
+    if (!layout.columns.empty()) {
+        const auto words = text_fields(layout.columns, ',');
+        if (words.size() != 2)
+            return usage_error("gives other than two columns", "--columns-xz",
+                               "write X,Z by name or by number from 1");
+        auto x = column_called(table, words[0], where);
+        if (!x) return tl::unexpected(x.error());
+        auto z = column_called(table, words[1], where);
+        if (!z) return tl::unexpected(z.error());
+        found.x = *x, found.z = *z;
+        if (found.y == found.x || found.y == found.z) found.y.reset();
+        return found;
+    }
+    if (!table.names.empty()) {
+        if (found.x && !found.z && found.y)
+            std::swap(found.y, found.z);  // drawn in the plane: y is the height
+        if (found.x && found.z) return found;
+        return input_error(
+            Text("the header \"{}\" names no column {}", named_columns(table), found.x ? "z" : "x"), where,
+            "say which with --columns-xz X,Z (names, or numbers from 1)");
+    }
+    const std::size_t width = table.columns.size();
+    if (width == 2) {
+        found.x = 0, found.z = 1;
+    } else if (width == 3 && (constant(table.columns[1]) || steps(table.columns[1]))) {
+        found.x = 0, found.y = 1, found.z = 2;
+    } else if (width == 3 && steps(table.columns[0])) {
+        found.profile = 0, found.x = 1, found.z = 2;
+    } else {
+        return input_error(
+            Text("{} columns without names", width), table.at(where, 0),
+            width < 2 ? "a profile needs x and z" : "say which with --columns-xz X,Z (numbers from 1)");
+    }
+    return found;
+}
+
+// Millimetres of one unit of a column: as the person says, else as its name says, else 1.
+double factor(const PointTable& table, std::size_t column, const ProfileLayout& layout, bool& asked) {
+    if (const auto said = mm_of_unit(layout.unit)) return *said;
+    if (column < table.names.size())
+        if (const auto named = mm_of_unit(column_name(table.names[column]).unit)) {
+            asked = false;
+            return *named;
+        }
+    return 1;
+}
+
+std::string told(const PointTable& table, const PointRoles& c) {
+    const auto name = [&](std::size_t column) {
+        return column < table.names.size() && !table.names[column].empty()
+                   ? fmt::format("\"{}\"", csv::shown(table.names[column]))
+                   : fmt::format("column {}", column + 1);
+    };
+    std::string text = fmt::format("x = {}, z = {}", name(*c.x), name(*c.z));
+    if (c.profile) text += ", profiles by " + name(*c.profile);
+    if (c.intensity) text += ", intensity = " + name(*c.intensity);
+    return text;
+}
+
+}  // namespace
+
+ColumnName column_name(std::string_view header) {
+    ColumnName result;
+    std::string lower;
+    for (const char c : header) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (std::size_t at; (at = lower.find("\xC2\xB5")) != std::string::npos;)
+        lower.replace(at, 2, "u");  // micro sign
+    for (std::size_t at; (at = lower.find("\xCE\xBC")) != std::string::npos;)
+        lower.replace(at, 2, "u");  // mu
+    for (std::size_t at; (at = lower.find("\xC2\xB0")) != std::string::npos;) lower.replace(at, 2, "deg");
+    static const std::pair<const char*, const char*> units[] = {
+        {"mm", "mm"},       {"millimeter", "mm"}, {"millimetre", "mm"}, {"um", "um"},   {"micron", "um"},
+        {"microns", "um"},  {"micrometer", "um"}, {"m", "m"},           {"meter", "m"}, {"metre", "m"},
+        {"in", "in"},       {"inch", "in"},       {"inches", "in"},     {"deg", "deg"}, {"degree", "deg"},
+        {"degrees", "deg"}, {"rad", "rad"},       {"radian", "rad"}};
+    const auto cut = lower.find_last_of("[(/_ ");
+    if (cut != std::string::npos && cut > 0) {
+        std::string unit = lower.substr(cut + 1);
+        std::erase_if(unit, [](char c) { return c == ']' || c == ')' || c == ' '; });
+        for (const auto& [word, is] : units)
+            if (unit == word) {
+                result.unit = is;
+                lower.resize(cut);
+                if (lower.ends_with(" in")) lower.resize(lower.size() - 3);  // "Z in mm"
+            }
+    }
+    for (const char c : lower)
+        if (std::isalnum(static_cast<unsigned char>(c))) result.name += c;
+    return result;
+}
+
+Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string& where,
+                                      const ProfileLayout& layout) {
+    if (!layout.unit.empty() && !mm_of_unit(layout.unit))
+        return usage_error(Text("\"{}\" is no unit of length", csv::shown(layout.unit)), "--unit",
+                           "give mm, m, um or in");
+    ReadProfiles result;
+    result.unit_asked = layout.unit.empty();
+    // Our own form keeps its strict reader.
+    std::string_view first = bytes.substr(0, std::min<std::size_t>(bytes.find('\n'), 256));
+    if (first.starts_with("\xEF\xBB\xBF")) first.remove_prefix(3);
+    if (layout.columns.empty() && first.find("x_mm") != first.npos && first.find("z_mm") != first.npos &&
+        first.find("profile_index") == first.npos && first.find(';') == first.npos &&
+        first.find('\t') == first.npos) {
+        auto profile = parse_profile_csv(bytes, where);
+        if (!profile) return tl::unexpected(profile.error());
+        erase_no_returns(*profile, layout.invalid);
+        if (std::none_of(profile->z_mm.begin(), profile->z_mm.end(),
+                         [](double z) { return std::isfinite(z); }) &&
+            !layout.invalid.empty())
+            return input_error("every height stands for \"no return\"", where, "check --invalid");
+        for (auto* column : {&profile->x_mm, &profile->z_mm})
+            for (double& value : *column) value *= mm_of_unit(layout.unit).value_or(1);
+        result.profiles.push_back({0, std::move(*profile), {}});
+        result.understood = "our own CSV (x_mm, z_mm)";
+        return result;
+    }
+    auto table = parse_points(bytes, where, kProfilePointLimit);
+    if (!table) return tl::unexpected(table.error());
+    auto found = find_columns(*table, layout, where);
+    if (!found) return tl::unexpected(found.error());
+    const PointRoles& c = *found;
+    bool asked_x = result.unit_asked, asked_z = result.unit_asked;
+    const double x_mm = factor(*table, *c.x, layout, asked_x), z_mm = factor(*table, *c.z, layout, asked_z);
+    result.unit_asked = asked_x || asked_z;
+    const double y_mm = c.y ? factor(*table, *c.y, layout, asked_x) : 1;
+    const bool flat = !c.y || (!table->in_base && constant(table->columns[*c.y]));
+    const bool by_y = !flat && !table->in_base && !c.profile && steps(table->columns[*c.y]);
+    const auto key = c.profile ? c.profile : by_y ? c.y : std::nullopt;
+    std::set<double> seen;
+    std::size_t block = 0, returns = 0;
+    for (std::size_t i = 0; i < table->rows(); ++i) {
+        const bool new_block = block < table->blocks.size() && table->blocks[block] == i;
+        if (new_block) ++block;
+        double number = static_cast<double>(block) - 1;
+        if (key) number = table->columns[*key][i];
+        if (std::isnan(number))
+            return input_error("the number of the profile is missing", table->at(where, i));
+        if (result.profiles.empty() || result.profiles.back().number != number) {
+            if (!seen.insert(number).second)
+                return input_error(Text("profile {} comes back after another one", number),
+                                   table->at(where, i), "keep the rows of a profile together");
+            result.profiles.push_back({number, {}, {}});
+        }
+        ReadProfile& into = result.profiles.back();
+        const double height = table->columns[*c.z][i];
+        const bool code = std::count(layout.invalid.begin(), layout.invalid.end(), height) > 0;
+        const double x = table->columns[*c.x][i] * x_mm,
+                     z = code ? std::numeric_limits<double>::quiet_NaN() : height * z_mm;
+        if (std::abs(x) > kFarthestPoint_mm || std::abs(z) > kFarthestPoint_mm)
+            return input_error(Text("{} mm is beyond 1 km", std::abs(x) > kFarthestPoint_mm ? x : z),
+                               table->at(where, i), "say what the numbers are in with --unit");
+        const bool returned = !std::isnan(x) && !std::isnan(z);
+        returns += returned ? 1 : 0;
+        into.profile.x_mm.push_back(x);
+        into.profile.z_mm.push_back(returned ? z : std::numeric_limits<double>::quiet_NaN());
+        if (c.intensity) {
+            const double grey = table->columns[*c.intensity][i];
+            into.profile.intensity.push_back(std::isnan(grey) ? 0.0F : static_cast<float>(grey));
+        }
+        if (!flat && !by_y && !c.profile) into.y_mm.push_back(table->columns[*c.y][i] * y_mm);
+    }
+    if (returns == 0) return input_error("no point has both x and z", where);
+    result.understood = table->understood + ": " + told(*table, c);
+    if (by_y) result.understood += ", one profile for every y";
+    if (result.profiles.size() > 1) result.understood += fmt::format(", {} profiles", result.profiles.size());
+    return result;
+}
+
+Expected<ReadProfiles> read_profiles(const std::filesystem::path& path, const ProfileLayout& layout) {
+    const auto bytes = read_text_file(path);
+    if (!bytes) return tl::unexpected(bytes.error());
+    return parse_profiles(*bytes, path.string(), layout);
+}
+
+}  // namespace seamwright

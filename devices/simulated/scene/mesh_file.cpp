@@ -1,0 +1,159 @@
+#include "devices/simulated/scene/mesh_file.h"
+
+#include <fmt/format.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCommand.h>
+#include <vtkExecutive.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkPLYReader.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkTriangleFilter.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+
+namespace seamwright {
+namespace {
+
+// Counts the reader's errors; with an observer VTK prints none.
+struct Watch {
+    vtkNew<vtkCallbackCommand> command;
+    int errors = 0;
+    Watch() {
+        command->SetClientData(this);
+        command->SetCallback(
+            [](vtkObject*, unsigned long, void* self, void*) { ++static_cast<Watch*>(self)->errors; });
+    }
+    void on(vtkObject* object) {
+        object->AddObserver(vtkCommand::ErrorEvent, command);
+        object->AddObserver(vtkCommand::WarningEvent, command);
+    }
+};
+
+// `reader` knows where it reads from; `where` is for the Error.
+template <class Reader>
+Expected<TriangleMesh> read_mesh(Reader* reader, const std::string& where) {
+    Watch watch;
+    watch.on(reader);
+    vtkNew<vtkTriangleFilter> triangles;
+    watch.on(triangles);
+    watch.on(reader->GetExecutive());
+    watch.on(triangles->GetExecutive());
+    triangles->SetInputConnection(reader->GetOutputPort());
+    triangles->PassLinesOff();
+    triangles->PassVertsOff();
+    triangles->Update();
+    const vtkPolyData* none = nullptr;
+    vtkPolyData* data = triangles->GetOutput();
+    if (watch.errors > 0 || data == none || data->GetNumberOfPolys() == 0) {
+        return file_error("holds no readable triangles", where);
+    }
+    TriangleMesh mesh;
+    mesh.vertices.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        data->GetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].data());
+        if (!mesh.vertices[i].allFinite()) return file_error("holds a vertex that is not finite", where);
+    }
+    vtkNew<vtkIdList> cell;
+    auto* polygons = data->GetPolys();
+    for (polygons->InitTraversal(); polygons->GetNextCell(cell);) {
+        if (cell->GetNumberOfIds() != 3) continue;
+        Eigen::Vector3i t;
+        bool known = true;
+        for (int k = 0; k < 3; ++k) {
+            const vtkIdType id = cell->GetId(k);
+            known = known && id >= 0 && id < data->GetNumberOfPoints();
+            t[k] = static_cast<int>(id);
+        }
+        if (!known) return file_error("names a vertex that it does not hold", where);
+        const auto& v = mesh.vertices;
+        const auto& a = v[static_cast<std::size_t>(t[0])];
+        const Eigen::Vector3d n =
+            (v[static_cast<std::size_t>(t[1])] - a).cross(v[static_cast<std::size_t>(t[2])] - a);
+        if (n.norm() > 0) mesh.triangles.push_back(t);
+    }
+    if (mesh.triangles.empty()) return file_error("holds only degenerate triangles", where);
+    return mesh;
+}
+
+template <class Reader>
+Expected<TriangleMesh> read_with(const std::filesystem::path& path) {
+    vtkNew<Reader> reader;
+    reader->SetFileName(path.c_str());
+    return read_mesh(reader.Get(), path.string());
+}
+
+}  // namespace
+
+Expected<TriangleMesh> load_mesh(const std::filesystem::path& path, const std::string& unit) {
+    if (!unit.empty() && unit != "mm" && unit != "m") {
+        return input_error(Text("\"{}\" is no unit of a mesh", unit), path.string(), "give \"mm\" or \"m\"");
+    }
+    std::error_code problem;
+    if (!std::filesystem::is_regular_file(path, problem)) return file_error("is no file", path.string());
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    Expected<TriangleMesh> mesh = file_error("is neither .stl, .ply nor .obj", path.string());
+    try {
+        if (extension == ".stl") mesh = read_with<vtkSTLReader>(path);
+        if (extension == ".ply") mesh = read_with<vtkPLYReader>(path);
+        if (extension == ".obj") mesh = read_with<vtkOBJReader>(path);
+    } catch (const std::exception& e) {
+        return file_error(Text("cannot be read ({})", e.what()), path.string());
+    }
+    if (!mesh) return mesh;
+    const double longest = mesh->box().sizes().maxCoeff();
+    if (unit == "m") {
+        for (auto& v : mesh->vertices) v *= 1000;
+    } else if (unit.empty() && longest < 10) {
+        return input_error(Text("the part is only {:.4g} long: metres suspected", longest), path.string(),
+                           "say the unit: \"mm\" or \"m\"");
+    }
+    return mesh;
+}
+
+Expected<TriangleMesh> mesh_from_ply(std::span<const std::byte> ply, const std::string& where) {
+    vtkNew<vtkPLYReader> reader;
+    reader->SetReadFromInputString(true);
+    reader->SetInputString(std::string(reinterpret_cast<const char*>(ply.data()), ply.size()));
+    try {
+        return read_mesh(reader.Get(), where);
+    } catch (const std::exception& e) {
+        return file_error(Text("cannot be read ({})", e.what()), where);
+    }
+}
+
+std::vector<std::byte> ply_bytes(const TriangleMesh& mesh) {
+    const std::string head = fmt::format(
+        "ply\nformat binary_little_endian 1.0\ncomment millimetres, work object frame\n"
+        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.vertices.size(), mesh.triangles.size());
+    std::vector<std::byte> bytes(head.size() + mesh.vertices.size() * 12 + mesh.triangles.size() * 13);
+    std::byte* at = bytes.data();
+    const auto put = [&](const void* data, std::size_t size) {
+        std::memcpy(at, data, size);
+        at += size;
+    };
+    put(head.data(), head.size());
+    for (const Eigen::Vector3d& v : mesh.vertices) {
+        const Eigen::Vector3f f = v.cast<float>();
+        put(f.data(), 12);
+    }
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+        const unsigned char three = 3;
+        put(&three, 1);
+        const std::array<std::int32_t, 3> corners{t[0], t[1], t[2]};
+        put(corners.data(), 12);
+    }
+    return bytes;
+}
+
+}  // namespace seamwright

@@ -136,6 +136,9 @@ json run_json(const RunRecord& run) {
                            {"gate_passed", r.gate_passed},
                            {"refusals", r.refusals},
                            {"push", push_json(r.push)}});
+        if (r.offset)
+            regions.back()["offset"] = {{"version", r.offset->version},
+                                        {"offset_mm", vector_json(r.offset->offset_mm)}};
     }
     for (const EventRecord& e : run.events)
         events.push_back(
@@ -174,6 +177,7 @@ std::string run_text(const RunRecord& run) {
         if (r.correction && r.correction->status != CorrectionStatus::under_determined)
             text += "  D  " + pose_text(r.correction->displacement.workobject_from_movedworkobject) + "\n" +
                     correction_sigma_text(*r.correction);
+        if (r.offset) text += "  " + said_of(*r.offset).english() + "\n";
         for (const Text& reason : r.refusals) text += "  refused: " + reason.english() + "\n";
         if (run.push)
             text += fmt::format("  push of {}: {}{}{}\n", r.push.frame_name, to_string(r.push.status),

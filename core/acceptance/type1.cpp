@@ -43,7 +43,8 @@ Expected<Type1> type1_study(std::span<const double> values_mm, double reference_
     for (const auto& [value, word] : {std::pair{settings.tolerance_mm, "tolerance"},
                                       {settings.share, "share of the tolerance"},
                                       {settings.width, "width"},
-                                      {settings.required, "limit of Cg and Cgk"}})
+                                      {settings.required, "limit of Cg and Cgk"},
+                                      {settings.required_cgk.value_or(1), "limit of Cgk"}})
         if (auto ok = check_positive(value, word); !ok) return tl::unexpected(ok.error());
     if (values_mm.size() < 2)
         return input_error(Text("{} value(s) of the reference part", values_mm.size()), "type 1",
@@ -75,9 +76,10 @@ Expected<Type1> type1_study(std::span<const double> values_mm, double reference_
     const double to_t = std::sqrt(n) * settings.width / 2;
     const Interval deltas = noncentralities(nu, to_t * r.cgk);
     r.cgk_limits = {deltas.low / to_t, deltas.high / to_t};
-    r.verdict = r.n < kType1Values                                        ? AcceptanceVerdict::too_little_data
-                : r.cg >= settings.required && r.cgk >= settings.required ? AcceptanceVerdict::ok
-                                                                          : AcceptanceVerdict::not_ok;
+    const double required_cgk = settings.required_cgk.value_or(settings.required);
+    r.verdict = r.n < kType1Values                                   ? AcceptanceVerdict::too_little_data
+                : r.cg >= settings.required && r.cgk >= required_cgk ? AcceptanceVerdict::ok
+                                                                     : AcceptanceVerdict::not_ok;
     return r;
 }
 

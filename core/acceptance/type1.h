@@ -10,6 +10,7 @@
 // noncentral t of sqrt(n) (K T / 2 - |bias|) / s, which is exact for one side of the tolerance; where the bias
 // is no larger than its own noise the estimate lies on the low side and the limits hold 94 % to 96 %.
 
+#include <optional>
 #include <span>
 
 #include "core/acceptance/acceptance.h"
@@ -21,7 +22,8 @@ struct Type1Settings {
     double tolerance_mm = 0;  // T
     double share = 0.2;       // K
     double width = 6;         // w
-    double required = 1.33;   // of Cg and Cgk
+    double required = 1.33;   // of Cg, and of Cgk where it has none of its own
+    std::optional<double> required_cgk = {};
 };
 inline constexpr int kType1Values = 25;  // fewer prove nothing; 50 are usual
 

@@ -52,8 +52,11 @@ Interval roots(const Interval& squares) {
 }  // namespace
 
 Expected<Type3> type3_study(std::span<const StudyValue> values, const Type3Settings& settings) {
-    for (const auto& [value, word] :
-         {std::pair{settings.tolerance_mm, "tolerance"}, {settings.width, "width"}})
+    for (const auto& [value, word] : {std::pair{settings.tolerance_mm, "tolerance"},
+                                      {settings.width, "width"},
+                                      {settings.accepted_percent, "limit of %GRR"},
+                                      {settings.refused_percent, "limit of %GRR"},
+                                      {static_cast<double>(settings.required_ndc), "limit of ndc"}})
         if (auto ok = check_positive(value, word); !ok) return tl::unexpected(ok.error());
     auto sorted = balanced(values);
     if (!sorted) return tl::unexpected(sorted.error());

@@ -1,5 +1,7 @@
 #include "projects/acceptance/acceptance_json.h"
 
+#include "projects/station/fields.h"
+
 namespace seamwright {
 namespace {
 
@@ -133,7 +135,81 @@ json vda5_json(const ProcessUncertainty& r) {
             {"verdict", to_string(r.verdict)}};
 }
 
+const char* word(RequirementFrom from) {
+    return from == RequirementFrom::given     ? "given"
+           : from == RequirementFrom::project ? "project"
+                                              : "default";
+}
+
+json check_json(const ForecastCheck& c) {
+    return {{"predicted", c.predicted_mm},
+            {"measured", c.measured_mm},
+            {"p", c.p},
+            {"agreement", c.agreement == Agreement::agrees      ? "agrees"
+                          : c.agreement == Agreement::beyond_95 ? "beyond_95_percent"
+                                                                : "beyond_99_percent"}};
+}
+
+json settings_json(const AcceptanceSettings& s) {
+    json out = {{"nominal_mm", s.nominal_mm},
+                {"share", s.share},
+                {"width", s.width},
+                {"required_cg", s.required},
+                {"required_cgk", s.required_cgk.value_or(s.required)},
+                {"grr_accepted_percent", s.grr_accepted_percent},
+                {"grr_refused_percent", s.grr_refused_percent},
+                {"ndc", s.ndc},
+                {"system_percent", s.system_percent},
+                {"process_percent", s.process_percent},
+                {"subgroup", s.subgroup},
+                {"reference_u_mm", s.reference_u_mm},
+                {"resolution_mm", s.resolution_mm}};
+    for (const auto& field : acceptance_fields())
+        out["from"][field.info.name] = word(from_of(s, field.info.name));
+    return out;
+}
+
 }  // namespace
+
+json forecast_json(const StudyForecast& f, const AcceptanceSettings& s) {
+    json out = {{"type1_s", f.type1_s_mm}, {"bias_u", f.bias_u_mm}, {"cg", predicted_cg(f, s)}};
+    out["ev"] = f.ev_mm > 0 ? json(f.ev_mm) : json();
+    out["grr_percent_tolerance"] = f.ev_mm > 0 ? json(predicted_grr_percent(f, s)) : json();
+    return out;
+}
+
+json offset_json(const KeptOffset& kept) {
+    json covariance = json::array(), offset = json::array();
+    for (int i = 0; i < 3; ++i) {
+        offset.push_back(kept.offset_mm[i]);
+        for (int k = 0; k < 3; ++k) covariance.push_back(kept.covariance_mm2(i, k));
+    }
+    return {{"version", kept.version},
+            {"utc", kept.utc},
+            {"source", kept.source.in(Language::english)},
+            {"offset_mm", offset},
+            {"covariance_mm2", covariance}};
+}
+
+json study_progress_json(const StudyProgress& p) {
+    json steps = json::array();
+    for (const StudyStep& step : p.steps)
+        steps.push_back({{"part", step.part.empty() ? json() : json(step.part)},
+                         {"rehang", step.rehang},
+                         {"wanted", step.wanted},
+                         {"made", step.made},
+                         {"refused", step.refused}});
+    return {{"study", p.plan.study},
+            {"region", p.plan.region_id},
+            {"runs", p.wanted()},
+            {"made", p.made()},
+            {"refused", p.refused()},
+            {"resumed", p.resumed},
+            {"other_setup", p.other_setup},
+            {"complete", p.complete()},
+            {"stopped", p.stopped.in(Language::english)},
+            {"steps", steps}};
+}
 
 json acceptance_json(const Acceptance& a) {
     const AcceptanceSettings& s = a.settings;
@@ -142,14 +218,7 @@ json acceptance_json(const Acceptance& a) {
     json answer = {
         {"status", to_string(a.verdict())},
         {"tolerance_mm", s.tolerance_mm},
-        {"settings",
-         {{"nominal_mm", s.nominal_mm},
-          {"share", s.share},
-          {"width", s.width},
-          {"required_cg", s.required},
-          {"subgroup", s.subgroup},
-          {"reference_u_mm", s.reference_u_mm},
-          {"resolution_mm", s.resolution_mm}}},
+        {"settings", settings_json(s)},
         {"source",
          {{"file", a.source.file},
           {"measurand", a.source.measurand.empty() ? json() : json(a.source.measurand.in(Language::english))},
@@ -168,6 +237,14 @@ json acceptance_json(const Acceptance& a) {
     if (a.stability) answer["stability"] = stability_json(*a.stability);
     if (a.correlation) answer["correlation"] = correlation_json(*a.correlation);
     if (a.vda5) answer["vda5"] = vda5_json(*a.vda5);
+    if (a.source.forecast) answer["forecast"] = forecast_json(*a.source.forecast, s);
+    if (a.type1_check) answer["type1"]["forecast"]["s"] = check_json(*a.type1_check);
+    if (a.bias_check) answer["type1"]["forecast"]["bias"] = check_json(*a.bias_check);
+    if (a.type3_check) answer["type3"]["forecast"]["ev"] = check_json(*a.type3_check);
+    if (a.source.offset) {
+        const auto& acting = a.source.offset->acting;
+        answer["source"]["kept_offset"] = acting ? offset_json(*acting) : json();
+    }
     for (const Study study : kStudies)
         if (const std::string why = what_lacks(a, study).english(); !why.empty())
             answer[std::string(to_string(study))]["message"] = why;

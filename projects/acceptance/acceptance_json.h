@@ -6,10 +6,17 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "projects/acceptance/live_study.h"
 #include "projects/acceptance/studies.h"
 
 namespace seamwright {
 
 nlohmann::json acceptance_json(const Acceptance& acceptance);
+
+// What is predicted of the studies: {"type1_s","bias_u","cg","ev","grr_percent_tolerance"}.
+nlohmann::json forecast_json(const StudyForecast& forecast, const AcceptanceSettings& settings);
+// A kept offset, and how far a study that is made run by run has come.
+nlohmann::json offset_json(const KeptOffset& kept);
+nlohmann::json study_progress_json(const StudyProgress& progress);
 
 }  // namespace seamwright

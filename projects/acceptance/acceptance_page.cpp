@@ -104,7 +104,11 @@ void type1_chapter(AcceptanceWriter& w) {
     const Type1& r = *w.a.type1;
     const AcceptanceSettings& s = w.a.settings;
     w.page.heading(w.t("Type 1: capability on a reference part"));
-    w.verdict(Study::type1, r.verdict, w.t("Cg and Cgk must reach {}", w.number(s.required, 2)));
+    const double required_cgk = s.required_cgk.value_or(s.required);
+    w.verdict(Study::type1, r.verdict,
+              required_cgk == s.required
+                  ? w.t("Cg and Cgk must reach {}", w.number(s.required, 2))
+                  : w.t("Cg must reach {} and Cgk {}", w.number(s.required, 2), w.number(required_cgk, 2)));
     w.page.paragraph(w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).", w.a.type1_part, r.n,
                          w.number(r.reference_mm, 4), s.share, s.width));
     Rows rows = w.head();
@@ -112,7 +116,7 @@ void type1_chapter(AcceptanceWriter& w) {
     w.index(rows, w.t("s (mm)"), r.s_mm, r.s_limits, 4);
     w.index(rows, w.t("bias (mm)"), r.bias_mm, r.bias_limits, 4);
     w.index(rows, "Cg", r.cg, r.cg_limits, 2, w.number(s.required, 2));
-    w.index(rows, "Cgk", r.cgk, r.cgk_limits, 2, w.number(s.required, 2));
+    w.index(rows, "Cgk", r.cgk, r.cgk_limits, 2, w.number(required_cgk, 2));
     w.page.table(rows);
     w.page.paragraph(r.bias_p < 0.05
                          ? w.t("The bias is no chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p))
@@ -122,9 +126,11 @@ void type1_chapter(AcceptanceWriter& w) {
 
 void type3_chapter(AcceptanceWriter& w) {
     const Type3& r = *w.a.type3;
+    const AcceptanceSettings& s = w.a.settings;
     w.page.heading(w.t("Type 3: repeatability and reproducibility"));
     w.verdict(Study::type3, r.verdict,
-              w.t("up to 10 % of the tolerance with ndc of 5 is accepted, beyond 30 % not"));
+              w.t("up to {:g} % of the tolerance with ndc of {} is accepted, beyond {:g} % not",
+                  s.grr_accepted_percent, s.ndc, s.grr_refused_percent));
     w.page.paragraph(
         w.t("{} parts, each hung {} times, each time measured {} times.", r.parts, r.rehangs, r.runs));
     Rows rows = w.head();
@@ -132,9 +138,10 @@ void type3_chapter(AcceptanceWriter& w) {
     if (r.nested) w.index(rows, w.t("rehang (mm)"), r.rehang_mm, r.rehang_limits, 4);
     w.index(rows, "GRR (mm)", r.grr_mm, r.grr_limits, 4);
     w.index(rows, w.t("PV, parts (mm)"), r.pv_mm, r.pv_limits, 4);
-    w.index(rows, w.t("GRR of the tolerance (%)"), r.grr_percent_tolerance, r.tolerance_limits, 1, "10 / 30");
+    w.index(rows, w.t("GRR of the tolerance (%)"), r.grr_percent_tolerance, r.tolerance_limits, 1,
+            fmt::format("{:g} / {:g}", s.grr_accepted_percent, s.grr_refused_percent));
     w.index(rows, w.t("GRR of the total variation (%)"), r.grr_percent_total, r.total_limits, 1);
-    w.index(rows, "ndc", r.ndc, r.ndc_limits, 0, "5");
+    w.index(rows, "ndc", r.ndc, r.ndc_limits, 0, std::to_string(s.ndc));
     w.page.table(rows);
     Rows anova{{w.t("Source"), "df", "SS", "MS"}};
     for (const AnovaRow& row : r.anova) {
@@ -268,12 +275,15 @@ void correlation_chapter(AcceptanceWriter& w) {
 void vda5_chapter(AcceptanceWriter& w) {
     const ProcessUncertainty& r = *w.a.vda5;
     w.page.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
-    w.verdict(Study::vda5, r.verdict, w.t("Q of the system up to 15 %, of the process up to 30 %"));
+    const AcceptanceSettings& s = w.a.settings;
+    w.verdict(Study::vda5, r.verdict,
+              w.t("Q of the system up to {:g} %, of the process up to {:g} %", s.system_percent,
+                  s.process_percent));
     Rows rows = w.head();
     w.index(rows, "u_MS (mm)", r.u_ms_mm, r.u_ms_limits, 4);
     w.index(rows, "u_MP (mm)", r.u_mp_mm, r.u_mp_limits, 4);
-    w.index(rows, "Q_MS (%)", r.q_ms_percent, r.q_ms_limits, 1, "15");
-    w.index(rows, "Q_MP (%)", r.q_mp_percent, r.q_mp_limits, 1, "30");
+    w.index(rows, "Q_MS (%)", r.q_ms_percent, r.q_ms_limits, 1, fmt::format("{:g}", s.system_percent));
+    w.index(rows, "Q_MP (%)", r.q_mp_percent, r.q_mp_limits, 1, fmt::format("{:g}", s.process_percent));
     w.index(rows, w.t("conformity zone, lower (mm)"), r.conformity_zone.low, r.conformity_low_limits, 4);
     w.index(rows, w.t("conformity zone, upper (mm)"), r.conformity_zone.high, r.conformity_high_limits, 4);
     w.page.table(rows);
@@ -311,9 +321,30 @@ std::string study_name(const AcceptanceWriter& w, Study study) {
 void source_chapter(AcceptanceWriter& w) {
     const StudySource& s = w.a.source;
     if (s.simulated) w.page.verdict(w.t("simulated"), report::Tone::attention, w.t("the cell was simulated"));
-    Rows rows{{w.t("Requirement"), w.t("Value")},
-              {w.t("tolerance T"), w.number(w.a.settings.tolerance_mm, 4) + " mm"},
-              {w.t("limits"), w.number(w.lower(), 4) + " .. " + w.number(w.upper(), 4) + " mm"}};
+    const AcceptanceSettings& r = w.a.settings;
+    const auto from = [&](const char* name) {
+        const RequirementFrom where = from_of(r, name);
+        return where == RequirementFrom::given     ? w.t("given with the command")
+               : where == RequirementFrom::project ? w.t("of the project")
+                                                   : w.t("default");
+    };
+    w.page.table(
+        {{w.t("Requirement"), w.t("Value"), w.t("from where")},
+         {w.t("tolerance T"), w.number(r.tolerance_mm, 4) + " mm", from("tolerance_mm")},
+         {w.t("limits"), w.number(w.lower(), 4) + " .. " + w.number(w.upper(), 4) + " mm",
+          from("nominal_mm")},
+         {w.t("share of the tolerance in Cg"), fmt::format("{:g}", r.share), from("cg_share")},
+         {w.t("standard deviations in Cg"), fmt::format("{:g}", r.width), from("cg_width")},
+         {w.t("Cg, at least"), w.number(r.required, 2), from("cg")},
+         {w.t("Cgk, at least"), w.number(r.required_cgk.value_or(r.required), 2), from("cgk")},
+         {w.t("%GRR accepted"), fmt::format("{:g} %", r.grr_accepted_percent), from("grr_accepted_percent")},
+         {w.t("%GRR refused beyond"), fmt::format("{:g} %", r.grr_refused_percent),
+          from("grr_refused_percent")},
+         {w.t("ndc, at least"), std::to_string(r.ndc), from("ndc")},
+         {w.t("Q of the system, at most"), fmt::format("{:g} %", r.system_percent), from("system_percent")},
+         {w.t("Q of the process, at most"), fmt::format("{:g} %", r.process_percent),
+          from("process_percent")}});
+    Rows rows{{w.t("Source"), w.t("Value")}, {w.t("File"), s.file}};
     if (!s.measurand.empty())
         rows.push_back({w.t("measurand"), w.t("deviation of the bead across its path, {}", s.measurand)});
     if (!s.part_name.empty()) rows.push_back({w.t("part"), s.part_name});
@@ -323,6 +354,49 @@ void source_chapter(AcceptanceWriter& w) {
     if (s.runs > 0) rows.push_back({w.t("stored runs"), std::to_string(s.runs)});
     w.page.table(rows);
     for (const Text& remark : s.remarks) w.page.paragraph(remark.in(w.language));
+}
+
+// What the stated covariance predicted, beside what came out.
+void forecast_chapter(AcceptanceWriter& w) {
+    const StudyForecast& f = *w.a.source.forecast;
+    w.page.heading(w.t("Forecast and measurement"));
+    bool beyond = false, measured = false;
+    const auto finding = [&](const std::optional<ForecastCheck>& check) {
+        if (!check) return w.t("not compared");
+        measured = true;
+        beyond = beyond || check->agreement != Agreement::agrees;
+        const std::string p = fmt::format("{:.2g}", check->p);
+        return check->agreement == Agreement::agrees      ? w.t("agree, p = {}", p)
+               : check->agreement == Agreement::beyond_95 ? w.t("differ beyond chance at 95 %, p = {}", p)
+                                                          : w.t("differ beyond chance at 99 %, p = {}", p);
+    };
+    Rows rows{{w.t("Index"), w.t("predicted"), w.t("measured"), w.t("Finding")}};
+    const auto row = [&](const std::string& name, double predicted, std::optional<double> value, int decimals,
+                         const std::string& says) {
+        rows.push_back({name, w.number(predicted, decimals), value ? w.number(*value, decimals) : "-", says});
+    };
+    const auto of = [](const auto& study, auto member) {
+        return study ? std::optional<double>((*study).*member) : std::nullopt;
+    };
+    const std::string s_says = finding(w.a.type1_check);
+    row(w.t("s (mm)"), f.type1_s_mm, of(w.a.type1, &Type1::s_mm), 4, s_says);
+    row("Cg", predicted_cg(f, w.a.settings), of(w.a.type1, &Type1::cg), 2, "");
+    row(w.t("bias (mm), standard uncertainty"), f.bias_u_mm, of(w.a.type1, &Type1::bias_mm), 4,
+        finding(w.a.bias_check));
+    if (f.ev_mm > 0) {
+        row(w.t("EV, repeat (mm)"), f.ev_mm, of(w.a.type3, &Type3::ev_mm), 4, finding(w.a.type3_check));
+        row(w.t("GRR of the tolerance (%)"), predicted_grr_percent(f, w.a.settings),
+            of(w.a.type3, &Type3::grr_percent_tolerance), 1, "");
+    }
+    if (measured)
+        w.page.verdict(beyond ? w.t("they differ") : w.t("they agree"),
+                       beyond ? report::Tone::attention : report::Tone::good,
+                       beyond ? w.t("the stated uncertainty is not the measured one")
+                              : w.t("within what chance allows"));
+    w.page.table(rows);
+    w.page.paragraph(w.t(
+        "Predicted from the covariance that the corrections state, at the measurand; of rehanging it says "
+        "nothing. Compared by chi-square (scatter) and the normal distribution (bias), two-sided."));
 }
 
 }  // namespace
@@ -355,6 +429,7 @@ report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& o
                        options.program.empty() ? "Seamwright" : options.program));
     w.verdict(a.verdict(), w.t("the worst of the studies below"));
     source_chapter(w);
+    if (a.source.forecast) forecast_chapter(w);
     if (a.type1) type1_chapter(w);
     if (a.type3) type3_chapter(w);
     if (a.linearity) linearity_chapter(w);

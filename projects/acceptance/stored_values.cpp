@@ -1,8 +1,11 @@
 #include "projects/acceptance/stored_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "projects/acceptance/live_study.h"
+#include "projects/proof/budget.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/path_direction.h"
 #include "projects/proof/zero_shift.h"
@@ -17,7 +20,7 @@ enum class RunKind { unmoved, known, part };
 
 struct UsedRun {
     RunKind kind = RunKind::part;
-    std::string part;
+    std::string part, rehang = "1";
     long number = 0;
     std::int64_t setup = 0;
     std::string utc;
@@ -58,20 +61,25 @@ double mean_square(const std::vector<UsedRun>& runs, const PathDirection& at) {
     return n > 0 ? squares / n : 0;
 }
 
-// Type 3 needs as many runs of every part.
+// Type 3 needs as many rehangs of every part, and as many runs of each.
 void balance(std::vector<StudyValue>& values, std::vector<Text>& remarks) {
-    std::map<std::string, std::size_t> counts;
-    for (const StudyValue& v : values) ++counts[v.part];
-    std::size_t least = 0, once = 0, dropped = 0;
-    for (const auto& [part, n] : counts) {
-        once += n == 1;
-        if (n > 1) least = least == 0 ? n : std::min(least, n);
-    }
+    std::map<std::string, std::map<std::string, std::size_t>> counts;
+    for (const StudyValue& v : values) ++counts[v.part][v.rehang];
+    std::size_t most = 0, least = 0, once = 0, fewer = 0, dropped = 0;
+    for (const auto& [part, rehangs] : counts) most = std::max(most, rehangs.size());
+    std::erase_if(counts, [&](const auto& part) {
+        const bool alone = part.second.size() == 1 && part.second.begin()->second == 1;
+        once += alone;
+        fewer += !alone && part.second.size() < most;
+        return alone || part.second.size() < most;
+    });
+    for (const auto& [part, rehangs] : counts)
+        for (const auto& [rehang, n] : rehangs) least = least == 0 ? n : std::min(least, n);
     std::vector<StudyValue> kept;
-    std::map<std::string, std::size_t> taken;
+    std::map<std::pair<std::string, std::string>, std::size_t> taken;
     for (auto v = values.rbegin(); v != values.rend(); ++v) {
-        if (counts[v->part] < 2) continue;
-        if (taken[v->part]++ < least)
+        if (!counts.contains(v->part)) continue;
+        if (taken[{v->part, v->rehang}]++ < least)
             kept.push_back(*v);
         else
             ++dropped;
@@ -80,6 +88,9 @@ void balance(std::vector<StudyValue>& values, std::vector<Text>& remarks) {
     values = std::move(kept);
     if (once > 0)
         remarks.push_back(Text("Parts left out of type 3 because they were measured once: {}.", once));
+    if (fewer > 0)
+        remarks.push_back(
+            Text("Parts left out of type 3 because they were not hung as often as the others: {}.", fewer));
     if (dropped > 0)
         remarks.push_back(
             Text("Older runs left out of type 3 because the other parts were not measured as often: {}.",
@@ -87,6 +98,34 @@ void balance(std::vector<StudyValue>& values, std::vector<Text>& remarks) {
 }
 
 }  // namespace
+
+std::optional<StudyForecast> forecast_at(const Project& setup, const Region& region, const PathDirection& at,
+                                         std::span<const Displacement> parts) {
+    const Displacement as_taught[] = {Displacement{}};
+    const auto taught = stated_scatter(setup, region, at, as_taught);
+    if (!taught) return std::nullopt;
+    StudyForecast forecast{taught->front().random_mm, taught->front().systematic_mm};
+    const auto displaced = stated_scatter(setup, region, at, parts);
+    if (!displaced || parts.empty()) return forecast;
+    for (const StatedScatter& s : *displaced)
+        forecast.ev_mm += s.random_mm * s.random_mm / static_cast<double>(displaced->size());
+    forecast.ev_mm = std::sqrt(forecast.ev_mm);
+    return forecast;
+}
+
+Expected<StudyForecast> forecast_studies(const Project& project, const Region& region) {
+    std::optional<StudyForecast> worst;
+    for (const PathDirection& at : path_directions(project, region)) {
+        const Displacement as_taught[] = {Displacement{}};
+        const auto taught = stated_scatter(project, region, at, as_taught);
+        if (!taught) return tl::unexpected(taught.error());
+        const StatedScatter& s = taught->front();
+        if (!worst || s.random_mm > worst->type1_s_mm)
+            worst = StudyForecast{s.random_mm, s.systematic_mm, s.random_mm};
+    }
+    if (!worst) return input_error(Text("region \"{}\" has no calibrated spot", region.id), project.name);
+    return *worst;
+}
 
 void name_devices(StudySource& source, const Project& setup, const Spot& spot) {
     if (const SensorSetup* sensor = find_sensor(setup, spot.sensor_id)) {
@@ -120,6 +159,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
             for (const ShiftTest& test : proof->tests) known[test.run] = test.workobject_from_movedworkobject;
         }
 
+    const std::map<std::string, RehungPart> rehung = rehung_parts(*evidence);
     StoredStudy study;
     StudySource& source = study.source;
     std::vector<UsedRun> used;
@@ -142,6 +182,9 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
                 continue;
             }
             r.truth = at->second;
+        } else if (const auto at = rehung.find(r.part); at != rehung.end()) {
+            r.part = at->second.part;
+            r.rehang = at->second.rehang;
         }
         auto run = file.load_run(summary.number, false);
         if (!run) return tl::unexpected(run.error());
@@ -182,7 +225,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
         if (const double square = mean_square(used, d); square > largest) largest = square, worst = &d;
 
     for (const UsedRun& r : used) {
-        StudyValue v{r.part, "1", r.number, worst->value(r.found), {}, r.utc};
+        StudyValue v{r.part, r.rehang, r.number, worst->value(r.found), {}, r.utc};
         if (r.truth) v.reference_mm = worst->value(*r.truth);
         if (r.kind != RunKind::known) {
             study.values.type1.push_back(v);
@@ -195,6 +238,19 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
         } else {
             study.values.type3.push_back(v);
         }
+    }
+    std::map<std::string, Displacement> parts;  // as last found
+    for (const UsedRun& r : used)
+        if (r.kind == RunKind::part) parts[r.part].workobject_from_movedworkobject = r.found;
+    std::vector<Displacement> places;
+    for (const auto& [part, place] : parts) places.push_back(place);
+    source.forecast = forecast_at(*setup, *region, *worst, places);
+    source.unmoved_part = study.reference_part;
+    source.offset.emplace(OffsetOfStudy{id, worst->direction, {}});
+    if (const KeptOffset* kept = acting_offset(*region)) {
+        source.offset->acting = *kept;
+        source.remarks.push_back(
+            Text("In these runs {}.", said_of(ActingOffset{kept->version, kept->offset_mm})));
     }
     source.file = file.path().filename().string();
     source.measurand =

@@ -11,8 +11,9 @@
 //
 // Runs. The unmoved part (zero_shift.h) is the reference part of type 1 and stability, its reference 0; any other
 // part can be named instead. The newest
-// known-shift proof, with the displacements as references, is linearity. All other parts are type 3, by their ids;
-// those measured once are left out, and of more runs than the least often measured of the rest has the older ones.
+// known-shift proof, with the displacements as references, is linearity. All other parts are type 3, by their ids, as live_study.h
+// names their rehangs; those measured once or hung less often are left out, and of more runs than the least often
+// measured of the rest has the older ones.
 // A run whose correction the gate refused is left out, and one made with another setup than the newest of its kind:
 // another setup is another measuring process.
 
@@ -32,6 +33,10 @@ struct StoredStudy {
 // `region` may be empty where the project has one. Error (usage, input): an unknown region, several and none
 // named, no usable run; (file): the file.
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region);
+
+// What is predicted before anything was measured, of the worst of the region's path points and directions; EV of
+// parts that lie as taught. Error (input): no calibrated spot, under-determined.
+Expected<StudyForecast> forecast_studies(const Project& project, const Region& region);
 
 // Sensor and robot of a spot with their serials, and whether they are simulated.
 void name_devices(StudySource& source, const Project& setup, const Spot& spot);

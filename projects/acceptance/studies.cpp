@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "projects/station/fields.h"
+
 namespace seamwright {
 namespace {
 
@@ -67,10 +69,18 @@ class Judge {
             return input_error(Text("the reference of part {} is not known", *part), "type 1",
                                "give it with --reference, or in a column reference");
         const AcceptanceSettings& s = a_.settings;
-        auto made = type1_study(mm, *reference, {s.tolerance_mm, s.share, s.width, s.required});
+        auto made =
+            type1_study(mm, *reference, {s.tolerance_mm, s.share, s.width, s.required, s.required_cgk});
         if (!made) return tl::unexpected(made.error());
         a_.type1_part = *part;
         a_.type1 = std::move(*made);
+        const std::optional<StudyForecast>& forecast = a_.source.forecast;
+        // Of another part than the unmoved one neither the place nor the reference is the forecast's.
+        if (!forecast || !(forecast->type1_s_mm > 0) || !a_.source.unmoved_part_is(*part)) return {};
+        const Type1& r = *a_.type1;
+        a_.type1_check = check_scatter(forecast->type1_s_mm, r.s_mm, r.n - 1);
+        a_.bias_check =
+            check_bias(std::hypot(forecast->bias_u_mm, forecast->type1_s_mm / std::sqrt(r.n)), r.bias_mm);
         return {};
     }
 
@@ -85,9 +95,17 @@ class Judge {
             });
         if (a_.type1_part_left_out)
             std::erase_if(a_.type3_values, [&](const StudyValue& v) { return v.part == *part; });
-        auto made = type3_study(a_.type3_values, {a_.settings.tolerance_mm});
+        const AcceptanceSettings& s = a_.settings;
+        auto made = type3_study(a_.type3_values,
+                                {s.tolerance_mm, 6, s.grr_accepted_percent, s.grr_refused_percent, s.ndc});
         if (!made) return tl::unexpected(made.error());
         a_.type3 = std::move(*made);
+        // Where repeat and rehang cannot be told apart the forecast, which knows no rehang, is of neither.
+        if (const auto& forecast = a_.source.forecast;
+            forecast && forecast->ev_mm > 0 && !a_.type3->rehang_in_repeat)
+            for (const AnovaRow& row : a_.type3->anova)
+                if (row.source == std::string("repeat"))
+                    a_.type3_check = check_scatter(forecast->ev_mm, a_.type3->ev_mm, row.df);
         return {};
     }
 
@@ -141,6 +159,8 @@ class Judge {
         settings.upper_mm = s.nominal_mm + s.tolerance_mm / 2;
         settings.reference_u_mm = s.reference_u_mm;
         settings.resolution_mm = s.resolution_mm;
+        settings.system_percent = s.system_percent;
+        settings.process_percent = s.process_percent;
         auto made = process_uncertainty(references, production_, settings);
         if (!made) return tl::unexpected(made.error());
         a_.vda5 = std::move(*made);
@@ -170,6 +190,49 @@ class Judge {
 };
 
 }  // namespace
+
+void require(AcceptanceSettings& s, const AcceptanceRequirements& r) {
+    s.tolerance_mm = r.tolerance_mm;
+    s.nominal_mm = r.nominal_mm;
+    s.share = r.cg_share;
+    s.width = r.cg_width;
+    s.required = r.cg;
+    s.required_cgk = r.cgk;
+    s.grr_accepted_percent = r.grr_accepted_percent;
+    s.grr_refused_percent = r.grr_refused_percent;
+    s.ndc = static_cast<int>(std::lround(r.ndc));
+    s.system_percent = r.system_percent;
+    s.process_percent = r.process_percent;
+    for (const auto& field : acceptance_fields())
+        if (field.get(r) != field.get(AcceptanceRequirements{}))
+            s.from[field.info.name] = RequirementFrom::project;
+}
+
+AcceptanceRequirements requirements_of(const AcceptanceSettings& s) {
+    return {s.tolerance_mm,
+            s.nominal_mm,
+            s.share,
+            s.width,
+            s.required,
+            s.required_cgk.value_or(s.required),
+            s.grr_accepted_percent,
+            s.grr_refused_percent,
+            static_cast<double>(s.ndc),
+            s.system_percent,
+            s.process_percent};
+}
+
+RequirementFrom from_of(const AcceptanceSettings& settings, const std::string& name) {
+    const auto at = settings.from.find(name);
+    return at == settings.from.end() ? RequirementFrom::standard : at->second;
+}
+
+double predicted_cg(const StudyForecast& f, const AcceptanceSettings& s) {
+    return s.share * s.tolerance_mm / (s.width * f.type1_s_mm);
+}
+double predicted_grr_percent(const StudyForecast& f, const AcceptanceSettings& s) {
+    return 100 * 6 * f.ev_mm / s.tolerance_mm;
+}
 
 std::string_view to_string(Study study) {
     return kStudyNames[static_cast<std::size_t>(study)];
@@ -227,12 +290,17 @@ Text what_lacks(const Acceptance& a, Study study) {
     return {};
 }
 
-Expected<Acceptance> judge_acceptance(StudyValues values, StudySource source,
-                                      const AcceptanceSettings& settings, std::span<const Study> studies) {
-    if (auto ok = check_positive(settings.tolerance_mm, "tolerance"); !ok) return tl::unexpected(ok.error());
+Expected<void> check_settings(const AcceptanceSettings& settings) {
+    if (auto ok = check_positive(settings.tolerance_mm, "tolerance"); !ok) return ok;
     if (!std::isfinite(settings.nominal_mm) || std::abs(settings.nominal_mm) > 1e6 ||
         (settings.reference_mm && !(std::abs(*settings.reference_mm) <= 1e6)))
         return input_error("nominal and reference must be finite and within 1 km", "acceptance");
+    return {};
+}
+
+Expected<Acceptance> judge_acceptance(StudyValues values, StudySource source,
+                                      const AcceptanceSettings& settings, std::span<const Study> studies) {
+    if (auto ok = check_settings(settings); !ok) return tl::unexpected(ok.error());
     Acceptance answer;
     answer.settings = settings;
     answer.source = std::move(source);

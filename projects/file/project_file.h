@@ -123,6 +123,8 @@ class ProjectFile {
     // The project as it was when the run was made, without mesh and calibration raw data.
     Expected<Project> load_run_setup(std::int64_t number) const;
     Expected<Project> load_setup(std::int64_t setup) const;
+    // The number of this setup, as runs and evidence made with `project` refer to it.
+    Expected<std::int64_t> setup_of(const Project& project);
     // Newest last; run 0 = all.
     Expected<std::vector<EventRecord>> events(std::int64_t run = 0) const;
     Expected<void> delete_run(std::int64_t number);

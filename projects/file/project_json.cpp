@@ -310,6 +310,14 @@ void describe(A& a, Spot& v) {
     a("curve", v.curve);
 }
 template <class A>
+void describe(A& a, KeptOffset& v) {
+    a("version", v.version);
+    a("utc", v.utc);
+    a("source", v.source);
+    a("offset_mm", v.offset_mm);
+    a("covariance_mm2", v.covariance_mm2);
+}
+template <class A>
 void describe(A& a, Region& v) {
     a("id", v.id);
     a("spot_ids", v.spot_ids);
@@ -319,6 +327,16 @@ void describe(A& a, Region& v) {
     a("sigma_limit_deg", v.sigma_limit_deg);
     a("frame_name", v.frame_name);
     a("base_from_frame", v.base_from_frame);
+    // Absent where there are none, so that a setup of before is the same setup.
+    if (A::reading || !v.offsets.empty()) a("offsets", v.offsets);
+    if (A::reading || !v.offset_switches.empty()) a("offset_switches", v.offset_switches);
+    if constexpr (A::reading) {
+        std::set<int> versions{0};
+        for (const KeptOffset& offset : v.offsets)
+            if (!versions.insert(offset.version).second) a.fail("two kept offsets have one version");
+        for (const int version : v.offset_switches)
+            if (!versions.count(version)) a.fail("a kept offset that is switched on is missing");
+    }
 }
 template <class A>
 void describe(A& a, FeatureWindow& v) {
@@ -370,12 +388,27 @@ void describe(A& a, PanelJob& v) {
     a("base_from_frame", v.base_from_frame);
 }
 template <class A>
+void describe(A& a, AcceptanceRequirements& v) {
+    a("tolerance_mm", v.tolerance_mm);
+    a("nominal_mm", v.nominal_mm);
+    a("cg_share", v.cg_share);
+    a("cg_width", v.cg_width);
+    a("cg", v.cg);
+    a("cgk", v.cgk);
+    a("grr_accepted_percent", v.grr_accepted_percent);
+    a("grr_refused_percent", v.grr_refused_percent);
+    a("ndc", v.ndc);
+    a("system_percent", v.system_percent);
+    a("process_percent", v.process_percent);
+}
+template <class A>
 void describe(A& a, Requirements& v) {
     a("sigma3_mm", v.sigma3_mm);
     a("calibration_age_days", v.calibration_age_days);
     a("zero_shift_runs", v.zero_shift_runs);
     a("known_shift_mm", v.known_shift_mm);
     a("known_shift_deg", v.known_shift_deg);
+    if (A::reading || v.acceptance != AcceptanceRequirements{}) a("acceptance", v.acceptance);
 }
 template <class A>
 void describe(A& a, Project& v) {
@@ -416,6 +449,11 @@ void describe(A& a, PushRecord& v) {
     a("message", v.message);
 }
 template <class A>
+void describe(A& a, ActingOffset& v) {
+    a("version", v.version);
+    a("offset_mm", v.offset_mm);
+}
+template <class A>
 void describe(A& a, RegionRecord& v) {
     a("region_id", v.region_id);
     a("correction", v.correction);
@@ -423,6 +461,7 @@ void describe(A& a, RegionRecord& v) {
     a("gate_passed", v.gate_passed);
     a("refusals", v.refusals);
     a("push", v.push);
+    if (A::reading || v.offset) a("offset", v.offset);
 }
 
 template <class A>
@@ -593,6 +632,16 @@ void describe(A& a, TriggerPasses& v) {
     a("replaced_jitter_mm", v.replaced_jitter_mm);
 }
 
+template <class A>
+void describe(A& a, StudyPlan& v) {
+    a("study", v.study);
+    a("region_id", v.region_id);
+    a("parts", v.parts);
+    a("rehangs", v.rehangs);
+    a("runs", v.runs);
+    a("after_run", v.after_run);
+}
+
 template <class T>
 nlohmann::json to_json_document(const T& value, const ArchiveOptions& options) {
     return JsonWriter(options).document(value);
@@ -626,6 +675,7 @@ SEAMWRIGHT_DOCUMENT(KnownShift);
 SEAMWRIGHT_DOCUMENT(HeadlessRun);
 SEAMWRIGHT_DOCUMENT(RobotReturns);
 SEAMWRIGHT_DOCUMENT(TriggerPasses);
+SEAMWRIGHT_DOCUMENT(StudyPlan);
 #undef SEAMWRIGHT_DOCUMENT
 
 Expected<std::string> dump_document(const nlohmann::json& document, const std::string& where) {

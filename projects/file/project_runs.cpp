@@ -188,6 +188,7 @@ Expected<void> load_results(Database& db, const char* sql, std::int64_t number, 
 Expected<RunSetup> RunSetup::of(const Project& project) {
     Project slim = project;
     slim.part.mesh_ply.clear();
+    slim.requirements.acceptance = {};
     for (Calibration& c : slim.calibrations) {
         c.raw = nlohmann::json::object();
         c.result = nlohmann::json::object();
@@ -221,6 +222,17 @@ Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
     if (auto done = insert->run(); !done) return tl::unexpected(done.error());
     const std::int64_t id = db.last_rowid();
     if (auto done = seal_row(db, "setups", "id", id); !done) return tl::unexpected(done.error());
+    return id;
+}
+
+Expected<std::int64_t> ProjectFile::setup_of(const Project& project) {
+    const auto setup = RunSetup::of(project);
+    if (!setup) return tl::unexpected(setup.error());
+    auto transaction = Transaction::begin(impl_->db);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto id = setup_id(*setup);
+    if (!id) return id;
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return id;
 }
 
@@ -359,11 +371,13 @@ Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, co
     const auto* frozen = std::get_if<FrozenContour>(&evidence.what);
     const auto* passes = std::get_if<TriggerPasses>(&evidence.what);
     const auto* returns = std::get_if<RobotReturns>(&evidence.what);
+    const auto* plan = std::get_if<StudyPlan>(&evidence.what);
     s->bind(1, evidence.utc.empty() ? utc_now() : utf8_text(evidence.utc));
     s->bind(2, kind);
     s->bind(3, frozen    ? utf8_text(frozen->spot_id)
                : passes  ? utf8_text(passes->spot_id)
                : returns ? utf8_text(returns->robot_id)
+               : plan    ? utf8_text(plan->region_id)
                          : std::string());
     s->bind(4, *setup_number);
     s->bind(5, *text);
@@ -393,15 +407,15 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
             e.what = std::move(*value);
             return {};
         };
-        Expected<void> done =
-            kind == kFrozenContour  ? read_as(static_cast<FrozenContour*>(nullptr))
-            : kind == kZeroShift    ? read_as(static_cast<ZeroShift*>(nullptr))
-            : kind == kKnownShift   ? read_as(static_cast<KnownShift*>(nullptr))
-            : kind == kHeadlessRun  ? read_as(static_cast<HeadlessRun*>(nullptr))
-            : kind == kRobotReturns ? read_as(static_cast<RobotReturns*>(nullptr))
-            : kind == kTriggerPasses
-                ? read_as(static_cast<TriggerPasses*>(nullptr))
-                : file_error("an evidence is of unknown kind", joined(impl_->path.string(), ": ", where));
+        Expected<void> done = kind == kFrozenContour   ? read_as(static_cast<FrozenContour*>(nullptr))
+                              : kind == kZeroShift     ? read_as(static_cast<ZeroShift*>(nullptr))
+                              : kind == kKnownShift    ? read_as(static_cast<KnownShift*>(nullptr))
+                              : kind == kHeadlessRun   ? read_as(static_cast<HeadlessRun*>(nullptr))
+                              : kind == kRobotReturns  ? read_as(static_cast<RobotReturns*>(nullptr))
+                              : kind == kTriggerPasses ? read_as(static_cast<TriggerPasses*>(nullptr))
+                              : kind == kStudyPlan     ? read_as(static_cast<StudyPlan*>(nullptr))
+                                                       : file_error("an evidence is of unknown kind",
+                                                                    joined(impl_->path.string(), ": ", where));
         if (done) list.push_back(std::move(e));
         return done;
     });

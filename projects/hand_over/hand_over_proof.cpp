@@ -119,6 +119,12 @@ void regions_chapter(HandOverWriter& w) {
         "Predicted: 3 sigma at the worst spot along its worst direction, as the safety gate judges it, over "
         "the part as taught and as displaced by what is required. Proven: 3 times the root mean square of "
         "the deviations of the known shift, bias included."));
+    for (const Region& r : w.project.regions)
+        if (const KeptOffset* kept = acting_offset(r))
+            w.page.verdict(
+                w.t("offset"), report::Tone::attention,
+                w.t("Region {}: {} ({}, {}).", r.id, said_of(ActingOffset{kept->version, kept->offset_mm}),
+                    kept->source, w.time_of(kept->utc)));
 }
 
 void zero_shift_chapter(HandOverWriter& w) {

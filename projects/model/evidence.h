@@ -105,11 +105,23 @@ struct TriggerPasses {
     std::map<std::string, double> replaced_jitter_mm;  // by spot
 };
 
+// A study of the measuring process that is made run by run (projects/acceptance/live_study.h): what is asked for.
+// What was done is in the runs, by the names of their parts; so it goes on where it stopped, whatever stopped it.
+struct StudyPlan {
+    std::string study;  // "type1", ...
+    std::string region_id;
+    std::vector<std::string> parts;  // names; none: the unmoved part
+    int rehangs = 1;                 // times that each part is put in
+    int runs = 0;                    // each time
+    std::int64_t after_run = 0;      // runs of higher numbers are its own
+};
+
 struct Evidence {
     std::int64_t id = 0;     // given by the file
     std::string utc;         // ISO 8601; empty = when stored
     std::int64_t setup = 0;  // ProjectFile::load_setup
-    std::variant<FrozenContour, ZeroShift, KnownShift, HeadlessRun, RobotReturns, TriggerPasses> what;
+    std::variant<FrozenContour, ZeroShift, KnownShift, HeadlessRun, RobotReturns, TriggerPasses, StudyPlan>
+        what;
 };
 
 // The runs that were measured for it: of a proof, not of production.
@@ -127,10 +139,11 @@ inline std::set<std::int64_t> proof_runs(const std::vector<Evidence>& all) {
 // The words of the kinds on disk.
 inline constexpr std::string_view kFrozenContour = "frozen contour", kZeroShift = "zero shift",
                                   kKnownShift = "known shift", kHeadlessRun = "headless run",
-                                  kRobotReturns = "robot returns", kTriggerPasses = "trigger passes";
+                                  kRobotReturns = "robot returns", kTriggerPasses = "trigger passes",
+                                  kStudyPlan = "study plan";
 inline std::string_view kind_of(const Evidence& evidence) {
-    constexpr std::array<std::string_view, 6> names{kFrozenContour, kZeroShift,    kKnownShift,
-                                                    kHeadlessRun,   kRobotReturns, kTriggerPasses};
+    constexpr std::array<std::string_view, 7> names{kFrozenContour, kZeroShift,     kKnownShift, kHeadlessRun,
+                                                    kRobotReturns,  kTriggerPasses, kStudyPlan};
     return names[evidence.what.index()];
 }
 

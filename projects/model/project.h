@@ -97,6 +97,18 @@ struct Spot {
     std::optional<ContourCurve> curve;
 };
 
+// What a person decided to take off a region's displacements: the offset against a better instrument (CMM,
+// tracker). Every version stays; which one acts is in Region::offset_switches.
+struct KeptOffset {
+    int version = 0;  // 1, 2, ... in the region's order
+    std::string utc;  // ISO 8601
+    Text source;      // from which data
+    // D acts as T(-offset) D: work object axes, mm, absolute (of a version found while another one acted, both).
+    Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance_mm2 =
+        Eigen::Matrix3d::Zero();  // of its estimate; systematic in all that it acts on
+};
+
 struct Region {
     std::string id;  // "R1"
     std::vector<std::string> spot_ids;
@@ -106,6 +118,24 @@ struct Region {
     double sigma_limit_deg = 0.05;
     std::string frame_name;                   // on the controller
     Pose base_from_frame = Pose::Identity();  // taught, for the undisplaced part
+    std::vector<KeptOffset> offsets;
+    // The versions that acted one after the other, 0 for none; the last one acts. Empty: none ever did.
+    std::vector<int> offset_switches;
+};
+// The one that acts; nullptr: none.
+const KeptOffset* acting_offset(const Region& region);
+
+// What the acceptance of the measuring process asks for (projects/acceptance/studies.h); the customer's, where he
+// has a variant of his own. The defaults are AIAG MSA's and VDA 5's.
+struct AcceptanceRequirements {
+    double tolerance_mm = 0;              // T = USL - LSL of the bead across its path; 0: not stated yet
+    double nominal_mm = 0;                // middle of the tolerance
+    double cg_share = 0.2, cg_width = 6;  // Cg = share T / (width s): 0.2 and 6, 0.15 and 4, ...
+    double cg = 1.33, cgk = 1.33;         // at least
+    double grr_accepted_percent = 10, grr_refused_percent = 30;  // of the tolerance; between: conditional
+    double ndc = 5;                                              // at least
+    double system_percent = 15, process_percent = 30;            // Q of VDA 5, at most
+    bool operator==(const AcceptanceRequirements&) const = default;
 };
 
 // What the work has to reach before it is handed over; the checklist (checklist.h) judges by it.
@@ -117,6 +147,8 @@ struct Requirements {
     double zero_shift_runs = 3;         // measurements of the unmoved part
     // The known shift must have been recovered up to here, at the middle of the spots.
     double known_shift_mm = 10, known_shift_deg = 1;
+    // What is judged by it is no part of a run's setup: a run of another tolerance is the same process.
+    AcceptanceRequirements acceptance;
 };
 
 struct Project {

@@ -2,7 +2,23 @@
 
 #include <array>
 
+#include "projects/model/project.h"
+
 namespace seamwright {
+
+const KeptOffset* acting_offset(const Region& region) {
+    const int version = region.offset_switches.empty() ? 0 : region.offset_switches.back();
+    for (const KeptOffset& offset : region.offsets)
+        if (version != 0 && offset.version == version) return &offset;
+    return nullptr;
+}
+
+Text said_of(const ActingOffset& offset) {
+    const Eigen::Vector3d& by = offset.offset_mm;
+    return Text("kept offset {} acts: X {:.3f} Y {:.3f} Z {:.3f} mm are taken off", offset.version, by.x(),
+                by.y(), by.z());
+}
+
 namespace {
 
 constexpr auto kSpotStatus = std::to_array<std::string_view>(

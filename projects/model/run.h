@@ -71,6 +71,14 @@ struct PushRecord {
     Text message;
 };
 
+// The kept offset that acted on a region's correction (KeptOffset): it is in the correction already.
+struct ActingOffset {
+    int version = 0;
+    Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();  // taken off, work object
+};
+
+Text said_of(const ActingOffset& offset);  // "kept offset 2 acts: X 0.100 ... mm are taken off"
+
 struct RegionRecord {
     std::string region_id;
     std::optional<RegionCorrection>
@@ -79,6 +87,7 @@ struct RegionRecord {
     bool gate_passed = false;
     std::vector<Text> refusals;  // why the gate refuses, in words; empty when passed
     PushRecord push;
+    std::optional<ActingOffset> offset;
 };
 
 // One place of a panel job (panel_job.h), in the place's frame.

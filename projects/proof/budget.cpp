@@ -287,6 +287,24 @@ double RegionBudget::bead_u_mm() const {
     return worst;
 }
 
+Expected<std::vector<StatedScatter>> stated_scatter(const Project& project, const Region& region,
+                                                    const PathDirection& at,
+                                                    std::span<const Displacement> displacements) {
+    const auto prepared = prepare(project, region);
+    if (!prepared) return tl::unexpected(prepared.error());
+    std::vector<StatedScatter> out;
+    for (const Displacement& d : displacements) {
+        const auto budget = uncertainty_budget(prepared->spots, prepared->correction, d);
+        if (!budget) return tl::unexpected(budget.error());
+        if (prepared->plan.status != CorrectionStatus::ok || !budget->determined)
+            return input_error(prepared->plan.advice, Text("region {}", region.id));
+        const MeasurandBudget sums = Tables(project, prepared->correction, prepared->spots, *budget)
+                                         .table(measure_at(at, d.workobject_from_movedworkobject));
+        out.push_back({sums.u_random, sums.u_systematic});
+    }
+    return out;
+}
+
 Expected<RegionBudget> worst_budget(const Project& project, const Region& region) {
     const auto prepared = prepare(project, region);
     if (!prepared) return tl::unexpected(prepared.error());

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "core/correction/budget/budget.h"
 #include "core/correction/budget/monte_carlo.h"
 #include "projects/model/project.h"
+#include "projects/proof/path_direction.h"
 
 namespace seamwright {
 
@@ -87,6 +89,16 @@ struct BudgetOptions {
 // limits or along what it keeps fixed, what plan_region refuses; (usage, cancelled): stopped while drawing.
 Expected<RegionBudget> region_budget(const Project& project, const Region& region,
                                      const BudgetOptions& options);
+
+// One standard deviation of what a displacement D of the part moves the path point along the direction, as the
+// correction states it: part to part, and the same in all parts. First order, rows of the budget summed.
+struct StatedScatter {
+    double random_mm = 0, systematic_mm = 0;
+};
+// At each of the displacements. Error (input): as region_budget; under-determined.
+Expected<std::vector<StatedScatter>> stated_scatter(const Project& project, const Region& region,
+                                                    const PathDirection& at,
+                                                    std::span<const Displacement> displacements);
 
 // Of the part as taught and as displaced by what is required (forecast.h), where the bead is least sure; displacements
 // that the region cannot find are passed over. First order alone.

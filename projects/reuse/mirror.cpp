@@ -179,6 +179,8 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
     }
 
     for (Region& region : out.regions) {
+        region.offsets.clear();  // found on the other part
+        region.offset_switches.clear();
         if (!along_axis(plane.normal) && !(alike(region.free, 0) && alike(region.free, 3)))
             return input_error("an oblique plane mixes its free and fixed degrees of freedom",
                                Text("region {}", region.id),

@@ -146,6 +146,46 @@ const std::vector<Field<Requirements>>& requirement_fields() {
     return fields;
 }
 
+const std::vector<Field<AcceptanceRequirements>>& acceptance_fields() {
+    using A = AcceptanceRequirements;
+    static const std::vector<Field<A>> fields = {
+        {{"tolerance_mm", "mm", 0, 1000, 0, 3, "T = USL - LSL of the bead across its path; 0: not stated."},
+         [](const A& r) { return r.tolerance_mm; },
+         [](A& r, double v) { r.tolerance_mm = v; }},
+        {{"nominal_mm", "mm", -1000, 1000, 0, 3, "Middle of the tolerance."},
+         [](const A& r) { return r.nominal_mm; },
+         [](A& r, double v) { r.nominal_mm = v; }},
+        {{"cg_share", "", 0.01, 1, 0.2, 2, "Share of the tolerance in Cg and Cgk."},
+         [](const A& r) { return r.cg_share; },
+         [](A& r, double v) { r.cg_share = v; }},
+        {{"cg_width", "", 1, 12, 6, 0, "Standard deviations in Cg."},
+         [](const A& r) { return r.cg_width; },
+         [](A& r, double v) { r.cg_width = v; }},
+        {{"cg", "", 0.1, 10, 1.33, 2, "Cg, at least."},
+         [](const A& r) { return r.cg; },
+         [](A& r, double v) { r.cg = v; }},
+        {{"cgk", "", 0.1, 10, 1.33, 2, "Cgk, at least."},
+         [](const A& r) { return r.cgk; },
+         [](A& r, double v) { r.cgk = v; }},
+        {{"grr_accepted_percent", "%", 0.1, 100, 10, 1, "%GRR that is accepted, of the tolerance."},
+         [](const A& r) { return r.grr_accepted_percent; },
+         [](A& r, double v) { r.grr_accepted_percent = v; }},
+        {{"grr_refused_percent", "%", 0.1, 100, 30, 1, "%GRR beyond which it is refused."},
+         [](const A& r) { return r.grr_refused_percent; },
+         [](A& r, double v) { r.grr_refused_percent = v; }},
+        {{"ndc", "", 1, 100, 5, 0, "Number of distinct categories, at least."},
+         [](const A& r) { return r.ndc; },
+         [](A& r, double v) { r.ndc = v; }},
+        {{"system_percent", "%", 1, 100, 15, 0, "Q of the measuring system (VDA 5), at most."},
+         [](const A& r) { return r.system_percent; },
+         [](A& r, double v) { r.system_percent = v; }},
+        {{"process_percent", "%", 1, 100, 30, 0, "Q of the measuring process (VDA 5), at most."},
+         [](const A& r) { return r.process_percent; },
+         [](A& r, double v) { r.process_percent = v; }},
+    };
+    return fields;
+}
+
 Expected<void> set_field(Spot& spot, std::string_view name, double value) {
     return set_in(spot_fields(), spot, name, value, Text("spot {}", spot.id));
 }
@@ -177,7 +217,18 @@ Expected<void> validate_fields(const PanelJob& job) {
 }
 
 Expected<void> validate_fields(const Requirements& requirements) {
-    return validate_in(requirement_fields(), requirements, "requirements");
+    if (auto valid = validate_in(requirement_fields(), requirements, "requirements"); !valid) return valid;
+    return validate_fields(requirements.acceptance);
+}
+
+Expected<void> validate_fields(const AcceptanceRequirements& requirements) {
+    const Text where("requirements of the acceptance");
+    if (auto valid = validate_in(acceptance_fields(), requirements, where); !valid) return valid;
+    if (requirements.grr_accepted_percent > requirements.grr_refused_percent)
+        return input_error(Text("%GRR of {} is accepted and of {} refused", requirements.grr_accepted_percent,
+                                requirements.grr_refused_percent),
+                           where, "accept less than what is refused");
+    return {};
 }
 
 }  // namespace seamwright

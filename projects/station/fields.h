@@ -21,6 +21,7 @@ struct Field {
 const std::vector<Field<Spot>>& spot_fields();  // entry_mm, exit_mm, speed_mm_s, sigma_mm, jitter_mm,
                                                 // weight_x, weight_y, weight_z
 const std::vector<Field<Requirements>>& requirement_fields();
+const std::vector<Field<AcceptanceRequirements>>& acceptance_fields();
 const std::vector<Field<Region>>& region_fields();   // limit_translation_mm, limit_rotation_deg,
                                                      // sigma_limit_mm, sigma_limit_deg
 const std::vector<Field<PanelJob>>& panel_fields();  // those of a region, gap_tolerance_mm,
@@ -37,6 +38,7 @@ Expected<void> set_field(Requirements& requirements, std::string_view name, doub
 Expected<void> validate_fields(const Spot& spot);
 Expected<void> validate_fields(const Region& region);
 Expected<void> validate_fields(const PanelJob& job);
-Expected<void> validate_fields(const Requirements& requirements);
+Expected<void> validate_fields(const Requirements& requirements);  // with those of the acceptance
+Expected<void> validate_fields(const AcceptanceRequirements& requirements);
 
 }  // namespace seamwright

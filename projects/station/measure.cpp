@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -386,6 +387,24 @@ Expected<void> RegionCorrector::correct(std::vector<SpotObservation>& observatio
     return solver_.solve(observations, options_, correction);
 }
 
+namespace {
+
+// What a person kept and switched on (KeptOffset). The offset's own covariance is the same in every part. The largest
+// sigma at the spots is that of its worst direction, whatever that of the correction: never too small.
+void take_off(const KeptOffset& kept, RegionRecord& record) {
+    RegionCorrection& c = *record.correction;
+    c.displacement.workobject_from_movedworkobject.pretranslate(-kept.offset_mm);
+    const Eigen::Matrix3d cov = 0.5 * (kept.covariance_mm2 + kept.covariance_mm2.transpose());
+    for (Matrix6* sum : {&c.covariance, &c.covariance_systematic}) sum->topLeftCorner<3, 3>() += cov;
+    for (Eigen::Vector3d* sigma : {&c.sigma_xyz_mm, &c.sigma_systematic.xyz_mm})
+        *sigma = (sigma->array().square() + cov.diagonal().array()).sqrt();
+    const double worst = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(cov).eigenvalues().maxCoeff();
+    c.sigma_at_spots_mm = std::sqrt(c.sigma_at_spots_mm * c.sigma_at_spots_mm + std::max(0.0, worst));
+    record.offset = ActingOffset{kept.version, kept.offset_mm};
+}
+
+}  // namespace
+
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements) {
     std::vector<RegionRecord> records;
@@ -424,6 +443,7 @@ std::vector<RegionRecord> correct_regions(const Project& project,
             continue;
         }
         record.correction = std::move(correction);
+        if (const KeptOffset* kept = acting_offset(region)) take_off(*kept, record);
     }
     return records;
 }

@@ -119,7 +119,7 @@ class RegionCorrector {
 // Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
 // What repeats is stated as in planned_observations().
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
-// correction and says why in `refusals`.
+// correction and says why in `refusals`. A kept offset that acts is taken off, and said in RegionRecord::offset.
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements);
 

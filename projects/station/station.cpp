@@ -582,6 +582,8 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     auto measured = i.measure_all(job);
     const bool cancelled = options.cancel.stop_requested();
     run.regions = correct_regions(i.project, run.spots);
+    for (const RegionRecord& region : run.regions)
+        if (region.offset) job.event(EventKind::note, region.region_id, said_of(*region.offset));
     std::vector<std::optional<GatePass>> passes;
     if (!measured && !cancelled) {
         run.status = RunStatus::device;

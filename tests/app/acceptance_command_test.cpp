@@ -155,5 +155,103 @@ TEST_F(AcceptanceCli, RobotAndTriggerAreOfAProject) {
         EXPECT_EQ(run_program(bad, folder).exit_code, 2) << bad[2];
 }
 
+// What the project asks for is kept in it, and what a command gives goes over it.
+TEST_F(AcceptanceCli, RequirementsAreKeptInTheProject) {
+    const std::string project = (folder / "p.seam").string();
+    ASSERT_EQ(run_program({"new", project}, folder).exit_code, 0);
+    refused({project, "--study", "type1"}, "--tolerance-mm is required");
+    refused({"--data", write("v.csv", fifty(true)), "--tolerance-mm", "6", "--keep-requirements"},
+            "FILE.seam");
+    refused({project, "--tolerance-mm", "0.8", "--grr-accepted", "40", "--keep-requirements"}, "accept less");
+    refused({project, "--tolerance-mm=nan", "--keep-requirements"}, "tolerance");
+    refused({project, "--study", "type1"}, "--tolerance-mm is required");  // nothing was kept
+    // There is nothing to judge yet; the requirements are kept all the same.
+    refused({project, "--tolerance-mm", "0.8", "--share", "0.15", "--width", "4", "--required", "1.67",
+             "--keep-requirements"},
+            "no region");
+    refused({project, "--study", "type1"}, "no region");
+    const ProgramResult exported =
+        run_program({"export", project, "--out", (folder / "p.json").string()}, folder);
+    ASSERT_EQ(exported.exit_code, 0) << exported.err;
+    const json kept = json::parse(slurp(folder / "p.json"))["project"]["requirements"]["acceptance"];
+    EXPECT_EQ(kept["tolerance_mm"], 0.8);
+    EXPECT_EQ(kept["cg_share"], 0.15);
+    EXPECT_EQ(kept["cg_width"], 4);
+    EXPECT_EQ(kept["cg"], 1.67);
+    EXPECT_EQ(kept["cgk"], 1.67);
+    EXPECT_EQ(kept["grr_accepted_percent"], 10);
+}
+
+TEST_F(AcceptanceCli, EveryRequirementIsNamedWithWhereItIsFrom) {
+    const std::string file = write("v.csv", fifty(true));
+    const json j =
+        answer({"--data", file, "--study", "type1", "--tolerance-mm", "6", "--required", "1.9"}, 0);
+    EXPECT_EQ(j["settings"]["from"]["tolerance_mm"], "given");
+    EXPECT_EQ(j["settings"]["from"]["cg"], "given");
+    EXPECT_EQ(j["settings"]["from"]["cgk"], "given");
+    EXPECT_EQ(j["settings"]["from"]["cg_share"], "default");
+    EXPECT_EQ(j["settings"]["required_cgk"], 1.9);
+    const json apart = answer({"--data", file, "--study", "type1", "--tolerance-mm", "6", "--required", "1.9",
+                               "--required-cgk", "1.98"},
+                              1);
+    EXPECT_EQ(apart["type1"]["verdict"], "not_ok");  // Cg is 2, Cgk 1.97
+    EXPECT_EQ(answer({"--data", file, "--study", "type1", "--tolerance-mm", "6", "--required-cgk", "1.95"},
+                     0)["settings"]["required_cg"],
+              1.33);
+}
+
+TEST_F(AcceptanceCli, StudiesAreNotMeasuredWithOptionsThatAreNone) {
+    const std::string project = (folder / "p.seam").string(), data = write("v.csv", fifty(true));
+    ASSERT_EQ(run_program({"new", project}, folder).exit_code, 0);
+    refused({"--data", data, "--tolerance-mm", "1", "--runs", "5", "--study", "type1"}, "FILE.seam");
+    refused({project, "--tolerance-mm", "1", "--runs", "5"}, "one study at a time");
+    refused({project, "--tolerance-mm", "1", "--runs", "0", "--study", "type1"}, "--runs");
+    refused({project, "--tolerance-mm", "1", "--runs", "5", "--study", "linearity"}, "known-shift");
+    refused({project, "--tolerance-mm", "1", "--runs", "5", "--study", "type3"}, "--parts");
+    refused({project, "--tolerance-mm", "1", "--runs", "5", "--study", "type3", "--parts", "A,A"}, "twice");
+    refused({project, "--tolerance-mm", "1", "--runs", "5", "--study", "type1"}, "no region");
+    refused({project, "--keep-offset", "--tolerance-mm", "1"}, "correlation");
+    refused({project, "--switch-offset", "1"}, "no region");
+    refused({project, "--undo-offset"}, "no region");
+    refused({"--data", data, "--switch-offset", "1"}, "FILE.seam");
+    EXPECT_EQ(run({project, "--tolerance-mm", "1", "--parts", "A,B"}).exit_code, 2) << "needs --runs";
+    EXPECT_EQ(run({project, "--tolerance-mm", "1", "--study", "type1", "--runs", "many"}).exit_code, 2);
+}
+
+TEST_F(AcceptanceCli, SensorAgainstItsArtefacts) {
+    json points = json::array();
+    for (const double height : {-0.8, -0.4, 0.0, 0.4, 0.8})
+        for (int i = 0; i < 12; ++i) {
+            const double turn = i * 3.14159265358979 / 6, across = std::sqrt(1 - height * height);
+            const double r = 15.004 + (i % 2 ? 0.003 : -0.003);
+            points.push_back({r * across * std::cos(turn), r * across * std::sin(turn), 100 + r * height});
+        }
+    json data = {
+        {"limits_mm", {{"form", 0.01}, {"size", 0.01}}},
+        {"spheres", {{{"id", "K1"}, {"diameter_mm", 30}, {"certificate", "D-K 1"}, {"points", points}}}}};
+    const std::string file = write("s.json", data.dump()), html = (folder / "s.html").string();
+    const json good = answer({"--study", "sensor", "--sensor-data", file, "--html", html}, 0);
+    EXPECT_EQ(good["status"], "ok");
+    EXPECT_NEAR(good["sensor"]["spheres"][0]["probing_form"]["value"], 0.006, 1e-9);
+    EXPECT_NEAR(good["sensor"]["spheres"][0]["probing_size"]["value"], 0.008, 1e-6);
+    EXPECT_THAT(slurp(html), HasSubstr("probing form"));
+    data["limits_mm"]["size"] = 0.005;
+    EXPECT_EQ(answer({"--study", "sensor", "--sensor-data", write("t.json", data.dump())}, 1)["status"],
+              "not_ok");
+    data.erase("limits_mm");
+    EXPECT_EQ(answer({"--study", "sensor", "--sensor-data", write("u.json", data.dump())}, 0)["status"],
+              "not_judged");
+    refused({"--study", "sensor"}, "--sensor-data");
+    refused({"--study", "sensor", "--sensor-data", write("e.json", "")}, "e.json");
+    refused({"--study", "sensor", "--sensor-data",
+             write("n.json", R"({"spheres":[{"id":"K","points":[[1,2,NaN]]}]})")},
+            "n.json");
+    data["spheres"].push_back(data["spheres"][0]);
+    refused({"--study", "sensor", "--sensor-data", write("d.json", data.dump())}, "two artefacts");
+    refused({"--study", "type1", "--sensor-data", file, "--data", file, "--tolerance-mm", "1"},
+            "study sensor");
+    EXPECT_EQ(run({"--study", "sensor", "--sensor-data", (folder / "none.json").string()}).exit_code, 3);
+}
+
 }  // namespace
 }  // namespace seamwright

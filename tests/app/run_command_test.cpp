@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
@@ -90,6 +92,86 @@ TEST_F(RunCommand, WhatConcernsMotionStopsItBeforeADeviceIsTouched) {
         EXPECT_EQ(runs(), before) << "nothing was measured";
         EXPECT_EQ(ProjectFile::open(file)->events()->back().kind, EventKind::refusal);
     }
+}
+
+// The program itself, killed between and in its runs; the same command goes on.
+TEST_F(RunCommand, AnAcceptanceGoesOnAfterAKill) {
+    const std::vector<std::string> command = {"acceptance",     file.string(), "--study",
+                                              "type1",          "--runs",      "5",
+                                              "--tolerance-mm", "5",           "--keep-requirements"};
+    const std::size_t before = runs();
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        std::vector<const char*> words{SEAMWRIGHT_PROGRAM};
+        for (const std::string& word : command) words.push_back(word.c_str());
+        words.push_back(nullptr);
+        if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(1);
+        execv(SEAMWRIGHT_PROGRAM, const_cast<char* const*>(words.data()));
+        _exit(1);
+    }
+    int status = 0;
+    while (runs() < before + 3 && waitpid(child, &status, WNOHANG) == 0) usleep(5000);
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "it ended by itself";
+    const auto whole = [&] {
+        int n = 0;
+        const auto all = ProjectFile::open(file)->runs().value();
+        for (const RunSummary& r : all) n += r.part_id.starts_with("zero shift") && r.status == RunStatus::ok;
+        return n;
+    };
+    const int made = whole();
+    EXPECT_LT(made, 5);
+    std::vector<std::string> again = command;
+    again.insert(again.end(), {"--json", "-"});
+    const ProgramResult r = run(again);
+    EXPECT_EQ(r.exit_code, 1) << r.err;  // five values prove nothing
+    EXPECT_THAT(r.err, HasSubstr("forecast: s "));
+    const json answer = json::parse(r.out, nullptr, false);
+    EXPECT_EQ(answer["status"], "too_little_data");
+    EXPECT_EQ(answer["type1"]["n"], 5);
+    EXPECT_EQ(answer["plan"]["complete"], true);
+    EXPECT_EQ(answer["plan"]["made"], 5);
+    EXPECT_EQ(answer["plan"]["resumed"], made > 0);
+    EXPECT_TRUE(answer["type1"]["forecast"].contains("s")) << answer["type1"].dump();
+    EXPECT_EQ(whole(), 5);
+    // The tolerance is the project's now; nothing is measured again.
+    const std::size_t stored = runs();
+    const ProgramResult kept =
+        run({"acceptance", file.string(), "--study", "type1", "--runs", "5", "--json", "-"});
+    EXPECT_EQ(json::parse(kept.out, nullptr, false)["settings"]["from"]["tolerance_mm"], "project")
+        << kept.err;
+    EXPECT_EQ(runs(), stored);
+    // Without a person at the keyboard the parts are waited for.
+    const ProgramResult parts = run(
+        {"acceptance", file.string(), "--study", "type3", "--runs", "2", "--parts", "A,B", "--json", "-"});
+    EXPECT_EQ(parts.exit_code, 1) << parts.err;
+    const json waits = json::parse(parts.out, nullptr, false);
+    EXPECT_EQ(waits["status"], "incomplete");
+    EXPECT_THAT(waits["plan"]["stopped"].get<std::string>(), HasSubstr("part A is waited for"));
+    EXPECT_EQ(runs(), stored);
+}
+
+TEST_F(RunCommand, AKeptOffsetIsSaidWhereItActs) {
+    change([](Project& p) {
+        p.regions[0].offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm", {0, 0, 0.05}, {}}};
+    });
+    const auto offset_of_run = [&] {
+        const ProgramResult r = run({"run", file.string(), "--part", "CAR-2", "--json", "-"});
+        const json answer = json::parse(r.out, nullptr, false);
+        return answer["regions"][0].value("offset", json());
+    };
+    EXPECT_TRUE(offset_of_run().is_null()) << "kept, not switched on";
+    EXPECT_EQ(run({"acceptance", file.string(), "--switch-offset", "2"}).exit_code, 2);
+    const ProgramResult on = run({"acceptance", file.string(), "--switch-offset", "1"});
+    EXPECT_EQ(on.exit_code, 0) << on.err;
+    EXPECT_THAT(on.out, HasSubstr("ACTS"));
+    EXPECT_EQ(offset_of_run()["version"], 1);
+    EXPECT_THAT(run({"run", file.string(), "--part", "CAR-3"}).out, HasSubstr("kept offset 1 acts"));
+    EXPECT_EQ(run({"acceptance", file.string(), "--undo-offset"}).exit_code, 0);
+    EXPECT_TRUE(offset_of_run().is_null());
+    EXPECT_EQ(run({"acceptance", file.string(), "--undo-offset"}).exit_code, 2);
 }
 
 TEST_F(RunCommand, ATaughtFrameInMetresIsRefused) {

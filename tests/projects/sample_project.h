@@ -172,7 +172,13 @@ inline Project sample_project(unsigned seed = 1) {
     r.sigma_limit_mm = 0.2;
     r.frame_name = "BASE_DATA[7]";
     r.base_from_frame = make.pose();
+    r.offsets = {{1, "2024-05-01T12:00:00.000Z", "cmm.csv", {0.1, -1.0 / 3, 0}, {}},
+                 {2, "2024-05-02T12:00:00.000Z", "tracker.csv", {0, 0, 0.25}, {}}};
+    r.offsets[1].covariance_mm2(2, 2) = 1e-4;
+    r.offset_switches = {1, 0, 2};
     p.regions.push_back(r);
+    p.requirements.acceptance.tolerance_mm = 1.0 / 3;
+    p.requirements.acceptance.cg_width = 4;
     PanelJob job;
     job.id = "fit \u00fc";
     job.robot_id = "R1";
@@ -312,7 +318,7 @@ inline PanelRecord sample_panel_record(unsigned seed) {
     return panel;
 }
 
-inline constexpr int kSampleEvidence = 6;
+inline constexpr int kSampleEvidence = 7;
 inline Evidence sample_evidence(int kind) {
     Evidence e;
     if (kind == 0) {
@@ -350,6 +356,8 @@ inline Evidence sample_evidence(int kind) {
         r.not_found = 2;
         r.replaced_covariance(0, 0) = 1e-3;
         e.what = r;
+    } else if (kind == 6) {
+        e.what = StudyPlan{"type3", "edge", {"car 1", "T\u00fcr 2"}, 2, 3, 17};
     } else {
         e.what = TriggerPasses{"S1",
                                45,

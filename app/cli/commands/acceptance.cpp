@@ -2,31 +2,67 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/acceptance_live.h"
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
 #include "devices/quality/qdas.h"
 #include "devices/quality/study_csv.h"
 #include "projects/acceptance/acceptance_json.h"
 #include "projects/acceptance/acceptance_page.h"
 #include "projects/acceptance/device_studies.h"
+#include "projects/acceptance/sensor_check.h"
 #include "projects/acceptance/stored_values.h"
+#include "projects/station/fields.h"
 #include "widgets/print/pdf.h"
 
 namespace seamwright::cli {
 namespace {
 
 struct AcceptanceArguments {
-    std::string file, data, references, study = "all", region, dfq, html, pdf, language = "en";
+    std::string file, data, references, sensor_data, study = "all", region, dfq, html, pdf, language = "en";
     double reference_mm = 0;
     CLI::Option* reference = nullptr;
-    CLI::Option* tolerance = nullptr;
+    std::map<std::string, CLI::Option*> required;  // by the names of acceptance_fields()
     AcceptanceSettings settings;
+    LiveArguments live;
+    CLI::Option *runs = nullptr, *switch_offset = nullptr;
+    OffsetSwitch offset;
+    bool keep_requirements = false, keep_offset = false;
 };
 
+// The project's requirements, and over them what was given with the command.
+Expected<AcceptanceSettings> settings_of(const AcceptanceArguments& a) {
+    AcceptanceRequirements required;
+    if (!a.file.empty()) {
+        auto file = ProjectFile::open(a.file, FileAccess::read_only);
+        if (!file) return tl::unexpected(file.error());
+        auto project = file->load();
+        if (!project) return tl::unexpected(project.error());
+        required = project->requirements.acceptance;
+    }
+    AcceptanceSettings settings = a.settings;
+    const AcceptanceRequirements given = requirements_of(a.settings);
+    require(settings, required);
+    const auto is_given = [&](const std::string& name) { return a.required.at(name)->count() > 0; };
+    for (const auto& field : acceptance_fields()) {
+        // One limit for both, unless Cgk has its own.
+        const bool both = field.info.name == "cgk" && !is_given("cgk") && is_given("cg");
+        if (!both && !is_given(field.info.name)) continue;
+        field.set(required, both ? given.cg : field.get(given));
+        settings.from[field.info.name] = RequirementFrom::given;
+    }
+    const auto from = settings.from;
+    require(settings, required);
+    settings.from = from;
+    if (required.tolerance_mm == 0 && !is_given("tolerance_mm"))
+        return usage_error("--tolerance-mm is required", "acceptance",
+                           "give T = USL - LSL, the customer's; --keep-requirements keeps it in the project");
+    if (a.reference->count() > 0) settings.reference_mm = a.reference_mm;
+    return settings;
+}
+
 Expected<StoredStudy> values_of(const AcceptanceArguments& a) {
-    if (a.file.empty() == a.data.empty())
-        return usage_error("one of a project and --data is needed", "acceptance",
-                           "give FILE.seam or --data values.csv");
     StoredStudy study;
     if (!a.file.empty()) {
         auto file = ProjectFile::open(a.file, FileAccess::read_only);
@@ -126,6 +162,52 @@ Expected<void> write_page(const AcceptanceArguments& a, const report::Page& page
     return {};
 }
 
+// None without --sensor-data.
+Expected<std::optional<SensorCheck>> sensor_of(const AcceptanceArguments& a) {
+    if (a.sensor_data.empty()) return std::optional<SensorCheck>();
+    auto data = read_json_file(a.sensor_data);
+    if (!data) return tl::unexpected(data.error());
+    std::optional<Project> project;
+    if (!a.file.empty()) {
+        auto file = ProjectFile::open(a.file, FileAccess::read_only);
+        if (!file) return tl::unexpected(file.error());
+        auto loaded = file->load();
+        if (!loaded) return tl::unexpected(loaded.error());
+        project = std::move(*loaded);
+    }
+    auto check = sensor_check(*data, a.sensor_data, project ? &*project : nullptr);
+    if (!check) return tl::unexpected(check.error());
+    return std::optional(std::move(*check));
+}
+
+Expected<Answer> sensor_command(const AcceptanceArguments& a) {
+    if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
+    auto check = sensor_of(a);
+    if (!check) return tl::unexpected(check.error());
+    if (!*check)
+        return usage_error("the artefacts are not named", "--study sensor",
+                           "give --sensor-data FILE.json: their certificate, and points or profiles");
+    const auto page = [&](Language language) {
+        report::Page of(Text("Acceptance of the measuring process: {}",
+                             std::filesystem::path(a.sensor_data).filename().string())
+                            .in(language),
+                        std::string(code_of(language)));
+        add_chapter(of, language, **check);
+        return of;
+    };
+    const AcceptanceVerdict verdict = (*check)->study.verdict;
+    Answer answer;
+    // Without a permitted error nothing is judged, and nothing is not ok.
+    const bool judged = verdict != AcceptanceVerdict::too_little_data;
+    answer.json = {{"status", judged ? to_string(verdict) : "not_judged"},
+                   {"sensor", sensor_check_json(**check)}};
+    answer.text = page(Language::english).text();
+    answer.exit_code = verdict == AcceptanceVerdict::ok || !judged ? kExitOk : kExitVerdict;
+    if (auto done = write_page(a, page(*language_from(a.language)), answer); !done)
+        return tl::unexpected(done.error());
+    return answer;
+}
+
 Expected<Answer> device_study_command(const AcceptanceArguments& a) {
     if (a.file.empty()) return usage_error("it is of a project", "--study", "give FILE.seam");
     if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
@@ -150,10 +232,40 @@ Expected<Answer> device_study_command(const AcceptanceArguments& a) {
 
 Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
     AcceptanceArguments a = given;
+    if (a.switch_offset->count() > 0 || a.offset.undo) {
+        if (a.file.empty()) return usage_error("it is of a project", "--switch-offset", "give FILE.seam");
+        return switch_offset_command(a.file, a.region, a.offset);
+    }
     if (a.study == "robot" || a.study == "trigger") return device_study_command(a);
-    if (a.tolerance->count() == 0)
-        return usage_error("--tolerance-mm is required", "acceptance", "give T = USL - LSL, the customer's");
-    if (a.reference->count() > 0) a.settings.reference_mm = a.reference_mm;
+    if (a.study == "sensor") return sensor_command(a);
+    if (!a.sensor_data.empty() && a.study != "all")
+        return usage_error("it is of the study sensor", "--sensor-data", "give --study sensor or all");
+    if (a.file.empty() && (a.runs->count() > 0 || a.keep_requirements || a.keep_offset))
+        return usage_error("it is of a project", "acceptance", "give FILE.seam");
+    if (a.file.empty() == a.data.empty())
+        return usage_error("one of a project and --data is needed", "acceptance",
+                           "give FILE.seam or --data values.csv");
+    if (a.keep_offset && a.study != "correlation")
+        return usage_error("an offset is of a correlation", "--keep-offset", "give --study correlation");
+    auto settings = settings_of(a);
+    if (!settings) return tl::unexpected(settings.error());
+    a.settings = std::move(*settings);
+    if (auto valid = check_settings(a.settings); !valid) return tl::unexpected(valid.error());
+    if (a.keep_requirements)
+        if (auto kept = keep_requirements(a.file, requirements_of(a.settings)); !kept)
+            return tl::unexpected(kept.error());
+    std::optional<StudyProgress> progress;
+    if (a.runs->count() > 0) {
+        const auto one = study_from(a.study);
+        if (!one) return usage_error("one study at a time is measured", "--runs", "name it with --study");
+        a.live.file = a.file;
+        a.live.region = a.region;
+        a.live.part = a.settings.part;
+        auto measured = measure_live(a.live, *one, a.settings);
+        if (!measured) return tl::unexpected(measured.error());
+        if (!measured->complete()) return incomplete_answer(*measured);
+        progress = std::move(*measured);
+    }
     auto study = values_of(a);
     if (!study) return tl::unexpected(study.error());
     if (a.settings.part.empty()) a.settings.part = study->reference_part;
@@ -168,14 +280,24 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
         if (!stored) return tl::unexpected(stored.error());
         devices = std::move(*stored);
     }
+    auto sensor = sensor_of(a);
+    if (!sensor) return tl::unexpected(sensor.error());
     AcceptancePageOptions options;
     options.program = "Seamwright " SEAMWRIGHT_VERSION;
-    options.more = [&](report::Page& page, Language language) { devices.write(page, language); };
+    options.more = [&](report::Page& page, Language language) {
+        devices.write(page, language);
+        if (*sensor) add_chapter(page, language, **sensor);
+    };
     Answer answer;
     answer.json = acceptance_json(*acceptance);
+    if (progress) answer.json["plan"] = study_progress_json(*progress);
     devices.write(answer.json);
+    if (*sensor) answer.json["sensor"] = sensor_check_json(**sensor);
     answer.text = acceptance_page(*acceptance, options).text();
     answer.exit_code = acceptance->verdict() == AcceptanceVerdict::ok ? kExitOk : kExitVerdict;
+    if (a.keep_offset)
+        if (auto kept = keep_offset_of(a.file, *acceptance, answer); !kept)
+            return tl::unexpected(kept.error());
     if (!a.dfq.empty()) {
         if (auto done = write_text_file(a.dfq, dfq_text(qdas_of(*acceptance))); !done)
             return tl::unexpected(done.error());
@@ -206,14 +328,17 @@ void add_acceptance(CommandLine& line) {
     command
         ->add_option(
             "--study", a->study,
-            "Which study; robot and trigger: as measure-robot and measure-trigger stored them; all: each "
-            "that the data allow")
-        ->check(CLI::IsMember(
-            {"type1", "type3", "linearity", "stability", "correlation", "vda5", "robot", "trigger", "all"}))
+            "Which study; robot and trigger: as measure-robot and measure-trigger stored them; sensor: of "
+            "--sensor-data; all: each that the data allow")
+        ->check(CLI::IsMember({"type1", "type3", "linearity", "stability", "correlation", "vda5", "robot",
+                               "trigger", "sensor", "all"}))
         ->capture_default_str();
-    a->tolerance = command->add_option("--tolerance-mm", s.tolerance_mm,
-                                       "T = USL - LSL, the customer's requirement; not of robot and trigger");
-    command->add_option("--nominal", s.nominal_mm, "Middle of the tolerance, mm")->capture_default_str();
+    const auto requirement = [&](const char* field, const char* flag, auto& value, const char* help) {
+        a->required[field] = command->add_option(flag, value, help)->capture_default_str();
+    };
+    requirement("tolerance_mm", "--tolerance-mm", s.tolerance_mm,
+                "T = USL - LSL, the customer's requirement, over the project's; not of robot and trigger");
+    requirement("nominal_mm", "--nominal", s.nominal_mm, "Middle of the tolerance, mm");
     command->add_option("--region", a->region, "Of the project; may be left out where there is one");
     a->reference = command->add_option("--reference", a->reference_mm, "Of the type 1 part, mm");
     command
@@ -221,11 +346,28 @@ void add_acceptance(CommandLine& line) {
                      "Parts measured by a CMM or tracker, in the columns of --data, matched by part: the "
                      "correlation")
         ->type_name("FILE.csv");
+    command
+        ->add_option(
+            "--sensor-data", a->sensor_data,
+            "Spheres and planes with what their certificate says, in the spirit of VDI/VDE 2634-2; of "
+            "spheres without points the profiles that the project's calibrations keep are taken")
+        ->type_name("FILE.json");
     command->add_option("--part", s.part, "Reference part of type 1 and stability, where there are several");
-    command->add_option("--share", s.share, "Share of the tolerance in Cg and Cgk")->capture_default_str();
-    command->add_option("--width", s.width, "Standard deviations in Cg (%GRR always takes 6)")
-        ->capture_default_str();
-    command->add_option("--required", s.required, "Limit of Cg and Cgk")->capture_default_str();
+    requirement("cg_share", "--share", s.share, "Share of the tolerance in Cg and Cgk");
+    requirement("cg_width", "--width", s.width, "Standard deviations in Cg (%GRR always takes 6)");
+    requirement("cg", "--required", s.required, "Limit of Cg and Cgk");
+    a->required["cgk"] =
+        command->add_option("--required-cgk", s.required_cgk, "Limit of Cgk, where it is another");
+    requirement("grr_accepted_percent", "--grr-accepted", s.grr_accepted_percent,
+                "%GRR of the tolerance up to which type 3 is accepted");
+    requirement("grr_refused_percent", "--grr-refused", s.grr_refused_percent,
+                "%GRR of the tolerance beyond which it is not");
+    requirement("ndc", "--ndc", s.ndc, "Distinct categories that type 3 must tell apart");
+    requirement("system_percent", "--system-percent", s.system_percent, "Limit of Q of the system (VDA 5)");
+    requirement("process_percent", "--process-percent", s.process_percent,
+                "Limit of Q of the process (VDA 5)");
+    command->add_flag("--keep-requirements", a->keep_requirements,
+                      "Keep the requirements of this command in the project, for those to come");
     command->add_option("--subgroup", s.subgroup, "Runs of a subgroup of the stability chart")
         ->capture_default_str();
     command->add_option("--reference-u-mm", s.reference_u_mm, "Standard uncertainty of the reference (VDA 5)")
@@ -238,6 +380,41 @@ void add_acceptance(CommandLine& line) {
     command->add_option("--language", a->language, "Of the report: en or de")
         ->check(CLI::IsMember({"en", "de"}))
         ->capture_default_str();
+    a->runs =
+        command->add_option("--runs", a->live.runs,
+                            "Measure the study now: so many runs, of type 3 of each part and rehang. What is "
+                            "stored is not measured "
+                            "again: after a crash or a cancel the same command goes on where it stopped");
+    command
+        ->add_option("--parts", a->live.parts,
+                     "With --runs: the parts of type 3 and of the correlation, in their order")
+        ->delimiter(',')
+        ->needs(a->runs)
+        ->type_name("A,B,..");
+    command->add_option("--rehangs", a->live.rehangs, "With --runs: how often each part is put in")
+        ->needs(a->runs)
+        ->capture_default_str();
+    command->add_flag("--anew", a->live.anew, "With --runs: begin again, whatever was measured")
+        ->needs(a->runs);
+    command
+        ->add_flag("--unattended", a->live.unattended,
+                   "With --runs: the parts are changed without a word from here")
+        ->needs(a->runs);
+    auto* keep =
+        command->add_flag("--keep-offset", a->keep_offset,
+                          "Keep the correlation's offset in the project as a new version; it does not "
+                          "act until it is switched on");
+    a->switch_offset = command
+                           ->add_option("--switch-offset", a->offset.version,
+                                        "Let this version of the region's kept offsets act on every run from "
+                                        "here on; 0: none")
+                           ->excludes(keep)
+                           ->excludes(a->runs)
+                           ->type_name("VERSION");
+    command->add_flag("--undo-offset", a->offset.undo, "Take the last switch of the region's offsets back")
+        ->excludes(keep)
+        ->excludes(a->runs)
+        ->excludes(a->switch_offset);
     line.on(command, [a] { return acceptance_command(*a); });
 }
 

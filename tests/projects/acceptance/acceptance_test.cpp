@@ -104,6 +104,89 @@ TEST(Studies, WhatIsNotKnownIsAskedFor) {
     }
 }
 
+// Values of known s: 50 alternating -+a have s = a sqrt(50 / 49).
+std::vector<StudyValue> alternating(double a, double mean) {
+    std::vector<StudyValue> values;
+    for (int i = 0; i < 50; ++i) values.push_back({"master", "1", i, mean + (i % 2 ? a : -a), 0.0, {}});
+    return values;
+}
+
+TEST(Studies, TheForecastStandsBesideTheMeasured) {
+    AcceptanceSettings settings;
+    settings.tolerance_mm = 2;
+    const Study type1[] = {Study::type1};
+    const auto judged = [&](double s, double mean, double predicted_s, double bias_u) {
+        StudySource source;
+        source.forecast = StudyForecast{predicted_s, bias_u, 0};
+        source.unmoved_part = "master";
+        auto a = judge_acceptance(StudyValues::of(alternating(s * std::sqrt(49.0 / 50), mean)), source,
+                                  settings, type1);
+        EXPECT_TRUE(a) << a.error().sentence();
+        return *a;
+    };
+    const Acceptance right = judged(0.02, 0.005, 0.021, 0.01);
+    ASSERT_TRUE(right.type1_check && right.bias_check);
+    EXPECT_EQ(right.type1_check->agreement, Agreement::agrees);
+    EXPECT_EQ(right.bias_check->agreement, Agreement::agrees);
+    EXPECT_NEAR(right.bias_check->predicted_mm, std::hypot(0.01, 0.021 / std::sqrt(50.0)), 1e-12);
+    json j = acceptance_json(right);
+    EXPECT_NEAR(j["forecast"]["cg"], 0.2 * 2 / (6 * 0.021), 1e-12);
+    EXPECT_EQ(j["type1"]["forecast"]["s"]["agreement"], "agrees");
+    EXPECT_TRUE(j["forecast"]["ev"].is_null());
+    AcceptancePageOptions options;
+    EXPECT_THAT(acceptance_page(right, options).text(), HasSubstr("they agree"));
+    // 1.5 times the stated, a third of it, and a bias that the systematic part does not explain.
+    const Acceptance more = judged(0.03, 0, 0.02, 0.01), less = judged(0.01, 0, 0.03, 0.01),
+                     biased = judged(0.02, 0.05, 0.02, 0.01);
+    EXPECT_EQ(more.type1_check->agreement, Agreement::beyond_99);
+    EXPECT_EQ(less.type1_check->agreement, Agreement::beyond_99);
+    EXPECT_EQ(biased.type1_check->agreement, Agreement::agrees);
+    EXPECT_EQ(biased.bias_check->agreement, Agreement::beyond_99);
+    EXPECT_THAT(acceptance_page(more, options).text(), HasSubstr("differ beyond chance at 99 %"));
+    options.language = Language::german;
+    EXPECT_THAT(acceptance_page(more, options).text(), HasSubstr("weichen mehr als zuf"));
+    // Another part than the unmoved one is not what the forecast is of.
+    StudySource source;
+    source.forecast = StudyForecast{0.02, 0.01, 0};
+    source.unmoved_part = "zero shift";
+    EXPECT_FALSE(
+        judge_acceptance(StudyValues::of(alternating(0.02, 0)), source, settings, type1)->type1_check);
+}
+
+TEST(Studies, RequirementsDecide) {
+    AcceptanceSettings settings;
+    AcceptanceRequirements required;
+    required.tolerance_mm = 2;
+    required.cg_share = 0.15;
+    required.cg_width = 4;
+    require(settings, required);
+    EXPECT_EQ(from_of(settings, "cg_share"), RequirementFrom::project);
+    EXPECT_EQ(from_of(settings, "ndc"), RequirementFrom::standard);
+    EXPECT_EQ(requirements_of(settings), required);
+    settings.nominal_mm = 2;
+    const auto a = judge_acceptance(StudyValues::of(table(0.01)), {}, settings, all());
+    ASSERT_TRUE(a && a->type1 && a->type3 && a->vda5);
+    EXPECT_NEAR(a->type1->cg, 0.15 * 2 / (4 * a->type1->s_mm), 1e-12);
+    EXPECT_EQ(a->type3->verdict, AcceptanceVerdict::ok);
+    EXPECT_EQ(a->vda5->verdict, AcceptanceVerdict::ok);
+    // Stricter than the values are: each study says no by its own limit.
+    required.cgk = 10;
+    required.grr_accepted_percent = 0.1;
+    required.grr_refused_percent = 0.2;
+    required.process_percent = 1;
+    require(settings, required);
+    const auto strict = judge_acceptance(StudyValues::of(table(0.01)), {}, settings, all());
+    ASSERT_TRUE(strict);
+    EXPECT_EQ(strict->type1->verdict, AcceptanceVerdict::not_ok);
+    EXPECT_EQ(strict->type3->verdict, AcceptanceVerdict::not_ok);
+    EXPECT_EQ(strict->vda5->verdict, AcceptanceVerdict::not_ok);
+    AcceptancePageOptions options;
+    const std::string text = acceptance_page(*strict, options).text();
+    EXPECT_THAT(text, HasSubstr("Cg must reach 1.33 and Cgk 10.00"));
+    EXPECT_THAT(text, HasSubstr("of the project"));
+    EXPECT_THAT(text, HasSubstr("default"));
+}
+
 TEST(Page, BothLanguages) {
     AcceptanceSettings settings;
     settings.tolerance_mm = 2;

@@ -27,7 +27,8 @@ MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Feature, a, b, c, d, e, f, g, h)
 MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
-MEMBERS(RegionRecord, a, b, c, d, e, f)
+MEMBERS(RegionRecord, a, b, c, d, e, f, g)
+MEMBERS(ActingOffset, a, b)
 MEMBERS(PanelMeasurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 MEMBERS(PanelFit, a, b, c, d, e, f, g, h, i, j, k, l, m)
 MEMBERS(PanelSpotResult, a, b, c, d, e, f, g)
@@ -40,10 +41,12 @@ MEMBERS(RobotSetup, a, b, c, d, e, f, g)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(FeatureRecipe, a, b, c, d)
 MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
-MEMBERS(Region, a, b, c, d, e, f, g, h)
+MEMBERS(Region, a, b, c, d, e, f, g, h, i, j)
+MEMBERS(KeptOffset, a, b, c, d, e)
 MEMBERS(PanelPlace, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l, m)
-MEMBERS(Requirements, a, b, c, d, e)
+MEMBERS(Requirements, a, b, c, d, e, f)
+MEMBERS(AcceptanceRequirements, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(FrozenContour, a, b, c, d, e, f, g, h, i)
 MEMBERS(ZeroShift, a, b, c)
 MEMBERS(KnownShift, a, b, c, d)
@@ -52,6 +55,7 @@ MEMBERS(SpotReturns, a, b, c, d, e, f)
 MEMBERS(RobotReturns, a, b, c, d)
 MEMBERS(TriggerPass, a, b, c)
 MEMBERS(TriggerPasses, a, b, c, d, e, f, g, h)
+MEMBERS(StudyPlan, a, b, c, d, e, f)
 #undef MEMBERS
 
 template <class T>
@@ -63,8 +67,10 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     RegionRecord region;
     region.correction.emplace();
     region.correction->spots.resize(1);
+    region.offset.emplace();
     const auto r = to_json_document(region);
     whole(region, r);
+    whole(*region.offset, r["offset"]);
     whole(region.push, r["push"]);
     whole(*region.correction, r["correction"]);
     whole(region.correction->sigma_random, r["correction"]["sigma_random"]);
@@ -98,13 +104,23 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     const auto t = to_json_document(taught);
     whole(taught, t);
     whole(taught.feature, t["feature"]);
-    whole(Region{}, to_json_document(Region{}));
+    Region kept;
+    kept.offsets.resize(1);
+    kept.offset_switches = {0};
+    const auto k = to_json_document(kept);
+    whole(kept, k);
+    whole(kept.offsets[0], k["offsets"][0]);
+    whole(StudyPlan{}, to_json_document(StudyPlan{}));
     PanelJob job;
     job.places.resize(1);
     const auto j = to_json_document(job);
     whole(job, j);
     whole(job.places[0], j["places"][0]);
-    whole(Requirements{}, to_json_document(Requirements{}));
+    Requirements required;
+    required.acceptance.tolerance_mm = 1;
+    const auto g = to_json_document(required);
+    whole(required, g);
+    whole(required.acceptance, g["acceptance"]);
     whole(FrozenContour{}, to_json_document(FrozenContour{}));
     whole(ZeroShift{}, to_json_document(ZeroShift{}));
     whole(KnownShift{}, to_json_document(KnownShift{}));

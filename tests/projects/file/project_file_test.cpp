@@ -667,6 +667,34 @@ TEST(Migration, VersionThreeBecomesCurrentAndTakesPanelJobs) {
     EXPECT_TRUE(file->check().empty());
 }
 
+// What was required of before stays, what the acceptance asks for has its defaults and is kept from here on; and
+// a run's setup does not hold it, so that another tolerance is no other measuring process.
+TEST(Migration, VersionFiveBecomesCurrentAndTakesAcceptance) {
+    TemporaryFolder folder;
+    const fs::path path = folder / "old.seam";
+    make_old_version(path, 5);
+    {
+        auto reading = ProjectFile::open(path, FileAccess::read_only);
+        ASSERT_TRUE(reading) << reading.error().sentence();
+        EXPECT_EQ(reading->load()->requirements.acceptance, AcceptanceRequirements{});
+    }
+    auto file = ProjectFile::open(path);
+    ASSERT_TRUE(file) << file.error().sentence();
+    Project project = file->load().value();
+    EXPECT_EQ(project.requirements.sigma3_mm, 0.2);
+    EXPECT_EQ(project.requirements.acceptance.cg_share, 0.2);
+    const auto before = file->setup_of(project);
+    ASSERT_TRUE(before) << before.error().sentence();
+    project.requirements.acceptance = {1.5, 0.25, 0.15, 4, 1.67, 1.5, 20, 25, 6, 10, 20};
+    ASSERT_TRUE(file->save(project));
+    EXPECT_EQ(*file->setup_of(project), *before);
+    const auto opened = ProjectFile::open(path);
+    const Project again = opened->load().value();
+    EXPECT_EQ(again.requirements.acceptance, project.requirements.acceptance);
+    EXPECT_EQ(again.requirements.sigma3_mm, 0.2);
+    EXPECT_TRUE(opened->check().empty());
+}
+
 TEST(ProjectFile, PanelRunsComeBackToTheLastBit) {
     TemporaryFolder folder;
     const Project project = sample_project();

@@ -84,7 +84,8 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, RegionC
     numbers(visit, path + ".spots", spots);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, Region& v) {
-    auto& [id, spot_ids, free, limits, sigma_mm, sigma_deg, frame_name, frame] = v;
+    // Kept offsets are in the correction before the gate sees it.
+    auto& [id, spot_ids, free, limits, sigma_mm, sigma_deg, frame_name, frame, offsets, switches] = v;
     numbers(visit, path + ".free", free);
     numbers(visit, path + ".limits", limits);
     numbers(visit, path + ".sigma_limit_mm", sigma_mm);
@@ -156,7 +157,8 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, PanelPl
     numbers(visit, path + ".sigma_mm", sigma);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, PanelJob& v) {
-    auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, deviation, frame_name, frame] = v;
+    auto& [id, robot, places, gripper, limits, sigma_mm, sigma_deg, gap, flush, head, deviation, frame_name,
+           frame] = v;
     numbers(visit, path + ".places", places);
     numbers(visit, path + ".base_from_gripper", gripper);
     numbers(visit, path + ".limits", limits);

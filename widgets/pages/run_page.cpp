@@ -12,6 +12,7 @@
 #include "core/geometry/notation.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/tables/csv_table.h"
+#include "projects/proof/zero_shift.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
@@ -390,7 +391,8 @@ void RunPage::show_history() {
     charted_.clear();
     for (const RunSummary& s : summaries_) {
         if (charted_.size() == kCharted) break;
-        if (!proofs.contains(s.number)) charted_.push_back(s.number);
+        if (!proofs.contains(s.number) && !s.part_id.starts_with(kZeroShiftPrefix))
+            charted_.push_back(s.number);
     }
     std::reverse(charted_.begin(), charted_.end());
     int refused = 0;

@@ -293,16 +293,16 @@ int canonical_order(const cv::Mat& image, Corners& corners, int columns, int row
         if (!dark_first) std::reverse(corners.begin(), corners.end());
         return 1;
     }
-    // Equal parity: a half turn keeps the colours. A square board tells its quarter turns apart by colour
-    // when even.
-    if (columns == rows && columns % 2 == 0 && !dark_first) {
+    // Equal parity: a half turn keeps the colours. So does a quarter turn of a square board of an even number
+    // of corners; with an odd number it changes them, which tells the quarter turns apart.
+    if (columns == rows && columns % 2 == 1 && !dark_first) {
         Corners turned_corners(corners.size());
         for (int r = 0; r < rows; ++r)
             for (int c = 0; c < columns; ++c)
                 turned_corners[static_cast<std::size_t>(r * columns + c)] = at(r, rows - 1 - c);
         corners = turned_corners;
     }
-    return columns == rows && columns % 2 == 1 ? 4 : 2;
+    return columns == rows && columns % 2 == 0 ? 4 : 2;
 }
 
 constexpr std::size_t kSmallImage = 640 * 512;  // px; there every attempt takes well below a second

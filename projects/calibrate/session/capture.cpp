@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -122,6 +123,19 @@ Expected<json> board_entry(const Text& where, const Calibration* base, const std
     return entry;
 }
 
+// The corners that were found farthest out on the board, one in each diagonal direction: part of it may be hidden.
+std::array<std::size_t, 4> outer_corners(const FoundBoard& board) {
+    std::array<std::size_t, 4> outer{};
+    for (std::size_t k = 0; k < outer.size(); ++k) {
+        const double right = k % 2 == 0 ? -1 : 1, down = k < 2 ? -1 : 1;
+        for (std::size_t i = 1; i < board.object_mm.size(); ++i) {
+            const Eigen::Vector3d ahead = board.object_mm[i] - board.object_mm[outer[k]];
+            if (right * ahead.x() + down * ahead.y() > 0) outer[k] = i;
+        }
+    }
+    return outer;
+}
+
 // Outer corners of the board, on it and in the robot's base.
 Expected<json> plate_entry(const Text& where, const Calibration* base, const std::optional<FoundBoard>& board,
                            const BoardSpec& spec, const std::optional<Pose>& base_from_flange) {
@@ -134,8 +148,8 @@ Expected<json> plate_entry(const Text& where, const Calibration* base, const std
     const auto camera_from_target = parse_pose((*seen)["camera_from_target"], "camera_from_target");
     const Pose base_from_target = *base_from_flange * flange_from_camera * *camera_from_target;
     json points = json::array();
-    for (const int i : {0, spec.columns - 1, (spec.rows - 1) * spec.columns, spec.rows * spec.columns - 1}) {
-        const Eigen::Vector3d on_plate = board->object_mm[static_cast<std::size_t>(i)];
+    for (const std::size_t i : outer_corners(*board)) {
+        const Eigen::Vector3d on_plate = board->object_mm[i];
         const Eigen::Vector3d world = base_from_target * on_plate;
         points.push_back({{"plate", {on_plate.x(), on_plate.y(), on_plate.z()}},
                           {"world", {world.x(), world.y(), world.z()}}});

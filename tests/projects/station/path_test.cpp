@@ -40,8 +40,14 @@ struct Setting {
                 project.part.base_from_workobject * shift(x, 0, 0) * c.flange_from_sensor.inverse();
             project.spots.push_back(s);
         }
-        project.regions.push_back({.id = "left", .spot_ids = {"S1", "S2"}, .frame_name = "L"});
-        project.regions.push_back({.id = "right", .spot_ids = {"S3", "S2"}, .frame_name = "R"});
+        for (const auto& [id, other, frame] :
+             {std::tuple("left", "S1", "L"), std::tuple("right", "S3", "R")}) {
+            Region region;
+            region.id = id;
+            region.spot_ids = {other, "S2"};
+            region.frame_name = frame;
+            project.regions.push_back(region);
+        }
         for (const auto& [id, d] :
              {std::pair("left", shift(5, 2, -1, 0.4)), std::pair("right", shift(6, -1, 1, -0.2))}) {
             RegionRecord r;

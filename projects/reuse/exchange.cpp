@@ -60,8 +60,7 @@ std::string pcd_text(const std::vector<Eigen::Vector3d>& points) {
 nlohmann::json export_project(const Project& project, bool with_profiles) {
     return {{"format", kFormat},
             {"version", kVersion},
-            {"project",
-             to_json_document(project, {.profiles = with_profiles, .rigid_poses = true, .patterns = false})}};
+            {"project", to_json_document(project, {.profiles = with_profiles, .rigid_poses = true})}};
 }
 
 Expected<nlohmann::json> export_file(const ProjectFile& file, bool with_profiles) {

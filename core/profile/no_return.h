@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/profile/profile.h"
+#include "core/text.h"
 
 namespace seamwright {
 

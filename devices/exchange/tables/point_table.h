@@ -20,8 +20,8 @@ struct PointTable {
     std::vector<std::size_t>
         blocks;  // first row of each block of rows (blank or comment line between), [0] = 0
     std::vector<std::uint32_t> lines;  // of text: the line of each row, from 1
-    bool in_base = false;  // PLY and PCD with kInBaseMark: no profile of any plane yet
-    std::string understood;  // "text, separated by semicolons, decimal comma, header in line 5"
+    bool in_base = false;              // PLY and PCD with kInBaseMark: no profile of any plane yet
+    std::string understood;            // "text, separated by semicolons, decimal comma, header in line 5"
     std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
     // "line 12" or "point 12" of a row, for messages.
     std::string at(const std::string& where, std::size_t row) const;

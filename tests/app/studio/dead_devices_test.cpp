@@ -39,7 +39,9 @@ class DeadDevices : public testing::Test {
         ASSERT_FALSE(studio->window().views().profile->stale());
     }
     Desk& desk() { return studio->desk(); }
-    const Profile& plot() { return dynamic_cast<ProfileCanvas&>(*studio->window().views().profile->focusProxy()).profile; }
+    const Profile& plot() {
+        return dynamic_cast<ProfileCanvas&>(*studio->window().views().profile->focusProxy()).profile;
+    }
     QString state() { return studio->window().findChild<QLabel*>("sensor_state")->text(); }
     QString status() {
         QString all;

@@ -260,7 +260,7 @@ void check_panel_job(const Project& project, const PanelJob& job, Findings& find
 }
 
 // Those that a run must not begin with.
-std::vector<Error> of_motion(Findings findings, bool push) {
+std::vector<Error> of_motion(Findings&& findings, bool push) {
     std::vector<Error> list;
     for (auto& [concern, error] : findings.list)
         if (concern == Concern::measuring || (push && concern == Concern::push))

@@ -236,7 +236,7 @@ void CalibrationDesk::capture(bool verification) {
                               shows_board(kind));
 }
 
-void CalibrationDesk::take_shots(std::shared_ptr<const CalibrationShots> shots) {
+void CalibrationDesk::take_shots(const std::shared_ptr<const CalibrationShots>& shots) {
     if (!waiting_for_shot_ || !session_) return;
     waiting_for_shot_ = false;
     auto settings = capture_settings();

@@ -95,7 +95,7 @@ class CalibrationDesk : public QObject {
     void post(Job job);
     void work(const std::stop_token& stop);
     void push(const QString& text, const SessionState& before);
-    void take_shots(std::shared_ptr<const CalibrationShots> shots);
+    void take_shots(const std::shared_ptr<const CalibrationShots>& shots);
     void take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings, bool verification,
                        const QString& text);
     void solve_when_due();

@@ -166,7 +166,7 @@ void StationWorker::attach_feed(Station& station) {
     if (!station.connected()) return;
     std::map<std::string, ProfileSource*> sources;
     for (const SensorSetup& setup : station.project().sensors) sources[setup.id] = station.sensor(setup.id);
-    feed_.attach(std::move(sources));
+    feed_.attach(sources);
 }
 
 void StationWorker::connect_devices() {
@@ -233,7 +233,7 @@ void StationWorker::measure(const std::string& part_id, bool push, bool keep_ima
                 wake_.wait(lock, [&] { return push_answer_.has_value(); });
                 return *push_answer_;
             };
-        run_one(station, std::move(options));
+        run_one(station, options);
     });
 }
 

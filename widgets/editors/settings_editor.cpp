@@ -186,7 +186,7 @@ struct SettingsEditor::Impl {
         QString text = shown(Text::chosen(s.help));
         if (s.kind == SettingKind::number || s.kind == SettingKind::whole)
             text += SettingsEditor::tr("; %1 to %2").arg(s.low).arg(s.high);
-        if (!s.otherwise.is_null() && s.otherwise != "")
+        if (!s.otherwise.is_null() && s.otherwise != json(""))
             text += SettingsEditor::tr("; %1 if left empty").arg(text_of(s.otherwise));
         return text;
     }

@@ -10,7 +10,7 @@
 #include <map>
 
 #include "app/studio/step_rail.h"
-#include "widgets/pages/views.h"
+#include "widgets/pages/parts/views.h"
 
 namespace seamwright {
 

@@ -5,7 +5,7 @@
 
 #include "projects/station/measure.h"
 #include "widgets/editors/number_box.h"
-#include "widgets/pages/form.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 

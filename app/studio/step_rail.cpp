@@ -2,7 +2,7 @@
 
 #include <QVBoxLayout>
 
-#include "widgets/pages/form.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/style.h"
 
 namespace seamwright {

@@ -111,6 +111,25 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
     return scale;
 }
 
+void line_through(const Workspace& w, const int* points, int n, State& s) {
+    const auto at = [&](int k) -> const Candidate& { return w.candidates[std::size_t(points[k])]; };
+    const auto inwards = [&](int k) { return double(std::abs(at(k).line - at(0).line)); };
+    double mean = 0, mx = 0, mz = 0;
+    for (int k = 0; k < n; ++k) mean += inwards(k), mx += at(k).x, mz += at(k).z;
+    mean /= n, mx /= n, mz /= n;
+    double spread = 0, sx = 0, sz = 0;
+    for (int k = 0; k < n; ++k) {
+        const double d = inwards(k) - mean;
+        spread += d * d;
+        sx += d * at(k).x, sz += d * at(k).z;
+    }
+    s.vx = -sx / spread, s.vz = -sz / spread;  // lines count inwards, the advance points outwards
+    s.x = mx + mean * s.vx, s.z = mz + mean * s.vz;
+    s.p11 = 1. / n + mean * mean / spread, s.p12 = mean / spread, s.p22 = 1 / spread;
+    s.spacing2 = s.vx * s.vx + s.vz * s.vz;
+    s.age = n;
+}
+
 void cheapest_sequence(Workspace& w, const Model& m) {
     const int lines = int(w.first.size()) - 1;
     w.nodes.resize(w.candidates.size());

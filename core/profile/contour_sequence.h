@@ -57,6 +57,10 @@ Scale estimate_scale(Workspace& w, const std::vector<int>& pick, bool along_path
 // outlier_cost.
 void cheapest_sequence(Workspace& w, const Model& model);
 
+// Straight line over the line number through the candidates `points`, which go from an end of the contour inwards: place
+// at the first one, advance per line outwards, their covariance, and the age of so many points. Two points at least.
+void line_through(const Workspace& w, const int* points, int n, State& state);
+
 // Moves the borders between segments, by up to twelve points, to where the surfaces begin that they part.
 // `segment` per line of the sensor, as Profile::segment; the candidates have one per line. Points that both
 // sides or neither of them explain stay where they are.

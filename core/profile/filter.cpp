@@ -264,33 +264,16 @@ int verify(Workspace& w, const Model& m) {
 // tracker that had no time to learn the direction. Direction of travel as for the tracker that comes from
 // inside to `c`.
 State end_line(const Workspace& w, int c, int step, int points, const State& fallback) {
-    int lines[kLongFitPoints], found[kLongFitPoints], n = 0;
-    const int piece = w.piece[std::size_t(c)], line0 = w.candidates[std::size_t(c)].line;
-    double mean = 0, mx = 0, mz = 0;
+    int found[kLongFitPoints], n = 0;
+    const int piece = w.piece[std::size_t(c)];
     for (int k = c; k >= 0 && k < int(w.candidates.size()) && n < points; k += step) {
         const int other = w.piece[std::size_t(k)];
         if (other >= 0 && other != piece) break;
-        if (other < 0) continue;
-        lines[n] = std::abs(w.candidates[std::size_t(k)].line - line0), found[n++] = k;
+        if (other >= 0) found[n++] = k;
     }
     if (n < kMature) return fallback;
-    for (int k = 0; k < n; ++k) {
-        mean += lines[k];
-        mx += w.candidates[std::size_t(found[k])].x, mz += w.candidates[std::size_t(found[k])].z;
-    }
-    mean /= n, mx /= n, mz /= n;
-    double spread = 0, sx = 0, sz = 0;
-    for (int k = 0; k < n; ++k) {
-        const double d = lines[k] - mean;
-        spread += d * d;
-        sx += d * w.candidates[std::size_t(found[k])].x, sz += d * w.candidates[std::size_t(found[k])].z;
-    }
     State s = fallback;
-    s.vx = -sx / spread, s.vz = -sz / spread;  // lines count inwards, the advance points outwards
-    s.x = mx + mean * s.vx, s.z = mz + mean * s.vz;
-    s.p11 = 1. / n + mean * mean / spread, s.p12 = mean / spread, s.p22 = 1 / spread;
-    s.spacing2 = s.vx * s.vx + s.vz * s.vz;
-    s.age = n;
+    line_through(w, found, n, s);
     return s;
 }
 

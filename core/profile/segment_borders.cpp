@@ -16,49 +16,35 @@ constexpr int kBorderFit = 8, kBorderFewest = 4;  // points of the line; fewer k
 constexpr int kBorderMost = 12;                   // points that are looked at
 constexpr double kBorderShare = 0.5;              // of the points that both sides explain: nothing to decide
 
-// Straight line over the line number, for points beyond its end.
+// The line at the end of a segment, for points beyond that end.
 struct BorderLine {
-    bool ok = false;
-    double line0 = 0, mean = 0, spread = 0, x = 0, z = 0, vx = 0, vz = 0, n = 0, limit2 = 0;
-
+    const Model& model;
+    int line0 = 0;
+    State state;
+    bool ok() const { return state.age >= kBorderFewest && state.spacing2 > 0; }
     bool explains(const Candidate& p) const {
-        const double t = p.line - line0 - mean, length2 = vx * vx + vz * vz;
-        const double off = vx * (p.z - z - t * vz) - vz * (p.x - x - t * vx);
-        return off * off < limit2 * (1 + 1 / n + t * t / spread) * length2;
+        const double n = std::abs(p.line - line0);
+        const double dx = p.x - state.x - n * state.vx, dz = p.z - state.z - n * state.vz;
+        const double off = state.vx * dz - state.vz * dx;
+        const double variance = 1 + state.p11 + n * (2 * state.p12 + n * state.p22);
+        return off * off < model.band * model.band * variance * across_variance(model, state);
     }
 };
 
 // Over the segment's points from candidate `c` inwards, `step` = 1 or -1.
 BorderLine border_line(const Workspace& w, const Model& m, const std::vector<std::int32_t>& segment, int c,
                        int step) {
-    BorderLine e;
+    BorderLine line{m, w.candidates[std::size_t(c)].line, {}};
     const int n = int(w.candidates.size());
     const auto of = [&](int k) { return segment[std::size_t(w.candidates[std::size_t(k)].line)]; };
-    const std::int32_t own = of(c);
-    e.line0 = w.candidates[std::size_t(c)].line;
     int points[kBorderFit], count = 0;
     for (int k = c; k >= 0 && k < n && count < kBorderFit; k += step) {
         if (of(k) == kOutlier) continue;
-        if (of(k) != own) break;
+        if (of(k) != of(c)) break;
         points[count++] = k;
     }
-    if (count < kBorderFewest) return e;
-    e.n = count;
-    for (int k = 0; k < count; ++k) {
-        const Candidate& p = w.candidates[std::size_t(points[k])];
-        e.mean += (p.line - e.line0) / e.n, e.x += p.x / e.n, e.z += p.z / e.n;
-    }
-    for (int k = 0; k < count; ++k) {
-        const Candidate& p = w.candidates[std::size_t(points[k])];
-        const double t = p.line - e.line0 - e.mean;
-        e.spread += t * t, e.vx += t * (p.x - e.x), e.vz += t * (p.z - e.z);
-    }
-    e.vx /= e.spread, e.vz /= e.spread;
-    const double length2 = e.vx * e.vx + e.vz * e.vz;
-    if (!(length2 > 0)) return e;
-    e.limit2 = m.band * m.band * (e.vz * e.vz * m.sx2 + e.vx * e.vx * m.sz2) / length2;
-    e.ok = true;
-    return e;
+    if (count >= kBorderFewest) line_through(w, points, count, line.state);
+    return line;
 }
 
 // Gives the segment that ends at candidate `c` the points next to it, in the direction `step`, that its line
@@ -69,7 +55,7 @@ void extend(const Workspace& w, const Model& m, std::vector<std::int32_t>& segme
         return segment[std::size_t(w.candidates[std::size_t(k)].line)];
     };
     const BorderLine line = border_line(w, m, segment, c, -step);
-    if (!line.ok) return;
+    if (!line.ok()) return;
     const std::int32_t own = of(c);
     std::int32_t other = kOutlier;
     int end = c;  // the last one explained
@@ -88,7 +74,7 @@ void extend(const Workspace& w, const Model& m, std::vector<std::int32_t>& segme
     if (other != kOutlier && !neighbour) return;
     if (neighbour) {
         const BorderLine rest = border_line(w, m, segment, next, step);
-        if (!rest.ok) return;
+        if (!rest.ok()) return;
         int both = 0, all = 0;
         for (int k = c + step; k != end + step; k += step)
             ++all, both += rest.explains(w.candidates[std::size_t(k)]);

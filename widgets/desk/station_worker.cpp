@@ -6,7 +6,6 @@
 #include <chrono>
 
 #include "devices/registry.h"
-#include "devices/silence.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
@@ -15,83 +14,9 @@ namespace seamwright {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kLivePeriod{60}, kLiveFrame{400}, kRobotPeriod{500};
-constexpr std::chrono::milliseconds kRetry{1000};  // of a sensor that gives no frames
+constexpr std::chrono::milliseconds kRobotPeriod{500};
 
 }  // namespace
-
-// Sensors running for the screen, each on a thread of its own: one that does not answer keeps nobody waiting, and
-// asking it goes on as long as its silence may.
-struct StationWorker::Live {
-    struct Sensor {
-        ProfileSource* source = nullptr;
-        std::optional<SoftwareTriggered> by_software;  // while it runs
-        std::mutex mutex;
-        SensorState state;
-        std::jthread thread;  // goes first
-        bool given_up = false;
-        void leave() {
-            thread.request_stop();
-            const std::lock_guard lock(mutex);
-            given_up = !state.trouble.empty();
-            if (given_up) source->give_up();  // it may wait for a device that is not there
-        }
-        ~Sensor() {
-            leave();
-            if (thread.joinable()) thread.join();
-            if (by_software || given_up) source->stop();
-        }
-    };
-    std::deque<Sensor> sensors;
-    std::vector<SensorState> states();
-    static void run(const std::stop_token& stop, Sensor& sensor);
-    ~Live() {
-        for (Sensor& sensor : sensors) sensor.leave();  // all at once, then one after the other
-    }
-};
-
-namespace {
-
-// Settings as the device has them. One that does not answer is asked once.
-void read_settings(ProfileSource& sensor, SensorState& state) {
-    state.identity = sensor.identity();
-    state.counters = sensor.counters();
-    state.parameters = sensor.parameters();
-    for (const ParameterInfo& info : state.parameters) {
-        auto value = sensor.get(info.name);
-        if (value) {
-            state.values[info.name] = *value;
-        } else if (is_silence(value.error()) || value.error().code == ErrorCode::disconnected) {
-            state.trouble = value.error().text();
-            return;
-        }
-    }
-}
-
-// One picture for the screen.
-Expected<void> one_picture(ProfileSource& source, std::optional<SoftwareTriggered>& by_software) {
-    if (!by_software) {
-        auto taken = SoftwareTriggered::begin(source);
-        if (!taken) return tl::unexpected(taken.error());
-        if (auto started = source.start(); !started) return started;
-        by_software.emplace(std::move(*taken));
-    }
-    if (auto fired = source.trigger(""); !fired) return fired;
-    auto frame = source.wait_next(kLiveFrame);
-    if (!frame) return tl::unexpected(frame.error());
-    return {};
-}
-
-}  // namespace
-
-std::vector<SensorState> StationWorker::Live::states() {
-    std::vector<SensorState> all;
-    for (Sensor& sensor : sensors) {
-        const std::lock_guard lock(sensor.mutex);
-        all.push_back(sensor.state);
-    }
-    return all;
-}
 
 StationWorker::StationWorker(LiveFeed& feed, QObject* parent)
     : QObject(parent), feed_(feed), thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -500,48 +425,15 @@ void StationWorker::stop_live() {
 
 void StationWorker::start_live(Station& station) {
     if (!station.connected() || live_) return;
-    live_ = std::make_unique<Live>();
+    live_ = std::make_unique<LiveSensors>();
     for (const SensorSetup& setup : station.project().sensors) {
         ProfileSource* source = station.sensor(setup.id);
         if (!source) continue;
-        Live::Sensor& sensor = live_->sensors.emplace_back();
-        sensor.source = source;
-        for (const SensorState& known : sensors_)
-            if (known.id == setup.id) sensor.state = known;
-        sensor.state.id = setup.id;
-        sensor.state.trouble = {};
-        sensor.thread = std::jthread([&sensor](const std::stop_token& stop) { Live::run(stop, sensor); });
-    }
-}
-
-void StationWorker::Live::run(const std::stop_token& stop, Sensor& sensor) {
-    std::mutex mutex;
-    std::condition_variable_any rest;
-    auto settings_due = Clock::now();
-    while (!stop.stop_requested()) {
-        SensorState now;
-        {
-            const std::lock_guard lock(sensor.mutex);
-            now = sensor.state;
-        }
-        now.trouble = {};
-        auto next = Clock::now() + kLivePeriod / 2;
-        const auto seen = one_picture(*sensor.source, sensor.by_software);
-        if (!seen) {
-            now.trouble = seen.error().text();
-            next = Clock::now() + kRetry;
-        }
-        if (now.trouble.empty() && Clock::now() >= settings_due && !stop.stop_requested()) {
-            read_settings(*sensor.source, now);
-            settings_due = Clock::now() + kRobotPeriod;
-        }
-        {
-            const std::lock_guard lock(sensor.mutex);
-            sensor.state = std::move(now);
-        }
-        if (!seen && seen.error().code == ErrorCode::end_of_recording) return;
-        std::unique_lock lock(mutex);
-        rest.wait_until(lock, stop, next, [] { return false; });
+        SensorState known;
+        known.id = setup.id;
+        for (const SensorState& s : sensors_)
+            if (s.id == setup.id) known = s;
+        live_->add(*source, std::move(known));
     }
 }
 

@@ -1,10 +1,7 @@
 #pragma once
-// The one thread that talks to the devices. It owns the Station; the screen queues requests and gets values
-// back by signals (queued into the receiver's thread). Nothing here blocks the caller, except close().
-//
-// While nothing is asked, the sensors run live, each on a thread of its own (software triggers about every 60 ms
-// where the sensor waits for triggers, LiveFeed shows the newest frame), and the robots are asked for mode and
-// pose twice a second. A sensor that does not answer is asked again every second and keeps no robot waiting.
+// The thread that owns the Station and talks to the devices; while nothing is asked it lends the sensors to
+// LiveSensors and asks the robots for mode and pose twice a second. The screen queues requests and gets values back by
+// signals (queued into the receiver's thread). Nothing here blocks the caller, except close().
 
 #include <QObject>
 #include <QString>
@@ -24,17 +21,9 @@
 #include "projects/station/station.h"
 #include "projects/station/teach.h"
 #include "widgets/desk/live_feed.h"
+#include "widgets/desk/live_sensors.h"
 
 namespace seamwright {
-
-struct SensorState {
-    std::string id;
-    SensorIdentity identity;
-    SourceCounters counters;
-    std::vector<ParameterInfo> parameters;  // of the device: exposure_us, ...
-    ParameterValues values;
-    Text trouble;  // why no frames come; empty when they do
-};
 
 struct RobotState {
     std::string id;
@@ -113,7 +102,6 @@ class StationWorker : public QObject {
     void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);
 
   private:
-    struct Live;
     using Task = std::function<void(Station&, const std::stop_token&)>;
     void post(const QString& what, Task task);
     void work(const std::stop_token& stop);
@@ -138,7 +126,7 @@ class StationWorker : public QObject {
     bool close_request_ = false, busy_ = false, opened_ = false;
     std::stop_source cancel_;
     std::optional<bool> push_answer_;
-    std::unique_ptr<Live> live_;
+    std::unique_ptr<LiveSensors> live_;
     std::vector<SensorState> sensors_;  // as last seen
     std::optional<Station> station_;
     Text connect_trouble_;

@@ -3,8 +3,8 @@
 
 #include <QDoubleSpinBox>
 
-#include "widgets/pages/spot_tree.h"
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/spot_tree.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

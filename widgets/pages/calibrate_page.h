@@ -5,7 +5,7 @@
 #include <QComboBox>
 
 #include "widgets/pages/guided_page.h"
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

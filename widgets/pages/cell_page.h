@@ -8,7 +8,7 @@
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/editors/settings_editor.h"
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

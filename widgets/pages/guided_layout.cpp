@@ -5,7 +5,7 @@
 #include <QHeaderView>
 #include <QShortcut>
 
-#include "widgets/pages/form.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/pages/guided_page.h"
 #include "widgets/style.h"
 

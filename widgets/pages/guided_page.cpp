@@ -16,7 +16,7 @@
 #include "projects/station/measure.h"
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
-#include "widgets/pages/form.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 

@@ -11,7 +11,7 @@
 #include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
-#include "widgets/pages/form.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/pages/guided_page.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"

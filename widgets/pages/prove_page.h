@@ -7,7 +7,7 @@
 #include <QFrame>
 #include <QSpinBox>
 
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

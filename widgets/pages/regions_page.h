@@ -9,7 +9,7 @@
 #include "widgets/charts/share_bars.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

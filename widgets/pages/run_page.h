@@ -5,7 +5,7 @@
 #include <QLineEdit>
 #include <QTimer>
 
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

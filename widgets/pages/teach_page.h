@@ -9,8 +9,8 @@
 
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
-#include "widgets/pages/spot_tree.h"
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/spot_tree.h"
+#include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {
 

@@ -8,8 +8,8 @@
 #include <QWidget>
 
 #include "widgets/desk/desk.h"
-#include "widgets/pages/form.h"
-#include "widgets/pages/views.h"
+#include "widgets/pages/parts/form.h"
+#include "widgets/pages/parts/views.h"
 
 namespace seamwright {
 

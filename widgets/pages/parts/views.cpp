@@ -1,4 +1,4 @@
-#include "widgets/pages/views.h"
+#include "widgets/pages/parts/views.h"
 
 #include <cmath>
 

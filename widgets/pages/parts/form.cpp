@@ -1,4 +1,4 @@
-#include "widgets/pages/form.h"
+#include "widgets/pages/parts/form.h"
 
 #include <QFile>
 #include <QHeaderView>

@@ -1,4 +1,4 @@
-#include "widgets/pages/spot_tree.h"
+#include "widgets/pages/parts/spot_tree.h"
 
 #include <QHeaderView>
 

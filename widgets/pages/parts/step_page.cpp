@@ -1,4 +1,4 @@
-#include "widgets/pages/step_page.h"
+#include "widgets/pages/parts/step_page.h"
 
 #include <QTimer>
 

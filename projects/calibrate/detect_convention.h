@@ -12,15 +12,11 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "core/calibration/pose/convention_detective.h"
+#include "projects/calibrate/methods/method.h"
 
 namespace seamwright {
-
-// The method's data hold poses that a residual depends on: tcp-sphere, hand-eye, stripe-camera.
-bool can_detect_convention(std::string_view method);
 
 struct ConventionAnswer {
     DetectedConvention found;
@@ -29,8 +25,8 @@ struct ConventionAnswer {
     std::vector<std::string> codes;  // the offer as "LIST=CODE"
 };
 // Error (input): data that the method refuses for another reason than its poses; no poses. Error (usage): a method
-// without such poses; static's chain of poses is solved by one product and leaves no residual.
-Expected<ConventionAnswer> detect_pose_convention(std::string_view method, const nlohmann::json& data,
-                                                  const std::vector<std::string>& exclude);
+// without convention_fits: static's chain of poses is solved by one product and leaves no residual.
+Expected<ConventionAnswer> detect_pose_convention(const CalibrationMethod& method, const nlohmann::json& data,
+                                                  const ExcludedIds& exclude);
 
 }  // namespace seamwright

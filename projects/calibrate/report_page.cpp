@@ -6,7 +6,6 @@
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/input/pose_lists.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 
@@ -16,30 +15,29 @@ namespace {
 using nlohmann::json;
 using namespace report;
 
-std::string cell(const json& value) {
-    if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
-    if (value.is_string()) return value.get<std::string>();
-    return value.is_null() ? "-" : value.dump();
+std::string cell(double value) {
+    return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
 }
 
-void residual_plots(Page& page, const json& result) {
-    const json poses = result.value("per_pose", json::array());
-    for (const auto& [key, label] :
-         {std::pair{"rms_mm", "residual (mm)"}, {"deg", "residual (deg)"}, {"rms_px", "residual (px)"}}) {
+void residual_plots(Page& page, const CalibrationReport& report) {
+    constexpr std::size_t kNamedBars = 16;
+    for (const auto& [part, label] : {std::pair{&PoseResidual::rms_mm, "residual (mm)"},
+                                      {&PoseResidual::deg, "residual (deg)"},
+                                      {&PoseResidual::rms_px, "residual (px)"}}) {
         Plot plot;
         plot.title = "Residual per pose";
         plot.y_label = label;
         Series used{"used", {}, {}, Mark::bars, colour::kBlue},
             left_out{"left out", {}, {}, Mark::bars, colour::kAmber};
         bool any = false;
-        for (const json& pose : poses) {
+        for (const PoseResidual& pose : report.poses) {
             const double x = static_cast<double>(plot.categories.size());
-            plot.categories.push_back(poses.size() > 16 ? fmt::format("{}", plot.categories.size() + 1)
-                                                        : cell(pose["id"]));
-            if (!pose.contains(key) || !pose[key].is_number()) continue;
-            Series& series = pose.value("used", true) ? used : left_out;
+            plot.categories.push_back(
+                report.poses.size() > kNamedBars ? fmt::format("{}", plot.categories.size() + 1) : pose.id);
+            if (!std::isfinite(pose.*part)) continue;
+            Series& series = pose.used ? used : left_out;
             series.x.push_back(x);
-            series.y.push_back(pose[key].get<double>());
+            series.y.push_back(pose.*part);
             any = true;
         }
         if (!any) continue;
@@ -132,41 +130,41 @@ void pose_plots(Page& page, const json& data, const json& result) {
 
 }  // namespace
 
-std::string calibration_report(const std::string& method, const json& data, const json& result) {
-    Page page("Calibration: " + method);
-    const Verdict verdict = verdict_of(result);
-    page.verdict(std::string(name_of(verdict)), tone_of(verdict), result.value("reason", ""));
-    if (!result.value("cure", "").empty()) page.paragraph(result.value("cure", ""));
-    for (const json& notice : result.value("notices", json::array())) page.paragraph(cell(notice));
+std::string calibration_report(const CalibrationMethod& method, const json& data,
+                               const CalibrationSolution& solution) {
+    const CalibrationReport& report = solution.report;
+    Page page("Calibration: " + method.id);
+    page.verdict(std::string(name_of(solution.verdict())), tone_of(solution.verdict()),
+                 report.judgement.reason.english());
+    if (!report.judgement.cure.empty()) page.paragraph(report.judgement.cure.english());
+    for (const Text& notice : solution.notices) page.paragraph(notice.english());
     page.heading("Parameters");
     std::vector<std::vector<std::string>> rows = {{"name", "value", "sigma", "unit"}};
-    for (const json& p : result.value("parameters", json::array()))
-        rows.push_back({cell(p["name"]), cell(p["value"]), cell(p["sigma"]), cell(p["unit"])});
+    for (const auto& p : report.parameters) rows.push_back({p.name, cell(p.value), cell(p.sigma), p.unit});
     page.table(rows);
-    if (result.contains("correlations") && !result["correlations"].empty()) {
+    if (!report.correlations.empty()) {
         rows = {{"first", "second", "correlation"}};
-        for (const json& c : result["correlations"])
-            rows.push_back({cell(c["first"]), cell(c["second"]), cell(c["correlation"])});
+        for (const auto& c : report.correlations) rows.push_back({c.first, c.second, cell(c.correlation)});
         page.table(rows, "Parameters that the data can hardly tell apart");
     }
     page.heading("Residuals");
-    residual_plots(page, result);
+    residual_plots(page, report);
     rows = {{"pose", "rms (mm)", "deg", "rms (px)", "used", "note"}};
-    for (const json& p : result.value("per_pose", json::array()))
-        rows.push_back({cell(p["id"]), cell(p["rms_mm"]), cell(p["deg"]), cell(p["rms_px"]),
-                        p.value("used", true) ? "yes" : "no", p.value("note", "")});
+    for (const auto& p : report.poses)
+        rows.push_back(
+            {p.id, cell(p.rms_mm), cell(p.deg), cell(p.rms_px), p.used ? "yes" : "no", p.note.english()});
     page.table(rows);
-    if (result.contains("hold_out") && result["hold_out"].is_object()) {
+    if (method.keeps_back) {
+        const HoldOut& h = report.hold_out;
         page.heading("Verification on poses not used");
-        rows = {{"folds", "left out", "rms (mm)", "largest (mm)", "rms (deg)", "rms (px)"}, {}};
-        for (const char* key : {"folds", "left_out", "rms_mm", "max_mm", "rms_deg", "rms_px"})
-            rows[1].push_back(result["hold_out"].contains(key) ? cell(result["hold_out"][key]) : "-");
-        page.table(rows);
+        page.table({{"folds", "left out", "rms (mm)", "largest (mm)", "rms (deg)", "rms (px)"},
+                    {std::to_string(h.folds), std::to_string(h.left_out), cell(h.rms_mm), cell(h.max_mm),
+                     cell(h.rms_deg), cell(h.rms_px)}});
     }
     page.heading("Geometry");
     coverage_plot(page, data);
-    const auto usual = with_usual_poses(method, data);
-    pose_plots(page, usual ? usual->data() : data, result);
+    const auto usual = with_usual_poses(method.poses, data);
+    pose_plots(page, usual ? usual->data() : data, solution.document);
     return page.html();
 }
 

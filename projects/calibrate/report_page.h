@@ -1,13 +1,14 @@
 #pragma once
 // `calibrate ... --report FILE.html`: residuals, coverage of the field of view, pose geometry, on one page.
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "projects/calibrate/methods/method.h"
 
 namespace seamwright {
 
-// `result` as in commands.h; `data` is what was solved. Pictures that the data cannot give are left out.
-std::string calibration_report(const std::string& method, const nlohmann::json& data,
-                               const nlohmann::json& result);
+// `data` is what was solved. Pictures that the data cannot give are left out.
+std::string calibration_report(const CalibrationMethod& method, const nlohmann::json& data,
+                               const CalibrationSolution& solution);
 
 }  // namespace seamwright

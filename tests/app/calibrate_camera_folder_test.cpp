@@ -26,13 +26,22 @@ fs::path scratch(const std::string& name) {
     return p;
 }
 
+Expected<CalibrationSolution> solved_folder(const char* method, const fs::path& folder, const char* board,
+                                            double pitch_mm, const char* pattern = "chessboard",
+                                            const ExcludedIds& exclude = {}) {
+    const CalibrationMethod& m = *find_method(method);
+    auto data = m.data_of_images({folder.string(), board, pitch_mm, pattern, exclude});
+    if (!data) return tl::unexpected(data.error());
+    return solve_calibration(m, *data, {});
+}
+
 TEST(StripeCameraCommand, RootAnswersByTheContract) {
     const fs::path folder = real_data() / "etna" / "root";
     if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no real data";
-    const auto r = calibrate_stripe_camera_folder(folder.string(), "7x6", 10, {});
+    const auto r = solved_folder("stripe-camera", folder, "7x6", 10);
     ASSERT_TRUE(r) << r.error().sentence();
-    const json& j = r->result;
-    EXPECT_EQ(r->exit_code, 0);
+    const json& j = r->document;
+    EXPECT_TRUE(serves(r->verdict()));
     EXPECT_EQ(j["status"], "ok");
     EXPECT_EQ(j["images"], 8);
     EXPECT_EQ(j["boards_found"], 8);
@@ -48,10 +57,10 @@ TEST(StripeCameraCommand, RootAnswersByTheContract) {
 TEST(CameraCommand, CircleGridWithOneBigDot) {
     const fs::path folder = real_data() / "robot_cal_tools" / "test_set_10x10" / "images";
     if (!fs::exists(folder)) GTEST_SKIP() << "skipped: no real data";
-    const auto r = calibrate_camera_folder(folder.string(), "10x10", 25.4, "circles", {});
+    const auto r = solved_folder("camera", folder, "10x10", 25.4, "circles");
     ASSERT_TRUE(r) << r.error().sentence();
-    const json& c = r->result["camera"];
-    EXPECT_EQ(r->result["boards_found"], 15);
+    const json& c = r->document["camera"];
+    EXPECT_EQ(r->document["boards_found"], 15);
     EXPECT_NEAR(c["fx"].get<double>(), 542.324, 5.4);
     EXPECT_NEAR(c["fy"].get<double>(), 543.515, 5.4);
     EXPECT_NEAR(c["cx"].get<double>(), 320.474, 3.2);
@@ -67,31 +76,30 @@ TEST(CameraCommand, OpenCVsLeftChessboards) {
         const std::string name = std::string("left") + (i < 10 ? "0" : "") + std::to_string(i) + ".jpg";
         if (fs::exists(examples / name)) fs::copy_file(examples / name, folder / name);
     }
-    const auto r = calibrate_camera_folder(folder.string(), "9x6", 25, "chessboard", {});
+    const auto r = solved_folder("camera", folder, "9x6", 25, "chessboard");
     ASSERT_TRUE(r) << r.error().sentence();
-    EXPECT_EQ(r->result["boards_found"], 13);
-    EXPECT_NEAR(r->result["camera"]["fx"].get<double>() / 535.916, 1, 0.005);
-    EXPECT_LE(r->result["reprojection_rms_px"].get<double>(), 0.42);
+    EXPECT_EQ(r->document["boards_found"], 13);
+    EXPECT_NEAR(r->document["camera"]["fx"].get<double>() / 535.916, 1, 0.005);
+    EXPECT_LE(r->document["reprojection_rms_px"].get<double>(), 0.42);
     fs::remove_all(folder);
 }
 
 TEST(PlateFolders, BadInputIsOneSentence) {
-    const auto said = [](const Expected<CalibrateOutcome>& r) {
+    const auto said = [](const Expected<CalibrationSolution>& r) {
         return r ? std::string("accepted") : r.error().sentence();
     };
-    EXPECT_THAT(said(calibrate_stripe_camera_folder("/nowhere", "7x6", 10, {})), HasSubstr("no folder"));
+    EXPECT_THAT(said(solved_folder("stripe-camera", "/nowhere", "7x6", 10)), HasSubstr("no folder"));
     const fs::path empty = scratch("empty");
-    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", 10, {})), HasSubstr("no image"));
-    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7by6", 10, {})), HasSubstr("7by6"));
-    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", 0.01, {})), HasSubstr("metres"));
-    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", -1, {})), HasSubstr("positive"));
-    EXPECT_THAT(said(calibrate_camera_folder(empty.string(), "7x6", 10, "squares", {})),
-                HasSubstr("squares"));
+    EXPECT_THAT(said(solved_folder("stripe-camera", empty, "7x6", 10)), HasSubstr("no image"));
+    EXPECT_THAT(said(solved_folder("stripe-camera", empty, "7by6", 10)), HasSubstr("7by6"));
+    EXPECT_THAT(said(solved_folder("stripe-camera", empty, "7x6", 0.01)), HasSubstr("metres"));
+    EXPECT_THAT(said(solved_folder("stripe-camera", empty, "7x6", -1)), HasSubstr("positive"));
+    EXPECT_THAT(said(solved_folder("camera", empty, "7x6", 10, "squares")), HasSubstr("squares"));
     std::ofstream(empty / "frame1.png") << "this is no image";
-    const auto broken = calibrate_stripe_camera_folder(empty.string(), "7x6", 10, {});
+    const auto broken = solved_folder("stripe-camera", empty, "7x6", 10);
     EXPECT_THAT(said(broken), HasSubstr("frame1"));
     EXPECT_EQ(broken.error().kind, ErrorKind::input);
-    EXPECT_THAT(said(calibrate_stripe_camera_folder(empty.string(), "7x6", 10, {"frame7"})),
+    EXPECT_THAT(said(solved_folder("stripe-camera", empty, "7x6", 10, "chessboard", {"frame7"})),
                 HasSubstr("frame7"));
     fs::remove_all(empty);
 }
@@ -101,7 +109,7 @@ TEST(CameraCommand, RefusesMalformedData) {
                              R"({"size":[640,480],"views":[]})", R"({"size":[0,480],"views":[]})",
                              R"({"size":[640,480],"views":[{"points":[{"object":[0,0],"pixel":[1,1]}]}]})",
                              R"({"size":[640,480],"views":[{"id":"a","points":[]}]})"}) {
-        const auto r = calibrate_camera_json(json::parse(text), {});
+        const auto r = solve_calibration(*find_method("camera"), json::parse(text), {});
         ASSERT_FALSE(r) << text;
         EXPECT_FALSE(r.error().sentence().empty());
     }

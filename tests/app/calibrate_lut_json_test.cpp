@@ -4,6 +4,7 @@
 #include "core/profile/sensor_model.h"
 #include "devices/exchange/lookup_table_file.h"
 #include "projects/calibrate/methods/methods.h"
+#include "tests/app/run_program.h"
 #include "tests/core/calibration/camera/camera_scene.h"
 #include "tests/devices/temporary_folder.h"
 
@@ -29,15 +30,29 @@ json grid(int side, double noise_px) {
     return data;
 }
 
+Expected<CalibrationSolution> solved_lut(const json& data, const ExcludedIds& exclude = {}) {
+    return solve_calibration(*find_method("lut"), data, exclude);
+}
+
+// As the command line does it: the table goes to `path`.
+ProgramResult table_of(const json& data, const TemporaryFolder& folder, const std::filesystem::path& path,
+                       const char* exclude = "") {
+    const auto file = folder.path() / "data.json";
+    std::ofstream(file) << data.dump();
+    std::vector<std::string> arguments{"calibrate", "lut", file.string(), "--table", path.string(),
+                                       "--json",    "-"};
+    if (*exclude) arguments.insert(arguments.end(), {"--exclude", exclude});
+    return run_program(arguments, folder.path());
+}
+
 TEST(CalibrateLutJson, FollowsTheContractAndWritesTheTable) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "sensor.lut";
     json data = grid(15, 0.1);
     data["step_px"] = 16;
-    const auto outcome = calibrate_lut_json(data, {"3"}, path.string());
-    ASSERT_TRUE(outcome) << outcome.error().sentence();
-    EXPECT_EQ(outcome->exit_code, 0);
-    const json& r = outcome->result;
+    const auto outcome = table_of(data, folder, path, "3");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const json r = json::parse(outcome.out);
     EXPECT_EQ(r["status"], "ok");
     EXPECT_EQ(r["verdict"], "good") << r["reason"];
     EXPECT_EQ(r["table"]["step_u"], 16);
@@ -64,24 +79,24 @@ TEST(CalibrateLutJson, WritesNoTableThatMustNotBeUsed) {
     const auto path = folder.path() / "sensor.lut";
     json line{{"size", {640, 480}}, {"pairs", json::array()}};
     for (int i = 0; i < 30; ++i) line["pairs"].push_back({{"pixel", {20 * i, 100}}, {"laser", {3 * i, 5}}});
-    const auto outcome = calibrate_lut_json(line, {}, path.string());
-    ASSERT_TRUE(outcome) << outcome.error().sentence();
-    EXPECT_EQ(outcome->exit_code, 1);
-    EXPECT_EQ(outcome->result["status"], "undetermined");
-    EXPECT_TRUE(outcome->result["table"].is_null());
-    EXPECT_TRUE(outcome->result["forward_rms_mm"].is_null());
-    EXPECT_TRUE(outcome->result["table_file"].is_null());
+    const auto outcome = table_of(line, folder, path);
+    ASSERT_EQ(outcome.exit_code, 1) << outcome.err;
+    const json r = json::parse(outcome.out);
+    EXPECT_EQ(r["status"], "undetermined");
+    EXPECT_TRUE(r["table"].is_null());
+    EXPECT_TRUE(r["forward_rms_mm"].is_null());
+    EXPECT_TRUE(r["table_file"].is_null());
     EXPECT_FALSE(std::filesystem::exists(path));
-    EXPECT_FALSE(calibrate_lut_json(grid(8, 0.1), {}, (folder.path() / "no" / "where.lut").string()));
+    EXPECT_EQ(table_of(grid(8, 0.1), folder, folder.path() / "no" / "where.lut").exit_code, 3);
 }
 
 TEST(CalibrateLutJson, RefusesBadInput) {
     const json good = grid(8, 0.1);
-    EXPECT_TRUE(calibrate_lut_json(good, {}));
+    EXPECT_TRUE(solved_lut(good));
     const auto refused = [&](const char* pointer, json value) {
         json data = good;
         data[json::json_pointer(pointer)] = std::move(value);
-        return !calibrate_lut_json(data, {}).has_value();
+        return !solved_lut(data).has_value();
     };
     EXPECT_TRUE(refused("/size", json::array({640})));
     EXPECT_TRUE(refused("/size", json::array({0, 480})));
@@ -95,8 +110,8 @@ TEST(CalibrateLutJson, RefusesBadInput) {
     EXPECT_TRUE(refused("/pairs/4/pixel", nullptr));
     EXPECT_TRUE(refused("/pairs/4/laser", json::array({"a", 2})));
     EXPECT_TRUE(refused("/pairs/4/id", json::object()));
-    EXPECT_FALSE(calibrate_lut_json(json(3), {}));
-    EXPECT_FALSE(calibrate_lut_json(good, {"nobody"}));
+    EXPECT_FALSE(solved_lut(json(3)));
+    EXPECT_FALSE(solved_lut(good, {"nobody"}));
 }
 
 }  // namespace

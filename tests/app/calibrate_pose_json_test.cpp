@@ -32,10 +32,10 @@ TEST(CalibrateJson, TcpSphereFollowsTheContract) {
     Random random(1);
     const SphereCell cell = any_cell(random);
     const auto observations = sphere_observations(cell, 9, random);
-    auto outcome = calibrate_tcp_sphere_json(sphere_json(cell, observations), {});
+    auto outcome = solve_calibration(*find_method("tcp-sphere"), sphere_json(cell, observations), {});
     ASSERT_TRUE(outcome.has_value()) << outcome.error().sentence();
-    EXPECT_EQ(outcome->exit_code, 0);
-    const json& r = outcome->result;
+    EXPECT_TRUE(serves(outcome->verdict()));
+    const json& r = outcome->document;
     EXPECT_EQ(r["status"], "ok");
     EXPECT_EQ(r["verdict"], "good");
     const auto pose = parse_pose(r["flange_from_sensor"], "flange_from_sensor");
@@ -48,24 +48,24 @@ TEST(CalibrateJson, TcpSphereFollowsTheContract) {
     for (const char* key : {"xyz_mm", "abc_deg", "centre_mm"}) EXPECT_EQ(r["sigma"][key].size(), 3u) << key;
     EXPECT_EQ(r["covariance"].size(), 9u);
 
-    const auto fewer = calibrate_tcp_sphere_json(sphere_json(cell, observations), {"P2"});
+    const auto fewer = solve_calibration(*find_method("tcp-sphere"), sphere_json(cell, observations), {"P2"});
     ASSERT_TRUE(fewer.has_value());
-    EXPECT_FALSE(fewer->result["per_pose"][1]["used"].get<bool>());
+    EXPECT_FALSE(fewer->document["per_pose"][1]["used"].get<bool>());
 }
 
 TEST(CalibrateJson, UndeterminedHasNoNumbersAndExitCodeOne) {
     Random random(2);
     SphereCell cell = any_cell(random);
     cell.tilt_deg = cell.turn_deg = 0;
-    const auto outcome =
-        calibrate_tcp_sphere_json(sphere_json(cell, sphere_observations(cell, 9, random)), {});
+    const auto outcome = solve_calibration(*find_method("tcp-sphere"),
+                                           sphere_json(cell, sphere_observations(cell, 9, random)), {});
     ASSERT_TRUE(outcome.has_value());
-    EXPECT_EQ(outcome->exit_code, 1);
-    EXPECT_EQ(outcome->result["status"], "undetermined");
-    EXPECT_EQ(outcome->result["verdict"], "undetermined");
-    EXPECT_TRUE(outcome->result["flange_from_sensor"].is_null());
-    EXPECT_TRUE(outcome->result["radius_mm"].is_null());
-    EXPECT_FALSE(outcome->result["proposals"].empty());
+    EXPECT_FALSE(serves(outcome->verdict()));
+    EXPECT_EQ(outcome->document["status"], "undetermined");
+    EXPECT_EQ(outcome->document["verdict"], "undetermined");
+    EXPECT_TRUE(outcome->document["flange_from_sensor"].is_null());
+    EXPECT_TRUE(outcome->document["radius_mm"].is_null());
+    EXPECT_FALSE(outcome->document["proposals"].empty());
 }
 
 TEST(CalibrateJson, TcpSphereRefusesHostileData) {
@@ -73,7 +73,7 @@ TEST(CalibrateJson, TcpSphereRefusesHostileData) {
     const SphereCell cell = any_cell(random);
     const json good = sphere_json(cell, sphere_observations(cell, 6, random));
     const auto expect_error = [](const json& data, const char* word) {
-        const auto outcome = calibrate_tcp_sphere_json(data, {});
+        const auto outcome = solve_calibration(*find_method("tcp-sphere"), data, {});
         ASSERT_FALSE(outcome.has_value()) << word;
         EXPECT_THAT(outcome.error().sentence(), HasSubstr(word));
     };
@@ -117,17 +117,19 @@ TEST(CalibrateJson, HandEyeBothMounts) {
         for (const auto& pair : hand_eye_pairs(cell, 9, random))
             data["pairs"].push_back({{"base_from_flange", pose_json(pair.base_from_flange)},
                                      {"camera_from_target", pose_json(pair.camera_from_target)}});
-        const auto outcome = calibrate_hand_eye_json(data, {});
+        const auto outcome = solve_calibration(*find_method("hand-eye"), data, {});
         ASSERT_TRUE(outcome.has_value()) << outcome.error().sentence();
-        EXPECT_EQ(outcome->exit_code, 0) << outcome->result["reason"];
+        EXPECT_TRUE(serves(outcome->verdict())) << outcome->document["reason"];
         const char* key = cell.mount == Mount::eye_in_hand ? "flange_from_camera" : "base_from_camera";
-        const auto pose = parse_pose(outcome->result[key], key);
+        const auto pose = parse_pose(outcome->document[key], key);
         ASSERT_TRUE(pose.has_value());
         EXPECT_LT(distance_mm(*pose, cell.x), 3);
-        EXPECT_EQ(outcome->result["per_pose"][8]["id"], "8");
+        EXPECT_EQ(outcome->document["per_pose"][8]["id"], "8");
     }
-    EXPECT_FALSE(calibrate_hand_eye_json({{"mount", "sideways"}, {"pairs", json::array()}}, {}).has_value());
-    EXPECT_FALSE(calibrate_hand_eye_json({{"pairs", json::array()}}, {}).has_value());
+    EXPECT_FALSE(
+        solve_calibration(*find_method("hand-eye"), {{"mount", "sideways"}, {"pairs", json::array()}}, {})
+            .has_value());
+    EXPECT_FALSE(solve_calibration(*find_method("hand-eye"), {{"pairs", json::array()}}, {}).has_value());
 }
 
 TEST(CalibrateJson, PlateStaticAndDrift) {
@@ -138,10 +140,10 @@ TEST(CalibrateJson, PlateStaticAndDrift) {
         const Eigen::Vector3d p(uniform(random, -100, 100), uniform(random, -100, 100), 0), w = truth * p;
         plate["points"].push_back({{"plate", {p.x(), p.y(), p.z()}}, {"world", {w.x(), w.y(), w.z()}}});
     }
-    const auto solved = calibrate_plate_json(plate, {});
+    const auto solved = solve_calibration(*find_method("plate"), plate, {});
     ASSERT_TRUE(solved.has_value()) << solved.error().sentence();
-    EXPECT_EQ(solved->exit_code, 0);
-    EXPECT_LT(distance_mm(*parse_pose(solved->result["world_from_plate"], ""), truth), 1e-6);
+    EXPECT_TRUE(serves(solved->verdict()));
+    EXPECT_LT(distance_mm(*parse_pose(solved->document["world_from_plate"], ""), truth), 1e-6);
 
     const Pose plate_from_camera = make_pose(any_rotation(random), {0, 20, 300});
     const Pose camera_from_laser = make_pose(any_rotation(random), {5, 60, 100});
@@ -149,14 +151,14 @@ TEST(CalibrateJson, PlateStaticAndDrift) {
     chain["world_from_plate"] = {{"pose", pose_json(truth)}, {"sigma_mm", 0.01}, {"sigma_deg", 0.001}};
     chain["camera_from_plate"] = pose_json(plate_from_camera.inverse());
     chain["camera_from_laser"] = pose_json(camera_from_laser);
-    const auto one = calibrate_static_json(chain, {});
+    const auto one = solve_calibration(*find_method("static"), chain, {});
     ASSERT_TRUE(one.has_value()) << one.error().sentence();
-    EXPECT_EQ(one->exit_code, 0);
-    EXPECT_LT(distance_mm(*parse_pose(one->result["world_from_laser"], ""),
+    EXPECT_TRUE(serves(one->verdict()));
+    EXPECT_LT(distance_mm(*parse_pose(one->document["world_from_laser"], ""),
                           truth * plate_from_camera * camera_from_laser),
               1e-6);
     chain["camera_from_laser"] = 3;
-    EXPECT_FALSE(calibrate_static_json(chain, {}).has_value());
+    EXPECT_FALSE(solve_calibration(*find_method("static"), chain, {}).has_value());
 
     const SphereCell cell = any_cell(random);
     json drift;
@@ -172,16 +174,16 @@ TEST(CalibrateJson, PlateStaticAndDrift) {
             drift["observations"].push_back(o);
         }
     }
-    const auto held = check_drift_json(drift, {});
+    const auto held = solve_calibration(*find_method("drift"), drift, {});
     ASSERT_TRUE(held.has_value()) << held.error().sentence();
-    EXPECT_EQ(held->result["status"], "holds") << held->result["reason"];
+    EXPECT_EQ(held->document["status"], "holds") << held->document["reason"];
     drift["flange_from_sensor"] =
         pose_json(retract(cell.flange_from_sensor, (Vector6() << 0.6, -0.5, 0.4, 0, 0, 0).finished()));
-    const auto moved = check_drift_json(drift, {});
+    const auto moved = solve_calibration(*find_method("drift"), drift, {});
     ASSERT_TRUE(moved.has_value());
-    EXPECT_EQ(moved->result["status"], "drifted");
-    EXPECT_EQ(moved->exit_code, 1);
-    EXPECT_NEAR(moved->result["change_mm"].get<double>(), std::sqrt(0.77), 0.15);
+    EXPECT_EQ(moved->document["status"], "drifted");
+    EXPECT_FALSE(serves(moved->verdict()));
+    EXPECT_NEAR(moved->document["change_mm"].get<double>(), std::sqrt(0.77), 0.15);
 }
 
 }  // namespace

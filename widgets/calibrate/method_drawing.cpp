@@ -12,8 +12,8 @@ MethodDrawing::MethodDrawing(QWidget* parent) : QWidget(parent) {
     setSizePolicy(QSizePolicy::Fixed, QSizePolicy::Fixed);
 }
 
-void MethodDrawing::set_method(const QString& id) {
-    id_ = id;
+void MethodDrawing::set_drawing(SetUpDrawing what) {
+    what_ = what;
     update();
 }
 
@@ -26,7 +26,8 @@ void MethodDrawing::paintEvent(QPaintEvent*) {
     p.scale(scale, scale);
     const QPen thin(style::text(palette()), 1.2), bold(style::text(palette()), 2),
         laser(style::alarm(palette()), 1.2), stripe(style::alarm(palette()), 2.4);
-    const bool fixed = id_ == "static", no_sensor = id_ == "plate";
+    const bool fixed = what_ == SetUpDrawing::several_sensors,
+               no_sensor = what_ == SetUpDrawing::plate_in_world;
     QColor fan = style::alarm(palette());
     fan.setAlpha(45);
     if (!no_sensor) {
@@ -50,26 +51,26 @@ void MethodDrawing::paintEvent(QPaintEvent*) {
     }
     p.setBrush(style::plot_ground(palette()));
     p.setPen(thin);
-    if (id_ == "tcp-sphere" || id_ == "drift") {
+    if (what_ == SetUpDrawing::sphere || what_ == SetUpDrawing::moved_sphere) {
         p.drawLine(QPointF(50, 78), QPointF(50, 97));
         p.drawLine(QPointF(36, 97), QPointF(64, 97));
         p.drawEllipse(QPointF(50, 66), 17, 17);
         p.setPen(stripe);
         p.setBrush(Qt::NoBrush);
         p.drawArc(QRectF(34, 51, 32, 14), 0, 180 * 16);
-        if (id_ == "drift") {
+        if (what_ == SetUpDrawing::moved_sphere) {
             p.setPen(QPen(style::attention(palette()), 1.6, Qt::DashLine));
             p.drawEllipse(QPointF(55, 64), 17, 17);
         }
-    } else if (id_ == "laser-plane") {
+    } else if (what_ == SetUpDrawing::triangle) {
         p.drawPolygon(QPolygonF{QPointF(22, 92), QPointF(50, 62), QPointF(78, 92)});
         p.setPen(stripe);
         p.drawPolyline(QPolygonF{QPointF(27, 87), QPointF(50, 62), QPointF(73, 87)});
-    } else if (id_ == "lens" || id_ == "lut") {
+    } else if (what_ == SetUpDrawing::plane || what_ == SetUpDrawing::dotted_plane) {
         p.drawPolygon(QPolygonF{QPointF(12, 92), QPointF(26, 72), QPointF(90, 72), QPointF(78, 92)});
         p.setPen(stripe);
         p.drawLine(QPointF(24, 80), QPointF(84, 80));
-        if (id_ == "lut") {
+        if (what_ == SetUpDrawing::dotted_plane) {
             p.setPen(thin);
             for (int i = 0; i < 6; ++i) p.drawEllipse(QPointF(28 + 10 * i, 86), 1.6, 1.6);
         }
@@ -88,7 +89,7 @@ void MethodDrawing::paintEvent(QPaintEvent*) {
                     p.drawPolygon(QPolygonF{at(i / 7.0, k / 4.0), at((i + 1) / 7.0, k / 4.0),
                                             at((i + 1) / 7.0, (k + 1) / 4.0), at(i / 7.0, (k + 1) / 4.0)});
         p.setPen(stripe);
-        if (!no_sensor && id_ != "hand-eye") p.drawLine(at(0.05, 0.5), at(0.95, 0.5));
+        if (!no_sensor && what_ != SetUpDrawing::board) p.drawLine(at(0.05, 0.5), at(0.95, 0.5));
         if (no_sensor) {
             // Measured points and the world's axes.
             p.setBrush(style::alarm(palette()));

@@ -1,8 +1,9 @@
 #pragma once
 // One line drawing a method: what stands where.
 
-#include <QString>
 #include <QWidget>
+
+#include "projects/calibrate/methods/method.h"
 
 namespace seamwright {
 
@@ -10,7 +11,7 @@ class MethodDrawing : public QWidget {
     Q_OBJECT
   public:
     explicit MethodDrawing(QWidget* parent = nullptr);
-    void set_method(const QString& id);
+    void set_drawing(SetUpDrawing what);
     QSize sizeHint() const override { return {150, 150}; }
     QSize minimumSizeHint() const override { return {120, 120}; }
 
@@ -18,7 +19,7 @@ class MethodDrawing : public QWidget {
     void paintEvent(QPaintEvent* event) override;
 
   private:
-    QString id_;
+    SetUpDrawing what_ = SetUpDrawing::board;
 };
 
 }  // namespace seamwright

@@ -99,7 +99,8 @@ Expected<void> CalibrationDesk::open(const std::string& method, const std::strin
     session_ = std::move(*session);
     for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())
-        if (auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+        if (auto settings = prepared_settings(session_->method(), session_->state().settings, base(),
+                                              desk_.project().calibrations);
             settings && *settings != session_->state().settings)
             (void)session_->set_settings(std::move(*settings));
     emit changed();
@@ -194,21 +195,13 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
 }
 
 Expected<nlohmann::json> CalibrationDesk::capture_settings() const {
-    auto settings = prepared_settings(session_->method(), session_->state().settings, base());
+    auto settings = prepared_settings(session_->method(), session_->state().settings, base(),
+                                      desk_.project().calibrations);
     // What captures are measured from goes with them.
     if (settings && session_->state().captures.empty()) settings->erase("anchor");
     if (settings && session_->method().capture == CaptureKind::board_chain) {
         if (!stays_beside(session_->state(), shot_sensors())) settings->erase("reference_from_world");
     }
-    // The plate's newest place.
-    if (settings && session_->method().id == "static")
-        for (const Calibration& c : desk_.project().calibrations)
-            if (c.method == "plate" && c.result.contains("world_from_plate") &&
-                c.result["world_from_plate"].is_object()) {
-                nlohmann::json link{{"pose", c.result["world_from_plate"]}};
-                if (c.result.contains("covariance_pose")) link["covariance"] = c.result["covariance_pose"];
-                (*settings)["world_from_plate"] = std::move(link);
-            }
     return settings;
 }
 
@@ -350,7 +343,7 @@ void CalibrationDesk::load(const std::filesystem::path& path) {
 }
 
 void CalibrationDesk::solve_when_due() {
-    if (!session_ || session_->result() || session_->solving_captures() < session_->method().fewest) return;
+    if (!session_ || session_->solution() || session_->solving_captures() < session_->method().fewest) return;
     solve();
 }
 
@@ -362,8 +355,9 @@ void CalibrationDesk::solve() {
         return;
     }
     post([this, session = *session_, generation = generation_](const std::stop_token& cancelled) {
-        auto outcome = std::make_shared<Expected<CalibrateOutcome>>(
-            cancelled.stop_requested() ? Expected<CalibrateOutcome>(CalibrateOutcome{}) : session.solve());
+        auto outcome = std::make_shared<Expected<CalibrationSolution>>(
+            cancelled.stop_requested() ? Expected<CalibrationSolution>(CalibrationSolution{})
+                                       : session.solve());
         QMetaObject::invokeMethod(this, [this, outcome, generation, cancelled, of = session.state()] {
             solving_ = false;
             if (doing_ == tr("Solving")) set_doing({});

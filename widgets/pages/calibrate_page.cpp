@@ -8,7 +8,7 @@
 #include "devices/registry.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/measure.h"
-#include "widgets/calibrate/method_text.h"
+#include "widgets/calibrate/verdict_word.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {
@@ -43,12 +43,11 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
     add_field(*all, tr("Robot"), robot_, tr("The robot that carries it, or shows it the target"));
     connect(sensor_, &QComboBox::currentIndexChanged, this, [this] { refresh(); });
     for (const CalibrationMethod& method : calibration_methods()) {
-        const QString id = QString::fromStdString(method.id);
-        const MethodText words = method_text(id);
-        all->addWidget(make_heading(words.title));
-        all->addWidget(make_text(words.why));
-        auto* button = make_button("begin_" + id, "play", tr("Begin"), words.title,
-                                   [this, name = method.id] { begin(name); });
+        if (!method.guided) continue;
+        all->addWidget(make_heading(shown(method.title)));
+        all->addWidget(make_text(shown(method.why)));
+        auto* button = make_button("begin_" + QString::fromStdString(method.id), "play", tr("Begin"),
+                                   shown(method.title), [this, name = method.id] { begin(name); });
         begins_[method.id] = button;
         all->addLayout(make_row({button}));
     }

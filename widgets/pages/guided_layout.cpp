@@ -5,8 +5,8 @@
 #include <QHeaderView>
 #include <QShortcut>
 
-#include "widgets/pages/parts/form.h"
 #include "widgets/pages/guided_page.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/style.h"
 
 namespace seamwright {

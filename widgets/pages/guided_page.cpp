@@ -14,7 +14,6 @@
 
 #include "devices/registry.h"
 #include "projects/station/measure.h"
-#include "widgets/calibrate/method_text.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
@@ -171,7 +170,7 @@ void GuidedPage::go_there() {
 }
 
 void GuidedPage::load(bool folder) {
-    const QString text = method_text(QString::fromStdString(calibration_.session().method().id)).file;
+    const QString text = shown(calibration_.session().method().file);
     const QString chosen = folder ? QFileDialog::getExistingDirectory(this, text)
                                   : QFileDialog::getOpenFileName(this, text, {}, tr("Data (*.json)"));
     if (!chosen.isEmpty()) calibration_.load(chosen.toStdString());

@@ -8,11 +8,11 @@
 #include "projects/calibrate/session/answer.h"
 #include "projects/file/stored_text.h"
 #include "projects/station/measure.h"
-#include "widgets/calibrate/method_text.h"
+#include "widgets/calibrate/verdict_word.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
-#include "widgets/pages/parts/form.h"
 #include "widgets/pages/guided_page.h"
+#include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 
@@ -71,15 +71,16 @@ void GuidedPage::refresh() {
     const CalibrationSession& s = calibration_.session();
     if (shown_method_ != s.method().id + "/" + s.sensor_id()) {
         shown_method_ = s.method().id + "/" + s.sensor_id();
-        const MethodText words = method_text(text(s.method().id));
-        title_->setText(words.title);
+        title_->setText(shown(s.method().title));
         who_->setText(s.method().robot
                           ? tr("Sensor %1 on robot %2").arg(text(s.sensor_id()), text(s.robot_id()))
                           : tr("Sensor %1").arg(text(s.sensor_id())));
-        why_->setText(words.why);
-        need_->setText("• " + words.need.join("\n• "));
-        drawing_->set_method(text(s.method().id));
-        load_->setToolTip(words.file);
+        why_->setText(shown(s.method().why));
+        QStringList need;
+        for (const Text& one : s.method().need) need << shown(one);
+        need_->setText("• " + need.join("\n• "));
+        drawing_->set_drawing(s.method().drawing);
+        load_->setToolTip(shown(s.method().file));
         prepare_->setVisible(needs_shown_);
         target_->set_live({}, {}, false, tr("Waiting for the sensor"));
     }
@@ -130,7 +131,7 @@ void GuidedPage::refresh_settings() {
             editor->setObjectName("calibration_" + text(one.info.name));
             connect(editor, &ParameterEditor::committed, this,
                     [this, name = one.info.name](double value) { done(calibration_.set(name, value)); });
-            editor->set_name(setting_name(text(one.info.name)));
+            editor->set_name(shown(one.label));
             settings_box_->addWidget(editor);
             editor->set_value(setting(one, s.state().settings));
         }
@@ -189,7 +190,7 @@ void GuidedPage::refresh_table() {
         QString state = r.left_out       ? tr("left out")
                         : r.verification ? tr("verification")
                         : r.contradicts  ? tr("contradicts the others")
-                        : !s.result()    ? tr("captured")
+                        : !s.solution()  ? tr("captured")
                         : high           ? tr("stands out")
                                          : tr("used");
         const Tone tone = r.contradicts && !r.left_out ? Tone::alarm
@@ -224,8 +225,8 @@ void GuidedPage::refresh_table() {
         return std::any_of(rows.begin(), rows.end(),
                            [&](const PoseRow& r) { return std::isfinite(r.*part); });
     };
-    table_->setColumnHidden(1, s.result() && !any(&PoseRow::rms_mm));
-    table_->setColumnHidden(2, s.result() && !any(&PoseRow::deg));
+    table_->setColumnHidden(1, s.solution() && !any(&PoseRow::rms_mm));
+    table_->setColumnHidden(2, s.solution() && !any(&PoseRow::deg));
     table_->setColumnHidden(3, !any(&PoseRow::rms_px));
     const int n = s.solving_captures();
     count_->setText(n < s.method().fewest
@@ -302,10 +303,10 @@ void GuidedPage::refresh_next() {
 
 void GuidedPage::refresh_verdict() {
     const CalibrationSession& s = calibration_.session();
-    const json* r = s.result();
+    const CalibrationSolution* solution = s.solution();
     solve_box_->setVisible(!s.state().captures.empty());
-    parameters_->setVisible(r && r->contains("parameters") && !(*r)["parameters"].empty());
-    if (!r) {
+    parameters_->setVisible(solution && !solution->report.parameters.empty());
+    if (!solution) {
         set_verdict(
             *verdict_,
             s.solving_captures() < s.method().fewest ? tr("not enough captures") : tr("not solved yet"),
@@ -313,27 +314,23 @@ void GuidedPage::refresh_verdict() {
         reason_->setText({});
         return;
     }
-    const Verdict verdict = verdict_of(*r);
-    set_verdict(*verdict_, verdict_word(verdict), tone_of(verdict));
+    const Judgement& judgement = solution->report.judgement;
+    set_verdict(*verdict_, verdict_word(judgement.verdict), tone_of(judgement.verdict));
     QStringList lines;
-    if (s.method().capture == CaptureKind::board_chain)
-        for (const json& sensor : r->value("sensors", json::array()))
-            lines << shown(text_in(sensor, "reason"));
+    if (const auto* found = std::get_if<SensorChains>(&solution->found))
+        for (const SensorChains::Chain& chain : found->chains) lines << shown(chain.judgement.reason);
     else
-        lines << shown(text_in(*r, "reason"));
-    if (const Text cure = text_in(*r, "cure"); !cure.empty()) lines << tr("Cure: %1").arg(shown(cure));
-    for (const Text& notice : texts_in(*r, "notices")) lines << shown(notice);
+        lines << shown(judgement.reason);
+    if (!judgement.cure.empty()) lines << tr("Cure: %1").arg(shown(judgement.cure));
+    for (const Text& notice : solution->notices) lines << shown(notice);
     reason_->setText(lines.join("\n"));
     QVector<QStringList> rows;
-    for (const json& p : r->value("parameters", json::array())) {
-        const double sigma = p["sigma"].is_number() ? p["sigma"].get<double>() : kNone;
+    for (const CalibratedParameter& p : solution->report.parameters) {
         // As many decimals as the sigma deserves: two digits of it.
-        const int decimals = std::isfinite(sigma) && sigma > 0
-                                 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, 9)
+        const int decimals = std::isfinite(p.sigma) && p.sigma > 0
+                                 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(p.sigma))), 0, 9)
                                  : 4;
-        rows << QStringList{text(p.value("name", "")),
-                            number(p["value"].is_number() ? p["value"].get<double>() : kNone, decimals),
-                            number(sigma, decimals), text(p.value("unit", ""))};
+        rows << QStringList{text(p.name), number(p.value, decimals), number(p.sigma, decimals), text(p.unit)};
     }
     set_rows(*parameters_, rows);
 }
@@ -348,8 +345,8 @@ bool GuidedPage::stored() const {
 
 void GuidedPage::refresh_use() {
     const CalibrationSession& s = calibration_.session();
-    const json* r = s.result();
-    const bool kept_back = r && r->contains("per_pose") && s.method().use != AnswerUse::check;
+    const CalibrationSolution* solution = s.solution();
+    const bool kept_back = solution && s.method().keeps_back;
     verify_box_->setVisible(kept_back);
     verify_->setVisible(s.method().capture != CaptureKind::files);
     if (kept_back) {
@@ -383,7 +380,7 @@ void GuidedPage::refresh_use() {
     compared_->hide();
     stands_->hide();
     use_->setText(tr("Use this calibration"));
-    if (!r || s.method().use != AnswerUse::sensor) return;
+    if (!solution || s.method().use != AnswerUse::sensor) return;
     const auto made = calibrations_of_session(s, desk_.project());
     const bool chains = s.method().capture == CaptureKind::board_chain;
     if (!made) {

@@ -40,12 +40,15 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
     if (path.ends_with(".json")) {
         auto answer = read_json_file(path);
         if (!answer) return tl::unexpected(answer.error());
-        const std::string method = answer->is_object() ? answer->value("method", "") : "";
-        const CalibrationMethod* known = find_method(method);
-        if (!known || (method != "stripe-camera" && method != "tcp-sphere"))
+        const CalibrationMethod* method =
+            answer->is_object() ? find_method(answer->value("method", "")) : nullptr;
+        auto solution = solution_from_document(*answer);
+        const bool turns = solution && (std::holds_alternative<CameraAndLaser>(solution->found) ||
+                                        std::holds_alternative<SensorOnFlange>(solution->found));
+        if (!method || !solution || (!turns && solution->verdict() != Verdict::undetermined))
             return input_error("is no answer of calibrate stripe-camera or tcp-sphere", path,
                                "give that, or a project that holds the calibration");
-        auto made = calibration_of_result(*known, json::object(), {}, *answer, nullptr);
+        auto made = calibration_of_solution(*method, json::object(), {}, *solution, nullptr);
         if (!made) return made;
         made->id = fs::path(path).stem().string();
         made->source = path;

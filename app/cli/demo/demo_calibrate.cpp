@@ -11,7 +11,7 @@
 #include "core/profile/peaks.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/input/stripe_line_points.h"
-#include "projects/calibrate/session/target_views.h"
+#include "projects/calibrate/methods/target_views.h"
 #include "projects/station/acquire.h"
 
 namespace seamwright::cli {

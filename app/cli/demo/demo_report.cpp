@@ -30,12 +30,14 @@ void calibration_chapter(Page& page, const DemoOutcome& o) {
         page.paragraph(step.summary);
         Plot plot;
         plot.title = step.name + ": residual per pose";
-        plot.y_label = step.name == "tcp-sphere" ? "rms (mm)" : "rms (px)";
+        const bool in_px = std::any_of(step.report.poses.begin(), step.report.poses.end(),
+                                       [](const PoseResidual& p) { return std::isfinite(p.rms_px); });
+        plot.y_label = in_px ? "rms (px)" : "rms (mm)";
         Series bars;
         bars.mark = Mark::bars;
         for (const PoseResidual& pose : step.report.poses) {
             bars.x.push_back(static_cast<double>(plot.categories.size()));
-            bars.y.push_back(step.name == "tcp-sphere" ? pose.rms_mm : pose.rms_px);
+            bars.y.push_back(in_px ? pose.rms_px : pose.rms_mm);
             plot.categories.push_back(fmt::format("{}", plot.categories.size() + 1));
         }
         plot.series = {bars};

@@ -10,13 +10,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kSaid = "pose_convention";
-constexpr const char* kRobot = "base_from_flange";
-
-constexpr PoseListPlace kPlaces[] = {
-    {"tcp-sphere", "observations", kRobot},      {"hand-eye", "pairs", kRobot},
-    {"hand-eye", "pairs", "camera_from_target"}, {"stripe-camera", "frames", kRobot},
-    {"drift", "observations", kRobot},           {"drift", "measurements", kRobot},
-};
+constexpr const char* kRobot = kRobotPose.data();
 
 // What the data say of this list.
 Expected<std::optional<PoseConvention>> said_of(const json& data, std::string_view key) {
@@ -57,16 +51,9 @@ std::string where_of(const PoseListPlace& place, std::size_t index) {
 
 }  // namespace
 
-std::vector<PoseListPlace> pose_lists_of(std::string_view method) {
-    std::vector<PoseListPlace> places;
-    for (const PoseListPlace& place : kPlaces)
-        if (place.method == method) places.push_back(place);
-    return places;
-}
-
-Expected<std::vector<WrittenPoses>> written_poses(std::string_view method, const json& data) {
+Expected<std::vector<WrittenPoses>> written_poses(const PoseLists& places, const json& data) {
     std::vector<WrittenPoses> lists;
-    for (const PoseListPlace& place : pose_lists_of(method)) {
+    for (const PoseListPlace& place : places) {
         const json* entries = entries_of(data, place);
         if (!entries) continue;
         WrittenPoses list{std::string(place.key), {}, {}};
@@ -94,14 +81,25 @@ Expected<std::vector<WrittenPoses>> written_poses(std::string_view method, const
     return lists;
 }
 
-Expected<void> say_convention(std::string_view method, const std::string& said, json& data) {
+json without_poses(const PoseLists& lists, const json& data, const json& instead) {
+    json bare = data;
+    bare.erase(kSaid);
+    for (const PoseListPlace& place : lists)
+        if (const auto list = bare.find(place.entries); list != bare.end() && list->is_array())
+            for (json& entry : *list)
+                if (entry.is_object() && entry.contains(place.key)) entry[place.key] = instead;
+    return bare;
+}
+
+Expected<void> say_convention(const PoseLists& lists, const std::string& said, const Text& where,
+                              json& data) {
     const std::size_t sign = said.find('=');
     const std::string key = sign == std::string::npos ? kRobot : said.substr(0, sign);
     const std::string code = sign == std::string::npos ? said : said.substr(sign + 1);
     bool known = false;
-    for (const PoseListPlace& place : pose_lists_of(method)) known = known || place.key == key;
-    if (!known) return usage_error(Text("its data have no poses {}", key), Text("calibrate {}", method));
-    if (auto convention = pose_convention_named(code, Text("calibrate {}", method)); !convention) {
+    for (const PoseListPlace& place : lists) known = known || place.key == key;
+    if (!known) return usage_error(Text("its data have no poses {}", key), where);
+    if (auto convention = pose_convention_named(code, where); !convention) {
         convention.error().kind = ErrorKind::usage;
         return tl::unexpected(convention.error());
     }
@@ -117,10 +115,10 @@ void UsualPoses::put(json& result) const {
     if (!said_.is_null()) result[kSaid] = said_;
 }
 
-Expected<UsualPoses> with_usual_poses(std::string_view method, const json& data) {
+Expected<UsualPoses> with_usual_poses(const PoseLists& lists, const json& data) {
     if (!data.is_object() || !data.contains(kSaid)) return UsualPoses(data);
     json changed = data;
-    for (const PoseListPlace& place : pose_lists_of(method)) {
+    for (const PoseListPlace& place : lists) {
         auto said = said_of(data, place.key);
         if (!said) return tl::unexpected(said.error());
         if (!*said || !entries_of(data, place)) continue;

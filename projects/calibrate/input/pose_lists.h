@@ -16,16 +16,22 @@
 namespace seamwright {
 
 struct PoseListPlace {
-    std::string_view method, entries, key;  // "hand-eye", "pairs", "camera_from_target"
+    std::string_view entries, key;  // "pairs", "camera_from_target"
 };
-std::vector<PoseListPlace> pose_lists_of(std::string_view method);  // the robot's first; empty: none
+using PoseLists = std::vector<PoseListPlace>;  // of one method, the robot's first
+inline constexpr std::string_view kRobotPose = "base_from_flange";
 
 // As written, entries without a pose left out. Error (input): a pose that is no POSE, a list in several forms, a
 // convention that is none or does not fit the numbers.
-Expected<std::vector<WrittenPoses>> written_poses(std::string_view method, const nlohmann::json& data);
+Expected<std::vector<WrittenPoses>> written_poses(const PoseLists& lists, const nlohmann::json& data);
 
-// Sets `said`, "CODE" or "LIST=CODE", in the data. Error (usage): no such list, or no such code.
-Expected<void> say_convention(std::string_view method, const std::string& said, nlohmann::json& data);
+// Sets `said`, "CODE" or "LIST=CODE", in the data. Error (usage), at `where`: no such list, or no such code.
+Expected<void> say_convention(const PoseLists& lists, const std::string& said, const Text& where,
+                              nlohmann::json& data);
+
+// The data as they are but for their poses, each of which is `instead`, and for what they say of the convention.
+nlohmann::json without_poses(const PoseLists& lists, const nlohmann::json& data,
+                             const nlohmann::json& instead);
 
 // Data whose poses are all POSEs of the usual meaning: the data themselves where they say no convention.
 class UsualPoses {
@@ -41,6 +47,6 @@ class UsualPoses {
     nlohmann::json changed_, said_;
 };
 // `data` outlives the answer. Error (input): as of written_poses(), or numbers that are no pose in that convention.
-Expected<UsualPoses> with_usual_poses(std::string_view method, const nlohmann::json& data);
+Expected<UsualPoses> with_usual_poses(const PoseLists& lists, const nlohmann::json& data);
 
 }  // namespace seamwright

@@ -1,3 +1,7 @@
+// {"size":[w,h],"views":[{"id"?,"points":[{"object":[3],"pixel":[2]}]}],"not_found":[id,..]? (images without a board)} ->
+// {"status","camera","reprojection_rms_px","sigma_px","covered_share","views":[{"id","camera_from_target","sigma"}],
+//     "images"?,"boards_found"?,"not_found"?,...}
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +11,7 @@
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/input/plate_images.h"
 #include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
@@ -44,50 +49,13 @@ Expected<CameraModel> parse_camera(const json& data, const std::string& where) {
 
 namespace {
 
-Expected<CalibrateOutcome> solve(const CameraData& data, const std::vector<std::string>& exclude,
-                                 json result) {
-    CameraOptions options;
-    options.exclude = exclude;
-    auto solved = calibrate_camera(data, options);
-    if (!solved) return tl::unexpected(solved.error());
-    CalibrateOutcome outcome;
-    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
-    result["method"] = "camera";
-    result["status"] = known ? "ok" : "undetermined";
-    result["camera"] = known ? camera_json(solved->camera) : json(nullptr);
-    result["reprojection_rms_px"] = number_json(solved->rms_px);
-    result["sigma_px"] = number_json(solved->sigma_px);
-    result["covered_share"] = number_json(solved->covered_share);
-    json views = json::array();
-    for (std::size_t i = 0; i < data.views.size(); ++i)
-        views.push_back(
-            {{"id", data.views[i].id},
-             {"camera_from_target", known ? pose_json(solved->camera_from_target[i]) : json(nullptr)},
-             {"sigma", pose_sigma_json(solved->camera_from_target[i], solved->pose_covariance[i])}});
-    result["views"] = std::move(views);
-    add_report(solved->report, result);
-    if (!known)
-        for (auto& p : result["parameters"]) p["value"] = p["sigma"] = nullptr;
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    outcome.result = std::move(result);
-    return outcome;
-}
-
-}  // namespace
-
-Expected<CalibrateOutcome> calibrate_camera_json(const json& data, const std::vector<std::string>& exclude) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate camera --help");
-    auto size_field = json_field(data, "size", "");
-    if (!size_field) return tl::unexpected(size_field.error());
-    auto size = as_numbers(**size_field, 2, "size");
+Expected<CameraData> parse_views(const json& written) {
+    auto size = image_size_of(written, "");
     if (!size) return tl::unexpected(size.error());
-    if ((*size)[0] < 1 || (*size)[1] < 1 || (*size)[0] > 1e5 || (*size)[1] > 1e5)
-        return input_error("this is no image size", "size", "give [width, height] in pixels");
-    CameraData camera;
-    camera.width = static_cast<int>((*size)[0]);
-    camera.height = static_cast<int>((*size)[1]);
-    auto views = json_array(data, "views", "");
+    CameraData data;
+    data.width = size->first;
+    data.height = size->second;
+    auto views = json_array(written, "views", "");
     if (!views) return tl::unexpected(views.error());
     for (std::size_t i = 0; i < (*views)->size(); ++i) {
         const json& entry = (**views)[i];
@@ -107,21 +75,53 @@ Expected<CalibrateOutcome> calibrate_camera_json(const json& data, const std::ve
             view.object_mm.push_back(*object);
             view.pixel.push_back(*pixel);
         }
-        camera.views.push_back(std::move(view));
+        data.views.push_back(std::move(view));
     }
-    return solve(camera, exclude, json::object());
+    return data;
 }
 
-Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory, const std::string& board,
-                                                   double pitch_mm, const std::string& pattern,
-                                                   const std::vector<std::string>& exclude) {
-    auto spec = parse_board(board, pitch_mm, pattern);
+Expected<CalibrationSolution> solve_camera(const json& written, const ExcludedIds& exclude) {
+    auto data = parse_views(written);
+    if (!data) return tl::unexpected(data.error());
+    CameraOptions options;
+    options.exclude = exclude;
+    auto solved = calibrate_camera(*data, options);
+    if (!solved) return tl::unexpected(solved.error());
+
+    CalibrationSolution solution;
+    json& result = solution.document;
+    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
+    if (known) solution.found = CameraAndLaser{solved->camera, std::nullopt, std::nullopt};
+    if (const auto missed = written.find("not_found"); missed != written.end() && missed->is_array()) {
+        result["images"] = data->views.size() + missed->size();
+        result["boards_found"] = data->views.size();
+        result["not_found"] = *missed;
+    }
+    result["status"] = known ? "ok" : "undetermined";
+    result["camera"] = known ? camera_json(solved->camera) : json(nullptr);
+    result["reprojection_rms_px"] = number_json(solved->rms_px);
+    result["sigma_px"] = number_json(solved->sigma_px);
+    result["covered_share"] = number_json(solved->covered_share);
+    json views = json::array();
+    for (std::size_t i = 0; i < data->views.size(); ++i)
+        views.push_back(
+            {{"id", data->views[i].id},
+             {"camera_from_target", known ? pose_json(solved->camera_from_target[i]) : json(nullptr)},
+             {"sigma", pose_sigma_json(solved->camera_from_target[i], solved->pose_covariance[i])}});
+    result["views"] = std::move(views);
+    solution.report = std::move(solved->report);
+    finish_document(solution);
+    return solution;
+}
+
+Expected<json> camera_images(const BoardImages& images) {
+    auto spec = parse_board(images.board, images.pitch_mm, images.pattern);
     if (!spec) return tl::unexpected(spec.error());
-    auto images = plate_images(directory, exclude);
-    if (!images) return tl::unexpected(images.error());
+    auto files = plate_images(images.folder, images.exclude);
+    if (!files) return tl::unexpected(files.error());
     CameraData data;
     json missed = json::array();
-    for (const auto& path : *images) {
+    for (const auto& path : *files) {
         Frame frame;
         if (auto read = read_image_file(path, frame); !read)
             return input_error(Text("the image cannot be read: {}", read.error().what), path.string(),
@@ -139,12 +139,62 @@ Expected<CalibrateOutcome> calibrate_camera_folder(const std::string& directory,
             missed.push_back(path.stem().string());
     }
     if (data.views.empty())
-        return input_error(Text("no board of {} points was found in any of {} images", board,
-                                std::to_string(images->size())),
-                           directory, "check --board, --pattern, light and focus");
-    json result{
-        {"images", images->size()}, {"boards_found", data.views.size()}, {"not_found", std::move(missed)}};
-    return solve(data, {}, std::move(result));
+        return input_error(Text("no board of {} points was found in any of {} images", images.board,
+                                std::to_string(files->size())),
+                           images.folder, "check --board, --pattern, light and focus");
+    json views = json::array();
+    for (const CameraPoints& view : data.views) {
+        json points = json::array();
+        for (std::size_t i = 0; i < view.pixel.size(); ++i)
+            points.push_back(
+                {{"object", vector_json(view.object_mm[i])}, {"pixel", vector_json(view.pixel[i])}});
+        views.push_back({{"id", view.id}, {"points", std::move(points)}});
+    }
+    return json{
+        {"size", {data.width, data.height}}, {"views", std::move(views)}, {"not_found", std::move(missed)}};
+}
+
+json camera_example() {
+    example::Dither dither;
+    json views = json::array();
+    int number = 0;
+    for (const TargetPlace& view : plate_views()) {
+        json points = json::array();
+        TargetPlace far = view;
+        // All over the image.
+        far.offset_mm += Eigen::Vector3d((number % 3 - 1) * 55, (number / 3 % 3 - 1) * 40, 0);
+        for (int i = 0; i < example::kBoardColumns * example::kBoardRows; ++i) {
+            const Eigen::Vector2d pixel =
+                example::camera().project(example::camera_from_board(far) * example::board_corner(i));
+            if (!(pixel.x() > 1 && pixel.y() > 1 && pixel.x() < example::kWidth - 2 &&
+                  pixel.y() < example::kHeight - 2))
+                continue;
+            points.push_back({{"object", example::vector3_json(example::board_corner(i))},
+                              {"pixel", example::pair_json(pixel.x() + dither(example::kPixelNoise),
+                                                           pixel.y() + dither(example::kPixelNoise))}});
+        }
+        views.push_back({{"id", "view" + std::to_string(++number)}, {"points", points}});
+    }
+    return {{"size", {example::kWidth, example::kHeight}}, {"views", views}};
+}
+
+}  // namespace
+
+CalibrationMethod camera_method() {
+    CalibrationMethod m;
+    m.id = "camera";
+    m.help = "Intrinsics from views of a plate";
+    m.usage = "images --board 9x6 --pitch-mm 25";
+    m.layout =
+        R"({"size":[W,H],"views":[{"id"?,"points":[{"object":[x,y,z],"pixel":[u,v]},..]},..]}   mm, px)";
+    m.example = camera_example;
+    m.solve = solve_camera;
+    m.data_of_images = camera_images;
+    m.guided = false;
+    m.entries = "views";
+    m.use = AnswerUse::record;
+    m.title = "Camera";
+    return m;
 }
 
 }  // namespace seamwright

@@ -1,9 +1,19 @@
+// {"flange_from_sensor":POSE
+// (stored),"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..],"centre_base_mm":[3],
+//  "radius_mm"}],"other_sigma_mm"?,"limits":{"translation_mm","rotation_deg"}?}: centre and radius may stand
+//  once at the top; or
+// {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[3],"known_base":[3],"sigma_mm"?}],"limits"?}
+// (plate points).
+// ->
+// {"status":"holds|drifted|undetermined","change":POSE,"change_mm","change_deg","sigma_mm","sigma_deg","chi_squared",
+//     "chi_squared_limit","not_determined",...}
+
 #include <algorithm>
 
 #include "core/calibration/sphere/drift_check.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/calibrate/methods/sphere_profile_json.h"
 
@@ -79,14 +89,7 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
     return measurements;
 }
 
-}  // namespace
-
-Expected<CalibrateOutcome> check_drift_json(const json& written, const std::vector<std::string>& exclude) {
-    auto meant = with_usual_poses("drift", written);
-    if (!meant) return tl::unexpected(meant.error());
-    const json& data = meant->data();
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate drift --help");
+Expected<CalibrationSolution> solve_drift(const json& data, const ExcludedIds& exclude) {
     DriftLimits limits;
     if (const auto it = data.find("limits"); it != data.end()) {
         auto mm = json_number_or(*it, "translation_mm", limits.translation_mm, "limits");
@@ -101,9 +104,8 @@ Expected<CalibrateOutcome> check_drift_json(const json& written, const std::vect
     auto checked = check_drift(*measurements, limits);
     if (!checked) return tl::unexpected(checked.error());
 
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
-    result["method"] = "drift";
+    CalibrationSolution solution;
+    json& result = solution.document;
     result["status"] = std::string(name_of(checked->status));
     result["change"] = pose_json(checked->change);
     result["change_mm"] = checked->change_mm;
@@ -116,10 +118,68 @@ Expected<CalibrateOutcome> check_drift_json(const json& written, const std::vect
     result["rms_before_mm"] = number_json(checked->rms_before_mm);
     result["rms_after_mm"] = number_json(checked->rms_after_mm);
     result["not_determined"] = checked->not_determined;
-    add_report(checked->report, result);
-    meant->put(result);
-    outcome.exit_code = exit_code_for(checked->report.judgement.verdict);
-    return outcome;
+    solution.report = std::move(checked->report);
+    finish_document(solution);
+    return solution;
+}
+
+json drift_example() {
+    json observations = example::sphere_observations();
+    return {{"flange_from_sensor", pose_json(example::flange_from_sensor())},
+            {"centre_base_mm", example::vector3_json(example::base_from_target().translation())},
+            {"radius_mm", example::kRadius_mm},
+            {"observations", observations}};
+}
+
+Expected<json> prepare_drift(json settings, const Calibration* base, const std::vector<Calibration>&) {
+    if (!base) return input_error("there is no calibration in use to check", "drift", "calibrate first");
+    settings["flange_from_sensor"] = pose_json(base->flange_from_sensor);
+    if (base->result.contains("centre_base_mm") && base->result["centre_base_mm"].is_array() &&
+        !settings.contains("centre_base_mm")) {
+        settings["centre_base_mm"] = base->result["centre_base_mm"];
+        if (base->result.contains("radius_mm") && base->result["radius_mm"].is_number())
+            settings["radius_mm"] = base->result["radius_mm"];
+    }
+    if (!settings.contains("centre_base_mm"))
+        return input_error("where the sphere stands is not known", "drift",
+                           "check a calibration that was made with the sphere, or load measured data");
+    return settings;
+}
+
+}  // namespace
+
+CalibrationMethod drift_method() {
+    CalibrationMethod m;
+    m.id = "drift";
+    m.help = "Does a stored calibration still hold";
+    m.usage = "measured.json";
+    m.layout = R"({"flange_from_sensor":POSE,"centre_base_mm":[x,y,z],"radius_mm":R,"other_sigma_mm"?,
+   "limits":{"translation_mm","rotation_deg"}?,"observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}
+  or {"measurements":[{"id"?,"base_from_flange":POSE,"measured_flange":[x,y,z],"known_base":[x,y,z],"sigma_mm"?},..]})";
+    m.example = drift_example;
+    m.poses = {{"observations", kRobotPose}, {"measurements", kRobotPose}};
+    m.solve = solve_drift;
+    m.entries = "observations";
+    m.capture = CaptureKind::sphere_profile;
+    m.use = AnswerUse::check;
+    m.fewest = 1;
+    m.advised = 3;
+    m.robot = m.model = true;
+    m.keeps_back = false;
+    m.settings = {
+        sphere_radius_setting(),
+        number_setting("limit_mm", "/limits/translation_mm", "mm", 0.001, 10, 0.1, 3,
+                       "A shift beyond this counts as drifted.", "Allowed shift"),
+        number_setting("limit_deg", "/limits/rotation_deg", "deg", 0.001, 10, DriftLimits{}.rotation_deg, 3,
+                       "A turn beyond this counts as drifted.", "Allowed turn")};
+    m.prepare = prepare_drift;
+    m.title = "Does the calibration still hold?";
+    m.why = "Measures the sphere again and says whether the sensor has moved on its flange.";
+    m.need = {"The sphere where it stood when the sensor was calibrated.",
+              "3 poses from different directions."};
+    m.file = "JSON with stored calibration and new profiles";
+    m.drawing = SetUpDrawing::moved_sphere;
+    return m;
 }
 
 }  // namespace seamwright

@@ -1,17 +1,22 @@
+// {"mount":"eye_in_hand|eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE}]}
+// -> {"status","flange_from_camera" | "base_from_camera","base_from_target" |
+// "flange_from_target","rms_mm","rms_deg","sigma",...}
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/calibration/pose/hand_eye.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/hand_eye_json.h"
 #include "projects/calibrate/methods/methods.h"
-#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
 using nlohmann::json;
 
 Expected<HandEyeData> parse_hand_eye_data(const json& data) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate hand-eye --help");
     auto mount_name = json_string(data, "mount", "");
     if (!mount_name) return tl::unexpected(mount_name.error());
     const auto mount = mount_named(*mount_name);
@@ -41,20 +46,37 @@ Expected<HandEyeData> parse_hand_eye_data(const json& data) {
     return set;
 }
 
-Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
-                                                   const std::vector<std::string>& exclude) {
-    auto meant = with_usual_poses("hand-eye", data);
-    if (!meant) return tl::unexpected(meant.error());
-    auto set = parse_hand_eye_data(meant->data());
+namespace {
+// Residuals below these are exact: two readings then tie.
+constexpr double kExactPose_mm = 0.02, kExactPose_rad = 2e-4;
+}  // namespace
+
+// Millimetres and radians have a variance each: their geometric mean has the tails of one of 3 n - 6 degrees at most.
+std::optional<ConventionFit> convention_fit(Mount mount, const std::vector<HandEyePair>& pairs,
+                                            const ExcludedIds& exclude) {
+    const auto solved = calibrate_hand_eye(mount, pairs, exclude);
+    if (!solved) return std::nullopt;
+    return ConventionFit{
+        std::max(kExactPose_mm, solved->sigma_mm) * std::max(kExactPose_rad, rad_from_deg(solved->sigma_deg)),
+        std::max(1.0, 3.0 * solved->pairs_used - 6), solved->rms_mm, solved->fits,
+        solved->report.judgement.verdict};
+}
+
+namespace {
+
+Expected<CalibrationSolution> solve_hand_eye(const json& data, const ExcludedIds& exclude) {
+    auto set = parse_hand_eye_data(data);
     if (!set) return tl::unexpected(set.error());
     auto solved = calibrate_hand_eye(set->mount, set->pairs, exclude);
     if (!solved) return tl::unexpected(solved.error());
 
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+    CalibrationSolution solution;
+    json& result = solution.document;
     const bool ok = solved->status == HandEyeStatus::ok;
     const bool in_hand = set->mount == Mount::eye_in_hand;
-    result["method"] = "hand-eye";
+    const UncertainPose camera{solved->x, solved->covariance_x};
+    if (ok && in_hand) solution.found = CameraOnFlange{camera};
+    if (ok && !in_hand) solution.found = CameraBesideRobot{camera};
     result["mount"] = std::string(name_of(set->mount));
     result["status"] = std::string(name_of(solved->status));
     result[in_hand ? "flange_from_camera" : "base_from_camera"] = ok ? pose_json(solved->x) : json(nullptr);
@@ -67,12 +89,65 @@ Expected<CalibrateOutcome> calibrate_hand_eye_json(const json& data,
         result["noise"] = {{"sigma_mm", solved->sigma_mm}, {"sigma_deg", solved->sigma_deg}};
     }
     result["start"] = solved->start;
-    put_texts(result, "degenerate", solved->degenerate);
-    put_texts(result, "notices", solved->notices);
-    add_report(solved->report, result);
-    meant->put(result);
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    return outcome;
+    solution.report = std::move(solved->report);
+    solution.notices = std::move(solved->notices);
+    solution.degenerate = std::move(solved->degenerate);
+    finish_document(solution);
+    return solution;
+}
+
+json hand_eye_example() {
+    example::Dither dither;
+    json pairs = json::array();
+    for (const TargetPlace& view : plate_views())
+        pairs.push_back({{"id", "P" + std::to_string(pairs.size() + 1)},
+                         {"base_from_flange", pose_json(example::base_from_flange(view, dither))},
+                         {"camera_from_target",
+                          pose_json(example::shaken(example::camera_from_board(view), dither, 0.02, 1e-4))}});
+    return {{"mount", "eye_in_hand"}, {"pairs", pairs}};
+}
+
+Expected<ConventionFits> hand_eye_conventions(const json& data, const ExcludedIds& exclude) {
+    auto set = parse_hand_eye_data(without_poses(hand_eye_method().poses, data, pose_json(Pose::Identity())));
+    if (!set) return tl::unexpected(set.error());
+    PoseFit fit = [set = std::move(*set), exclude](const std::vector<std::vector<Pose>>& lists) mutable {
+        for (std::size_t i = 0; i < set.pairs.size(); ++i) {
+            set.pairs[i].base_from_flange = lists[0][i];
+            set.pairs[i].camera_from_target = lists[1][i];
+        }
+        return convention_fit(set.mount, set.pairs, exclude);
+    };
+    return ConventionFits{std::move(fit), {}};
+}
+
+}  // namespace
+
+CalibrationMethod hand_eye_method() {
+    CalibrationMethod m;
+    m.id = "hand-eye";
+    m.help = "Camera on the flange, or beside the robot";
+    m.usage = "pairs.json";
+    m.layout =
+        R"({"mount":"eye_in_hand"|"eye_to_hand","pairs":[{"id"?,"base_from_flange":POSE,"camera_from_target":POSE},..]})";
+    m.example = hand_eye_example;
+    m.poses = {{"pairs", kRobotPose}, {"pairs", "camera_from_target"}};
+    m.solve = solve_hand_eye;
+    m.convention_fits = hand_eye_conventions;
+    m.entries = "pairs";
+    m.capture = CaptureKind::board_pose;
+    m.fewest = 3;
+    m.advised = 8;
+    m.robot = m.model = true;
+    m.settings = board_settings();
+    m.fixed_settings = {{"mount", "eye_in_hand"}};
+    m.title = "Camera on the flange (hand-eye)";
+    m.why = "Finds where the camera sits on the flange, from views of one fixed board.";
+    m.need = {"A flat chessboard that stays where it is.",
+              "A calibrated camera: the board's place in the picture must be right.",
+              "8 or more poses turned about at least two axes."};
+    m.file = "JSON with pairs of poses, or a folder of images with pose files";
+    m.drawing = SetUpDrawing::board;
+    return m;
 }
 
 }  // namespace seamwright

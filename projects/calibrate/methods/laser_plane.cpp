@@ -1,21 +1,20 @@
+// {"camera":{fx,fy,cx,cy,k1,k2,..},"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}]} ->
+// {"status","camera" (as given),"camera_from_laser","rms_px","sigma","covariance_pose",...}
+
 #include "core/calibration/stripe/laser_plane.h"
+
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/laser_pairs_json.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
 
 using nlohmann::json;
 
-Expected<CalibrateOutcome> calibrate_laser_plane_json(const json& data,
-                                                      const std::vector<std::string>& exclude) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate laser-plane --help");
-    auto camera_field = json_field(data, "camera", "");
-    if (!camera_field) return tl::unexpected(camera_field.error());
-    auto camera = parse_camera(**camera_field, "camera");
-    if (!camera) return tl::unexpected(camera.error());
+Expected<std::vector<LaserPair>> parse_laser_pairs(const json& data) {
     auto list = json_array(data, "pairs", "");
     if (!list) return tl::unexpected(list.error());
     std::vector<LaserPair> pairs;
@@ -31,20 +30,72 @@ Expected<CalibrateOutcome> calibrate_laser_plane_json(const json& data,
         if (!laser) return tl::unexpected(laser.error());
         pairs.push_back({*id, *pixel, *laser});
     }
-    auto solved = calibrate_laser_plane(*camera, pairs, exclude);
+    return pairs;
+}
+
+namespace {
+
+Expected<CalibrationSolution> solve_laser_plane(const json& data, const ExcludedIds& exclude) {
+    auto camera_field = json_field(data, "camera", "");
+    if (!camera_field) return tl::unexpected(camera_field.error());
+    auto camera = parse_camera(**camera_field, "camera");
+    if (!camera) return tl::unexpected(camera.error());
+    auto pairs = parse_laser_pairs(data);
+    if (!pairs) return tl::unexpected(pairs.error());
+    auto solved = calibrate_laser_plane(*camera, *pairs, exclude);
     if (!solved) return tl::unexpected(solved.error());
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+
+    CalibrationSolution solution;
+    json& result = solution.document;
     const bool known = solved->report.judgement.verdict != Verdict::undetermined;
-    result["method"] = "laser-plane";
+    if (known) solution.found = CameraAndLaser{*camera, solved->camera_from_laser, std::nullopt};
     result["status"] = known ? "ok" : "undetermined";
+    result["camera"] = camera_json(*camera);
     result["camera_from_laser"] = known ? pose_json(solved->camera_from_laser) : json(nullptr);
     result["rms_px"] = known ? number_json(solved->rms_px) : json(nullptr);
     result["sigma"] = known ? pose_sigma_json(solved->camera_from_laser, solved->covariance) : json(nullptr);
     result["covariance_pose"] = known ? matrix_json(solved->covariance) : json(nullptr);
-    add_report(solved->report, result);
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    return outcome;
+    solution.report = std::move(solved->report);
+    finish_document(solution);
+    return solution;
+}
+
+json laser_plane_example() {
+    return {{"camera", camera_json(example::camera())}, {"pairs", example::laser_pairs()}};
+}
+
+Expected<json> prepare_laser_plane(json settings, const Calibration* base, const std::vector<Calibration>&) {
+    if (!settings.contains("camera") && base && base->model)
+        settings["camera"] = camera_json(base->model->camera);
+    return settings;
+}
+
+}  // namespace
+
+CalibrationMethod laser_plane_method() {
+    CalibrationMethod m;
+    m.id = "laser-plane";
+    m.help = "Laser plane in the camera from a triangular body's apexes";
+    m.usage = "pairs.json";
+    m.layout = R"({"camera":{"fx","fy","cx","cy","k1"?,"k2"?,"p1"?,"p2"?,"k3"?,"width"?,"height"?},
+   "pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..]}   px, mm)";
+    m.example = laser_plane_example;
+    m.solve = solve_laser_plane;
+    m.entries = "pairs";
+    m.capture = CaptureKind::apex;
+    m.fewest = 4;
+    m.advised = 10;
+    m.model = true;
+    m.prepare = prepare_laser_plane;
+    m.title = "Laser plane (triangular body)";
+    m.why = "Finds the laser plane in a known camera, from the apex of a triangular body.";
+    m.need = {"A triangular body square to the sensor, its apex seen in the picture.",
+              "A sensor that gives profiles in millimetres; or the robot as the stage: it shifts the sensor "
+              "along its own X and Z alone and never turns it.",
+              "10 or more positions spread over the field, not on one line."};
+    m.file = "JSON with pairs of pixel and laser point";
+    m.drawing = SetUpDrawing::triangle;
+    return m;
 }
 
 }  // namespace seamwright

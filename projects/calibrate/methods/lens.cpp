@@ -1,28 +1,30 @@
-#include <charconv>
+// {"size":[w,h],"lines":[[[u,v],..],..],"full"?} -> {"status","lens" (camera with f = half the
+// diagonal),"centre_px","K1","K2" (px),
+//     "straightness_before_px","straightness_after_px","corner_shift_px","corner_sigma_px",...}; lines are
+//     excluded by number.
 
 #include "core/calibration/camera/lens.h"
+
+#include <charconv>
+
 #include "devices/exchange/json_fields.h"
 #include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
+namespace {
 
 using nlohmann::json;
 
-Expected<CalibrateOutcome> calibrate_lens_json(const json& data, const std::vector<std::string>& exclude) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate lens --help");
-    auto size_field = json_field(data, "size", "");
-    if (!size_field) return tl::unexpected(size_field.error());
-    auto size = as_numbers(**size_field, 2, "size");
+Expected<CalibrationSolution> solve_lens(const json& data, const ExcludedIds& exclude) {
+    auto size = image_size_of(data, "");
     if (!size) return tl::unexpected(size.error());
-    if ((*size)[0] < 1 || (*size)[1] < 1 || (*size)[0] > 1e5 || (*size)[1] > 1e5)
-        return input_error("this is no image size", "size", "give [width, height] in pixels");
     auto full = json_bool_or(data, "full", false, "");
     if (!full) return tl::unexpected(full.error());
     auto list = json_array(data, "lines", "");
     if (!list) return tl::unexpected(list.error());
-    LensData lens{static_cast<int>((*size)[0]), static_cast<int>((*size)[1]), {}};
+    LensData lens{size->first, size->second, {}};
     for (std::size_t i = 0; i < (*list)->size(); ++i) {
         const std::string where = json_path("lines", i);
         if (!(**list)[i].is_array())
@@ -45,11 +47,10 @@ Expected<CalibrateOutcome> calibrate_lens_json(const json& data, const std::vect
     }
     auto solved = calibrate_lens(lens, options);
     if (!solved) return tl::unexpected(solved.error());
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+    CalibrationSolution solution;
+    json& result = solution.document;
     const bool known = solved->report.judgement.verdict != Verdict::undetermined;
     const auto given = [&](double v) { return known ? number_json(v) : json(nullptr); };
-    result["method"] = "lens";
     result["status"] = known ? "ok" : "undetermined";
     result["lens"] = known ? camera_json(solved->lens) : json(nullptr);
     result["centre_px"] =
@@ -60,11 +61,56 @@ Expected<CalibrateOutcome> calibrate_lens_json(const json& data, const std::vect
     result["straightness_after_px"] = given(solved->straightness_after_px);
     result["corner_shift_px"] = given(solved->corner_shift_px);
     result["corner_sigma_px"] = number_json(solved->corner_sigma_px);
-    add_report(solved->report, result);
-    if (!known)
-        for (auto& p : result["parameters"]) p["value"] = p["sigma"] = nullptr;
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    return outcome;
+    solution.report = std::move(solved->report);
+    finish_document(solution);
+    return solution;
+}
+
+json lens_example() {
+    example::Dither dither;
+    const CameraModel camera = example::camera();
+    json lines = json::array();
+    for (int n = 0; n < 12; ++n) {
+        const double turn = n % 2 == 0 ? 0.08 * (n - 5) : kPi / 2 + 0.08 * (n - 6);
+        const double offset = (n - 5.5) * 0.055;
+        json line = json::array();
+        for (int i = -30; i <= 30; ++i) {
+            const Eigen::Vector3d p(offset * -std::sin(turn) + 0.014 * i * std::cos(turn),
+                                    offset * std::cos(turn) + 0.014 * i * std::sin(turn), 1);
+            const Eigen::Vector2d pixel = camera.project(p);
+            if (!(pixel.x() > 0 && pixel.y() > 0 && pixel.x() < example::kWidth &&
+                  pixel.y() < example::kHeight))
+                continue;
+            line.push_back(example::pair_json(pixel.x() + dither(example::kPixelNoise),
+                                              pixel.y() + dither(example::kPixelNoise)));
+        }
+        lines.push_back(std::move(line));
+    }
+    return {{"size", {example::kWidth, example::kHeight}}, {"lines", lines}};
+}
+
+}  // namespace
+
+CalibrationMethod lens_method() {
+    CalibrationMethod m;
+    m.id = "lens";
+    m.help = "Distortion from straight laser lines on a plane";
+    m.usage = "lines.json";
+    m.layout = R"({"size":[W,H],"lines":[[[u,v],..],..],"full":false?}   px)";
+    m.example = lens_example;
+    m.solve = solve_lens;
+    m.entries = "lines";
+    m.capture = CaptureKind::stripe_line;
+    m.use = AnswerUse::record;
+    m.fewest = 3;
+    m.advised = 10;
+    m.title = "Lens";
+    m.why = "Checks the lens: straight laser lines on a plate must become straight.";
+    m.need = {"A flat plate that fills the view.",
+              "10 or more heights and tilts, so that the lines cross the picture everywhere."};
+    m.file = "JSON with lines of pixels";
+    m.drawing = SetUpDrawing::plane;
+    return m;
 }
 
 }  // namespace seamwright

@@ -1,22 +1,23 @@
+// {"size":[w,h],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]}]} ->
+// {"status","table":{"u0","v0","step_u","step_v","columns","rows","holes"},"covered_share","forward_rms_mm",
+//     "forward_max_mm","backward_rms_px","backward_max_px","unsupported_pairs","noise_px","noise_mm",
+//     "interpolation_mm","sigma":{"rms_mm","worst_mm"},"wrong_pairs":[id,..],"table_file",...}
+// "table_file": where the command line wrote the table (devices/exchange/lookup_table_file.h), else null.
+
 #include "core/calibration/table/lookup_table_calibration.h"
 #include "devices/exchange/json_fields.h"
-#include "devices/exchange/lookup_table_file.h"
+#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/laser_pairs_json.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
+namespace {
 
 using nlohmann::json;
 
-Expected<CalibrateOutcome> calibrate_lut_json(const json& data, const std::vector<std::string>& exclude,
-                                              const std::string& table_path) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate lut --help");
-    auto size_field = json_field(data, "size", "");
-    if (!size_field) return tl::unexpected(size_field.error());
-    auto size = as_numbers(**size_field, 2, "size");
+Expected<CalibrationSolution> solve_lut(const json& data, const ExcludedIds& exclude) {
+    auto size = image_size_of(data, "");
     if (!size) return tl::unexpected(size.error());
-    if (!((*size)[0] >= 1 && (*size)[1] >= 1 && (*size)[0] <= 1e5 && (*size)[1] <= 1e5))
-        return input_error("this is no image size", "size", "give [width, height] in pixels");
     LookupTableOptions options;
     options.exclude = exclude;
     if (data.contains("step_px")) {
@@ -25,28 +26,15 @@ Expected<CalibrateOutcome> calibrate_lut_json(const json& data, const std::vecto
         if (!(*step > 0)) return input_error("the step is not above 0", "step_px", "give e.g. 8");
         options.step_px = *step;
     }
-    auto list = json_array(data, "pairs", "");
-    if (!list) return tl::unexpected(list.error());
-    std::vector<LaserPair> pairs;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
-        const std::string where = json_path("pairs", i);
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
-        auto pixel = json_vector2(entry, "pixel", where);
-        if (!pixel) return tl::unexpected(pixel.error());
-        auto laser = json_vector2(entry, "laser", where);
-        if (!laser) return tl::unexpected(laser.error());
-        pairs.push_back({*id, *pixel, *laser});
-    }
-    auto solved =
-        calibrate_lookup_table(static_cast<int>((*size)[0]), static_cast<int>((*size)[1]), pairs, options);
+    auto pairs = parse_laser_pairs(data);
+    if (!pairs) return tl::unexpected(pairs.error());
+    auto solved = calibrate_lookup_table(size->first, size->second, *pairs, options);
     if (!solved) return tl::unexpected(solved.error());
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+
+    CalibrationSolution solution;
+    json& result = solution.document;
     const bool known = solved->report.judgement.verdict != Verdict::undetermined;
     const auto given = [&](double v) { return known ? number_json(v) : json(nullptr); };
-    result["method"] = "lut";
     result["status"] = known ? "ok" : "undetermined";
     const LookupTable& t = solved->table;
     result["table"] =
@@ -66,20 +54,46 @@ Expected<CalibrateOutcome> calibrate_lut_json(const json& data, const std::vecto
                                    {"worst_mm", number_json(solved->map_sigma_worst_mm)}}
                             : json(nullptr);
     json wrong = json::array();
-    for (std::size_t i = 0; known && i < pairs.size(); ++i) {
+    for (std::size_t i = 0; known && i < pairs->size(); ++i) {
         const auto& pose = solved->report.poses[i];
         if (!pose.used && pose.note != "excluded") wrong.push_back(pose.id);
     }
     result["wrong_pairs"] = std::move(wrong);
-    add_report(solved->report, result);
     result["table_file"] = nullptr;
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    // A poor table must not be taken for a good one because its file is there.
-    if (!table_path.empty() && outcome.exit_code == 0) {
-        if (auto ok = write_lookup_table(table_path, t); !ok) return tl::unexpected(ok.error());
-        result["table_file"] = table_path;
-    }
-    return outcome;
+    if (known) solution.found = PixelTable{std::move(solved->table)};
+    solution.report = std::move(solved->report);
+    finish_document(solution);
+    return solution;
+}
+
+json lut_example() {
+    return {{"size", {example::kWidth, example::kHeight}}, {"pairs", example::laser_pairs()}};
+}
+
+}  // namespace
+
+CalibrationMethod lut_method() {
+    CalibrationMethod m;
+    m.id = "lut";
+    m.help = "Look-up table pixel to millimetre from known target positions";
+    m.usage = "pairs.json --table table.lut";
+    m.layout = R"({"size":[W,H],"step_px"?,"pairs":[{"id"?,"pixel":[u,v],"laser":[x,z]},..]}   px, mm)";
+    m.example = lut_example;
+    m.table = true;
+    m.solve = solve_lut;
+    m.entries = "pairs";
+    m.capture = CaptureKind::apex;
+    m.fewest = 9;
+    m.advised = 25;
+    m.title = "Look-up table";
+    m.why = "Maps pixels to millimetres directly, from a target at known places.";
+    m.need = {
+        "A triangular body square to the sensor, and the robot that shifts the sensor along its own X "
+        "and Z alone; or pairs measured on a stage, from a file.",
+        "25 or more places over the whole field; what lies outside is not measured later."};
+    m.file = "JSON with pairs of pixel and known place";
+    m.drawing = SetUpDrawing::dotted_plane;
+    return m;
 }
 
 }  // namespace seamwright

@@ -1,3 +1,7 @@
+// {"points":[{"id"?,"plate":[3],"world":[3]} or {"id"?,"points":[{"plate","world"},..]} (measured in one
+// stand, left out together)],"sigma_mm"?} ->
+// {"status","world_from_plate","rms_mm","sigma","scale","mirrored",...}
+
 #include "core/calibration/pose/plate.h"
 
 #include <algorithm>
@@ -5,16 +9,15 @@
 
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
-#include "projects/file/stored_text.h"
 
 namespace seamwright {
+namespace {
 
 using nlohmann::json;
 
-Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vector<std::string>& exclude) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate plate --help");
+Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& exclude) {
     PlateOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_mm") && !data["sigma_mm"].is_null()) {
@@ -85,10 +88,9 @@ Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vec
     auto solved = calibrate_plate(points, options);
     if (!solved) return tl::unexpected(solved.error());
 
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+    CalibrationSolution solution;
+    json& result = solution.document;
     const bool ok = solved->status == PlateStatus::ok;
-    result["method"] = "plate";
     result["status"] = std::string(name_of(solved->status));
     result["world_from_plate"] = ok ? pose_json(solved->world_from_plate) : json(nullptr);
     result["rms_mm"] = ok ? number_json(solved->rms_mm) : json(nullptr);
@@ -99,7 +101,7 @@ Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vec
         result["scale"] = number_json(solved->scale);
         result["mirrored"] = solved->mirrored;
     }
-    put_texts(result, "notices", solved->notices);
+    if (ok) solution.found = PlateInWorld{{solved->world_from_plate, solved->covariance}};
     CalibrationReport report = solved->report;
     if (!stands.empty()) {  // people left stands out, not means
         report.poses.resize(single);
@@ -115,9 +117,55 @@ Expected<CalibrateOutcome> calibrate_plate_json(const json& data, const std::vec
             report.poses.push_back(std::move(row));
         }
     }
-    add_report(report, result);
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    return outcome;
+    solution.report = std::move(report);
+    solution.notices = std::move(solved->notices);
+    finish_document(solution);
+    return solution;
+}
+
+json plate_example() {
+    example::Dither dither;
+    const Pose world_from_plate = example::base_from_target();
+    json points = json::array();
+    for (const Eigen::Vector3d& p :
+         {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(200, 0, 0), Eigen::Vector3d(200, 150, 0),
+          Eigen::Vector3d(0, 150, 0), Eigen::Vector3d(100, 75, 0), Eigen::Vector3d(60, 120, 0),
+          Eigen::Vector3d(140, 30, 0)}) {
+        const Eigen::Vector3d noise(dither(0.03), dither(0.03), dither(0.03));
+        points.push_back({{"id", "P" + std::to_string(points.size() + 1)},
+                          {"plate", example::vector3_json(p)},
+                          {"world", example::vector3_json(world_from_plate * p + noise)}});
+    }
+    return {{"points", points}, {"sigma_mm", 0.03}};
+}
+
+}  // namespace
+
+CalibrationMethod plate_method() {
+    CalibrationMethod m;
+    m.id = "plate";
+    m.help = "Plate in the world from two point sets";
+    m.usage = "points.json";
+    m.layout = R"({"points":[{"id"?,"plate":[x,y,z],"world":[x,y,z]},..],"sigma_mm"?}   mm)";
+    m.example = plate_example;
+    m.solve = solve_plate;
+    m.entries = "points";
+    m.capture = CaptureKind::board_points;
+    m.use = AnswerUse::record;
+    m.fewest = 3;
+    m.advised = 6;
+    m.model = true;
+    m.settings = board_settings();
+    m.title = "Plate in the world";
+    m.why = "Finds where a plate stands, from points known on it and measured in the world.";
+    m.need = {
+        "A board on the plate and the calibrated sensor on the robot: every capture gives its outer "
+        "corners.",
+        "Or 6 or more points measured by robot tip, laser tracker or total station, from a file: far "
+        "apart and not on one line."};
+    m.file = "JSON with points on the plate and in the world";
+    m.drawing = SetUpDrawing::plate_in_world;
+    return m;
 }
 
 }  // namespace seamwright

@@ -11,7 +11,7 @@ namespace seamwright {
 Expected<SphereObservation> parse_sphere_observation(const nlohmann::json& entry, std::size_t index,
                                                      const std::string& where);
 
-// The data of calibrate_tcp_sphere_json() (methods.h).
+// The data of tcp-sphere.
 struct SphereData {
     std::vector<SphereObservation> observations;
     TcpSphereOptions options;

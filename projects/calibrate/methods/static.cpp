@@ -1,10 +1,18 @@
+// {"sensors":[{"id"?,"world_from_plate":LINK,"plate_from_camera":LINK (or
+// "camera_from_plate"),"camera_from_laser":LINK,
+//  "working_point":[3]?}],"reference_from_world":LINK?}; one sensor may stand at the top level.
+// LINK = POSE, or {"pose":POSE,"covariance":6x6 (mm, rad)}, or {"pose":POSE,"sigma_mm","sigma_deg"}.
+// -> {"sensors":[{"id","world_from_laser" (or
+// "reference_from_laser"),"sigma","covariance","working_sigma_mm","shares","verdict",..}],..}; no report but its
+// judgement.
+
 #include <cmath>
 
 #include "core/calibration/pose/static_chain.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
-#include "projects/file/stored_text.h"
 
 namespace seamwright {
 namespace {
@@ -81,11 +89,7 @@ Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const 
     return sensor;
 }
 
-}  // namespace
-
-Expected<CalibrateOutcome> calibrate_static_json(const json& data, const std::vector<std::string>& exclude) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate static --help");
+Expected<CalibrationSolution> solve_static(const json& data, const ExcludedIds& exclude) {
     std::vector<StaticSensor> sensors;
     if (data.contains("sensors")) {
         auto list = json_array(data, "sensors", "");
@@ -110,14 +114,12 @@ Expected<CalibrateOutcome> calibrate_static_json(const json& data, const std::ve
     auto solved = calibrate_static(sensors, options);
     if (!solved) return tl::unexpected(solved.error());
 
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+    CalibrationSolution solution;
+    json& result = solution.document;
     const char* frame = options.reference_from_world ? "reference_from_laser" : "world_from_laser";
-    result["method"] = "static";
     result["status"] = "ok";
-    result["verdict"] = std::string(name_of(solved->judgement.verdict));
-    put_text(result, "reason", solved->judgement.reason);
-    put_text(result, "cure", solved->judgement.cure);
+    put_judgement(solved->judgement, result);
+    SensorChains found;
     json list = json::array();
     for (const auto& s : solved->sensors) {
         json one;
@@ -130,15 +132,73 @@ Expected<CalibrateOutcome> calibrate_static_json(const json& data, const std::ve
                          {"world_from_plate", s.shares[1]},
                          {"plate_from_camera", s.shares[2]},
                          {"camera_from_laser", s.shares[3]}};
-        one["verdict"] = std::string(name_of(s.judgement.verdict));
-        put_text(one, "reason", s.judgement.reason);
-        put_text(one, "cure", s.judgement.cure);
+        put_judgement(s.judgement, one);
         list.push_back(std::move(one));
+        found.chains.push_back(
+            {s.id, options.reference_from_world ? std::optional(s.world_from_laser) : std::nullopt,
+             s.judgement});
     }
     if (!data.contains("sensors")) result[frame] = list[0][frame];
     result["sensors"] = std::move(list);
-    outcome.exit_code = exit_code_for(solved->judgement.verdict);
-    return outcome;
+    solution.found = std::move(found);
+    solution.report.judgement = solved->judgement;
+    return solution;
+}
+
+json static_example() {
+    const auto link = [](const Pose& pose) {
+        return json{{"pose", pose_json(pose)}, {"sigma_mm", 0.02}, {"sigma_deg", 0.01}};
+    };
+    json sensors = json::array();
+    for (const int number : {0, 1}) {
+        const TargetPlace& view = plate_views()[static_cast<std::size_t>(number)];
+        sensors.push_back({{"id", number == 0 ? "A" : "B"},
+                           {"world_from_plate", link(example::base_from_target())},
+                           {"camera_from_plate", link(example::camera_from_board(view))},
+                           {"camera_from_laser", link(example::camera_from_laser())}});
+    }
+    return {{"sensors", sensors}};
+}
+
+// The plate's newest place.
+Expected<json> prepare_static(json settings, const Calibration*, const std::vector<Calibration>& kept) {
+    for (const Calibration& c : kept) {
+        const auto solution = solution_from_document(c.result);
+        const auto* plate = solution ? std::get_if<PlateInWorld>(&solution->found) : nullptr;
+        if (!plate) continue;
+        settings["world_from_plate"] = {{"pose", c.result.at("world_from_plate")}};
+        if (c.result.contains("covariance_pose"))
+            settings["world_from_plate"]["covariance"] = c.result["covariance_pose"];
+    }
+    return settings;
+}
+
+}  // namespace
+
+CalibrationMethod static_method() {
+    CalibrationMethod m;
+    m.id = "static";
+    m.help = "One-shot chain world - plate - camera - laser for several sensors";
+    m.usage = "chain.json";
+    m.layout =
+        R"({"sensors":[{"id"?,"world_from_plate":LINK,"camera_from_plate":LINK,"camera_from_laser":LINK,
+   "working_point":[x,y,z]?},..],"reference_from_world":LINK?}
+  LINK = POSE or {"pose":POSE,"sigma_mm","sigma_deg"} or {"pose":POSE,"covariance":6x6 (mm, rad)})";
+    m.example = static_example;
+    m.solve = solve_static;
+    m.entries = "sensors";
+    m.capture = CaptureKind::board_chain;
+    m.model = true;
+    m.keeps_back = false;
+    m.settings = board_settings();
+    m.prepare = prepare_static;
+    m.title = "Static one-shot for several sensors";
+    m.why = "Puts all sensors of a gripper into one frame, from one picture each of a known plate.";
+    m.need = {"A plate whose place is known (\"Plate in the world\"), seen by the camera.",
+              "The laser plane in the camera; the robot tells where the flange stands."};
+    m.file = "JSON with the chain of poses of each sensor";
+    m.drawing = SetUpDrawing::several_sensors;
+    return m;
 }
 
 }  // namespace seamwright

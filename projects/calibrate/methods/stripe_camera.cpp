@@ -1,95 +1,27 @@
-#include <fmt/format.h>
+// Data: stripe_frames.h, or a folder of images that show a chessboard ("7x6" inner corners) and the stripe; robot poses
+// beside them (poseNNNN.txt, .yaml, .json as read_pose_file() reads them) give the hand-eye.
+// -> {"status","images","boards_found","camera","reprojection_rms_px","laser_plane":{"normal","distance_mm"},
+//     "camera_from_laser","on_plane_share" (frames that share the
+//     plane),"on_plane_share_all_frames","plane_rms_mm",
+//     "hand_eye":{"flange_from_camera","target_spread_mm",..},"plate":{"shape","stretch","shear","bow_mm"},"frames":[..],...}
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <optional>
-#include <tuple>
 
 #include "core/calibration/camera/camera.h"
-#include "core/geometry/pose_convention.h"
-#include "core/profile/peaks.h"
-#include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/input/plate_images.h"
-#include "projects/calibrate/input/pose_lists.h"
 #include "projects/calibrate/methods/camera_json.h"
+#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/hand_eye_json.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/calibrate/methods/stripe_frames.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-
 namespace {
 
-// The pose that belongs to an image: the file of the same name, or the one with the same number
-// ("frame0007.png" and "pose0007.txt", "images/7.png" and "poses/7.yaml").
-std::optional<fs::path> pose_file_beside(const fs::path& image) {
-    const std::string stem = image.stem().string();
-    std::string digits;
-    for (auto i = stem.rbegin(); i != stem.rend() && std::isdigit(static_cast<unsigned char>(*i)); ++i)
-        digits.insert(digits.begin(), *i);
-    std::error_code code;
-    const fs::path folder = image.parent_path();
-    for (const auto& where : {folder, folder.parent_path() / "poses"})
-        for (const auto& name : {stem, "pose" + digits, digits})
-            for (const char* extension : {".txt", ".yaml", ".yml", ".json"}) {
-                const fs::path path = where / (name + extension);
-                if (!name.empty() && fs::is_regular_file(path, code)) return path;
-            }
-    return std::nullopt;
-}
-
-Expected<std::vector<Eigen::Vector2d>> parse_pixels(const json& entry, const char* key,
-                                                    const std::string& where) {
-    auto list = json_array(entry, key, where);
-    if (!list) return tl::unexpected(list.error());
-    std::vector<Eigen::Vector2d> pixels;
-    pixels.reserve((*list)->size());
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        auto uv = as_numbers((**list)[i], 2, json_path(json_path(where, key), i));
-        if (!uv) return tl::unexpected(uv.error());
-        pixels.emplace_back((*uv)[0], (*uv)[1]);
-    }
-    return pixels;
-}
-
-json pixels_json(const std::vector<Eigen::Vector2d>& pixels) {
-    json list = json::array();
-    for (const auto& p : pixels) list.push_back({p.x(), p.y()});
-    return list;
-}
-
-Expected<FoundBoard> parse_found_board(const json& value, const BoardSpec& spec, const std::string& where) {
-    FoundBoard board;
-    auto pixels = parse_pixels(value, "pixel", where);
-    if (!pixels) return tl::unexpected(pixels.error());
-    board.pixel = std::move(*pixels);
-    auto index = json_array(value, "index", where);
-    if (!index) return tl::unexpected(index.error());
-    for (std::size_t i = 0; i < (*index)->size(); ++i) {
-        auto number = as_number((**index)[i], json_path(json_path(where, "index"), i));
-        if (!number) return tl::unexpected(number.error());
-        if (*number < 0 || *number >= spec.columns * spec.rows || *number != std::floor(*number))
-            return input_error("this is no corner of the board", json_path(json_path(where, "index"), i));
-        const int k = static_cast<int>(*number);
-        board.index.push_back(k);
-        board.object_mm.emplace_back(k % spec.columns * spec.pitch_mm, k / spec.columns * spec.pitch_mm, 0);
-    }
-    if (board.index.size() != board.pixel.size())
-        return input_error("pixel and index have different lengths", where);
-    auto symmetry = json_number_or(value, "symmetry", 1, where);
-    if (!symmetry) return tl::unexpected(symmetry.error());
-    board.symmetry = *symmetry == 2 || *symmetry == 4 ? static_cast<int>(*symmetry) : 1;
-    auto detector = json_string_or(value, "detector", "", where);
-    if (!detector) return tl::unexpected(detector.error());
-    board.detector = *detector;
-    return board;
-}
+using nlohmann::json;
 
 // Residual of a frame that took no part: board under the solved camera, place of the target, stripe and laser
 // plane.
@@ -144,233 +76,25 @@ void judge_excluded(const StripeCameraResult& solved, const StripeObservation& o
     if (std::isnan(pose.rms_mm)) pose.rms_mm = *middle;
 }
 
-}  // namespace
-
-json stripe_frame_json(const StripeObservation& o) {
-    json entry{{"id", o.id},
-               {"size", {o.width, o.height}},
-               {"scan", o.scan == ScanLines::rows ? "rows" : "columns"},
-               {"board", nullptr},
-               {"stripe", pixels_json(o.stripe)},
-               {"base_from_flange", o.base_from_flange ? pose_json(*o.base_from_flange) : json(nullptr)}};
-    if (o.board)
-        entry["board"] = {{"pixel", pixels_json(o.board->pixel)},
-                          {"index", o.board->index},
-                          {"symmetry", o.board->symmetry},
-                          {"detector", o.board->detector}};
-    return entry;
-}
-
-Expected<StripeObservation> parse_stripe_frame(const json& entry, const BoardSpec& spec, std::size_t index,
-                                               const std::string& where) {
-    StripeObservation o;
-    auto id = entry_id(entry, index, where);
-    if (!id) return tl::unexpected(id.error());
-    o.id = *id;
-    auto size_field = json_field(entry, "size", where);
-    if (!size_field) return tl::unexpected(size_field.error());
-    auto size = as_numbers(**size_field, 2, json_path(where, "size"));
-    if (!size) return tl::unexpected(size.error());
-    if (!((*size)[0] >= 1 && (*size)[1] >= 1 && (*size)[0] <= 1e5 && (*size)[1] <= 1e5))
-        return input_error("this is no image size", json_path(where, "size"),
-                           "give [width, height] in pixels");
-    o.width = static_cast<int>((*size)[0]);
-    o.height = static_cast<int>((*size)[1]);
-    auto scan = json_string_or(entry, "scan", "rows", where);
-    if (!scan) return tl::unexpected(scan.error());
-    if (*scan != "rows" && *scan != "columns")
-        return input_error(Text("the scan '{}' is unknown", *scan), json_path(where, "scan"),
-                           "write rows or columns");
-    o.scan = *scan == "rows" ? ScanLines::rows : ScanLines::columns;
-    if (const auto it = entry.find("board"); it != entry.end() && !it->is_null()) {
-        auto board = parse_found_board(*it, spec, json_path(where, "board"));
-        if (!board) return tl::unexpected(board.error());
-        o.board = std::move(*board);
-    }
-    if (const auto it = entry.find("stripe"); it != entry.end() && !it->is_null()) {
-        auto stripe = parse_pixels(entry, "stripe", where);
-        if (!stripe) return tl::unexpected(stripe.error());
-        o.stripe = std::move(*stripe);
-    }
-    if (const auto it = entry.find("base_from_flange"); it != entry.end() && !it->is_null()) {
-        auto pose = parse_pose(*it, json_path(where, "base_from_flange"));
-        if (!pose) return tl::unexpected(pose.error());
-        o.base_from_flange = *pose;
-    }
-    return o;
-}
-
-json board_json(const BoardSpec& spec) {
-    return {{"columns", spec.columns}, {"rows", spec.rows}, {"pitch_mm", spec.pitch_mm}};
-}
-
-Expected<BoardSpec> parse_board_json(const json& value, const std::string& where) {
-    BoardSpec spec;
-    for (auto [key, target] : {std::pair{"columns", &spec.columns}, std::pair{"rows", &spec.rows}}) {
-        auto number = json_number(value, key, where);
-        if (!number) return tl::unexpected(number.error());
-        if (!(*number >= 0 && *number <= 1000)) return input_error("this is no count", json_path(where, key));
-        *target = static_cast<int>(*number);
-    }
-    auto pitch = json_number(value, "pitch_mm", where);
-    if (!pitch) return tl::unexpected(pitch.error());
-    spec.pitch_mm = *pitch;
-    if (auto ok = validate(spec); !ok) return tl::unexpected(ok.error());
-    return spec;
-}
-
-namespace {
-
-// Of a colour picture the stripe in the channel that shows it best; the plate is found in grey. nullopt: grey
-// does.
-using Stripe = std::pair<ScanLines, std::vector<Eigen::Vector2d>>;
-Expected<std::optional<Stripe>> stripe_in_colour(const fs::path& path) {
-    const auto choice = choose_channel(path);
-    if (!choice) return tl::unexpected(choice.error());
-    if (!choice->colour || choice->channel == ImageChannel::grey) return std::nullopt;
-    Frame frame;
-    if (auto read = read_image_file(path, frame, 0, choice->channel); !read)
-        return tl::unexpected(read.error());
-    PeakOptions options;
-    const auto scan = guess_scan_lines(frame.image);
-    if (!scan) return tl::unexpected(scan.error());
-    options.scan = *scan;
-    StripePeaks peaks;
-    if (auto found = find_peaks(frame.image, options, peaks); !found) return tl::unexpected(found.error());
-    Stripe stripe{*scan, {}};
-    for (int line = 0; line < peaks.lines; ++line)
-        for (int k = 0; k < peaks.count[static_cast<std::size_t>(line)]; ++k) {
-            const auto i = static_cast<std::size_t>(peaks.index(line, k));
-            if (!(peaks.flags[i] & StripePeaks::kTruncated))
-                stripe.second.push_back(pixel_of(*scan, line, peaks.position_px[i]));
-        }
-    return stripe;
-}
-
-}  // namespace
-
-Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardSpec& spec) {
-    Frame frame;
-    if (auto read = read_image_file(path, frame); !read)
-        return input_error(Text("the image cannot be read: {}", read.error().what), path.string(),
-                           Text("exclude it with --exclude {}", path.stem().string()));
-    StripeFrame f;
-    f.id = path.stem().string();
-    f.image = frame.image;
-    if (const auto pose_file = pose_file_beside(path)) {
-        auto pose = read_pose_file(*pose_file);
-        if (!pose) {
-            Error error = pose.error();
-            error.kind = ErrorKind::input;
-            return tl::unexpected(std::move(error));
-        }
-        f.base_from_flange = *pose;
-    }
-    StripeObservation o = observe(f, spec);
-    if (auto stripe = stripe_in_colour(path); !stripe)
-        return tl::unexpected(stripe.error());
-    else if (*stripe)
-        std::tie(o.scan, o.stripe) = std::move(**stripe);
-    return o;
-}
-
-namespace {
-
-struct ObservedFolder {
-    BoardSpec spec;
-    std::vector<fs::path> images;
-    std::vector<StripeObservation> observations;  // one an image
-};
-
-Expected<ObservedFolder> observe_folder(const std::string& directory, const std::string& board,
-                                        double pitch_mm, const std::vector<std::string>& exclude) {
-    auto spec = parse_board(board, pitch_mm, "chessboard");
-    if (!spec) return tl::unexpected(spec.error());
-    auto images = plate_images(directory, exclude);
-    if (!images) return tl::unexpected(images.error());
-    std::vector<StripeObservation> observations;
-    for (const auto& path : *images) {
-        auto read = read_stripe_frame(path, *spec);
-        if (!read) return tl::unexpected(read.error());
-        if (!observations.empty() &&
-            (read->width != observations.front().width || read->height != observations.front().height))
-            return input_error("the images have different sizes", path.string(),
-                               "give frames of one camera at one resolution");
-        observations.push_back(std::move(*read));
-    }
-    return ObservedFolder{*spec, std::move(*images), std::move(observations)};
-}
-
-}  // namespace
-
-Expected<CalibrateOutcome> calibrate_stripe_camera_folder(const std::string& directory,
-                                                          const std::string& board, double pitch_mm,
-                                                          const std::vector<std::string>& exclude) {
-    const auto folder = observe_folder(directory, board, pitch_mm, exclude);
-    if (!folder) return tl::unexpected(folder.error());
-    return calibrate_stripe_frames(folder->observations, folder->spec, {});
-}
-
-Expected<json> stripe_folder_data(const std::string& directory, const std::string& board, double pitch_mm,
-                                  const std::vector<std::string>& exclude) {
-    const auto folder = observe_folder(directory, board, pitch_mm, exclude);
-    if (!folder) return tl::unexpected(folder.error());
-    json frames = json::array();
-    for (std::size_t i = 0; i < folder->images.size(); ++i) {
-        const StripeObservation& o = folder->observations[i];
-        frames.push_back(stripe_frame_json(o));
-        const auto file = pose_file_beside(folder->images[i]);
-        if (!o.base_from_flange || !file || file->extension() == ".json") continue;
-        const PoseNumbers n = write_pose(*o.base_from_flange, {.rotation = RotationReading::quat_wxyz});
-        frames.back()["base_from_flange"] = {
-            {"xyz", {n.position.x(), n.position.y(), n.position.z()}},
-            {"quat_wxyz", {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}}};
-    }
-    return json{{"board", board_json(folder->spec)}, {"frames", frames}};
-}
-
-Expected<StripeData> parse_stripe_data(const json& data) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate stripe-camera --help");
-    auto board = json_field(data, "board", "");
-    if (!board) return tl::unexpected(board.error());
-    auto spec = parse_board_json(**board, "board");
-    if (!spec) return tl::unexpected(spec.error());
-    auto list = json_array(data, "frames", "");
-    if (!list) return tl::unexpected(list.error());
-    StripeData set{*spec, {}};
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        auto o = parse_stripe_frame((**list)[i], *spec, i, json_path("frames", i));
-        if (!o) return tl::unexpected(o.error());
-        set.observations.push_back(std::move(*o));
-    }
-    return set;
-}
-
-Expected<CalibrateOutcome> calibrate_stripe_camera_json(const json& data,
-                                                        const std::vector<std::string>& exclude) {
-    auto meant = with_usual_poses("stripe-camera", data);
-    if (!meant) return tl::unexpected(meant.error());
-    auto set = parse_stripe_data(meant->data());
+Expected<CalibrationSolution> solve_stripe_camera(const json& data, const ExcludedIds& exclude) {
+    auto set = parse_stripe_data(data);
     if (!set) return tl::unexpected(set.error());
-    auto outcome = calibrate_stripe_frames(set->observations, set->spec, exclude);
-    if (outcome) meant->put(outcome->result);
-    return outcome;
-}
-
-Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObservation>& observations,
-                                                   const BoardSpec& spec,
-                                                   const std::vector<std::string>& exclude) {
+    const auto& observations = set->observations;
     StripeCameraOptions options;
     options.exclude = exclude;
-    auto solved = calibrate_stripe_camera(observations, spec, options);
+    auto solved = calibrate_stripe_camera(observations, set->spec, options);
     if (!solved) return tl::unexpected(solved.error());
 
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
-    const Verdict verdict = solved->report.judgement.verdict;
-    const bool known = verdict != Verdict::undetermined;
-    result["method"] = "stripe-camera";
+    CalibrationSolution solution;
+    json& result = solution.document;
+    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
+    if (known) {
+        CameraAndLaser found{solved->camera, std::nullopt, std::nullopt};
+        if (solved->plane) found.camera_from_laser = solved->camera_from_laser;
+        if (solved->flange_from_camera)
+            found.flange_from_camera = {*solved->flange_from_camera, solved->flange_from_camera_covariance};
+        solution.found = std::move(found);
+    }
     result["status"] = known ? "ok" : "undetermined";
     result["images"] = observations.size();
     result["poses"] = std::count_if(observations.begin(), observations.end(), [](const StripeObservation& o) {
@@ -421,12 +145,116 @@ Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObser
     result["frames"] = std::move(frames);
     for (std::size_t i = 0; known && i < observations.size(); ++i)
         if (std::count(exclude.begin(), exclude.end(), observations[i].id) > 0)
-            judge_excluded(*solved, observations[i], spec, solved->report.poses[i]);
-    add_report(solved->report, result);
-    if (!known)
-        for (auto& p : result["parameters"]) p["value"] = p["sigma"] = nullptr;
-    outcome.exit_code = exit_code_for(verdict);
-    return outcome;
+            judge_excluded(*solved, observations[i], set->spec, solved->report.poses[i]);
+    solution.report = std::move(solved->report);
+    finish_document(solution);
+    return solution;
+}
+
+json stripe_camera_example() {
+    example::Dither dither;
+    const SensorModel model{example::camera(), example::camera_from_laser(), std::nullopt};
+    json frames = json::array();
+    for (const TargetPlace& view : plate_views()) {
+        json pixels = json::array(), index = json::array(), stripe = json::array();
+        for (int i = 0; i < example::kBoardColumns * example::kBoardRows; ++i) {
+            const Eigen::Vector2d p =
+                model.camera.project(example::camera_from_board(view) * example::board_corner(i));
+            pixels.push_back(example::pair_json(p.x() + dither(example::kPixelNoise),
+                                                p.y() + dither(example::kPixelNoise)));
+            index.push_back(i);
+        }
+        // Where the plate (target z = 0) meets the laser plane (sensor y = 0): a line in the sensor's x and
+        // z.
+        const Pose target_from_laser = target_from_sensor(view);
+        const Eigen::Vector3d n = target_from_laser.linear().row(2);
+        for (int column = 0; column < example::kWidth; column += 8) {
+            // The line's point above this column, by bisection of x.
+            double low = -150, high = 150;
+            const auto at = [&](double x) {
+                const double z = -(target_from_laser.translation().z() + n.x() * x) / n.z();
+                return model.camera.project(model.camera_from_laser * Eigen::Vector3d(x, 0, z));
+            };
+            for (int i = 0; i < 60; ++i) (at((low + high) / 2).x() < column ? low : high) = (low + high) / 2;
+            const Eigen::Vector2d p = at((low + high) / 2);
+            if (std::abs(p.x() - column) < 0.01 && p.y() > 0 && p.y() < example::kHeight)
+                stripe.push_back(example::pair_json(column, p.y() + dither(example::kPixelNoise)));
+        }
+        frames.push_back(
+            {{"id", "frame" + std::to_string(frames.size() + 1)},
+             {"size", {example::kWidth, example::kHeight}},
+             {"scan", "columns"},
+             {"board", {{"pixel", pixels}, {"index", index}, {"symmetry", 1}, {"detector", "measured"}}},
+             {"stripe", stripe},
+             {"base_from_flange", pose_json(example::base_from_flange(view, dither))}});
+    }
+    return {{"board",
+             {{"columns", example::kBoardColumns},
+              {"rows", example::kBoardRows},
+              {"pitch_mm", example::kPitch_mm}}},
+            {"frames", frames}};
+}
+
+// Camera and plate without the robot, once; the robot's poses then against where the camera saw the plate.
+Expected<ConventionFits> stripe_camera_conventions(const json& data, const ExcludedIds& exclude) {
+    auto set = parse_stripe_data(without_poses(stripe_camera_method().poses, data, nullptr));
+    if (!set) return tl::unexpected(set.error());
+    StripeCameraOptions options;
+    options.exclude = exclude;
+    const auto solved = calibrate_stripe_camera(set->observations, set->spec, options);
+    if (!solved) return tl::unexpected(solved.error());
+    std::vector<HandEyePair> pairs;
+    std::vector<std::size_t> number;  // of the pose in its list
+    std::size_t poses = 0;
+    for (std::size_t i = 0; i < solved->frames.size(); ++i) {
+        const json& entry = data.at("frames").at(i);
+        if (!entry.contains("base_from_flange") || entry["base_from_flange"].is_null()) continue;
+        const std::size_t own = poses++;
+        if (!solved->frames[i].used) continue;
+        pairs.push_back({set->observations[i].id, Pose::Identity(), solved->frames[i].camera_from_target});
+        number.push_back(own);
+    }
+    PoseFit fit = [pairs = std::move(pairs),
+                   number = std::move(number)](const std::vector<std::vector<Pose>>& lists) mutable {
+        for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].base_from_flange = lists[0][number[i]];
+        return convention_fit(Mount::eye_in_hand, pairs, {});
+    };
+    return ConventionFits{std::move(fit), {}};
+}
+
+}  // namespace
+
+CalibrationMethod stripe_camera_method() {
+    CalibrationMethod m;
+    m.id = "stripe-camera";
+    m.help = "Intrinsics, laser plane and hand-eye from images of a board and the stripe";
+    m.usage = "images --board 7x6 --pitch-mm 10 --report report.html";
+    m.layout =
+        R"({"board":{"columns","rows","pitch_mm"},"frames":[{"id"?,"size":[W,H],"scan":"rows"|"columns",
+   "board":{"pixel":[[u,v],..],"index":[row*columns+column,..],"symmetry","detector"} or null,
+   "stripe":[[u,v],..],"base_from_flange":POSE or null},..]})";
+    m.example = stripe_camera_example;
+    m.poses = {{"frames", kRobotPose}};
+    m.solve = solve_stripe_camera;
+    m.data_of_images = stripe_folder_data;
+    m.chessboard_only = true;
+    m.convention_fits = stripe_camera_conventions;
+    m.entries = "frames";
+    m.capture = CaptureKind::board_and_stripe;
+    m.fewest = 3;
+    m.advised = 10;
+    m.robot = true;
+    m.settings = board_settings();
+    m.title = "Camera and laser plane (board)";
+    m.why = "Finds lens, laser plane and, with robot poses, the place on the flange, from one board.";
+    m.need = {
+        "A flat chessboard, its corners counted and its pitch known.",
+        "10 or more pictures with the stripe across the board, tilted to both sides about both axes, at "
+        "different heights, out to the corners of the picture.",
+        "The board stays where it is; only the robot moves."};
+    m.file = "folder of images with pose files";
+    m.drawing = SetUpDrawing::board_and_stripe;
+    return m;
 }
 
 }  // namespace seamwright

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "core/calibration/stripe/stripe_camera.h"
-#include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/methods/method.h"
 
 namespace seamwright {
 
@@ -27,17 +27,11 @@ struct StripeData {
 };
 Expected<StripeData> parse_stripe_data(const nlohmann::json& data);
 
-// Image and the pose file beside it (see calibrate_stripe_camera_folder), observed.
+// Image and the pose file beside it: the file of the same name, or the one with the same number ("frame0007.png" and
+// "pose0007.txt", "images/7.png" and "poses/7.yaml").
 Expected<StripeObservation> read_stripe_frame(const std::filesystem::path& image, const BoardSpec& spec);
 
-// The folder of calibrate_stripe_camera_folder() (methods.h) as data; poses of text files as the quaternions that
-// they are written with.
-Expected<nlohmann::json> stripe_folder_data(const std::string& directory, const std::string& board,
-                                            double pitch_mm, const std::vector<std::string>& exclude);
-
-// Result as of calibrate_stripe_camera_folder().
-Expected<CalibrateOutcome> calibrate_stripe_frames(const std::vector<StripeObservation>& observations,
-                                                   const BoardSpec& spec,
-                                                   const std::vector<std::string>& exclude);
+// A folder of them as data.
+Expected<nlohmann::json> stripe_folder_data(const BoardImages& images);
 
 }  // namespace seamwright

@@ -1,12 +1,20 @@
+// {"radius_mm":r or null,"observations":[{"id","base_from_flange":POSE,"profile":[[x,z],..]}],
+//  "nominal_flange_from_sensor":POSE?}; z null = no return.
+// ->
+// {"status","flange_from_sensor","centre_base_mm","radius_mm","rms_mm","noise_mm","sigma":{"xyz_mm","abc_deg","centre_mm",
+//     "radius_mm","working_mm"},"covariance_pose" 6x6 (mm,
+//     rad),"mirrored","degenerate","proposals":[{"words","base_from_flange","sigma_mm"}],...}
+
+#include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/input/pose_lists.h"
+#include "projects/calibrate/methods/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/calibrate/methods/sphere_profile_json.h"
-#include "projects/file/stored_text.h"
 
 namespace seamwright {
 
@@ -48,8 +56,6 @@ Expected<SphereObservation> parse_sphere_observation(const json& entry, std::siz
 }
 
 Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::string>& exclude) {
-    if (!data.is_object())
-        return input_error("the data is not a JSON object", "", "see calibrate tcp-sphere --help");
     SphereData sphere;
     TcpSphereOptions& options = sphere.options;
     options.exclude = exclude;
@@ -76,19 +82,18 @@ Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::
     return sphere;
 }
 
-Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
-                                                     const std::vector<std::string>& exclude) {
-    auto meant = with_usual_poses("tcp-sphere", data);
-    if (!meant) return tl::unexpected(meant.error());
-    auto sphere = parse_sphere_data(meant->data(), exclude);
+namespace {
+
+Expected<CalibrationSolution> solve_tcp_sphere(const json& data, const ExcludedIds& exclude) {
+    auto sphere = parse_sphere_data(data, exclude);
     if (!sphere) return tl::unexpected(sphere.error());
     auto solved = calibrate_tcp_sphere(sphere->observations, sphere->options);
     if (!solved) return tl::unexpected(solved.error());
 
-    CalibrateOutcome outcome;
-    json& result = outcome.result;
+    CalibrationSolution solution;
+    json& result = solution.document;
     const bool ok = solved->status == TcpSphereStatus::ok;
-    result["method"] = "tcp-sphere";
+    if (ok) solution.found = SensorOnFlange{{solved->flange_from_sensor, solved->covariance}};
     result["status"] = std::string(name_of(solved->status));
     result["flange_from_sensor"] = ok ? pose_json(solved->flange_from_sensor) : json(nullptr);
     result["centre_base_mm"] = ok ? vector_json(solved->centre_base_mm) : json(nullptr);
@@ -108,18 +113,88 @@ Expected<CalibrateOutcome> calibrate_tcp_sphere_json(const json& data,
         result["sigma"] = nullptr;
     }
     result["mirrored"] = std::string(name_of(solved->mirrored));
-    put_texts(result, "notices", solved->notices);
-    put_texts(result, "degenerate", solved->degenerate);
     json proposals = json::array();
     for (const auto& p : solved->proposals)
         proposals.push_back({{"words", p.words},
                              {"base_from_flange", pose_json(p.base_from_flange)},
                              {"sigma_mm", number_json(p.sigma_mm)}});
     result["proposals"] = std::move(proposals);
-    add_report(solved->report, result);
-    meant->put(result);
-    outcome.exit_code = exit_code_for(solved->report.judgement.verdict);
-    return outcome;
+    solution.report = std::move(solved->report);
+    solution.notices = std::move(solved->notices);
+    solution.degenerate = std::move(solved->degenerate);
+    solution.proposals = std::move(solved->proposals);
+    finish_document(solution);
+    return solution;
+}
+
+json tcp_sphere_example() {
+    return {{"radius_mm", example::kRadius_mm}, {"observations", example::sphere_observations()}};
+}
+
+// Residuals below this are exact: two readings then tie.
+constexpr double kExactPoint_mm = 0.002;
+
+using Lists = std::vector<std::vector<Pose>>;
+
+// The three numbers of a profile weigh very unequally where the poses err, the cut's radius least: two count.
+std::optional<ConventionFit> sphere_fit(SphereData& set, const std::vector<Pose>& poses, bool thorough) {
+    for (std::size_t i = 0; i < set.observations.size(); ++i) set.observations[i].base_from_flange = poses[i];
+    set.options.thorough = thorough;
+    const auto solved = calibrate_tcp_sphere(set.observations, set.options);
+    if (!solved || solved->status == TcpSphereStatus::not_converged) return std::nullopt;
+    const double unknowns = set.options.radius_mm ? 9 : 10;
+    return ConventionFit{std::max(kExactPoint_mm * kExactPoint_mm, solved->poses_variance_mm2),
+                         std::max(1.0, (solved->poses_freedom + unknowns) * 2 / 3 - unknowns), solved->rms_mm,
+                         thorough && solved->fits,
+                         thorough ? solved->report.judgement.verdict : Verdict::undetermined};
+}
+
+Expected<ConventionFits> tcp_sphere_conventions(const json& data, const ExcludedIds& exclude) {
+    auto sphere = parse_sphere_data(
+        without_poses(tcp_sphere_method().poses, data, pose_json(Pose::Identity())), exclude);
+    if (!sphere) return tl::unexpected(sphere.error());
+    const auto set = std::make_shared<SphereData>(std::move(*sphere));
+    return ConventionFits{[set](const Lists& lists) { return sphere_fit(*set, lists[0], true); },
+                          [set](const Lists& lists) { return sphere_fit(*set, lists[0], false); }};
+}
+
+// The mounting as far as it is known.
+Expected<json> prepare_tcp_sphere(json settings, const Calibration* base, const std::vector<Calibration>&) {
+    if (!settings.contains("nominal_flange_from_sensor") && base &&
+        !base->flange_from_sensor.isApprox(Pose::Identity()))
+        settings["nominal_flange_from_sensor"] = pose_json(base->flange_from_sensor);
+    return settings;
+}
+
+}  // namespace
+
+CalibrationMethod tcp_sphere_method() {
+    CalibrationMethod m;
+    m.id = "tcp-sphere";
+    m.help = "Sensor on the flange from profiles of one sphere";
+    m.usage = "sphere.json --exclude P3";
+    m.layout = R"({"radius_mm":R or null,"nominal_flange_from_sensor":POSE?,
+   "observations":[{"id"?,"base_from_flange":POSE,"profile":[[x,z],..]},..]}   mm; z null: no return)";
+    m.example = tcp_sphere_example;
+    m.poses = {{"observations", kRobotPose}};
+    m.solve = solve_tcp_sphere;
+    m.convention_fits = tcp_sphere_conventions;
+    m.entries = "observations";
+    m.capture = CaptureKind::sphere_profile;
+    m.fewest = 6;
+    m.advised = 9;
+    m.robot = m.model = true;
+    m.settings = {sphere_radius_setting()};
+    m.prepare = prepare_tcp_sphere;
+    m.title = "Sensor on the flange (sphere)";
+    m.why = "Finds where the sensor sits on the flange, from cuts through one fixed sphere.";
+    m.need = {"A matt sphere of known radius on a stiff post that nobody touches.",
+              "Camera and laser plane calibrated: the profile must be in millimetres.",
+              "9 or more poses: the stripe off the middle to both sides, the sensor turned about all three "
+              "axes by 20 degrees and more."};
+    m.file = "JSON with radius, robot poses and profiles";
+    m.drawing = SetUpDrawing::sphere;
+    return m;
 }
 
 }  // namespace seamwright

@@ -5,13 +5,13 @@
 
 namespace seamwright {
 
-// The calibration that a result gives. `base` is the one in use (nullptr: none): what the method does not
-// determine, pixel to millimetre for the sphere, the flange for a laser plane, is taken over from it. `data`
-// and `exclude` go into Calibration::raw, so that it can be solved again. Ids, identities and times are the
-// caller's. Error (input): the method needs a base, the result is undetermined.
-Expected<Calibration> calibration_of_result(const CalibrationMethod& method, const nlohmann::json& data,
-                                            const std::vector<std::string>& exclude,
-                                            const nlohmann::json& result, const Calibration* base);
+// The calibration that an answer gives. `base` is the one in use (nullptr: none): what was not found is taken over
+// from it, and a camera stays where it sits on the flange when its laser plane alone is new. Its raw data are `data`
+// and `exclude`, so that it can be solved again. Ids, identities and times are the caller's. Error (input): the
+// finding needs a base, or is none that a sensor could measure with.
+Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, const nlohmann::json& data,
+                                              const ExcludedIds& exclude, const CalibrationSolution& solution,
+                                              const Calibration* base);
 
 // The whole of it from a session, named with free ids, for this project's sensors and robot: one calibration,
 // or, of the one shot of a gripper, one for each sensor whose chain was solved, built on that sensor's own

@@ -213,29 +213,6 @@ Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame
 
 }  // namespace
 
-Expected<json> prepared_settings(const CalibrationMethod& method, json settings, const Calibration* base) {
-    if (method.id == "tcp-sphere" && !settings.contains("nominal_flange_from_sensor") && base &&
-        !base->flange_from_sensor.isApprox(Pose::Identity()))
-        settings["nominal_flange_from_sensor"] = pose_json(base->flange_from_sensor);
-    if (method.id == "laser-plane" && !settings.contains("camera") && base && base->model)
-        settings["camera"] = camera_json(base->model->camera);
-    if (method.id == "drift") {
-        if (!base)
-            return input_error("there is no calibration in use to check", method.id, "calibrate first");
-        settings["flange_from_sensor"] = pose_json(base->flange_from_sensor);
-        if (base->result.contains("centre_base_mm") && base->result["centre_base_mm"].is_array() &&
-            !settings.contains("centre_base_mm")) {
-            settings["centre_base_mm"] = base->result["centre_base_mm"];
-            if (base->result.contains("radius_mm") && base->result["radius_mm"].is_number())
-                settings["radius_mm"] = base->result["radius_mm"];
-        }
-        if (!settings.contains("centre_base_mm"))
-            return input_error("where the sphere stands is not known", method.id,
-                               "check a calibration that was made with the sphere, or load measured data");
-    }
-    return settings;
-}
-
 Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json& settings,
                                     const SensorSetup& sensor, const Calibration* base, const Frame& stripe,
                                     const Frame* board, const std::optional<Pose>& base_from_flange) {

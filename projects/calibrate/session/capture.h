@@ -9,12 +9,6 @@
 
 namespace seamwright {
 
-// Settings that come from the calibration in use: the camera of laser-plane, the stored pose and the sphere
-// of drift, the mounting that tcp-sphere takes as nominal. `base` may be nullptr. Error (input): the method
-// cannot do without.
-Expected<nlohmann::json> prepared_settings(const CalibrationMethod& method, nlohmann::json settings,
-                                           const Calibration* base);
-
 // A capture and the settings it brings along (a lens learns the image's size from it).
 struct TakenCapture {
     CalibrationCapture capture;  // without id

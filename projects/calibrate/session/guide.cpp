@@ -1,13 +1,10 @@
 #include "projects/calibrate/session/guide.h"
 
-#include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
-#include "projects/calibrate/session/target_views.h"
+#include "projects/calibrate/methods/target_views.h"
 
 namespace seamwright {
 namespace {
-
-using nlohmann::json;
 
 // Closer than this to a capture, a view counts as taken.
 constexpr double kNearMm = 12, kNearDeg = 8;
@@ -33,20 +30,14 @@ const std::vector<TargetPlace>* views_of(const CalibrationMethod& method) {
 
 // Solved, else as known.
 std::optional<Pose> mounting(const CalibrationSession& session, const std::optional<Pose>& known) {
-    const json* result = session.result();
-    const auto solved = [&](const json& holder, const char* key) -> std::optional<Pose> {
-        if (!holder.is_object() || !holder.contains(key) || !holder[key].is_object()) return std::nullopt;
-        auto pose = parse_pose(holder[key], key);
-        return pose ? std::optional<Pose>(*pose) : std::nullopt;
-    };
+    const CalibrationSolution* solution = session.solution();
     // A solution that is not sound would lead away from the target.
-    if (!result || !serves(verdict_of(*result))) return known;
-    if (auto pose = solved(*result, "flange_from_sensor")) return pose;
-    if (session.method().id == "stripe-camera" && result->contains("hand_eye")) {
-        const auto camera = solved((*result)["hand_eye"], "flange_from_camera");
-        const auto laser = solved(*result, "camera_from_laser");
-        if (camera && laser) return *camera * *laser;
-    }
+    if (!solution || !serves(solution->verdict())) return known;
+    if (const auto* sensor = std::get_if<SensorOnFlange>(&solution->found))
+        return sensor->flange_from_sensor.pose;
+    if (const auto* camera = std::get_if<CameraAndLaser>(&solution->found);
+        camera && camera->flange_from_camera && camera->camera_from_laser)
+        return camera->flange_from_camera->pose * *camera->camera_from_laser;
     return known;
 }
 
@@ -72,12 +63,14 @@ std::optional<NextPose> next_pose(const CalibrationSession& session,
     const auto* views = views_of(session.method());
     const CalibrationCapture* first = first_with_pose(session);
     if (!views || !first) return std::nullopt;
-    const json* result = session.result();
-    if (result && result->value("status", "") != "ok" && result->contains("proposals"))
-        for (const json& p : (*result)["proposals"])
-            if (auto pose = parse_pose(p.value("base_from_flange", json()), "proposals");
-                pose && !taken(session, *pose))
-                return NextPose{*pose, true};
+    const CalibrationSolution* solution = session.solution();
+    const auto proposed = [&]() -> std::optional<NextPose> {
+        for (const PoseProposal& p : solution ? solution->proposals : std::vector<PoseProposal>())
+            if (!taken(session, p.base_from_flange)) return NextPose{p.base_from_flange, true};
+        return std::nullopt;
+    };
+    if (solution && solution->verdict() == Verdict::undetermined)
+        if (auto pose = proposed()) return pose;
     const auto known = mounting(session, flange_from_sensor);
     if (!known) return std::nullopt;
     const Pose& x = *known;
@@ -87,15 +80,11 @@ std::optional<NextPose> next_pose(const CalibrationSession& session,
         const Pose pose = base_from_target * target_from_sensor(view) * x.inverse();
         if (!taken(session, pose)) return NextPose{pose, false};
     }
-    if (result && result->contains("proposals"))
-        for (const json& p : (*result)["proposals"])
-            if (auto pose = parse_pose(p.value("base_from_flange", json()), "proposals");
-                pose && !taken(session, *pose))
-                return NextPose{*pose, true};
-    return std::nullopt;
+    return proposed();
 }
 
-std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method, const json& cell_settings) {
+std::optional<SimulatedStart> simulated_start(const CalibrationMethod& method,
+                                              const nlohmann::json& cell_settings) {
     const auto* views = views_of(method);
     auto settings = parse_cell_settings(cell_settings);
     if (!views || !settings) return std::nullopt;

@@ -11,7 +11,6 @@
 #include "devices/capture/capture.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/file/stored_text.h"
 
 namespace seamwright {
 namespace {
@@ -84,11 +83,6 @@ Expected<void> make_folder(const fs::path& folder) {
     fs::create_directories(folder, code);
     if (code) return file_error(Text("the folder cannot be made: {}", code.message()), folder.string());
     return {};
-}
-
-double at_most(const json& entry, const char* key) {
-    const auto it = entry.find(key);
-    return it != entry.end() && it->is_number() ? it->get<double>() : kNone;
 }
 
 }  // namespace
@@ -189,12 +183,18 @@ Expected<void> CalibrationSession::read() {
         state_.captures.push_back({std::make_shared<const CalibrationCapture>(std::move(*capture)),
                                    mark.value("left_out", false), mark.value("verification", false)});
     }
-    // A solution that does not belong to exactly these captures and marks is solved again.
+    // A solution that does not belong to exactly these captures and marks is solved again; so is one that its document
+    // does not hold whole.
     if (auto solved = read_json_file(folder_ / "result.json");
         solved && solved->contains("result") && solved->value("settings", json()) == state_.settings &&
         solved->value("captures", json()) == marks_json(state_)) {
-        result_ = (*solved)["result"];
-        solved_from_ = state_;
+        auto solution = solution_from_document((*solved)["result"]);
+        const bool whole = solution && (method_->use != AnswerUse::sensor || !serves(solution->verdict()) ||
+                                        solution->found.index() != 0);
+        if (whole) {
+            solution_ = std::move(*solution);
+            solved_from_ = state_;
+        }
     }
     return {};
 }
@@ -355,33 +355,33 @@ int CalibrationSession::verification_captures() const {
                       [](const SessionCapture& c) { return !c.left_out && c.verification; }));
 }
 
-Expected<CalibrateOutcome> CalibrationSession::solve() const {
+Expected<CalibrationSolution> CalibrationSession::solve() const {
     if (solving_captures() < method_->fewest)
         return input_error(
             Text("{} captures are too few, at least {} are needed", solving_captures(), method_->fewest),
             method_->id, "take more");
-    return method_->solve(data(), exclude());
+    return solve_calibration(*method_, data(), exclude());
 }
 
-Expected<void> CalibrationSession::take(const CalibrateOutcome& outcome, const SessionState& solved_from) {
-    const json stored{{"result", outcome.result},
+Expected<void> CalibrationSession::take(const CalibrationSolution& solution,
+                                        const SessionState& solved_from) {
+    const json stored{{"result", solution.document},
                       {"settings", solved_from.settings},
                       {"captures", marks_json(solved_from)}};
     if (auto ok = make_folder(folder_); !ok) return ok;
     if (auto ok = write_text_file(folder_ / "result.json", stored.dump(1)); !ok) return ok;
-    result_ = outcome.result;
+    solution_ = solution;
     solved_from_ = solved_from;
     return {};
 }
 
-const json* CalibrationSession::result() const {
-    return result_ && solved_from_ == state_ ? &*result_ : nullptr;
+const CalibrationSolution* CalibrationSession::solution() const {
+    return solution_ && solved_from_ == state_ ? &*solution_ : nullptr;
 }
 
 std::vector<PoseRow> CalibrationSession::rows() const {
     std::vector<PoseRow> rows;
-    const json* solved = result();
-    const json per_pose = solved ? solved->value("per_pose", json::array()) : json::array();
+    const CalibrationSolution* solved = solution();
     for (std::size_t i = 0; i < state_.captures.size(); ++i) {
         const SessionCapture& c = state_.captures[i];
         PoseRow row;
@@ -389,15 +389,16 @@ std::vector<PoseRow> CalibrationSession::rows() const {
         row.left_out = c.left_out;
         row.verification = c.verification;
         const std::string key = c.taken->entry.is_object() ? row.id : std::to_string(i);
-        for (const json& p : per_pose) {
-            if (p.value("id", "") != key) continue;
-            row.rms_mm = at_most(p, "rms_mm");
-            row.deg = at_most(p, "deg");
-            row.rms_px = at_most(p, "rms_px");
-            if (c.left_out || c.verification) break;
-            row.contradicts = !p.value("used", true) || p.value("contradicts", false);
-            row.note = text_in(p, "note");
-        }
+        if (solved)
+            for (const PoseResidual& p : solved->report.poses) {
+                if (p.id != key) continue;
+                row.rms_mm = p.rms_mm;
+                row.deg = p.deg;
+                row.rms_px = p.rms_px;
+                if (c.left_out || c.verification) break;
+                row.contradicts = !p.used || p.contradicts;
+                row.note = p.note;
+            }
         rows.push_back(std::move(row));
     }
     return rows;
@@ -407,10 +408,10 @@ std::vector<PoseRow> CalibrationSession::rows() const {
 // or the residual of the poses used where the method leaves none out.
 Verification CalibrationSession::verification() const {
     Verification v;
-    const json* solved = result();
+    const CalibrationSolution* solved = solution();
     if (!solved) return v;
-    const json hold_out = solved->value("hold_out", json::object());
-    const auto judge = [&](double PoseRow::*part, const char* key, double floor, double& worst,
+    const HoldOut& hold_out = solved->report.hold_out;
+    const auto judge = [&](double PoseRow::*part, double promised, double floor, double& worst,
                            double& limit) {
         double squares = 0;
         int used = 0;
@@ -421,13 +422,12 @@ Verification CalibrationSession::verification() const {
             else if (!row.left_out && !row.contradicts)
                 squares += (row.*part) * (row.*part), ++used;
         }
-        const double promised = at_most(hold_out, key);
         const double fitted = used > 0 ? std::sqrt(squares / used) : 0;
         limit = std::max(3 * (std::isnan(promised) ? fitted : std::max(promised, fitted)), floor);
     };
-    judge(&PoseRow::rms_mm, "rms_mm", 0.05, v.worst_mm, v.limit_mm);
-    judge(&PoseRow::deg, "rms_deg", 0.02, v.worst_deg, v.limit_deg);
-    judge(&PoseRow::rms_px, "rms_px", 0.3, v.worst_px, v.limit_px);
+    judge(&PoseRow::rms_mm, hold_out.rms_mm, 0.05, v.worst_mm, v.limit_mm);
+    judge(&PoseRow::deg, hold_out.rms_deg, 0.02, v.worst_deg, v.limit_deg);
+    judge(&PoseRow::rms_px, hold_out.rms_px, 0.3, v.worst_px, v.limit_px);
     v.poses = verification_captures();
     const auto holds = [](double worst, double limit) { return std::isnan(worst) || worst <= limit; };
     v.confirmed =
@@ -440,11 +440,10 @@ SessionStage CalibrationSession::stage() const {
     if (!used_as_.empty()) return SessionStage::used;
     if (state_.captures.empty()) return SessionStage::prepare;
     if (solving_captures() < method_->fewest) return SessionStage::capture;
-    const json* solved = result();
+    const CalibrationSolution* solved = solution();
     if (!solved) return SessionStage::solve;
-    if (!serves(verdict_of(*solved))) return SessionStage::capture;
-    // A check and a chain of poses measured elsewhere have no pose that could be kept back.
-    if (method_->use == AnswerUse::check || !solved->contains("per_pose")) return SessionStage::use;
+    if (!serves(solved->verdict())) return SessionStage::capture;
+    if (!method_->keeps_back) return SessionStage::use;
     return verification().confirmed ? SessionStage::use : SessionStage::verify;
 }
 
@@ -458,7 +457,7 @@ Expected<void> CalibrationSession::begin_anew() {
     if (auto aside = rename_aside(folder_); !aside) return aside;
     state_.captures.clear();
     last_number_ = 0;
-    result_.reset();
+    solution_.reset();
     notices_.clear();
     return set_state(state_);
 }

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/text.h"
-#include "projects/calibrate/session/method.h"
+#include "projects/calibrate/methods/methods.h"
 #include "projects/model/project.h"
 
 namespace seamwright {
@@ -121,10 +121,10 @@ class CalibrationSession {
 
     // May run on another thread on a copy of the session; take() then stores it, with the state it was solved
     // from.
-    Expected<CalibrateOutcome> solve() const;
-    Expected<void> take(const CalibrateOutcome& outcome, const SessionState& solved_from);
+    Expected<CalibrationSolution> solve() const;
+    Expected<void> take(const CalibrationSolution& solution, const SessionState& solved_from);
     // The solution of exactly this state; nullptr when there is none yet.
-    const nlohmann::json* result() const;
+    const CalibrationSolution* solution() const;
 
     std::vector<PoseRow> rows() const;
     Verification verification() const;
@@ -145,7 +145,7 @@ class CalibrationSession {
     std::filesystem::path folder_;
     SessionState state_;
     int last_number_ = 0;  // of the newest "P<n>" ever
-    std::optional<nlohmann::json> result_;
+    std::optional<CalibrationSolution> solution_;
     SessionState solved_from_;
     std::vector<Text> notices_;
 };

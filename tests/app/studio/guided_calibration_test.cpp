@@ -493,11 +493,12 @@ TEST_P(GuidedDrift, OnTheSimulatedCell) {
     ASSERT_TRUE(solved(me, studio.window()));
     me.picture(GetParam() ? "guided_drift_struck" : "guided_drift");
     const auto session = CalibrationSession::open(file, "drift", "A", "R1").value();
-    ASSERT_TRUE(session.result());
-    EXPECT_EQ(session.result()->value("status", ""), GetParam() ? "drifted" : "holds")
+    ASSERT_TRUE(session.solution());
+    EXPECT_EQ(session.solution()->document.value("status", ""), GetParam() ? "drifted" : "holds")
         << me.text_of("calibration_reason").toStdString();
     if (GetParam()) {
-        EXPECT_NEAR((*session.result())["change_mm"].get<double>(), std::sqrt(0.64 + 0.25 + 0.16), 0.3);
+        EXPECT_NEAR(session.solution()->document["change_mm"].get<double>(), std::sqrt(0.64 + 0.25 + 0.16),
+                    0.3);
     }
     me.click("calibration_back");
 }
@@ -672,11 +673,13 @@ TEST_F(Guided, BoardFromAFolderOfImages) {
             (void)solved(me, window);
         me.picture("guided_folder");
     }
-    const auto command_line = calibrate_stripe_camera_folder(images.string(), "7x6", 10, {});
+    const CalibrationMethod& method = *find_method("stripe-camera");
+    const auto command_line =
+        solve_calibration(method, *method.data_of_images({images.string(), "7x6", 10, "chessboard", {}}), {});
     ASSERT_TRUE(command_line);
     const auto session = CalibrationSession::open(file, "stripe-camera", "A", "R1").value();
-    ASSERT_TRUE(session.result());
-    const json &found = *session.result(), &expected = command_line->result;
+    ASSERT_TRUE(session.solution());
+    const json &found = session.solution()->document, &expected = command_line->document;
     EXPECT_EQ(session.state().captures.size(), expected["images"].get<std::size_t>());
     EXPECT_EQ(found["verdict"], expected["verdict"]);
     for (std::size_t i = 0; i < expected["parameters"].size(); ++i) {

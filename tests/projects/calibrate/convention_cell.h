@@ -70,7 +70,7 @@ json hand_eye_data(Mount mount, const std::vector<HandEyePair>& pairs, const Wri
 }
 
 inline ConventionAnswer asked(const char* method, const json& data) {
-    auto answer = detect_pose_convention(method, data, {});
+    auto answer = detect_pose_convention(*find_method(method), data, {});
     EXPECT_TRUE(answer.has_value()) << (answer ? "" : answer.error().sentence());
     return answer ? std::move(*answer) : ConventionAnswer{};
 }

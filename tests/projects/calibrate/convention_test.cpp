@@ -22,7 +22,7 @@ TEST(ConventionDetective, GoodDataAreAsGivenAtOnce) {
 
 TEST(ConventionDetective, NamesAMatrixByColumns) {
     const json data = sphere(6, [](const Pose& p) { return matrix(p, true, true); });
-    EXPECT_FALSE(calibrate_tcp_sphere_json(data, {}));
+    EXPECT_FALSE(solve_calibration(*find_method("tcp-sphere"), data, {}));
     const auto answer = asked("tcp-sphere", data);
     ASSERT_EQ(answer.result["verdict"], "named") << answer.result;
     EXPECT_EQ(answer.offer["base_from_flange"], "matrix,mm,transposed");
@@ -60,7 +60,7 @@ TEST(ConventionDetective, WhichListOfAHandEyeIsInvertedCannotBeTold) {
 
 TEST(ConventionDetective, HostileDataAreRefused) {
     const auto refused = [](const char* method, const json& data) {
-        const auto answer = detect_pose_convention(method, data, {});
+        const auto answer = detect_pose_convention(*find_method(method), data, {});
         EXPECT_FALSE(answer) << data.dump().substr(0, 200);
         return answer ? std::string() : answer.error().sentence();
     };
@@ -86,7 +86,7 @@ TEST(ConventionDetective, HostileDataAreRefused) {
         bad = data;
         bad["pose_convention"] = said;
         EXPECT_THAT(refused("tcp-sphere", bad), HasSubstr("pose_convention")) << said;
-        EXPECT_FALSE(calibrate_tcp_sphere_json(bad, {})) << said;
+        EXPECT_FALSE(solve_calibration(*find_method("tcp-sphere"), bad, {})) << said;
     }
 }
 

@@ -138,10 +138,10 @@ TEST(ConventionDetective, NamesWhatTheSphereWasWrittenIn) {
         // Taken by saying it: the calibration is then good, and the file's numbers are what they were.
         json data = sphere(5, as(w));
         data["pose_convention"] = answer.offer;
-        const auto solved = calibrate_tcp_sphere_json(data, {});
+        const auto solved = solve_calibration(*find_method("tcp-sphere"), data, {});
         ASSERT_TRUE(solved) << solved.error().sentence();
-        EXPECT_EQ(solved->result["status"], "ok") << solved->result["reason"];
-        EXPECT_EQ(solved->result["pose_convention"], answer.offer);
+        EXPECT_EQ(solved->document["status"], "ok") << solved->document["reason"];
+        EXPECT_EQ(solved->document["pose_convention"], answer.offer);
         EXPECT_EQ(asked("tcp-sphere", data).result["verdict"], "as_given");
     }
 }

@@ -95,14 +95,14 @@ TEST_F(Session, SphereFromFirstCaptureToUse) {
     capture(s, 6);
     EXPECT_EQ(s.stage(), SessionStage::solve);
     solve(s);
-    ASSERT_TRUE(s.result());
-    EXPECT_EQ((*s.result())["status"], "ok");
+    ASSERT_TRUE(s.solution());
+    EXPECT_EQ(s.solution()->document["status"], "ok");
     EXPECT_EQ(s.stage(), SessionStage::verify) << "not used before a pose kept back has judged it";
     // Two more that are never solved with.
     capture(s, 2);
     ASSERT_TRUE(s.set_verification("P12", true));
     ASSERT_TRUE(s.set_verification("P13", true));
-    EXPECT_EQ(s.result(), nullptr);
+    EXPECT_EQ(s.solution(), nullptr);
     solve(s);
     const Verification v = s.verification();
     EXPECT_EQ(v.poses, 2);
@@ -148,11 +148,11 @@ TEST_F(Session, BadPoseIsSpottedAndLeftOut) {
         }
     EXPECT_GT(rows[4].rms_mm, 0.3);
     ASSERT_TRUE(s.leave_out("P5", true));
-    EXPECT_EQ(s.result(), nullptr) << "a solution belongs to its marks";
+    EXPECT_EQ(s.solution(), nullptr) << "a solution belongs to its marks";
     solve(s);
     EXPECT_TRUE(s.rows()[4].left_out);
     EXPECT_GT(s.rows()[4].rms_mm, 0.3) << "the residual of what is left out is still given";
-    EXPECT_EQ((*s.result())["status"], "ok");
+    EXPECT_EQ(s.solution()->document["status"], "ok");
     // A bumped pose as verification refuses the use.
     ASSERT_TRUE(s.leave_out("P5", false));
     ASSERT_TRUE(s.set_verification("P5", true));
@@ -167,13 +167,13 @@ TEST_F(Session, UndoBringsBackWhatWasRemoved) {
     capture(s, 7);
     solve(s);
     const SessionState before = s.state();
-    const json solved = *s.result();
+    const json solved = s.solution()->document;
     ASSERT_TRUE(s.remove("P3"));
     EXPECT_EQ(s.state().captures.size(), 6U);
     EXPECT_FALSE(s.remove("P3"));
     ASSERT_TRUE(s.set_state(before));
-    ASSERT_TRUE(s.result());
-    EXPECT_EQ(*s.result(), solved);
+    ASSERT_TRUE(s.solution());
+    EXPECT_EQ(s.solution()->document, solved);
     // After removal no id comes a second time.
     ASSERT_TRUE(s.remove("P7"));
     EXPECT_EQ(open().free_id(), "P8");
@@ -228,20 +228,20 @@ TEST_F(Session, ResumesWithItsSolution) {
         solve(s);
     }
     CalibrationSession s = open();
-    ASSERT_TRUE(s.result());
+    ASSERT_TRUE(s.solution());
     EXPECT_EQ(s.rows().size(), 8U);
     EXPECT_TRUE(s.rows()[1].left_out);
     // Solved again from what is on disk: the same numbers.
     const auto again = s.solve();
     ASSERT_TRUE(again);
-    EXPECT_EQ(again->result["flange_from_sensor"], (*s.result())["flange_from_sensor"]);
+    EXPECT_EQ(again->document["flange_from_sensor"], s.solution()->document["flange_from_sensor"]);
     // A capture that a disk error damaged is named, the others stay.
     std::ofstream(s.folder() / "captures" / "P4.json") << "{";
     const CalibrationSession damaged = open();
     EXPECT_EQ(damaged.state().captures.size(), 7U);
     ASSERT_EQ(damaged.notices().size(), 1U);
     EXPECT_THAT(damaged.notices()[0], HasSubstr("P4"));
-    EXPECT_EQ(damaged.result(), nullptr);
+    EXPECT_EQ(damaged.solution(), nullptr);
     // Foreign files are refused with a sentence.
     std::ofstream(s.folder() / "session.json") << "{\"format\":\"something\"}";
     const auto refused = CalibrationSession::open(project, "tcp-sphere", "A", "R1");
@@ -381,9 +381,9 @@ TEST_F(OneShot, CalibratesEverySensorWithItsOwn) {
         EXPECT_LT(angle_rad(c.flange_from_sensor, i == 0 ? at_A : at_B), 1e-6);
         EXPECT_THAT(c.result["reason"].get<std::string>(), HasSubstr("sensor " + id));
         // Solved again from what is kept with it: the same, and nothing of the other.
-        const auto again = s.method().solve(c.raw["data"], c.raw["exclude"]);
+        const auto again = solve_calibration(s.method(), c.raw["data"], c.raw["exclude"]);
         ASSERT_TRUE(again) << again.error().sentence();
-        EXPECT_EQ(again->result["sensors"], c.result["sensors"]);
+        EXPECT_EQ(again->document["sensors"], c.result["sensors"]);
         EXPECT_EQ(c.result["sensors"].size(), 1U);
     }
     EXPECT_GT(made->at(1).covariance(0, 0), 2 * made->at(0).covariance(0, 0));
@@ -476,7 +476,8 @@ TEST_F(Session, StripeCameraFilesGiveTheCommandLinesAnswer) {
     ASSERT_TRUE(read) << read.error().sentence();
     for (CalibrationCapture& c : read->captures) ASSERT_TRUE(s.add(std::move(c)));
     solve(s);
-    const auto command_line = calibrate_stripe_camera_folder(images.string(), "7x6", 10, {});
+    const auto command_line = solve_calibration(
+        s.method(), *s.method().data_of_images({images.string(), "7x6", 10, "chessboard", {}}), {});
     ASSERT_TRUE(command_line);
     const auto numbers = [](const json& r) {
         std::vector<double> all;
@@ -488,21 +489,22 @@ TEST_F(Session, StripeCameraFilesGiveTheCommandLinesAnswer) {
         all.push_back(r["hand_eye"]["target_spread_mm"]);
         return all;
     };
-    const auto expected = numbers(command_line->result), found = numbers(*s.result());
+    const auto expected = numbers(command_line->document), found = numbers(s.solution()->document);
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t i = 0; i < found.size(); ++i)
         EXPECT_NEAR(found[i], expected[i], 1e-9 * std::max(1.0, std::abs(expected[i]))) << i;
-    EXPECT_EQ((*s.result())["verdict"], command_line->result["verdict"]);
+    EXPECT_EQ(s.solution()->document["verdict"], command_line->document["verdict"]);
 
     // Resumed, with the images gone for all it knows: one left out.
     CalibrationSession resumed = open("stripe-camera");
     const std::string id = resumed.state().captures.at(2).taken->id;
     ASSERT_TRUE(resumed.leave_out(id, true));
     solve(resumed);
-    const auto without = calibrate_stripe_camera_folder(images.string(), "7x6", 10, {id});
+    const auto without = solve_calibration(
+        s.method(), *s.method().data_of_images({images.string(), "7x6", 10, "chessboard", {id}}), {});
     ASSERT_TRUE(without);
-    EXPECT_NEAR((*resumed.result())["camera"]["fx"].get<double>(),
-                without->result["camera"]["fx"].get<double>(), 1e-6);
+    EXPECT_NEAR(resumed.solution()->document["camera"]["fx"].get<double>(),
+                without->document["camera"]["fx"].get<double>(), 1e-6);
     const PoseRow row = resumed.rows().at(2);
     EXPECT_TRUE(row.left_out);
     EXPECT_LT(row.rms_px, 2) << "a good frame fits a solution that has not seen it";

@@ -118,7 +118,7 @@ TEST_F(OneShotAtTheDesk, OnePressCalibratesWhatSeesTheBoardAndNamesWhatDoesNot) 
     EXPECT_THAT(said(), HasSubstr("sensor G"));
     for (const SessionCapture& c : calibration.session().state().captures)
         EXPECT_TRUE(std::filesystem::exists(calibration.session().picture_of(*c.taken))) << c.taken->id;
-    ASSERT_TRUE(wait_until([&] { return calibration.session().result() != nullptr; })) << said();
+    ASSERT_TRUE(wait_until([&] { return calibration.session().solution() != nullptr; })) << said();
 
     const Project before = desk.project();
     const auto done = calibration.finish(true);
@@ -148,7 +148,7 @@ TEST_F(OneShotAtTheDesk, AnotherShotTakesThePlaceOfTheFirstAndUndoBringsItBack) 
     shoot();
     EXPECT_EQ(captured(), (std::vector<std::string>{"A-2", "B-2"})) << said();
     EXPECT_NE(calibration.session().picture_of(*calibration.session().state().captures[0].taken), picture);
-    ASSERT_TRUE(wait_until([&] { return calibration.session().result() != nullptr; })) << said();
+    ASSERT_TRUE(wait_until([&] { return calibration.session().solution() != nullptr; })) << said();
     ASSERT_TRUE(calibration.finish(true));
     EXPECT_LT(
         distance_mm(calibration_of(desk.project(), "A")->flange_from_sensor, cell->flange_from_sensor()),

@@ -1,4 +1,4 @@
-#include "projects/calibrate/session/target_views.h"
+#include "projects/calibrate/methods/target_views.h"
 
 namespace seamwright {
 

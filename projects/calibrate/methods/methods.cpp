@@ -1,0 +1,33 @@
+#include "projects/calibrate/methods/methods.h"
+
+#include <algorithm>
+
+namespace seamwright {
+
+const std::vector<CalibrationMethod>& calibration_methods() {
+    static const std::vector<CalibrationMethod> methods{
+        tcp_sphere_method(), stripe_camera_method(), hand_eye_method(), laser_plane_method(), lut_method(),
+        static_method(),     camera_method(),        lens_method(),     plate_method(),       drift_method()};
+    return methods;
+}
+
+const CalibrationMethod* find_method(const std::string& id) {
+    const auto& list = calibration_methods();
+    const auto it = std::find_if(list.begin(), list.end(), [&](const auto& m) { return m.id == id; });
+    return it == list.end() ? nullptr : &*it;
+}
+
+Expected<CalibrationSolution> solve_calibration(const CalibrationMethod& method, const nlohmann::json& data,
+                                                const ExcludedIds& exclude) {
+    if (!data.is_object())
+        return input_error("the data is not a JSON object", "", Text("see calibrate {} --help", method.id));
+    const auto meant = with_usual_poses(method.poses, data);
+    if (!meant) return tl::unexpected(meant.error());
+    auto solution = method.solve(meant->data(), exclude);
+    if (!solution) return solution;
+    solution->document["method"] = method.id;
+    meant->put(solution->document);
+    return solution;
+}
+
+}  // namespace seamwright

@@ -1,0 +1,258 @@
+#include "projects/calibrate/methods/stripe_frames.h"
+
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "core/geometry/pose_convention.h"
+#include "core/profile/peaks.h"
+#include "devices/exchange/image_file.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "projects/calibrate/input/plate_images.h"
+
+namespace seamwright {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+// The pose that belongs to an image: the file of the same name, or the one with the same number
+// ("frame0007.png" and "pose0007.txt", "images/7.png" and "poses/7.yaml").
+std::optional<fs::path> pose_file_beside(const fs::path& image) {
+    const std::string stem = image.stem().string();
+    std::string digits;
+    for (auto i = stem.rbegin(); i != stem.rend() && std::isdigit(static_cast<unsigned char>(*i)); ++i)
+        digits.insert(digits.begin(), *i);
+    std::error_code code;
+    const fs::path folder = image.parent_path();
+    for (const auto& where : {folder, folder.parent_path() / "poses"})
+        for (const auto& name : {stem, "pose" + digits, digits})
+            for (const char* extension : {".txt", ".yaml", ".yml", ".json"}) {
+                const fs::path path = where / (name + extension);
+                if (!name.empty() && fs::is_regular_file(path, code)) return path;
+            }
+    return std::nullopt;
+}
+
+Expected<std::vector<Eigen::Vector2d>> parse_pixels(const json& entry, const char* key,
+                                                    const std::string& where) {
+    auto list = json_array(entry, key, where);
+    if (!list) return tl::unexpected(list.error());
+    std::vector<Eigen::Vector2d> pixels;
+    pixels.reserve((*list)->size());
+    for (std::size_t i = 0; i < (*list)->size(); ++i) {
+        auto uv = as_numbers((**list)[i], 2, json_path(json_path(where, key), i));
+        if (!uv) return tl::unexpected(uv.error());
+        pixels.emplace_back((*uv)[0], (*uv)[1]);
+    }
+    return pixels;
+}
+
+json pixels_json(const std::vector<Eigen::Vector2d>& pixels) {
+    json list = json::array();
+    for (const auto& p : pixels) list.push_back({p.x(), p.y()});
+    return list;
+}
+
+Expected<FoundBoard> parse_found_board(const json& value, const BoardSpec& spec, const std::string& where) {
+    FoundBoard board;
+    auto pixels = parse_pixels(value, "pixel", where);
+    if (!pixels) return tl::unexpected(pixels.error());
+    board.pixel = std::move(*pixels);
+    auto index = json_array(value, "index", where);
+    if (!index) return tl::unexpected(index.error());
+    for (std::size_t i = 0; i < (*index)->size(); ++i) {
+        auto number = as_number((**index)[i], json_path(json_path(where, "index"), i));
+        if (!number) return tl::unexpected(number.error());
+        if (*number < 0 || *number >= spec.columns * spec.rows || *number != std::floor(*number))
+            return input_error("this is no corner of the board", json_path(json_path(where, "index"), i));
+        const int k = static_cast<int>(*number);
+        board.index.push_back(k);
+        board.object_mm.emplace_back(k % spec.columns * spec.pitch_mm, k / spec.columns * spec.pitch_mm, 0);
+    }
+    if (board.index.size() != board.pixel.size())
+        return input_error("pixel and index have different lengths", where);
+    auto symmetry = json_number_or(value, "symmetry", 1, where);
+    if (!symmetry) return tl::unexpected(symmetry.error());
+    board.symmetry = *symmetry == 2 || *symmetry == 4 ? static_cast<int>(*symmetry) : 1;
+    auto detector = json_string_or(value, "detector", "", where);
+    if (!detector) return tl::unexpected(detector.error());
+    board.detector = *detector;
+    return board;
+}
+
+}  // namespace
+
+json stripe_frame_json(const StripeObservation& o) {
+    json entry{{"id", o.id},
+               {"size", {o.width, o.height}},
+               {"scan", o.scan == ScanLines::rows ? "rows" : "columns"},
+               {"board", nullptr},
+               {"stripe", pixels_json(o.stripe)},
+               {"base_from_flange", o.base_from_flange ? pose_json(*o.base_from_flange) : json(nullptr)}};
+    if (o.board)
+        entry["board"] = {{"pixel", pixels_json(o.board->pixel)},
+                          {"index", o.board->index},
+                          {"symmetry", o.board->symmetry},
+                          {"detector", o.board->detector}};
+    return entry;
+}
+
+Expected<StripeObservation> parse_stripe_frame(const json& entry, const BoardSpec& spec, std::size_t index,
+                                               const std::string& where) {
+    StripeObservation o;
+    auto id = entry_id(entry, index, where);
+    if (!id) return tl::unexpected(id.error());
+    o.id = *id;
+    auto size_field = json_field(entry, "size", where);
+    if (!size_field) return tl::unexpected(size_field.error());
+    auto size = as_numbers(**size_field, 2, json_path(where, "size"));
+    if (!size) return tl::unexpected(size.error());
+    if (!((*size)[0] >= 1 && (*size)[1] >= 1 && (*size)[0] <= 1e5 && (*size)[1] <= 1e5))
+        return input_error("this is no image size", json_path(where, "size"),
+                           "give [width, height] in pixels");
+    o.width = static_cast<int>((*size)[0]);
+    o.height = static_cast<int>((*size)[1]);
+    auto scan = json_string_or(entry, "scan", "rows", where);
+    if (!scan) return tl::unexpected(scan.error());
+    if (*scan != "rows" && *scan != "columns")
+        return input_error(Text("the scan '{}' is unknown", *scan), json_path(where, "scan"),
+                           "write rows or columns");
+    o.scan = *scan == "rows" ? ScanLines::rows : ScanLines::columns;
+    if (const auto it = entry.find("board"); it != entry.end() && !it->is_null()) {
+        auto board = parse_found_board(*it, spec, json_path(where, "board"));
+        if (!board) return tl::unexpected(board.error());
+        o.board = std::move(*board);
+    }
+    if (const auto it = entry.find("stripe"); it != entry.end() && !it->is_null()) {
+        auto stripe = parse_pixels(entry, "stripe", where);
+        if (!stripe) return tl::unexpected(stripe.error());
+        o.stripe = std::move(*stripe);
+    }
+    if (const auto it = entry.find("base_from_flange"); it != entry.end() && !it->is_null()) {
+        auto pose = parse_pose(*it, json_path(where, "base_from_flange"));
+        if (!pose) return tl::unexpected(pose.error());
+        o.base_from_flange = *pose;
+    }
+    return o;
+}
+
+json board_json(const BoardSpec& spec) {
+    return {{"columns", spec.columns}, {"rows", spec.rows}, {"pitch_mm", spec.pitch_mm}};
+}
+
+Expected<BoardSpec> parse_board_json(const json& value, const std::string& where) {
+    BoardSpec spec;
+    for (auto [key, target] : {std::pair{"columns", &spec.columns}, std::pair{"rows", &spec.rows}}) {
+        auto number = json_number(value, key, where);
+        if (!number) return tl::unexpected(number.error());
+        if (!(*number >= 0 && *number <= 1000)) return input_error("this is no count", json_path(where, key));
+        *target = static_cast<int>(*number);
+    }
+    auto pitch = json_number(value, "pitch_mm", where);
+    if (!pitch) return tl::unexpected(pitch.error());
+    spec.pitch_mm = *pitch;
+    if (auto ok = validate(spec); !ok) return tl::unexpected(ok.error());
+    return spec;
+}
+
+namespace {
+
+// Of a colour picture the stripe in the channel that shows it best; the plate is found in grey. nullopt: grey
+// does.
+using Stripe = std::pair<ScanLines, std::vector<Eigen::Vector2d>>;
+Expected<std::optional<Stripe>> stripe_in_colour(const fs::path& path) {
+    const auto choice = choose_channel(path);
+    if (!choice) return tl::unexpected(choice.error());
+    if (!choice->colour || choice->channel == ImageChannel::grey) return std::nullopt;
+    Frame frame;
+    if (auto read = read_image_file(path, frame, 0, choice->channel); !read)
+        return tl::unexpected(read.error());
+    PeakOptions options;
+    const auto scan = guess_scan_lines(frame.image);
+    if (!scan) return tl::unexpected(scan.error());
+    options.scan = *scan;
+    StripePeaks peaks;
+    if (auto found = find_peaks(frame.image, options, peaks); !found) return tl::unexpected(found.error());
+    Stripe stripe{*scan, {}};
+    for (int line = 0; line < peaks.lines; ++line)
+        for (int k = 0; k < peaks.count[static_cast<std::size_t>(line)]; ++k) {
+            const auto i = static_cast<std::size_t>(peaks.index(line, k));
+            if (!(peaks.flags[i] & StripePeaks::kTruncated))
+                stripe.second.push_back(pixel_of(*scan, line, peaks.position_px[i]));
+        }
+    return stripe;
+}
+
+}  // namespace
+
+Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardSpec& spec) {
+    Frame frame;
+    if (auto read = read_image_file(path, frame); !read)
+        return input_error(Text("the image cannot be read: {}", read.error().what), path.string(),
+                           Text("exclude it with --exclude {}", path.stem().string()));
+    StripeFrame f;
+    f.id = path.stem().string();
+    f.image = frame.image;
+    if (const auto pose_file = pose_file_beside(path)) {
+        auto pose = read_pose_file(*pose_file);
+        if (!pose) {
+            Error error = pose.error();
+            error.kind = ErrorKind::input;
+            return tl::unexpected(std::move(error));
+        }
+        f.base_from_flange = *pose;
+    }
+    StripeObservation o = observe(f, spec);
+    if (auto stripe = stripe_in_colour(path); !stripe)
+        return tl::unexpected(stripe.error());
+    else if (*stripe)
+        std::tie(o.scan, o.stripe) = std::move(**stripe);
+    return o;
+}
+
+Expected<StripeData> parse_stripe_data(const json& data) {
+    auto board = json_field(data, "board", "");
+    if (!board) return tl::unexpected(board.error());
+    auto spec = parse_board_json(**board, "board");
+    if (!spec) return tl::unexpected(spec.error());
+    auto list = json_array(data, "frames", "");
+    if (!list) return tl::unexpected(list.error());
+    StripeData set{*spec, {}};
+    for (std::size_t i = 0; i < (*list)->size(); ++i) {
+        auto o = parse_stripe_frame((**list)[i], *spec, i, json_path("frames", i));
+        if (!o) return tl::unexpected(o.error());
+        set.observations.push_back(std::move(*o));
+    }
+    return set;
+}
+
+// Poses of text files stay quaternions, as they are written there.
+Expected<json> stripe_folder_data(const BoardImages& images) {
+    auto spec = parse_board(images.board, images.pitch_mm, "chessboard");
+    if (!spec) return tl::unexpected(spec.error());
+    auto files = plate_images(images.folder, images.exclude);
+    if (!files) return tl::unexpected(files.error());
+    json frames = json::array();
+    for (const auto& path : *files) {
+        auto o = read_stripe_frame(path, *spec);
+        if (!o) return tl::unexpected(o.error());
+        json frame = stripe_frame_json(*o);
+        if (!frames.empty() && frames.front()["size"] != frame["size"])
+            return input_error("the images have different sizes", path.string(),
+                               "give frames of one camera at one resolution");
+        const auto file = pose_file_beside(path);
+        if (o->base_from_flange && file && file->extension() != ".json") {
+            const PoseNumbers n = write_pose(*o->base_from_flange, {.rotation = RotationReading::quat_wxyz});
+            frame["base_from_flange"] = {
+                {"xyz", {n.position.x(), n.position.y(), n.position.z()}},
+                {"quat_wxyz", {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}}};
+        }
+        frames.push_back(std::move(frame));
+    }
+    return json{{"board", board_json(*spec)}, {"frames", std::move(frames)}};
+}
+
+}  // namespace seamwright

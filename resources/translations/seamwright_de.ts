@@ -1122,10 +1122,6 @@
 <context>
     <name>seamwright::CalibrationDesk</name>
     <message>
-        <source>The chains before end in another reference: begin anew, or remove them.</source>
-        <translation>Die Ketten davor enden in einem anderen Bezug: neu beginnen oder sie entfernen.</translation>
-    </message>
-    <message>
         <source>Leave out %1</source>
         <translation>%1 weglassen</translation>
     </message>

@@ -458,6 +458,31 @@ TEST_F(Import, ImagesBecomeMillimetresByAStoredCalibrationAndPixelsAreNotRetaugh
     refused(job("no", {"--calibration", write("half.json", solved.dump()), "--set", "side=right"}),
             "--flange-from-sensor");
     refused(job("no", {"--calibration", write("text.json", "[1,2]")}), "text.json");
+
+    // A table of the same camera, as `calibrate lut` writes it.
+    json pairs = json::array();
+    const Pose laser_from_camera = camera_from_laser().inverse();
+    for (int u = 5; u < 640; u += 21)
+        for (int v = 5; v < 480; v += 21) {
+            const Eigen::Vector3d ray =
+                laser_from_camera.linear() * Eigen::Vector3d((u - 320) / kFocal, (v - 240) / kFocal, 1);
+            const Eigen::Vector3d from = laser_from_camera.translation();
+            const double far = -from.y() / ray.y();
+            if (far > 0)
+                pairs.push_back(
+                    {{"pixel", {u, v}}, {"laser", {from.x() + far * ray.x(), from.z() + far * ray.z()}}});
+        }
+    const std::string table = (folder / "camera.lut").string();
+    const std::string data = write("pairs.json", json{{"size", {640, 480}}, {"pairs", pairs}}.dump());
+    answer({"calibrate", "lut", data, "--table", table}, 0);
+    EXPECT_EQ(answer(job("table",
+                         {"--calibration", table, "--flange-from-sensor", pose_text(cell.flange_from_sensor),
+                          "--set", "side=right", "--sigma-limit-mm", "0.4"}),
+                     0)["in_pixels"],
+              false);
+    expect_motion("table", 0.4);
+    refused(job("no", {"--calibration", table, "--set", "side=right"}), "--flange-from-sensor");
+    refused(job("no", {"--calibration", write("text.lut", "no table")}), "text.lut");
 }
 
 // A red line on a colour camera under white light, beside a bright white reflection.

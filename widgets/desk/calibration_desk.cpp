@@ -21,13 +21,6 @@ constexpr double kStillSeconds = 0.5, kStillMm = 0.02, kStillDeg = 0.005;
 // Nearer than this to a capture nothing is captured by itself.
 constexpr double kNewMm = 3, kNewDeg = 1;
 
-// Whether chains of other sensors than these are in the session.
-bool stays_beside(const SessionState& state, const std::vector<std::string>& sensor_ids) {
-    return std::any_of(state.captures.begin(), state.captures.end(), [&](const SessionCapture& c) {
-        return std::find(sensor_ids.begin(), sensor_ids.end(), sensor_of_chain(*c.taken)) == sensor_ids.end();
-    });
-}
-
 // The whole state before and after: captures are shared, so that it costs a list.
 class CmdSession final : public QUndoCommand {
   public:
@@ -123,27 +116,13 @@ const Calibration* CalibrationDesk::base() const {
 }
 
 std::vector<std::string> CalibrationDesk::shot_sensors() const {
-    std::vector<std::string> ids{session_->sensor_id()};
-    if (session_->method().capture != CaptureKind::board_chain) return ids;
-    for (const SensorState& s : desk_.station().sensors) {
-        const Calibration* c = calibration_of(desk_.project(), s.id);
-        if (s.id != session_->sensor_id() && c && c->model && c->robot_id == session_->robot_id())
-            ids.push_back(s.id);
-    }
-    return ids;
+    std::vector<std::string> connected;
+    for (const SensorState& s : desk_.station().sensors) connected.push_back(s.id);
+    return seamwright::shot_sensors(*session_, desk_.project(), connected);
 }
 
 std::optional<Pose> CalibrationDesk::mounting() const {
-    if (!session_) return std::nullopt;
-    if (const auto& settings = session_->state().settings; settings.contains("nominal_flange_from_sensor"))
-        if (auto pose = parse_pose(settings["nominal_flange_from_sensor"], "nominal_flange_from_sensor"))
-            return *pose;
-    if (const Calibration* c = base(); c && !c->flange_from_sensor.isApprox(Pose::Identity()))
-        return c->flange_from_sensor;
-    const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
-    if (sensor && is_simulated_cell(sensor->driver))
-        if (auto cell = parse_cell_settings(sensor->settings)) return cell->flange_from_sensor;
-    return std::nullopt;
+    return session_ ? known_mounting(*session_, desk_.project()) : std::nullopt;
 }
 
 void CalibrationDesk::push(const QString& text, const SessionState& before) {
@@ -195,14 +174,7 @@ Expected<void> CalibrationDesk::set_nominal_mounting(const Pose& flange_from_sen
 }
 
 Expected<nlohmann::json> CalibrationDesk::capture_settings() const {
-    auto settings = prepared_settings(session_->method(), session_->state().settings, base(),
-                                      desk_.project().calibrations);
-    // What captures are measured from goes with them.
-    if (settings && session_->state().captures.empty()) settings->erase("anchor");
-    if (settings && session_->method().capture == CaptureKind::board_chain) {
-        if (!stays_beside(session_->state(), shot_sensors())) settings->erase("reference_from_world");
-    }
-    return settings;
+    return seamwright::capture_settings(*session_, desk_.project(), shot_sensors());
 }
 
 std::optional<Pose> CalibrationDesk::robot_pose() const {
@@ -237,54 +209,18 @@ void CalibrationDesk::take_shots(const std::shared_ptr<const CalibrationShots>& 
         set_doing({});
         return emit refused(shown_error(settings.error()));
     }
-    struct Taken {
-        std::vector<CalibrationCapture> captures;
-        nlohmann::json settings;
-        QStringList refusals;
-    };
-    auto taken = std::make_shared<Taken>();
-    taken->settings = std::move(*settings);
-    struct Shot {
-        const CalibrationShot* shot;
-        SensorSetup sensor;
-        std::optional<Calibration> used;
-    };
-    std::vector<Shot> good;
-    for (const auto& shot : *shots) {
-        if (!shot) {
-            taken->refusals << shown_error(shot.error());
-            continue;
-        }
-        const SensorSetup* sensor = find_sensor(desk_.project(), shot->sensor_id);
-        if (!sensor) continue;
-        const Calibration* used = calibration_of(desk_.project(), sensor->id);
-        good.push_back({&*shot, *sensor, used ? std::optional(*used) : std::nullopt});
-    }
-    post([this, shots, good = std::move(good), taken, session = *session_, generation = generation_,
-          verification = shot_verifies_](const std::stop_token& cancelled) {
-        for (const auto& [shot, sensor, used] : good) {
-            if (cancelled.stop_requested()) return;
-            auto one = capture_shot(session.method(), taken->settings, sensor, used ? &*used : nullptr,
-                                    *shot->stripe, shot->board.get(), shot->base_from_flange);
-            if (!one) {
-                taken->refusals << shown_error(one.error());
-                continue;
-            }
-            // The picture is for people: without it the capture is as good.
-            const StripeImage& image = shot->board ? shot->board->image : shot->stripe->image;
-            const auto file = session.free_picture_path(one->capture.id);
-            std::error_code code;
-            std::filesystem::create_directories(file.parent_path(), code);
-            if (!image.empty() && write_image_file(file, image))
-                one->capture.picture = std::filesystem::relative(file, session.folder(), code).string();
-            taken->settings = std::move(one->settings);
-            taken->captures.push_back(std::move(one->capture));
-        }
+    post([this, shots, project = desk_.project(), settings = std::move(*settings), session = *session_,
+          generation = generation_, verification = shot_verifies_](const std::stop_token& cancelled) {
+        auto taken =
+            std::make_shared<ShotCaptures>(captures_of_shots(session, project, settings, *shots, cancelled));
+        if (cancelled.stop_requested()) return;
         QMetaObject::invokeMethod(this, [this, taken, generation, verification] {
             if (generation != generation_) return;
             set_doing({});
-            taken->refusals.removeDuplicates();  // of the robot
-            if (!taken->refusals.isEmpty()) emit refused(taken->refusals.join("\n"));
+            QStringList refusals;
+            for (const Error& refusal : taken->refusals) refusals << shown_error(refusal);
+            refusals.removeDuplicates();  // of the robot
+            if (!refusals.isEmpty()) emit refused(refusals.join("\n"));
             if (!taken->captures.empty())
                 take_captures(std::move(taken->captures), std::move(taken->settings), verification,
                               tr("Capture"));
@@ -295,25 +231,8 @@ void CalibrationDesk::take_shots(const std::shared_ptr<const CalibrationShots>& 
 void CalibrationDesk::take_captures(std::vector<CalibrationCapture> captures, nlohmann::json settings,
                                     bool verification, const QString& text) {
     const SessionState before = session_->state();
-    if (session_->method().capture == CaptureKind::board_chain) {
-        // The chains of a session end in one frame.
-        std::vector<std::string> ids;
-        for (const CalibrationCapture& c : captures) {
-            const std::string& sensor = sensor_of_chain(c);
-            ids.push_back(sensor.empty() ? session_->sensor_id() : sensor);
-        }
-        const char* key = "reference_from_world";
-        if (stays_beside(before, ids) &&
-            before.settings.value(key, nlohmann::json()) != settings.value(key, nlohmann::json()))
-            return emit refused(
-                tr("The chains before end in another reference: begin anew, or remove them."));
-    }
-    auto done = session_->set_settings(std::move(settings));
-    for (CalibrationCapture& capture : captures) {
-        if (!done) break;
-        if (auto id = session_->add(std::move(capture), verification); !id) done = tl::unexpected(id.error());
-    }
-    if (!done) emit refused(shown_error(done.error()));
+    if (auto done = add_captures(*session_, std::move(captures), std::move(settings), verification); !done)
+        emit refused(shown_error(done.error()));
     if (!(session_->state() == before)) (void)edited({}, text, before);
 }
 

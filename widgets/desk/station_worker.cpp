@@ -243,115 +243,12 @@ void StationWorker::record_pass(const Spot& spot, double step_mm, const Alignmen
     });
 }
 
-namespace {
-
-constexpr double kSameShotMm = 0.05, kSameShotDeg = 0.01;
-constexpr std::chrono::milliseconds kShotFrame{5000};
-constexpr double kBrightShare = 0.6;  // of full scale: where the bright end of a board's picture should lie
-constexpr int kExposures = 4;
-
-Expected<FramePtr> snap(ProfileSource& sensor, const std::stop_token& cancel) {
-    if (auto fired = sensor.trigger(""); !fired) return tl::unexpected(fired.error());
-    return next_frame(sensor, kShotFrame, cancel);
-}
-
-// Share of full scale that two percent of the pixels exceed.
-double brightness(const StripeImage& image) {
-    std::vector<int> sample;
-    for (int v = 0; v < image.height; v += 8)
-        for (int u = 0; u < image.width; u += 8) {
-            const std::byte* at = image.pixels + static_cast<std::size_t>(v) * image.row_bytes +
-                                  static_cast<std::size_t>(u * image.bytes_per_pixel());
-            sample.push_back(image.bytes_per_pixel() == 1
-                                 ? std::to_integer<int>(at[0])
-                                 : std::to_integer<int>(at[0]) + 256 * std::to_integer<int>(at[1]));
-        }
-    if (sample.empty()) return 0;
-    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() * 98 / 100);
-    std::nth_element(sample.begin(), place, sample.end());
-    return static_cast<double>(*place) / image.full_scale();
-}
-
-const ParameterInfo* named(const std::vector<ParameterInfo>& list, const std::string& name) {
-    const auto it = std::find_if(list.begin(), list.end(), [&](const auto& p) { return p.name == name; });
-    return it == list.end() ? nullptr : &*it;
-}
-
-// Laser off and exposed for the surroundings; laser and exposure are as before when this returns. nullptr:
-// the sensor cannot switch its laser.
-Expected<FramePtr> board_picture(ProfileSource& sensor, const std::stop_token& cancel) {
-    const auto parameters = sensor.parameters();
-    const ParameterInfo* exposure = named(parameters, "exposure_us");
-    if (!named(parameters, "laser")) return FramePtr();
-    const auto laser_before = sensor.get("laser");
-    const auto exposure_before = exposure ? sensor.get("exposure_us") : Expected<double>(0);
-    if (!laser_before) return tl::unexpected(laser_before.error());
-    if (!exposure_before) return tl::unexpected(exposure_before.error());
-    Expected<FramePtr> picture = FramePtr();
-    if (auto off = sensor.set("laser", 0); !off) return tl::unexpected(off.error());
-    double time_us = *exposure_before;
-    for (int k = 0; k < kExposures; ++k) {
-        picture = snap(sensor, cancel);
-        if (!picture || !exposure || (*picture)->image.empty()) break;
-        const double bright = brightness((*picture)->image);
-        if (bright > 0.5 * kBrightShare && bright < 0.95) break;
-        time_us = std::clamp(time_us * std::clamp(kBrightShare / std::max(bright, 0.02), 0.1, 8.0),
-                             std::max(1.0, exposure->minimum), exposure->maximum);
-        if (!sensor.set("exposure_us", time_us)) break;
-    }
-    auto restored = sensor.set("laser", *laser_before);
-    if (exposure && restored) restored = sensor.set("exposure_us", *exposure_before);
-    if (!restored) return tl::unexpected(restored.error());
-    return picture;
-}
-
-Expected<CalibrationShot> shoot(Station& station, const std::string& sensor_id, const std::string& robot_id,
-                                bool board, const std::stop_token& cancel) {
-    CalibrationShot shot;
-    shot.sensor_id = sensor_id;
-    shot.robot_id = robot_id;
-    ProfileSource* sensor = station.sensor(sensor_id);
-    if (!sensor)
-        return device_error("the sensor is not connected", Text("sensor {}", sensor_id), "connect it");
-    RobotLink* robot = robot_id.empty() ? nullptr : station.robot(robot_id);
-    if (!robot_id.empty() && !robot)
-        return device_error("the robot is not connected", Text("robot {}", robot_id), "connect it");
-    if (robot) {
-        auto at = robot->base_from_flange();
-        if (!at) return tl::unexpected(at.error());
-        shot.base_from_flange = *at;
-    }
-    auto by_software = SoftwareTriggered::begin(*sensor);
-    if (!by_software) return tl::unexpected(by_software.error());
-    StartedSensors started;
-    if (auto running = started.start(*sensor); !running) return tl::unexpected(running.error());
-    if (board) {
-        auto picture = board_picture(*sensor, cancel);
-        if (!picture) return tl::unexpected(picture.error());
-        shot.board = std::move(*picture);
-    }
-    auto stripe = snap(*sensor, cancel);
-    if (!stripe) return tl::unexpected(stripe.error());
-    shot.stripe = std::move(*stripe);
-    if (robot) {
-        auto after = robot->base_from_flange();
-        if (!after) return tl::unexpected(after.error());
-        if (distance_mm(*after, *shot.base_from_flange) > kSameShotMm ||
-            angle_rad(*after, *shot.base_from_flange) > rad_from_deg(kSameShotDeg))
-            return device_error("the robot moved while the picture was taken", Text("robot {}", robot_id),
-                                "let it stand still and capture again");
-    }
-    return shot;
-}
-
-}  // namespace
-
 void StationWorker::take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id,
                                bool board) {
     post(tr("Capturing"), [=, this](Station& station, const std::stop_token& cancelled) {
         auto shots = std::make_shared<CalibrationShots>();
         for (const std::string& id : sensor_ids) {
-            auto shot = shoot(station, id, robot_id, board, cancelled);
+            auto shot = take_shot(station, id, robot_id, board, cancelled);
             // A device names its address; among several sensors that is no name.
             if (!shot && sensor_ids.size() > 1 && shot.error().where != "robot " + robot_id)
                 shot.error().where = "sensor " + id;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
+#include "projects/calibrate/session/shot.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/station.h"
@@ -48,16 +49,6 @@ struct PassResult {
     AlignmentResult result;
     std::optional<ContourCurve> curve;  // of the spot's feature over the travel
 };
-
-// One stand of the robot before a calibration target.
-struct CalibrationShot {
-    std::string sensor_id, robot_id;
-    FramePtr stripe;
-    FramePtr board;                        // with the laser off, where the sensor can switch it
-    std::optional<Pose> base_from_flange;  // absent: no robot was asked
-};
-// Of each sensor asked for, in that order; an Error's place names its sensor.
-using CalibrationShots = std::vector<Expected<CalibrationShot>>;
 
 class StationWorker : public QObject {
     Q_OBJECT

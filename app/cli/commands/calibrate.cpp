@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
+#include "app/cli/commands/calibrate_live.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/lookup_table_file.h"
 #include "projects/calibrate/detect_convention.h"
@@ -26,6 +27,7 @@ struct CalibrateArguments {
     ExcludedIds exclude;
     bool detect_convention = false;
     std::vector<std::string> pose_convention;  // "CODE" or "LIST=CODE"
+    LiveCalibrationArguments live;
 };
 
 Text where(const CalibrationMethod& method) {
@@ -189,7 +191,11 @@ Expected<void> check_arguments(const CalibrationMethod& method, const CalibrateA
     if (a.data.empty())
         return usage_error("the data are missing", where(method),
                            "give them, or see their layout with --help and --example FILE.json");
-    if (a.project.empty() != a.sensor.empty())
+    if (a.live.live && (!a.project.empty() || !a.report.empty() || !a.table.empty() || a.detect_convention))
+        return usage_error(
+            "--live stores by itself: --store, --report, --table and --detect-convention are of data",
+            where(method));
+    if (!a.live.live && a.project.empty() != a.sensor.empty())
         return usage_error("--store and --sensor belong together", "calibrate");
     if (a.detect_convention && !method.convention_fits)
         return usage_error("its data leave no residual that a convention of poses shows in", where(method),
@@ -200,6 +206,11 @@ Expected<void> check_arguments(const CalibrationMethod& method, const CalibrateA
 Expected<Answer> calibrate(const CalibrationMethod& method, const CalibrateArguments& a) {
     if (!a.example.empty()) return write_example(method, a.example);
     if (auto ok = check_arguments(method, a); !ok) return tl::unexpected(ok.error());
+    if (a.live.live) {
+        auto answer = calibrate_on_devices(method, a.data, a.sensor, a.live);
+        if (answer) answer->text = text_of(method, answer->json) + answer->text;
+        return answer;
+    }
     const auto given = read_data(method, a);
     if (!given) return tl::unexpected(given.error());
     auto solution = solve_calibration(method, given->data, given->exclude);
@@ -278,6 +289,7 @@ void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& met
     if (method.table)
         command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
     if (images) add_image_options(*command, method, *a);
+    if (method.capture != CaptureKind::files) add_live_options(*command, method, a->live);
     line.on(command, [&method, a] { return calibrate(method, *a); });
 }
 
@@ -287,7 +299,8 @@ void add_calibrate(CommandLine& line) {
     CLI::App* group = line.group(
         "calibrate", "Solve a calibration from data: parameters, uncertainty, residual per pose, verdict.",
         "seamwright calibrate tcp-sphere sphere.json --json -\n"
-        "  seamwright calibrate stripe-camera images --board 7x6 --pitch-mm 10 --report report.html");
+        "  seamwright calibrate stripe-camera images --board 7x6 --pitch-mm 10 --report report.html\n"
+        "  seamwright calibrate tcp-sphere door.seam --live --sensor A --set radius=25 --use");
     for (const CalibrationMethod& method : calibration_methods()) add_method(line, *group, method);
 }
 

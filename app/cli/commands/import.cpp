@@ -12,6 +12,7 @@
 #include "core/profile/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
+#include "devices/exchange/lookup_table_file.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/replay/recording.h"
 #include "projects/calibrate/session/answer.h"
@@ -34,9 +35,28 @@ struct ImportArguments {
     double sigma_mm = FolderImport{}.sigma_mm, sigma_limit_mm = FolderImport{}.sigma_limit_mm;
 };
 
-// Of a project (the one named, or its only one that turns pixels into millimetres), or what `calibrate`
-// answered.
+Calibration named_after(const std::string& path, Calibration made) {
+    made.id = fs::path(path).stem().string();
+    made.source = path;
+    made.created_utc = utc_now();
+    return made;
+}
+
+// A table says where pixels lie in the sensor's plane, and not how well; its verdict is that of the one who brings it.
+Expected<Calibration> table_calibration(const std::string& path) {
+    auto table = read_lookup_table(path);
+    if (!table) return tl::unexpected(table.error());
+    Calibration c;
+    c.method = "lut";
+    c.verdict = Verdict::usable;
+    c.model.emplace().table = std::move(*table);
+    return named_after(path, std::move(c));
+}
+
+// Of a project (the one named, or its only one that turns pixels into millimetres), what `calibrate` answered, or a
+// table that it wrote.
 Expected<Calibration> read_calibration(const std::string& path, const std::string& id) {
+    if (path.ends_with(".lut")) return table_calibration(path);
     if (path.ends_with(".json")) {
         auto answer = read_json_file(path);
         if (!answer) return tl::unexpected(answer.error());
@@ -50,10 +70,7 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
                                "give that, or a project that holds the calibration");
         auto made = calibration_of_solution(*method, json::object(), {}, *solution, nullptr);
         if (!made) return made;
-        made->id = fs::path(path).stem().string();
-        made->source = path;
-        made->created_utc = utc_now();
-        return made;
+        return named_after(path, std::move(*made));
     }
     auto file = ProjectFile::open(path, FileAccess::read_only);
     if (!file) return tl::unexpected(file.error());
@@ -360,9 +377,9 @@ void add_import(CommandLine& line) {
     command
         ->add_option(
             "--calibration", a->calibration,
-            "Images become millimetres with this: a project that holds it, or the JSON answer of `calibrate "
-            "stripe-camera`")
-        ->type_name("FILE.seam|FILE.json");
+            "Images become millimetres with this: a project that holds it, the JSON answer of `calibrate "
+            "stripe-camera`, or a table of `calibrate lut --table`")
+        ->type_name("FILE.seam|FILE.json|FILE.lut");
     command->add_option("--calibration-id", a->calibration_id, "Which of the project's calibrations");
     command->add_option("--sigma-mm", a->sigma_mm, "Standard deviation of a measured coordinate")
         ->capture_default_str();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/calibration/statistics.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/methods/example_cell.h"
@@ -16,6 +17,44 @@ namespace seamwright {
 namespace {
 
 using nlohmann::json;
+
+// Of a stand of the robot with several points. Stands see the same points of the plate again: each is solved with as
+// the mean over the stands that take part.
+struct Stand {
+    std::string id;
+    std::vector<PlatePoint> points;
+    bool used = true;
+};
+
+double squares_of(const Stand& stand, const Pose& world_from_plate) {
+    double squares = 0;
+    for (const PlatePoint& p : stand.points) squares += (p.world - world_from_plate * p.plate).squaredNorm();
+    return squares;
+}
+
+// The points of one stand err together, by the robot and the sensor on it, and the mean over the stands hides by how
+// much: what the stands say of their own scatter.
+struct StandScatter {
+    double rms_mm = 0;    // of a point an axis, about the mean
+    double sigma_mm = 0;  // of a mean point an axis, as if its error were its own (Student's factor in it)
+};
+std::optional<StandScatter> scatter_of(const std::vector<Stand>& stands, const Pose& world_from_plate) {
+    double squares = 0, points = 0, used = 0;
+    for (const Stand& stand : stands) {
+        if (!stand.used) continue;
+        squares += squares_of(stand, world_from_plate);
+        points += static_cast<double>(stand.points.size());
+        ++used;
+    }
+    if (used < 2) return std::nullopt;
+    const double each = points / used;
+    StandScatter scatter;
+    scatter.rms_mm = std::sqrt(squares / (3 * each * (used - 1)));
+    // A stand errs in six ways.
+    const double student = student_quantile(0.975, 6 * (used - 1)) / 1.959964;
+    scatter.sigma_mm = scatter.rms_mm * student * std::sqrt(each / used);
+    return scatter;
+}
 
 Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& exclude) {
     PlateOptions options;
@@ -28,13 +67,6 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
     auto list = json_array(data, "points", "");
     if (!list) return tl::unexpected(list.error());
     std::vector<PlatePoint> points;
-    // Of a stand with several points. Stands see the same points of the plate again: each is solved with as
-    // the mean over the stands that take part.
-    struct Stand {
-        std::string id;
-        std::vector<PlatePoint> points;
-        bool used = true;
-    };
     std::vector<Stand> stands;
     for (std::size_t i = 0; i < (*list)->size(); ++i) {
         const json& entry = (**list)[i];
@@ -87,6 +119,20 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
     for (auto& m : means) points.push_back(std::move(m.first));
     auto solved = calibrate_plate(points, options);
     if (!solved) return tl::unexpected(solved.error());
+    const auto scatter = scatter_of(stands, solved->world_from_plate);
+    if (scatter && solved->status == PlateStatus::ok && scatter->sigma_mm > solved->sigma_mm) {
+        const Verdict alone = solved->report.judgement.verdict;
+        options.sigma_mm = scatter->sigma_mm;
+        solved = calibrate_plate(points, options);
+        if (!solved) return tl::unexpected(solved.error());
+        Judgement& judgement = solved->report.judgement;
+        if (judgement.verdict != alone)
+            judgement = {
+                judgement.verdict,
+                Text("the robot's stands disagree by {:.3f} mm; {}", scatter->rms_mm, judgement.reason),
+                "check the target's pitch, the calibration in use and the robot's poses, and measure from "
+                "more stands"};
+    }
 
     CalibrationSolution solution;
     json& result = solution.document;
@@ -110,10 +156,9 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
             row.id = stand.id;
             row.used = stand.used;
             if (!stand.used) row.note = "excluded";
-            double squares = 0;
-            for (const PlatePoint& p : stand.points)
-                squares += (p.world - solved->world_from_plate * p.plate).squaredNorm();
-            if (ok) row.rms_mm = std::sqrt(squares / static_cast<double>(stand.points.size()));
+            if (ok)
+                row.rms_mm = std::sqrt(squares_of(stand, solved->world_from_plate) /
+                                       static_cast<double>(stand.points.size()));
             report.poses.push_back(std::move(row));
         }
     }

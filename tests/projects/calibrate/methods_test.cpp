@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {
@@ -68,6 +70,49 @@ TEST_P(EveryMethod, RefusesWhatIsNoData) {
         EXPECT_FALSE(refused.error().sentence().empty());
     }
     for (const json& bad : {json(), json(3), json::array()}) EXPECT_FALSE(solution_from_document(bad));
+}
+
+// A plate seen from several stands, each off by its own pose error: what the stands disagree by is in the sigma, and a
+// set that contradicts itself is never good because its mean is smooth.
+json stands(std::mt19937& random, int count, double mm, double deg, const Pose& world_from_plate) {
+    std::normal_distribution<double> normal;
+    const auto draw = [&](double sigma) {
+        return Eigen::Vector3d(sigma * normal(random), sigma * normal(random), sigma * normal(random));
+    };
+    json list = json::array();
+    for (int i = 0; i < count; ++i) {
+        const Pose off = make_pose(rotation_exp(draw(deg * kPi / 180)), draw(mm));
+        json points = json::array();
+        for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), {60, 0, 0}, {60, 50, 0}, {0, 50, 0}}) {
+            const Eigen::Vector3d w = world_from_plate * (off * p);
+            points.push_back({{"plate", {p.x(), p.y(), p.z()}}, {"world", {w.x(), w.y(), w.z()}}});
+        }
+        list.push_back({{"id", "P" + std::to_string(i)}, {"points", points}});
+    }
+    return {{"points", list}};
+}
+
+TEST(PlateFromStands, StatesWhatTheStandsDisagreeBy) {
+    std::mt19937 random(11);
+    const Pose truth = make_pose(rotation_exp({0.1, -0.3, 1.2}), {900, 150, 250});
+    const CalibrationMethod& plate = *find_method("plate");
+    int inside = 0;
+    constexpr int kTrials = 400;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        const auto solution = solve_calibration(plate, stands(random, 3 + trial % 5, 0.1, 0.0, truth), {});
+        ASSERT_TRUE(solution) << solution.error().sentence();
+        const UncertainPose& found = std::get<PlateInWorld>(solution->found).world_from_plate;
+        const double off = std::abs((found.pose.translation() - truth.translation()).x());
+        inside += off < 1.96 * std::sqrt(found.covariance(0, 0));
+    }
+    EXPECT_GT(inside, 0.92 * kTrials);
+    const auto wild = solve_calibration(plate, stands(random, 6, 60, 2, truth), {});
+    ASSERT_TRUE(wild);
+    EXPECT_EQ(wild->verdict(), Verdict::poor) << wild->report.judgement.reason.english();
+    EXPECT_NE(wild->report.judgement.reason.english().find("disagree"), std::string::npos);
+    const auto calm = solve_calibration(plate, stands(random, 6, 0.005, 0.001, truth), {});
+    ASSERT_TRUE(calm);
+    EXPECT_EQ(calm->verdict(), Verdict::good) << calm->report.judgement.reason.english();
 }
 
 std::vector<std::string> ids() {

@@ -1,0 +1,131 @@
+#include "app/cli/commands/calibrate_live.h"
+
+#include <fmt/format.h>
+
+#include "app/cli/feature_setting.h"
+#include "app/cli/signal_watch.h"
+#include "projects/calibrate/live.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+Expected<std::map<std::string, double>> settings_of(const CalibrationMethod& method,
+                                                    const std::vector<std::string>& given) {
+    std::map<std::string, double> values;
+    for (const std::string& one : given) {
+        const std::size_t equals = one.find('=');
+        if (equals == std::string::npos) return usage_error(Text("\"{}\" is not NAME=VALUE", one), "--set");
+        const std::string name = one.substr(0, equals);
+        const auto known = std::find_if(method.settings.begin(), method.settings.end(),
+                                        [&](const MethodSetting& s) { return s.info.name == name; });
+        if (known == method.settings.end())
+            return usage_error(Text("there is no setting \"{}\"", name), "--set");
+        auto value = setting_value(known->info, one.substr(equals + 1));
+        if (!value) return tl::unexpected(value.error());
+        values[name] = *value;
+    }
+    return values;
+}
+
+json verification_json(const Verification& v) {
+    return {{"poses", v.poses},
+            {"confirmed", v.confirmed},
+            {"worst_mm", number_json(v.worst_mm)},
+            {"limit_mm", number_json(v.limit_mm)},
+            {"worst_deg", number_json(v.worst_deg)},
+            {"limit_deg", number_json(v.limit_deg)},
+            {"worst_px", number_json(v.worst_px)},
+            {"limit_px", number_json(v.limit_px)}};
+}
+
+std::string verified_text(const Verification& v) {
+    if (v.poses == 0) return "";
+    std::string parts;
+    for (const auto& [worst, limit, unit] : {std::tuple{v.worst_mm, v.limit_mm, "mm"},
+                                             {v.worst_deg, v.limit_deg, "deg"},
+                                             {v.worst_px, v.limit_px, "px"}})
+        if (std::isfinite(worst)) parts += fmt::format(", {:.3f} {} of {:.3f} allowed", worst, unit, limit);
+    return fmt::format("{} by {} pose(s) kept back{}\n", v.confirmed ? "confirmed" : "not confirmed", v.poses,
+                       parts);
+}
+
+}  // namespace
+
+void add_live_options(CLI::App& command, const CalibrationMethod& method, LiveCalibrationArguments& a) {
+    std::string names;
+    for (const MethodSetting& s : method.settings) names += (names.empty() ? "" : ", ") + s.info.name;
+    command
+        .add_flag("--live", a.live,
+                  "The data are a project: capture with its sensor, where its robot stands still; what was "
+                  "captured is kept beside the project and resumed")
+        ->group("From devices");
+    command.add_option("--robot", a.robot, "The project's robot that carries the sensor (its only one)")
+        ->group("From devices");
+    if (!names.empty())
+        command.add_option("--set", a.settings, "Setting of the target, NAME=VALUE, of " + names)
+            ->type_name("NAME=VALUE")
+            ->allow_extra_args(false)
+            ->group("From devices");
+    command
+        .add_option("--captures", a.captures,
+                    fmt::format("How many to solve with ({}; at least {})", method.advised, method.fewest))
+        ->check(CLI::Range(method.fewest, 1000))
+        ->group("From devices");
+    if (method.keeps_back)
+        command.add_option("--verification", a.verification, "How many more to verify the answer with (1)")
+            ->check(CLI::Range(0, 100))
+            ->group("From devices");
+    command.add_option("--patience-s", a.patience_s, "How long the robot's next stand is waited for (300)")
+        ->check(CLI::Range(1.0, 86400.0))
+        ->group("From devices");
+    command.add_flag("--anew", a.anew, "Begin over; what was captured before is put aside")
+        ->group("From devices");
+    if (method.use == AnswerUse::sensor)
+        command.add_flag("--use", a.use, "Put the calibration to use when it is verified")
+            ->group("From devices");
+}
+
+Expected<Answer> calibrate_on_devices(const CalibrationMethod& method, const std::string& file,
+                                      const std::string& sensor, const LiveCalibrationArguments& a) {
+    if (sensor.empty()) return usage_error("say which of the project's sensors", "--sensor");
+    auto settings = settings_of(method, a.settings);
+    if (!settings) return tl::unexpected(settings.error());
+    auto station = Station::open(file);
+    if (!station) return tl::unexpected(station.error());
+    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    LiveCalibrationOptions options;
+    options.sensor_id = sensor;
+    options.robot_id = a.robot;
+    options.settings = std::move(*settings);
+    options.captures = a.captures;
+    options.verification = a.verification;
+    options.anew = a.anew;
+    options.use = a.use;
+    options.patience = std::chrono::milliseconds(static_cast<long>(1000 * a.patience_s));
+    options.said = [](const Text& text) { fmt::print(stderr, "{}\n", text.english()); };
+    options.cancel = stop_on_signal();
+    auto live = calibrate_live(*station, method, options);
+    if (!live) return tl::unexpected(live.error());
+    Answer answer;
+    answer.json = live->solution.document;
+    answer.json["captures"] = live->captures;
+    answer.json["verification"] = verification_json(live->verification);
+    answer.json["stored_as"] = live->stored;
+    answer.json["used"] = live->used;
+    const bool serves_all =
+        serves(live->solution.verdict()) && (!method.keeps_back || live->verification.confirmed);
+    answer.exit_code = serves_all ? kExitOk : kExitVerdict;
+    answer.text = verified_text(live->verification);
+    for (const std::string& id : live->stored)
+        answer.text += fmt::format("stored in {} as {}{}\n", file, id, live->used ? ", in use" : "");
+    if (live->stored.empty() && method.use != AnswerUse::check)
+        answer.text +=
+            serves(live->solution.verdict())
+                ? "not stored: the answer is not verified; take more captures with the same command\n"
+                : "not stored: see reason and cure; more captures with the same command, or --anew\n";
+    return answer;
+}
+
+}  // namespace seamwright::cli

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/profile/units.h"
 #include "devices/registry.h"
@@ -100,56 +101,78 @@ Text forecast_note(const Project& project) {
                 plan->sigma_at_spots_mm, region.sigma_limit_mm);
 }
 
-}  // namespace
-
-Expected<FolderImportResult> import_folder(const FolderImport& options) {
-    FolderImportResult result;
-    Project& project = result.project;
-    std::error_code code;
-    const fs::path folder = fs::absolute(options.folder, code).lexically_normal();
-    RecordingLayout layout = options.layout;
-    auto frames = list_recording(folder, "", true, layout, &result.understood);
-    if (!frames) return tl::unexpected(frames.error());
-    if (frames->empty()) return input_error("the folder holds no profiles and no images", folder.string());
-    if (!frames->front().image && frames->front().file.extension() != ".csv")  // may hold points in space
-        layout.flange_from_sensor =
-            options.calibration ? options.calibration->flange_from_sensor : options.flange_from_sensor;
-    std::vector<RecordedFrame> taught = *frames;
-    if (options.reference_folder) {
-        auto listed = list_recording(fs::absolute(*options.reference_folder, code).lexically_normal(), "",
-                                     true, layout, &result.understood);
-        if (!listed) return tl::unexpected(listed.error());
-        taught = std::move(*listed);
-    } else {
-        result.notes.push_back(
-            "no reference folder: the folder itself is the taught state, the first run finds no "
-            "displacement");
+// One import, step by step; a step that fails ends it.
+class FolderImporter {
+  public:
+    explicit FolderImporter(const FolderImport& options) : options_(options), layout_(options.layout) {
+        std::error_code code;
+        folder_ = fs::absolute(options.folder, code).lexically_normal();
     }
-    if (!(options.sigma_mm > 0)) return input_error("sigma must be positive", "sigma_mm");
-    if (!(options.sigma_limit_mm > 0))
-        return input_error("the sigma limit must be positive", "sigma_limit_mm");
-    if (!pose_from_matrix(options.flange_from_sensor.matrix(), ""))
-        return input_error("the pose is not rigid", "flange_from_sensor");
 
-    project.name = options.project_name.empty() ? folder.filename().string() : options.project_name;
-    if (project.name.empty()) project.name = folder.parent_path().filename().string();
-    project.part.name = project.name;
-    project.part.base_from_workobject = options.base_from_workobject;
+    Expected<FolderImportResult> import() {
+        for (const auto step :
+             {&FolderImporter::check_options, &FolderImporter::list, &FolderImporter::take_devices,
+              &FolderImporter::take_calibration, &FolderImporter::take_spots})
+            if (auto ok = (this->*step)(); !ok) return tl::unexpected(ok.error());
+        if (Text note = forecast_note(result_.project); !note.empty() && !result_.in_pixels)
+            result_.notes.push_back(std::move(note));
+        return std::move(result_);
+    }
 
-    SensorSetup sensor;
-    sensor.id = kSensorId;
-    sensor.driver = "replay";
-    sensor.settings = {{"folder", folder.string()}};
-    if (const nlohmann::json told = recording_layout_json(layout); !told.empty())
-        sensor.settings["layout"] = told;
-    sensor.peaks = options.peaks;
-    sensor.filter = options.filter;
-    sensor.calibration_id = kCalibrationId;
-    RobotSetup robot;
-    robot.id = kRobotId;
-    robot.driver = "replay";
-    robot.settings = sensor.settings;
-    {
+  private:
+    Expected<void> check_options() {
+        if (!(options_.sigma_mm > 0)) return input_error("sigma must be positive", "sigma_mm");
+        if (!(options_.sigma_limit_mm > 0))
+            return input_error("the sigma limit must be positive", "sigma_limit_mm");
+        if (!pose_from_matrix(options_.flange_from_sensor.matrix(), ""))
+            return input_error("the pose is not rigid", "flange_from_sensor");
+        return {};
+    }
+
+    Expected<void> list() {
+        auto frames = list_recording(folder_, "", true, layout_, &result_.understood);
+        if (!frames) return tl::unexpected(frames.error());
+        if (frames->empty())
+            return input_error("the folder holds no profiles and no images", folder_.string());
+        frames_ = std::move(*frames);
+        const RecordedFrame& first = frames_.front();
+        if (!first.image && first.file.extension() != ".csv")  // may hold points in space
+            layout_.flange_from_sensor =
+                options_.calibration ? options_.calibration->flange_from_sensor : options_.flange_from_sensor;
+        taught_ = frames_;
+        if (options_.reference_folder) {
+            std::error_code code;
+            auto listed = list_recording(fs::absolute(*options_.reference_folder, code).lexically_normal(),
+                                         "", true, layout_, &result_.understood);
+            if (!listed) return tl::unexpected(listed.error());
+            taught_ = std::move(*listed);
+        } else {
+            result_.notes.push_back(
+                "no reference folder: the folder itself is the taught state, the first run finds no "
+                "displacement");
+        }
+        return {};
+    }
+
+    Expected<void> take_devices() {
+        Project& project = result_.project;
+        project.name = options_.project_name.empty() ? folder_.filename().string() : options_.project_name;
+        if (project.name.empty()) project.name = folder_.parent_path().filename().string();
+        project.part.name = project.name;
+        project.part.base_from_workobject = options_.base_from_workobject;
+        SensorSetup sensor;
+        sensor.id = kSensorId;
+        sensor.driver = "replay";
+        sensor.settings = {{"folder", folder_.string()}};
+        if (const nlohmann::json told = recording_layout_json(layout_); !told.empty())
+            sensor.settings["layout"] = told;
+        sensor.peaks = options_.peaks;
+        sensor.filter = options_.filter;
+        sensor.calibration_id = kCalibrationId;
+        RobotSetup robot;
+        robot.id = kRobotId;
+        robot.driver = "replay";
+        robot.settings = sensor.settings;
         DeviceSession session;
         auto opened = open_sensor(sensor.driver, sensor.settings, session);
         if (!opened) return tl::unexpected(opened.error());
@@ -159,133 +182,162 @@ Expected<FolderImportResult> import_folder(const FolderImport& options) {
         auto identity = (*linked)->identity();
         if (!identity) return tl::unexpected(identity.error());
         robot.identity = *identity;
+        project.sensors = {std::move(sensor)};
+        project.robots = {std::move(robot)};
+        return {};
     }
 
-    Frame first;
-    if (auto read = read_recorded(frames->front(), layout, 0, first); !read)
-        return tl::unexpected(read.error());
-    if (auto ok = check_units(options, first, frames->front().file); !ok) return tl::unexpected(ok.error());
-    const bool images = frames->front().image;
-    if (auto ok = check_calibration(options, images, first); !ok) return tl::unexpected(ok.error());
-    Calibration calibration;
-    if (options.calibration) {
-        calibration = *options.calibration;
-    } else {
-        calibration.flange_from_sensor = options.flange_from_sensor;
-        calibration.model = options.model;
-        calibration.method = "import";
-        calibration.verdict = options.calibration_verdict;
-        calibration.created_utc = utc_now();
-        calibration.source = folder.string();
+    Expected<void> take_calibration() {
+        Frame first;
+        if (auto read = read_recorded(frames_.front(), layout_, 0, first); !read)
+            return tl::unexpected(read.error());
+        if (auto ok = check_units(options_, first, frames_.front().file); !ok) return ok;
+        const bool images = frames_.front().image;
+        if (auto ok = check_calibration(options_, images, first); !ok) return ok;
+        Calibration calibration;
+        if (options_.calibration) {
+            calibration = *options_.calibration;
+        } else {
+            calibration.flange_from_sensor = options_.flange_from_sensor;
+            calibration.model = options_.model;
+            calibration.method = "import";
+            calibration.verdict = options_.calibration_verdict;
+            calibration.created_utc = utc_now();
+            calibration.source = folder_.string();
+        }
+        calibration.id = kCalibrationId;
+        calibration.sensor_id = kSensorId;
+        calibration.robot_id = kRobotId;
+        calibration.sensor_identity = result_.project.sensors.front().identity;
+        calibration.robot_identity = result_.project.robots.front().identity;
+        if (images && !calibration.model) {
+            calibration.model = pixel_model(first.image.width, first.image.height, options_.peaks.scan);
+            calibration.method = "pixels";
+            calibration.verdict = Verdict::undetermined;
+            result_.in_pixels = true;
+            result_.notes.push_back(
+                "no calibration: measured in pixels (1 px counts as 1 unit), corrections have no metric "
+                "meaning and nothing can be pushed; with --calibration it is measured in millimetres");
+        } else if (calibration.verdict == Verdict::undetermined) {
+            result_.notes.push_back(
+                "no verdict on the sensor's calibration was given: nothing can be pushed");
+        }
+        result_.project.calibrations = {std::move(calibration)};
+        return {};
     }
-    calibration.id = kCalibrationId;
-    calibration.sensor_id = kSensorId;
-    calibration.robot_id = kRobotId;
-    calibration.sensor_identity = sensor.identity;
-    calibration.robot_identity = robot.identity;
-    if (images && !calibration.model) {
-        calibration.model = pixel_model(first.image.width, first.image.height, options.peaks.scan);
-        calibration.method = "pixels";
-        calibration.verdict = Verdict::undetermined;
-        result.in_pixels = true;
-        result.notes.push_back(
-            "no calibration: measured in pixels (1 px counts as 1 unit), corrections have no metric meaning "
-            "and nothing can be pushed; with --calibration it is measured in millimetres");
-    } else if (calibration.verdict == Verdict::undetermined) {
-        result.notes.push_back("no verdict on the sensor's calibration was given: nothing can be pushed");
+
+    Expected<void> take_spots() {
+        Region region;
+        region.id = "all";
+        region.limits = options_.limits;
+        region.sigma_limit_mm = options_.sigma_limit_mm;
+        region.frame_name = "path";
+        region.base_from_frame = options_.base_from_workobject;
+        // Taught frames by spot; the first of a spot counts.
+        std::map<std::string, const RecordedFrame*> taught_by_spot;
+        for (const RecordedFrame& frame : taught_) taught_by_spot.emplace(frame.spot_id, &frame);
+        std::set<std::string> seen;
+        for (const RecordedFrame& recorded : frames_) {
+            if (!seen.insert(recorded.spot_id).second) continue;  // a further frame is a further run
+            Spot& spot = add_spot(recorded);
+            const auto reference = taught_by_spot.find(spot.id);
+            if (reference == taught_by_spot.end()) {
+                result_.notes.push_back(Text("spot {}: not in the reference folder, switched off", spot.id));
+                continue;
+            }
+            auto taught = teach(spot, recorded, *reference->second);
+            if (!taught) return tl::unexpected(taught.error());
+            if (*taught) region.spot_ids.push_back(spot.id);
+        }
+        if (region.spot_ids.empty()) return nothing_found();
+        result_.project.regions = {std::move(region)};
+        return {};
     }
-    project.sensors = {sensor};
-    project.robots = {robot};
-    project.calibrations = {calibration};
 
-    Region region;
-    region.id = "all";
-    region.limits = options.limits;
-    region.sigma_limit_mm = options.sigma_limit_mm;
-    region.frame_name = "path";
-    region.base_from_frame = options.base_from_workobject;
-
-    // Taught frames by spot; the first of a spot counts.
-    std::map<std::string, const RecordedFrame*> taught_by_spot;
-    for (const RecordedFrame& frame : taught) taught_by_spot.emplace(frame.spot_id, &frame);
-    std::map<std::string, bool> seen;
-    Frame frame;
-    int references = 0;
-    std::optional<Error> unreadable;
-    for (const RecordedFrame& recorded : *frames) {
-        if (!seen.emplace(recorded.spot_id, true).second)
-            continue;  // a further frame of the spot is a further run
+    Spot& add_spot(const RecordedFrame& recorded) {
         Spot spot;
         spot.id = recorded.spot_id;
         spot.sensor_id = kSensorId;
         spot.robot_id = kRobotId;
-        spot.feature = options.feature;
-        spot.sigma_mm = options.sigma_mm;
-        spot.required = false;
+        spot.feature = options_.feature;
+        spot.sigma_mm = options_.sigma_mm;
+        spot.required = spot.enabled = false;
         spot.base_from_flange = *recorded.base_from_flange;
-        spot.enabled = false;
-        const auto reference = taught_by_spot.find(spot.id);
-        if (reference == taught_by_spot.end()) {
-            result.notes.push_back(Text("spot {}: not in the reference folder, switched off", spot.id));
-            project.spots.push_back(std::move(spot));
-            continue;
-        }
-        spot.base_from_flange = *reference->second->base_from_flange;
-        project.spots.push_back(spot);
-        Spot& taught_spot = project.spots.back();
-        if (auto read = read_recorded(*reference->second, layout, 0, frame); !read) {
-            if (!unreadable) unreadable = read.error();
-            result.notes.push_back(Text("spot {}: {}, switched off", spot.id, read.error().text()));
-            continue;
-        }
-        if (auto ok = check_units(options, frame, reference->second->file); !ok)
-            return tl::unexpected(ok.error());
-        // The recorded part in another unit than the taught one; what cannot be read shows in the run.
-        if (Frame other; !recorded.image && recorded.file != reference->second->file &&
-                         read_recorded(recorded, layout, 0, other))
-            if (auto ok = check_units(options, other, recorded.file); !ok) return tl::unexpected(ok.error());
-        if (options.feature.kind == "template") {
-            StripePeaks peaks;
-            Capture capture;
-            Profile taught_profile;
-            Text message;
-            if (capture_frame(frame, options.peaks, calibration.model ? &*calibration.model : nullptr, peaks,
-                              capture, message) != SpotStatus::measured) {
-                result.notes.push_back(Text("spot {}: {}, switched off", spot.id, message));
-                continue;
-            }
-            if (auto tracked = track_capture(capture, options.filter, taught_profile); !tracked) {
-                result.notes.push_back(Text("spot {}: {}, switched off", spot.id, tracked.error().text()));
-                continue;
-            }
-            if (auto cut = cut_template(options, taught_profile, taught_spot); !cut)
-                return tl::unexpected(cut.error());
-        }
-        auto measurer = SpotMeasurer::make(project, spot.id);
-        if (!measurer) return tl::unexpected(measurer.error());
-        const SpotMeasurement& measured = measurer->measure(frame);
-        taught_spot.reference_profile = measurer->profile();
-        if (measured.status != SpotStatus::measured) {
-            result.notes.push_back(Text("spot {}: {} ({}), switched off", spot.id, to_string(measured.status),
-                                        measured.message));
-            continue;
-        }
-        taught_spot.reference_mm = measured.measured_mm;
-        taught_spot.enabled = taught_spot.required = true;
-        region.spot_ids.push_back(spot.id);
-        ++references;
+        result_.project.spots.push_back(std::move(spot));
+        return result_.project.spots.back();
     }
-    if (references == 0) {
-        if (unreadable) return tl::unexpected(*unreadable);  // file and line of the first
-        Error error{ErrorKind::input, "no feature was found in any frame", folder.string(),
+
+    // false, with a note: the spot stays switched off.
+    Expected<bool> teach(Spot& spot, const RecordedFrame& recorded, const RecordedFrame& reference) {
+        spot.base_from_flange = *reference.base_from_flange;
+        if (auto read = read_recorded(reference, layout_, 0, frame_); !read) {
+            if (!unreadable_) unreadable_ = read.error();
+            result_.notes.push_back(Text("spot {}: {}, switched off", spot.id, read.error().text()));
+            return false;
+        }
+        if (auto ok = check_units(options_, frame_, reference.file); !ok) return tl::unexpected(ok.error());
+        // The recorded part in another unit than the taught one; what cannot be read shows in the run.
+        if (Frame other;
+            !recorded.image && recorded.file != reference.file && read_recorded(recorded, layout_, 0, other))
+            if (auto ok = check_units(options_, other, recorded.file); !ok) return tl::unexpected(ok.error());
+        if (options_.feature.kind == "template") {
+            auto cut = cut_from_frame(spot);
+            if (!cut || !*cut) return cut;
+        }
+        auto measurer = SpotMeasurer::make(result_.project, spot.id);
+        if (!measurer) return tl::unexpected(measurer.error());
+        const SpotMeasurement& measured = measurer->measure(frame_);
+        spot.reference_profile = measurer->profile();
+        if (measured.status != SpotStatus::measured) {
+            result_.notes.push_back(Text("spot {}: {} ({}), switched off", spot.id,
+                                         to_string(measured.status), measured.message));
+            return false;
+        }
+        spot.reference_mm = measured.measured_mm;
+        spot.enabled = spot.required = true;
+        return true;
+    }
+
+    Expected<bool> cut_from_frame(Spot& spot) {
+        const Calibration& calibration = result_.project.calibrations.front();
+        StripePeaks peaks;
+        Capture capture;
+        Profile taught_profile;
+        Text message;
+        if (capture_frame(frame_, options_.peaks, calibration.model ? &*calibration.model : nullptr, peaks,
+                          capture, message) != SpotStatus::measured) {
+            result_.notes.push_back(Text("spot {}: {}, switched off", spot.id, message));
+            return false;
+        }
+        if (auto tracked = track_capture(capture, options_.filter, taught_profile); !tracked) {
+            result_.notes.push_back(Text("spot {}: {}, switched off", spot.id, tracked.error().text()));
+            return false;
+        }
+        if (auto cut = cut_template(options_, taught_profile, spot); !cut) return tl::unexpected(cut.error());
+        return true;
+    }
+
+    Expected<void> nothing_found() const {
+        if (unreadable_) return tl::unexpected(*unreadable_);  // file and line of the first
+        Error error{ErrorKind::input, "no feature was found in any frame", folder_.string(),
                     "try another feature, or see with --look how the files are understood"};
-        if (!result.notes.empty()) error.what = Text("{} ({})", error.what, result.notes.back());
+        if (!result_.notes.empty()) error.what = Text("{} ({})", error.what, result_.notes.back());
         return tl::unexpected(error);
     }
-    project.regions = {region};
-    if (Text note = forecast_note(project); !note.empty() && !result.in_pixels)
-        result.notes.push_back(std::move(note));
-    return result;
+
+    const FolderImport& options_;
+    RecordingLayout layout_;
+    fs::path folder_;
+    std::vector<RecordedFrame> frames_, taught_;
+    FolderImportResult result_;
+    Frame frame_;                      // of the spot that is taught
+    std::optional<Error> unreadable_;  // the first
+};
+
+}  // namespace
+
+Expected<FolderImportResult> import_folder(const FolderImport& options) {
+    return FolderImporter(options).import();
 }
 
 }  // namespace seamwright

@@ -7,7 +7,6 @@
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QSplitter>
-#include <QToolButton>
 #include <QVBoxLayout>
 #include <cmath>
 
@@ -15,6 +14,7 @@
 #include "widgets/align/cure_arrow.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
+#include "widgets/view_bar.h"
 
 namespace seamwright {
 
@@ -80,31 +80,18 @@ AlignView::AlignView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
     auto* lower_column = new QVBoxLayout(lower);
     lower_column->setContentsMargins(0, 0, 0, 0);
     lower_column->setSpacing(0);
-    auto* head = new QHBoxLayout;
-    head->setContentsMargins(8, 2, 4, 2);
-    auto* title = new QLabel(tr("Profiles over travel"), lower);
-    head->addWidget(title, 1);
+    auto* head = new ViewBar(lower, tr("Profiles over travel"));
     auto* group = new QButtonGroup(this);
-    const auto button = [&](const QString& word, const QString& tip) {
-        auto* made = new QToolButton(lower);
-        made->setText(word);
-        made->setToolTip(tip);
-        made->setAccessibleName(word);
-        made->setCheckable(true);
-        made->setAutoRaise(true);
-        made->setMinimumHeight(style::kTargetPx);
-        group->addButton(made);
-        head->addWidget(made);
-        return made;
-    };
-    impl_->as_image = button(
-        tr("Image"), tr("x to the right, travel upwards, height as colour: upright bands stand still"));
-    impl_->as_overlay =
-        button(tr("Overlay"), tr("All profiles over each other; the live one thin over the frozen one"));
+    impl_->as_image = head->add(
+        tr("Image"), tr("x to the right, travel upwards, height as colour: upright bands stand still"), true);
+    impl_->as_overlay = head->add(
+        tr("Overlay"), tr("All profiles over each other; the live one thin over the frozen one"), true);
+    group->addButton(impl_->as_image);
+    group->addButton(impl_->as_overlay);
     impl_->as_image->setChecked(true);
     connect(impl_->as_image, &QToolButton::clicked, this, [this] { set_stack(Stack::image); });
     connect(impl_->as_overlay, &QToolButton::clicked, this, [this] { set_stack(Stack::overlay); });
-    lower_column->addLayout(head);
+    lower_column->addWidget(head);
     impl_->stack = new StackCanvas(lower);
     impl_->stack->setToolTip(
         tr("Every profile of the pass over the travel; the buttons above change the picture"));

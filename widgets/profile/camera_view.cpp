@@ -7,15 +7,14 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <QTimer>
-#include <QToolButton>
 #include <QVBoxLayout>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "widgets/flow_layout.h"
 #include "widgets/style.h"
+#include "widgets/view_bar.h"
 
 namespace seamwright {
 
@@ -326,28 +325,14 @@ CameraView::CameraView(QWidget* parent) : QWidget(parent), impl_(std::make_uniqu
     impl_->surface = new CameraSurface(*this, this);
     impl_->surface->setAccessibleName(tr("Camera image, pixels"));
     setFocusProxy(impl_->surface);
-    impl_->toolbar = new QWidget(this);
-    auto* row = new FlowLayout(impl_->toolbar, true);
-    row->setContentsMargins(8, 2, 4, 2);
-    row->setSpacing(0);
-    impl_->caption = new QLabel(impl_->toolbar);
+    auto* bar = new ViewBar(this);
+    impl_->toolbar = bar;
+    impl_->caption = bar->caption();
     impl_->caption->setAccessibleName(tr("Camera state"));
-    row->addWidget(impl_->caption);
-    const auto button = [&](const QString& word, const QString& tip, bool checkable) {
-        auto* made = new QToolButton(impl_->toolbar);
-        made->setText(word);
-        made->setToolTip(tip);
-        made->setAccessibleName(word);
-        made->setCheckable(checkable);
-        made->setAutoRaise(true);
-        made->setMinimumHeight(style::kTargetPx);
-        row->addWidget(made);
-        return made;
-    };
-    auto* fit_button = button(tr("Fit"), tr("Show the whole image (F)"), false);
-    impl_->region = button(tr("Region"), tr("Drag the region of interest"), true);
-    impl_->peaks = button(tr("Peaks"), tr("Peaks: strongest blue, others purple"), true);
-    impl_->histogram = button(tr("Histogram"), tr("Grey values, logarithmic, and saturated pixels"), true);
+    auto* fit_button = bar->add(tr("Fit"), tr("Show the whole image (F)"), false);
+    impl_->region = bar->add(tr("Region"), tr("Drag the region of interest"), true);
+    impl_->peaks = bar->add(tr("Peaks"), tr("Peaks: strongest blue, others purple"), true);
+    impl_->histogram = bar->add(tr("Histogram"), tr("Grey values, logarithmic, and saturated pixels"), true);
     impl_->peaks->setChecked(true);
     impl_->histogram->setChecked(true);
     connect(fit_button, &QToolButton::clicked, this, &CameraView::fit);

@@ -2,13 +2,12 @@
 
 #include <QKeyEvent>
 #include <QLabel>
-#include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "widgets/flow_layout.h"
 #include "widgets/profile/profile_canvas.h"
 #include "widgets/style.h"
+#include "widgets/view_bar.h"
 
 namespace seamwright {
 
@@ -31,31 +30,17 @@ ProfilePlot::ProfilePlot(QWidget* parent) : QWidget(parent), impl_(std::make_uni
     impl_->canvas = new ProfileCanvas(*this, this);
     impl_->canvas->setAccessibleName(tr("Profile, x and z in mm"));
     setFocusProxy(impl_->canvas);
-    impl_->toolbar = new QWidget(this);
-    auto* row = new FlowLayout(impl_->toolbar, true);
-    row->setContentsMargins(8, 2, 4, 2);
-    row->setSpacing(0);
-    impl_->caption = new QLabel(impl_->toolbar);
+    auto* bar = new ViewBar(this);
+    impl_->toolbar = bar;
+    impl_->caption = bar->caption();
     impl_->caption->setObjectName("sensor_state");
     impl_->caption->setAccessibleName(tr("Sensor state"));
-    row->addWidget(impl_->caption);
-    const auto button = [&](const QString& word, const QString& tip, bool checkable) {
-        auto* made = new QToolButton(impl_->toolbar);
-        made->setText(word);
-        made->setToolTip(tip);
-        made->setAccessibleName(word);
-        made->setCheckable(checkable);
-        made->setAutoRaise(true);
-        made->setMinimumHeight(style::kTargetPx);
-        row->addWidget(made);
-        return made;
-    };
-    auto* fit_button = button(tr("Fit"), tr("Show all points (F)"), false);
-    impl_->measure = button(tr("Measure"), tr("Two clicks: distance and angle (M)"), true);
+    auto* fit_button = bar->add(tr("Fit"), tr("Show all points (F)"), false);
+    impl_->measure = bar->add(tr("Measure"), tr("Two clicks: distance and angle (M)"), true);
     impl_->residuals =
-        button(tr("Residuals"), tr("Histogram of the distances to the reference profile"), true);
-    impl_->intensity = button(tr("Intensity"), tr("Brightness of the stripe along x"), true);
-    impl_->freeze = button(tr("Freeze"), tr("Hold this profile on the screen (Space)"), true);
+        bar->add(tr("Residuals"), tr("Histogram of the distances to the reference profile"), true);
+    impl_->intensity = bar->add(tr("Intensity"), tr("Brightness of the stripe along x"), true);
+    impl_->freeze = bar->add(tr("Freeze"), tr("Hold this profile on the screen (Space)"), true);
     connect(fit_button, &QToolButton::clicked, this, &ProfilePlot::fit);
     connect(impl_->measure, &QToolButton::clicked, this,
             [this](bool on) { set_tool(on ? Tool::measure : Tool::inspect); });

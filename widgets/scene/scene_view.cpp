@@ -9,16 +9,15 @@
 #include <QLabel>
 #include <QMenu>
 #include <QPainter>
-#include <QToolButton>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <map>
 
-#include "widgets/flow_layout.h"
 #include "widgets/picture_file.h"
 #include "widgets/scene/scene_canvas.h"
 #include "widgets/scene/scene_managers.h"
 #include "widgets/style.h"
+#include "widgets/view_bar.h"
 
 namespace seamwright {
 
@@ -254,27 +253,14 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
         tr("Drag turns, Shift and drag moves, wheel zooms, a click selects. 1 front, 2 top, 3 iso, F fit."));
     // Before the buttons: Tab goes from the view to the canvas that has its focus, and on from there.
     if (opengl_available()) impl_->canvas = new SceneCanvas(this);
-    impl_->toolbar = new QWidget(this);
-    auto* row = new FlowLayout(impl_->toolbar, true);
-    row->setContentsMargins(8, 2, 4, 2);
-    row->setSpacing(4);
-    row->addWidget(new QLabel(tr("Part"), impl_->toolbar));
-    const auto button = [&](const QString& word, const QString& tip) {
-        auto* made = new QToolButton(impl_->toolbar);
-        made->setText(word);
-        made->setToolTip(tip);
-        made->setAccessibleName(word);
-        made->setAutoRaise(true);
-        made->setMinimumHeight(style::kTargetPx);
-        row->addWidget(made);
-        return made;
-    };
+    auto* bar = new ViewBar(this, tr("Part"));
+    impl_->toolbar = bar;
     const std::pair<QString, View> views[] = {
         {tr("Front"), View::front}, {tr("Top"), View::top}, {tr("Iso"), View::iso}, {tr("Fit"), View::fit}};
     for (const auto& [word, which] : views)
-        connect(button(word, tr("View: %1").arg(word)), &QToolButton::clicked, this,
+        connect(bar->add(word, tr("View: %1").arg(word)), &QToolButton::clicked, this,
                 [this, which = which] { show_view(which); });
-    auto* layers = button(tr("Layers"), tr("What is drawn"));
+    auto* layers = bar->add(tr("Layers"), tr("What is drawn"));
     auto* menu = new QMenu(layers);
     const std::pair<QString, Layer> names[] = {{tr("Part"), Layer::part},
                                                {tr("Spots"), Layer::spots},

@@ -21,11 +21,13 @@ struct AcceptanceWriter {
     const Acceptance& a;
     Language language;
     report::Page& page;
+    int level;  // of a study's heading
 
     template <class... A>
     std::string t(const char* english, const A&... arguments) const {
         return Text::chosen(english, arguments...).in(language);
     }
+    void heading(const std::string& text) { page.heading(text, level); }
     std::string number(double value, int decimals) const {
         return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
     }
@@ -103,7 +105,7 @@ std::string histogram(const AcceptanceWriter& w) {
 void type1_chapter(AcceptanceWriter& w) {
     const Type1& r = *w.a.type1;
     const AcceptanceSettings& s = w.a.settings;
-    w.page.heading(w.t("Type 1: capability on a reference part"));
+    w.heading(w.t("Type 1: capability on a reference part"));
     const double required_cgk = s.required_cgk.value_or(s.required);
     w.verdict(Study::type1, r.verdict,
               required_cgk == s.required
@@ -127,7 +129,7 @@ void type1_chapter(AcceptanceWriter& w) {
 void type3_chapter(AcceptanceWriter& w) {
     const Type3& r = *w.a.type3;
     const AcceptanceSettings& s = w.a.settings;
-    w.page.heading(w.t("Type 3: repeatability and reproducibility"));
+    w.heading(w.t("Type 3: repeatability and reproducibility"));
     w.verdict(Study::type3, r.verdict,
               w.t("up to {:g} % of the tolerance with ndc of {} is accepted, beyond {:g} % not",
                   s.grr_accepted_percent, s.ndc, s.grr_refused_percent));
@@ -164,7 +166,7 @@ void type3_chapter(AcceptanceWriter& w) {
 
 void linearity_chapter(AcceptanceWriter& w) {
     const Linearity& r = *w.a.linearity;
-    w.page.heading(w.t("Linearity"));
+    w.heading(w.t("Linearity"));
     w.verdict(Study::linearity, r.verdict,
               r.zero_inside ? w.t("the line of no bias lies inside the 95 % band")
                             : w.t("the line of no bias leaves the 95 % band"));
@@ -224,7 +226,7 @@ std::string control_chart(const AcceptanceWriter& w, const Stability& r, bool sp
 
 void stability_chapter(AcceptanceWriter& w) {
     const Stability& r = *w.a.stability;
-    w.page.heading(w.t("Stability"));
+    w.heading(w.t("Stability"));
     w.verdict(Study::stability, r.verdict,
               r.alarms.empty() ? w.t("{} subgroups, no alarm", r.means_mm.size())
                                : w.t("{} subgroups, {} alarms", r.means_mm.size(), r.alarms.size()));
@@ -248,7 +250,7 @@ void stability_chapter(AcceptanceWriter& w) {
 
 void correlation_chapter(AcceptanceWriter& w) {
     const Correlation& r = *w.a.correlation;
-    w.page.heading(w.t("Correlation with the reference instrument"));
+    w.heading(w.t("Correlation with the reference instrument"));
     w.verdict(Study::correlation, r.verdict,
               w.t("0 must lie inside the offset's limits and 1 inside the slope's"));
     Rows rows = w.head();
@@ -274,7 +276,7 @@ void correlation_chapter(AcceptanceWriter& w) {
 
 void vda5_chapter(AcceptanceWriter& w) {
     const ProcessUncertainty& r = *w.a.vda5;
-    w.page.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
+    w.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
     const AcceptanceSettings& s = w.a.settings;
     w.verdict(Study::vda5, r.verdict,
               w.t("Q of the system up to {:g} %, of the process up to {:g} %", s.system_percent,
@@ -359,7 +361,7 @@ void source_chapter(AcceptanceWriter& w) {
 // What the stated covariance predicted, beside what came out.
 void forecast_chapter(AcceptanceWriter& w) {
     const StudyForecast& f = *w.a.source.forecast;
-    w.page.heading(w.t("Forecast and measurement"));
+    w.heading(w.t("Forecast and measurement"));
     bool beyond = false, measured = false;
     const auto finding = [&](const std::optional<ForecastCheck>& check) {
         if (!check) return w.t("not compared");
@@ -420,34 +422,73 @@ report::Tone tone_of(AcceptanceVerdict verdict) {
                                                   : report::Tone::attention;
 }
 
-report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& options) {
-    report::Page page(Text("Acceptance of the measuring process: {}", a.source.file).in(options.language),
-                      std::string(code_of(options.language)));
-    AcceptanceWriter w{a, options.language, page};
-    const std::string now = options.now_utc.empty() ? utc_now() : options.now_utc;
-    page.paragraph(w.t("File {}, {} UTC, {}.", a.source.file, now.substr(0, 10) + " " + now.substr(11, 5),
-                       options.program.empty() ? "Seamwright" : options.program));
+void add_chapters(report::Page& page, Language language, const Acceptance& a, int level) {
+    AcceptanceWriter w{a, language, page, level};
     w.verdict(a.verdict(), w.t("the worst of the studies below"));
     source_chapter(w);
-    if (a.source.forecast) forecast_chapter(w);
-    if (a.type1) type1_chapter(w);
-    if (a.type3) type3_chapter(w);
-    if (a.linearity) linearity_chapter(w);
-    if (a.stability) stability_chapter(w);
-    if (a.correlation) correlation_chapter(w);
-    if (a.vda5) vda5_chapter(w);
-    if (options.more) options.more(page, options.language);
-    if (!a.not_done.empty()) {
-        page.heading(w.t("Studies that the data do not allow"));
-        Rows rows{{w.t("Study"), w.t("Finding")}};
-        for (const auto& [study, error] : a.not_done)
-            rows.push_back({study_name(w, study), error.sentence()});
-        page.table(rows);
+    add_forecast_chapter(page, language, a, level);
+    for (const Study study : kStudies) add_chapter(page, language, a, study, level);
+}
+
+void add_chapter(report::Page& page, Language language, const Acceptance& a, Study study, int level) {
+    AcceptanceWriter w{a, language, page, level};
+    switch (study) {
+        case Study::type1:
+            return a.type1 ? type1_chapter(w) : void();
+        case Study::type3:
+            return a.type3 ? type3_chapter(w) : void();
+        case Study::linearity:
+            return a.linearity ? linearity_chapter(w) : void();
+        case Study::stability:
+            return a.stability ? stability_chapter(w) : void();
+        case Study::correlation:
+            return a.correlation ? correlation_chapter(w) : void();
+        default:
+            return a.vda5 ? vda5_chapter(w) : void();
     }
-    page.heading(w.t("Signatures"));
-    const std::string date = w.t("Place, date");
+}
+
+void add_forecast_chapter(report::Page& page, Language language, const Acceptance& a, int level) {
+    AcceptanceWriter w{a, language, page, level};
+    if (a.source.forecast) forecast_chapter(w);
+}
+
+void add_studies_not_done(report::Page& page, Language language, const Acceptance& a, int level) {
+    if (a.not_done.empty()) return;
+    AcceptanceWriter w{a, language, page, level};
+    w.heading(w.t("Studies that the data do not allow"));
+    Rows rows{{w.t("Study"), w.t("Finding")}};
+    for (const auto& [study, error] : a.not_done)
+        rows.push_back({study_name(w, study), error.text().in(language)});
+    page.table(rows);
+}
+
+report::Page begin_acceptance_page(const std::string& file, Language language, const std::string& now_utc,
+                                   const std::string& program) {
+    report::Page page(Text("Acceptance of the measuring process: {}", file).in(language),
+                      std::string(code_of(language)));
+    const std::string now = now_utc.empty() ? utc_now() : now_utc;
+    page.paragraph(Text("File {}, {} UTC, {}.", file, now.substr(0, 10) + " " + now.substr(11, 5),
+                        program.empty() ? "Seamwright" : program)
+                       .in(language));
+    return page;
+}
+
+void add_signatures(report::Page& page, Language language) {
+    const auto t = [&](const char* english) { return Text::chosen(english).in(language); };
+    page.heading(t("Signatures"));
+    const std::string date = t("Place, date");
     page.signatures(
-        {{date, w.t("Commissioning engineer"), w.t("Signature")}, {date, w.t("Customer"), w.t("Signature")}});
+        {{date, t("Commissioning engineer"), t("Signature")}, {date, t("Customer"), t("Signature")}});
+}
+
+report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& options) {
+    report::Page page =
+        begin_acceptance_page(a.source.file, options.language, options.now_utc, options.program);
+    add_chapters(page, options.language, a);
+    if (options.more) options.more(page, options.language);
+    add_studies_not_done(page, options.language, a);
+    add_signatures(page, options.language);
     return page;
 }
 

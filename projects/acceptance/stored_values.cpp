@@ -141,13 +141,18 @@ void name_devices(StudySource& source, const Project& setup, const Spot& spot) {
 }
 
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id) {
-    auto project = file.load();
+    const auto project = file.load();
     if (!project) return tl::unexpected(project.error());
-    if (project->regions.empty()) return input_error("the project has no region", file.path().string());
-    if (region_id.empty() && project->regions.size() > 1)
-        return usage_error(Text("the project has {} regions", project->regions.size()), file.path().string(),
+    return stored_values(file, *project, region_id);
+}
+
+Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
+                                    const std::string& region_id) {
+    if (project.regions.empty()) return input_error("the project has no region", file.path().string());
+    if (region_id.empty() && project.regions.size() > 1)
+        return usage_error(Text("the project has {} regions", project.regions.size()), file.path().string(),
                            "name one with --region");
-    const std::string id = region_id.empty() ? project->regions.front().id : region_id;
+    const std::string id = region_id.empty() ? project.regions.front().id : region_id;
     auto summaries = file.runs();
     if (!summaries) return tl::unexpected(summaries.error());
     auto evidence = file.evidence();
@@ -255,7 +260,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
     source.file = file.path().filename().string();
     source.measurand =
         Text("region {}, spot {}, {}", id, worst->spot_id, worst->normal ? Text("normal") : Text("binormal"));
-    source.part_name = project->part.name;
+    source.part_name = project.part.name;
     source.runs = static_cast<int>(used.size());
     if (const Spot* spot = find_spot(*setup, worst->spot_id)) name_devices(source, *setup, *spot);
     if (refused > 0)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/acceptance/distributions.h"
 #include "projects/file/project_file.h"
@@ -48,11 +49,15 @@ struct AcceptanceWriter {
     double upper() const { return a.settings.nominal_mm + a.settings.tolerance_mm / 2; }
 };
 
+std::string probability(double p) {
+    return p < 0.0001 ? std::string("< 0.0001") : fmt::format("= {:.2g}", p);
+}
+
 std::string run_chart(const AcceptanceWriter& w) {
     const Type1& r = *w.a.type1;
     Plot plot;
     plot.title = w.t("Run chart");
-    plot.x_label = w.t("value");
+    plot.x_label = w.t("number of the value");
     plot.y_label = "mm";
     plot.width_px = 400;
     plot.height_px = 250;
@@ -73,33 +78,84 @@ std::string run_chart(const AcceptanceWriter& w) {
     return report::svg(plot);
 }
 
+// Classes of the values' own width (Freedman and Diaconis) before the limits of the tolerance.
 std::string histogram(const AcceptanceWriter& w) {
     const Type1& r = *w.a.type1;
-    const double half = w.a.settings.tolerance_mm / 2;
-    double reach = std::max(half, 1e-9);
-    for (const StudyValue& v : w.a.type1_values)
-        reach = std::max(reach, std::abs(v.value_mm - r.reference_mm));
-    constexpr int kClasses = 41;
-    std::vector<double> share(kClasses);
-    for (const StudyValue& v : w.a.type1_values) {
-        const int k = static_cast<int>((v.value_mm - r.reference_mm + reach) / (2 * reach) * kClasses);
-        share[static_cast<std::size_t>(std::clamp(k, 0, kClasses - 1))] += 100.0 / r.n;
+    std::vector<double> values;
+    for (const StudyValue& v : w.a.type1_values) values.push_back(v.value_mm);
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    const double low = values.front(), span = values.back() - low;
+    const double width =
+        2 * (values[3 * (n - 1) / 4] - values[(n - 1) / 4]) / std::cbrt(static_cast<double>(n));
+    const int classes = width > 0 ? std::clamp(static_cast<int>(std::ceil(span / width)), 5, 40) : 5;
+    std::vector<double> share(static_cast<std::size_t>(classes));
+    for (const double v : values) {
+        const int k = static_cast<int>((v - low) / span * classes);
+        share[static_cast<std::size_t>(std::clamp(k, 0, classes - 1))] += 100.0 / static_cast<double>(n);
     }
     Plot plot;
     plot.title = w.t("Histogram over the tolerance");
-    plot.x_label = w.t("value minus reference (mm)");
+    plot.x_label = w.t("value (mm)");
     plot.y_label = w.t("share (%)");
     plot.width_px = 400;
     plot.height_px = 250;
-    Series bars{w.t("share"), {}, {}, Mark::bars, colour::kBlue};
-    for (int k = 0; k < kClasses; ++k) {
-        bars.x.push_back(k);
-        bars.y.push_back(share[static_cast<std::size_t>(k)]);
-        plot.categories.push_back(
-            k % 10 == 0 ? fmt::format("{:+.3f}", -reach + (k + 0.5) * 2 * reach / kClasses) : std::string());
+    Series bars{w.t("share"), {low}, {0}, Mark::area, colour::kBlue},
+        limits{w.t("limits"), {}, {}, Mark::dashed, colour::kVermilion},
+        reference{w.t("reference"), {}, {}, Mark::line, colour::kGreen};
+    for (int k = 0; k < classes; ++k) {
+        for (const int edge : {k, k + 1}) {
+            bars.x.push_back(low + edge * span / classes);
+            bars.y.push_back(share[static_cast<std::size_t>(k)]);
+        }
     }
-    plot.series = {bars};
+    bars.x.push_back(low + span);
+    bars.y.push_back(0);
+    const double top = *std::max_element(share.begin(), share.end());
+    limits.x = {w.lower(), w.lower(), std::nan(""), w.upper(), w.upper()};
+    limits.y = {0, top, std::nan(""), 0, top};
+    reference.x.assign(2, r.reference_mm);
+    reference.y = {0, top};
+    plot.series = {bars, limits, reference};
     return report::svg(plot);
+}
+
+// Every value over its part: what the parts differ, and what repeats.
+std::vector<std::string> parts_plots(const AcceptanceWriter& w) {
+    std::vector<std::string> parts;
+    Series dots{w.t("value"), {}, {}, Mark::dots, colour::kBlue},
+        means{w.t("mean of the part"), {}, {}, Mark::crosses, colour::kVermilion};
+    std::map<std::string, std::pair<double, int>> sums;
+    for (const StudyValue& v : w.a.type3_values) {
+        auto at = std::find(parts.begin(), parts.end(), v.part);
+        if (at == parts.end()) at = parts.insert(parts.end(), v.part);
+        dots.x.push_back(static_cast<double>(at - parts.begin()));
+        dots.y.push_back(v.value_mm);
+        sums[v.part].first += v.value_mm;
+        ++sums[v.part].second;
+    }
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        means.x.push_back(static_cast<double>(k));
+        means.y.push_back(sums[parts[k]].first / sums[parts[k]].second);
+    }
+    Series deviations{w.t("value minus the part's mean"), {}, {}, Mark::dots, colour::kBlue};
+    deviations.x = dots.x;
+    for (const StudyValue& v : w.a.type3_values)
+        deviations.y.push_back(v.value_mm - sums[v.part].first / sums[v.part].second);
+    Plot plot;
+    plot.x_label = w.t("part");
+    plot.y_label = "mm";
+    plot.width_px = 400;
+    plot.height_px = 250;
+    const std::size_t every = std::max<std::size_t>(1, (parts.size() + 11) / 12);
+    for (std::size_t k = 0; k < parts.size(); ++k)
+        plot.categories.push_back(k % every ? std::string() : parts[k]);
+    plot.title = w.t("Values by part");
+    plot.series = {dots, means};
+    const std::string both = report::svg(plot);
+    plot.title = w.t("About the part's mean");
+    plot.series = {deviations};
+    return {both, report::svg(plot)};
 }
 
 void type1_chapter(AcceptanceWriter& w) {
@@ -111,8 +167,10 @@ void type1_chapter(AcceptanceWriter& w) {
               required_cgk == s.required
                   ? w.t("Cg and Cgk must reach {}", w.number(s.required, 2))
                   : w.t("Cg must reach {} and Cgk {}", w.number(s.required, 2), w.number(required_cgk, 2)));
-    w.page.paragraph(w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).", w.a.type1_part, r.n,
-                         w.number(r.reference_mm, 4), s.share, s.width));
+    w.page.paragraph(
+        w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).",
+            w.a.source.unmoved_part_is(w.a.type1_part) ? w.t("as taught, unmoved") : w.a.type1_part, r.n,
+            w.number(r.reference_mm, 4), s.share, s.width));
     Rows rows = w.head();
     w.index(rows, w.t("mean (mm)"), r.mean_mm, r.mean_limits, 4);
     w.index(rows, w.t("s (mm)"), r.s_mm, r.s_limits, 4);
@@ -120,9 +178,8 @@ void type1_chapter(AcceptanceWriter& w) {
     w.index(rows, "Cg", r.cg, r.cg_limits, 2, w.number(s.required, 2));
     w.index(rows, "Cgk", r.cgk, r.cgk_limits, 2, w.number(required_cgk, 2));
     w.page.table(rows);
-    w.page.paragraph(r.bias_p < 0.05
-                         ? w.t("The bias is no chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p))
-                         : w.t("The bias may be chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p)));
+    w.page.paragraph(r.bias_p < 0.05 ? w.t("The bias is no chance (t-test, p {}).", probability(r.bias_p))
+                                     : w.t("The bias may be chance (t-test, p {}).", probability(r.bias_p)));
     w.page.figures({run_chart(w), histogram(w)});
 }
 
@@ -145,15 +202,15 @@ void type3_chapter(AcceptanceWriter& w) {
     w.index(rows, w.t("GRR of the total variation (%)"), r.grr_percent_total, r.total_limits, 1);
     w.index(rows, "ndc", r.ndc, r.ndc_limits, 0, std::to_string(s.ndc));
     w.page.table(rows);
-    Rows anova{{w.t("Source"), "df", "SS", "MS"}};
+    Rows anova{{w.t("Source"), "df", "SS (mm²)", "MS (mm²)"}};
     for (const AnovaRow& row : r.anova) {
         const std::string source = row.source;
         anova.push_back({source == "part"     ? w.t("part")
                          : source == "rehang" ? w.t("rehang")
                          : source == "repeat" ? w.t("repeat")
                                               : w.t("total"),
-                         w.number(row.df, 0), fmt::format("{:.6g}", row.ss),
-                         source == "total" ? std::string() : fmt::format("{:.6g}", row.ms)});
+                         w.number(row.df, 0), w.number(row.ss, 6),
+                         source == "total" ? std::string() : w.number(row.ms, 6)});
     }
     w.page.table(anova, w.t("Analysis of variance"));
     if (r.rehang_negative) w.page.paragraph(w.t("The component of the rehang came out negative and is 0."));
@@ -162,6 +219,7 @@ void type3_chapter(AcceptanceWriter& w) {
         w.page.paragraph(w.t("Each rehang was measured once: repeat and rehang cannot be told apart."));
     if (w.a.type1_part_left_out)
         w.page.paragraph(w.t("The reference part was measured unlike the others and is left out here."));
+    w.page.figures(parts_plots(w));
 }
 
 void linearity_chapter(AcceptanceWriter& w) {
@@ -289,9 +347,19 @@ void vda5_chapter(AcceptanceWriter& w) {
     w.index(rows, w.t("conformity zone, lower (mm)"), r.conformity_zone.low, r.conformity_low_limits, 4);
     w.index(rows, w.t("conformity zone, upper (mm)"), r.conformity_zone.high, r.conformity_high_limits, 4);
     w.page.table(rows);
-    Rows terms{{w.t("Contribution"), "u (mm)", w.t("degrees of freedom"), w.t("counts in")}};
+    const auto meaning = [&](const std::string& name) {
+        return name == "u_CAL"   ? w.t("reference of the part")
+               : name == "u_BI"  ? w.t("bias")
+               : name == "u_RE"  ? w.t("resolution")
+               : name == "u_EVR" ? w.t("repeat on the reference part")
+               : name == "u_EVO" ? w.t("repeat on the parts")
+               : name == "u_REH" ? w.t("rehang")
+                                 : std::string();
+    };
+    Rows terms{{w.t("Contribution"), w.t("of what"), "u (mm)", w.t("degrees of freedom"), w.t("counts in")}};
     for (const UncertaintyTerm& t : r.terms)
-        terms.push_back({t.name, w.number(t.u_mm, 4), w.number(t.degrees, 1),
+        terms.push_back({t.name, meaning(t.name), w.number(t.u_mm, 4),
+                         t.degrees >= 0.05 ? w.number(t.degrees, 1) : "-",
                          t.in_system && t.in_process ? "MS, MP"
                          : t.in_system               ? "MS"
                          : t.in_process              ? "MP"
@@ -320,6 +388,34 @@ std::string study_name(const AcceptanceWriter& w, Study study) {
     }
 }
 
+void overview(AcceptanceWriter& w) {
+    Rows rows{{w.t("Study"), w.t("Result"), w.t("Verdict")}};
+    const auto row = [&](Study study, AcceptanceVerdict v, const std::string& result) {
+        rows.push_back({study_name(w, study), result, name_of(v).in(w.language)});
+    };
+    const Acceptance& a = w.a;
+    if (a.type1)
+        row(Study::type1, a.type1->verdict,
+            fmt::format("Cg {}, Cgk {}", w.number(a.type1->cg, 2), w.number(a.type1->cgk, 2)));
+    if (a.type3)
+        row(Study::type3, a.type3->verdict,
+            fmt::format("%GRR {}, ndc {}", w.number(a.type3->grr_percent_tolerance, 1), a.type3->ndc));
+    if (a.linearity)
+        row(Study::linearity, a.linearity->verdict,
+            w.t("{} mm per m", w.number(1000 * a.linearity->line.slope, 3)) + ", " +
+                w.number(a.linearity->line.intercept, 4) + " mm");
+    if (a.stability)
+        row(Study::stability, a.stability->verdict, w.t("{} alarms", a.stability->alarms.size()));
+    if (a.correlation)
+        row(Study::correlation, a.correlation->verdict,
+            w.t("offset {} mm", w.number(a.correlation->offset_mm, 4)));
+    if (a.vda5)
+        row(Study::vda5, a.vda5->verdict,
+            fmt::format("Q_MS {} %, Q_MP {} %", w.number(a.vda5->q_ms_percent, 1),
+                        w.number(a.vda5->q_mp_percent, 1)));
+    w.page.table(rows);
+}
+
 void source_chapter(AcceptanceWriter& w) {
     const StudySource& s = w.a.source;
     if (s.simulated) w.page.verdict(w.t("simulated"), report::Tone::attention, w.t("the cell was simulated"));
@@ -334,7 +430,7 @@ void source_chapter(AcceptanceWriter& w) {
         {{w.t("Requirement"), w.t("Value"), w.t("from where")},
          {w.t("tolerance T"), w.number(r.tolerance_mm, 4) + " mm", from("tolerance_mm")},
          {w.t("limits"), w.number(w.lower(), 4) + " .. " + w.number(w.upper(), 4) + " mm",
-          from("nominal_mm")},
+          from(from_of(r, "nominal_mm") == RequirementFrom::standard ? "tolerance_mm" : "nominal_mm")},
          {w.t("share of the tolerance in Cg"), fmt::format("{:g}", r.share), from("cg_share")},
          {w.t("standard deviations in Cg"), fmt::format("{:g}", r.width), from("cg_width")},
          {w.t("Cg, at least"), w.number(r.required, 2), from("cg")},
@@ -367,10 +463,10 @@ void forecast_chapter(AcceptanceWriter& w) {
         if (!check) return w.t("not compared");
         measured = true;
         beyond = beyond || check->agreement != Agreement::agrees;
-        const std::string p = fmt::format("{:.2g}", check->p);
-        return check->agreement == Agreement::agrees      ? w.t("agree, p = {}", p)
-               : check->agreement == Agreement::beyond_95 ? w.t("differ beyond chance at 95 %, p = {}", p)
-                                                          : w.t("differ beyond chance at 99 %, p = {}", p);
+        const std::string p = probability(check->p);
+        return check->agreement == Agreement::agrees      ? w.t("agree, p {}", p)
+               : check->agreement == Agreement::beyond_95 ? w.t("differ beyond chance at 95 %, p {}", p)
+                                                          : w.t("differ beyond chance at 99 %, p {}", p);
     };
     Rows rows{{w.t("Index"), w.t("predicted"), w.t("measured"), w.t("Finding")}};
     const auto row = [&](const std::string& name, double predicted, std::optional<double> value, int decimals,
@@ -425,6 +521,7 @@ report::Tone tone_of(AcceptanceVerdict verdict) {
 void add_chapters(report::Page& page, Language language, const Acceptance& a, int level) {
     AcceptanceWriter w{a, language, page, level};
     w.verdict(a.verdict(), w.t("the worst of the studies below"));
+    overview(w);
     source_chapter(w);
     add_forecast_chapter(page, language, a, level);
     for (const Study study : kStudies) add_chapter(page, language, a, study, level);
@@ -474,9 +571,15 @@ report::Page begin_acceptance_page(const std::string& file, Language language, c
     return page;
 }
 
-void add_signatures(report::Page& page, Language language) {
+void add_signatures(report::Page& page, Language language, const Acceptance* a) {
     const auto t = [&](const char* english) { return Text::chosen(english).in(language); };
     page.heading(t("Signatures"));
+    if (a) {  // what is signed
+        page.verdict(name_of(a->verdict()).in(language), tone_of(a->verdict()),
+                     t("the measuring process as reported here"));
+        AcceptanceWriter w{*a, language, page, 3};
+        overview(w);
+    }
     const std::string date = t("Place, date");
     page.signatures(
         {{date, t("Commissioning engineer"), t("Signature")}, {date, t("Customer"), t("Signature")}});
@@ -488,7 +591,7 @@ report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& o
     add_chapters(page, options.language, a);
     if (options.more) options.more(page, options.language);
     add_studies_not_done(page, options.language, a);
-    add_signatures(page, options.language);
+    add_signatures(page, options.language, &a);
     return page;
 }
 

@@ -28,10 +28,11 @@ void add_chapter(report::Page& page, Language language, const Acceptance& accept
 void add_forecast_chapter(report::Page& page, Language language, const Acceptance& acceptance, int level = 2);
 void add_studies_not_done(report::Page& page, Language language, const Acceptance& acceptance, int level = 2);
 
-// Title and first line of an acceptance of `file`, and the lines to sign at its end. Empty `now_utc`: the clock's.
+// Title and first line of an acceptance of `file`, and the lines to sign at its end, under what is
+// signed (nullptr: nothing was studied). Empty `now_utc`: the clock's.
 report::Page begin_acceptance_page(const std::string& file, Language language, const std::string& now_utc,
                                    const std::string& program);
-void add_signatures(report::Page& page, Language language);
+void add_signatures(report::Page& page, Language language, const Acceptance* acceptance);
 
 // The word of a verdict and its colour.
 Text name_of(AcceptanceVerdict verdict);

@@ -80,7 +80,7 @@ report::Page acceptance_page(const StoredAcceptance& stored, const std::string& 
                              const std::string& program) {
     report::Page page = begin_acceptance_page(file, language, {}, program);
     add_chapters(page, language, stored);
-    add_signatures(page, language);
+    add_signatures(page, language, stored.studies ? &*stored.studies : nullptr);
     return page;
 }
 

@@ -12,6 +12,7 @@
 #include <QTextOption>
 #include <QTextTable>
 #include <clocale>
+#include <cmath>
 #include <memory>
 
 #include "devices/exchange/files.h"
@@ -29,6 +30,9 @@ constexpr int kResolution = 300;
 constexpr double kMarginMm = 18, kFooterMm = 8;
 constexpr double kTextPt = 9, kTablePt = 8, kWideTablePt = 6.5;
 constexpr double kNoHeightPt = 1;
+constexpr int kShortTable = 12;  // rows
+constexpr double kLastThird = 0.66;
+constexpr int kKeptBlocks = 14;  // a sentence and two rows of six columns
 constexpr int kWideColumns = 8;
 constexpr double kWidePlotPx = 600;  // wider drawings get a line of their own
 
@@ -96,8 +100,8 @@ class Builder {
         const double pt = level <= 1 ? 17 : level == 2 ? 13 : 10.5;
         QTextBlockFormat format;
         format.setHeadingLevel(level);
-        format.setTopMargin(points(level <= 1 ? 0 : level == 2 ? 16 : 9));
-        format.setBottomMargin(points(4));
+        format.setTopMargin(points(level <= 1 ? 0 : level == 2 ? 24 : 16));
+        format.setBottomMargin(points(6));
         begin(format);
         cursor_.insertText(text, characters(pt, QFont::DemiBold));
     }
@@ -128,7 +132,8 @@ class Builder {
     }
 
   private:
-    static double points(double pt) { return pt * kResolution / 72; }
+    // Lengths in formats are Qt's pixels of 96 to the inch, which it scales to the device.
+    static double points(double pt) { return pt * 96 / 72; }
     static QTextCharFormat characters(double pt, int weight = QFont::Normal) {
         QTextCharFormat format;
         format.setFontFamilies({"DejaVu Sans"});
@@ -139,8 +144,8 @@ class Builder {
     }
     static QTextBlockFormat plain() {
         QTextBlockFormat format;
-        format.setTopMargin(points(3));
-        format.setBottomMargin(points(3));
+        format.setTopMargin(points(4));
+        format.setBottomMargin(points(4));
         return format;
     }
     void begin(const QTextBlockFormat& format) {
@@ -175,9 +180,9 @@ class Builder {
         QTextTableFormat format;
         format.setHeaderRowCount(1);
         format.setBorder(0);
-        format.setCellPadding(points(2));
+        format.setCellPadding(points(3.5));
         format.setCellSpacing(0);
-        format.setTopMargin(points(3));
+        format.setTopMargin(points(6));
         format.setBottomMargin(0);  // at the foot of a page it would repeat the table's head on the next
         format.setBorderCollapse(true);
         QTextTable* t = insert_table(rows, columns, format);
@@ -187,7 +192,7 @@ class Builder {
                 QTextTableCell cell = t->cellAt(r, c);
                 QTextTableCellFormat look = cell.format().toTableCellFormat();
                 look.setBottomBorderStyle(QTextFrameFormat::BorderStyle_Solid);
-                look.setBottomBorder(points(r == 0 ? 0.9 : 0.3));
+                look.setBottomBorder(points(r == 0 ? 1.2 : 0.5));
                 look.setBottomBorderBrush(QColor(r == 0 ? "#6b7280" : "#c3c8ce"));
                 cell.setFormat(look);
                 QTextCursor in = cell.firstCursorPosition();
@@ -228,13 +233,13 @@ class Builder {
         format.setColumnWidthConstraints(QList<QTextLength>(
             static_cast<qsizetype>(fields.size()),
             QTextLength(QTextLength::PercentageLength, 100.0 / static_cast<double>(fields.size()))));
-        format.setTopMargin(points(26));
+        format.setTopMargin(points(52));
         QTextTable* t = insert_table(1, static_cast<int>(fields.size()), format);
         for (int c = 0; c < t->columns(); ++c) {
             QTextTableCell cell = t->cellAt(0, c);
             QTextTableCellFormat look = cell.format().toTableCellFormat();
             look.setTopBorderStyle(QTextFrameFormat::BorderStyle_Solid);
-            look.setTopBorder(points(0.6));
+            look.setTopBorder(points(0.8));
             look.setTopBorderBrush(QColor("#1e2226"));
             look.setTopPadding(points(3));
             cell.setFormat(look);
@@ -249,7 +254,8 @@ class Builder {
     bool empty_ = true;  // the last block waits for its content
 };
 
-// A heading never stands alone at the foot of a page: it goes to the next one.
+// A heading never stands alone at the foot of a page: it goes to the next one, and so it does with little more than a
+// sentence or a table's head, from a page's last third.
 void keep_headings(QTextDocument& document, double page_px) {
     const auto* layout = document.documentLayout();
     const auto page_of = [&](const QTextBlock& b) {
@@ -257,15 +263,43 @@ void keep_headings(QTextDocument& document, double page_px) {
     };
     for (QTextBlock b = document.begin(); b.isValid(); b = b.next()) {
         if (b.blockFormat().headingLevel() == 0) continue;
-        // What stands below it: the next block that has something to show.
-        QTextBlock next = b.next();
-        while (next.isValid() && (next.length() <= 1 || next.blockFormat().headingLevel() > 0))
-            next = next.next();
-        if (!next.isValid() || page_of(next) == page_of(b)) continue;
+        // What stands below it: the next blocks that have something to show, up to a drawing.
+        const double at = std::fmod(layout->blockBoundingRect(b).top(), page_px) / page_px;
+        const int wanted = at > kLastThird ? kKeptBlocks : 1;
+        bool parted = false;
+        int shown = 0;
+        for (QTextBlock next = b.next(); next.isValid() && shown < wanted; next = next.next()) {
+            if (next.length() <= 1) continue;
+            if (next.blockFormat().headingLevel() > 0) {
+                if (shown > 0) break;
+                continue;
+            }
+            ++shown;
+            parted = parted || page_of(next) != page_of(b);
+            if (next.text().contains(QChar::ObjectReplacementCharacter)) break;
+        }
+        if (!parted) continue;
         QTextCursor cursor(b);
         QTextBlockFormat format = b.blockFormat();
         format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
         cursor.setBlockFormat(format);
+    }
+}
+
+// A short table stands on one page.
+void keep_tables(QTextDocument& document, double page_px) {
+    const auto* layout = document.documentLayout();
+    const auto page_of = [&](const QTextTableCell& cell) {
+        return static_cast<int>(layout->blockBoundingRect(cell.firstCursorPosition().block()).top() /
+                                page_px);
+    };
+    for (QTextFrame* frame : document.rootFrame()->childFrames()) {
+        auto* table = qobject_cast<QTextTable*>(frame);
+        if (!table || table->rows() > kShortTable) continue;
+        if (page_of(table->cellAt(0, 0)) == page_of(table->cellAt(table->rows() - 1, 0))) continue;
+        QTextTableFormat format = table->format();
+        format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+        table->setFormat(format);
     }
 }
 
@@ -314,6 +348,7 @@ Expected<void> write_pdf(const report::Page& page, const std::filesystem::path& 
             builder.heading(q(page.title()), 1);
             for (const Block& b : page.blocks()) builder.add(b);
         }
+        keep_tables(document, height);
         keep_headings(document, height);
 
         QPainter painter(&writer);

@@ -68,6 +68,9 @@ Expected<void> SimulatedParts::put(const std::string& part, int rehang) {
     };
     place(placed.sensors);
     place(placed.robots);
+    for (const RobotSetup& setup : project.robots)
+        if (RobotLink* robot = station_.robot(setup.id); robot && !put_)
+            if (auto pose = robot->base_from_flange()) stood_[setup.id] = *pose;
     put_ = true;
     station_.use(placed);
     auto connected = station_.connect();
@@ -77,7 +80,9 @@ Expected<void> SimulatedParts::put(const std::string& part, int rehang) {
 
 SimulatedParts::~SimulatedParts() {
     // Devices that do not come back say so at the next thing that is asked of them.
-    if (put_ && station_.connected()) (void)station_.connect();
+    if (!put_ || !station_.connected() || !station_.connect()) return;
+    for (const auto& [id, pose] : stood_)
+        if (RobotLink* robot = station_.robot(id)) (void)robot->move_to(pose);
 }
 
 }  // namespace seamwright

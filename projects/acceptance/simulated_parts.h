@@ -4,7 +4,7 @@
 // deviations) more. The cell is opened anew for each, with noise of its own, so that no part repeats another one's. The
 // project keeps its settings: the runs are of one setup.
 
-#include <functional>
+#include <map>
 #include <string>
 
 #include "projects/station/station.h"
@@ -26,6 +26,7 @@ class SimulatedParts {
 
   private:
     Station& station_;
+    std::map<std::string, Pose> stood_;  // the robots, before: opened anew they have not been anywhere
     bool put_ = false;
 };
 

@@ -22,7 +22,7 @@ Expected<const Region*> region_in(const Project& project, const std::string& id)
 Expected<Acceptance> studies_of(const ProjectFile& file, const Project& project, StoredAcceptance& stored,
                                 const AcceptanceExtras& extras) {
     if (stored.settings.tolerance_mm == 0)
-        return input_error("the tolerance is not stated", "acceptance", "state the customer's T = USL - LSL");
+        return input_error("the tolerance is not stated", {}, "state the customer's T = USL - LSL");
     auto values = stored_values(file, project, stored.region_id);
     if (!values) return tl::unexpected(values.error());
     if (!extras.references.empty()) add_references(values->values, extras.references);

@@ -149,9 +149,11 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
 Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
                                     const std::string& region_id) {
     if (project.regions.empty()) return input_error("the project has no region", file.path().string());
+    std::string ids;
+    for (const Region& r : project.regions) ids += (ids.empty() ? "" : ", ") + r.id;
     if (region_id.empty() && project.regions.size() > 1)
         return usage_error(Text("the project has {} regions", project.regions.size()), file.path().string(),
-                           "name one with --region");
+                           Text("name one with --region: {}", ids));
     const std::string id = region_id.empty() ? project.regions.front().id : region_id;
     auto summaries = file.runs();
     if (!summaries) return tl::unexpected(summaries.error());
@@ -204,6 +206,11 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
         r.found = record->correction->displacement.workobject_from_movedworkobject;
         used.push_back(std::move(r));
     }
+    const bool known_region = std::any_of(project.regions.begin(), project.regions.end(),
+                                          [&](const Region& r) { return r.id == id; });
+    if (used.empty() && !known_region)
+        return usage_error(Text("there is no region \"{}\"", id), file.path().string(),
+                           Text("there are: {}", ids));
     if (used.empty())
         return input_error(
             Text("no stored run holds a correction of region \"{}\" that the gate let pass", id),

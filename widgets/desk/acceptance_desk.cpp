@@ -153,7 +153,7 @@ Expected<void> AcceptanceDesk::switch_offset(int version) {
 
 Expected<report::Page> AcceptanceDesk::page(Language language) const {
     if (!stored() || !stored()->anything())
-        return input_error("there is nothing to report yet", "acceptance",
+        return input_error("there is nothing to report yet", {},
                            stored() && stored()->lacking ? stored()->lacking->text() : trouble());
     return acceptance_page(*stored(), desk_.path().filename().string(), language,
                            "Seamwright " SEAMWRIGHT_VERSION);
@@ -161,7 +161,7 @@ Expected<report::Page> AcceptanceDesk::page(Language language) const {
 
 Expected<void> AcceptanceDesk::write_dfq(const std::filesystem::path& path) const {
     if (!stored() || !stored()->studies)
-        return input_error("there are no values yet", "acceptance",
+        return input_error("there are no values yet", {},
                            stored() && stored()->lacking ? stored()->lacking->text() : trouble());
     return write_text_file(path, dfq_text(qdas_study(*stored()->studies)));
 }

@@ -5,6 +5,15 @@
 #include "widgets/shown_text.h"
 
 namespace seamwright {
+namespace {
+
+// Nobody at a window has typed an option.
+Error without_option(Error error) {
+    if (error.where.english().starts_with("--")) error.where.clear();
+    return error;
+}
+
+}  // namespace
 
 bool StationWorker::ask(const std::stop_token& cancelled, const std::function<void()>& question) {
     {
@@ -43,7 +52,9 @@ void StationWorker::measure_study(const LiveStudyOptions& asked) {
         }
         attach_feed(station);
         if (!put) return emit failed(shown_error(tr("The part was not put in."), put.error()));
-        if (!progress) return emit failed(shown_error(tr("The study was not measured."), progress.error()));
+        if (!progress)
+            return emit failed(
+                shown_error(tr("The study was not measured."), without_option(progress.error())));
         emit proven();
         emit studied(std::make_shared<const StudyProgress>(std::move(*progress)));
     });

@@ -42,7 +42,8 @@ class AcceptPage : public StepPage {
     void refresh_offsets();
     void enable();
     void draw();
-    void draw_runs(const std::vector<StudyValue>& values, const QString& title, const TrendLimits& limits);
+    void draw_runs(const std::vector<StudyValue>& values, const QString& title, const TrendLimits& limits,
+                   const TrendLimits& tolerance);
     void choose(AgendaStudy study);
     AgendaStudy chosen() const;
     const AgendaItem* item() const;

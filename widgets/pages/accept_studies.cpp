@@ -134,6 +134,11 @@ void AcceptPage::refresh_head() {
         const AcceptanceVerdict verdict = stored->studies->verdict();
         QString text = shown(name_of(verdict));
         if (stored->studies->source.simulated) text = tr("%1, simulated").arg(text);
+        QStringList by;  // whose it is, where it is not good
+        if (verdict != AcceptanceVerdict::ok && agenda)
+            for (const AgendaItem& at : agenda->items)
+                if (at.verdict == verdict) by << shown(name_of(at.study));
+        if (!by.isEmpty()) text = tr("%1: %2").arg(text, by.join(QStringLiteral(", ")));
         set_verdict(*verdict_, text, tone_of_verdict(verdict));
     } else {
         set_verdict(*verdict_,
@@ -142,6 +147,7 @@ void AcceptPage::refresh_head() {
                                                     : shown(acceptance_.trouble()),
                     Tone::plain);
     }
+    verdict_->setVisible(r.tolerance_mm > 0);
     if (r.tolerance_mm == 0)
         next_->setText(tr("Next: state the tolerance"));
     else if (agenda && agenda->next)
@@ -313,7 +319,7 @@ void AcceptPage::enable() {
 }
 
 void AcceptPage::draw_runs(const std::vector<StudyValue>& values, const QString& title,
-                           const TrendLimits& limits) {
+                           const TrendLimits& limits, const TrendLimits& tolerance) {
     std::vector<QString> labels;
     TrendSeries series{tr("value"), {}};
     for (const StudyValue& v : values) {
@@ -321,11 +327,7 @@ void AcceptPage::draw_runs(const std::vector<StudyValue>& values, const QString&
         series.values.push_back(v.value_mm);
     }
     views_.trend->set_data(title, QStringLiteral("mm"), labels, {series}, limits);
-    const AcceptanceRequirements& r = desk_.project().requirements.acceptance;
-    TrendLimits tolerance;
-    if (r.tolerance_mm > 0)
-        tolerance = {r.nominal_mm - r.tolerance_mm / 2, r.nominal_mm + r.tolerance_mm / 2};
-    views_.histogram->set_data(tr("Values in the tolerance"), QStringLiteral("mm"), series.values, tolerance);
+    views_.histogram->set_data(title, QStringLiteral("mm"), series.values, tolerance, false);
 }
 
 void AcceptPage::draw() {
@@ -336,14 +338,16 @@ void AcceptPage::draw() {
     const QString title = shown(name_of(study));
     if (study == AgendaStudy::type1 && a.type1) {
         const double half = a.settings.share * a.settings.tolerance_mm / 2;
-        return draw_runs(a.type1_values, title, {a.type1->reference_mm - half, a.type1->reference_mm + half});
+        const AcceptanceSettings& s = a.settings;
+        return draw_runs(a.type1_values, title, {a.type1->reference_mm - half, a.type1->reference_mm + half},
+                         {s.nominal_mm - s.tolerance_mm / 2, s.nominal_mm + s.tolerance_mm / 2});
     }
-    if (study == AgendaStudy::type3 && a.type3) return draw_runs(a.type3_values, title, {});
+    if (study == AgendaStudy::type3 && a.type3) return draw_runs(a.type3_values, title, {}, {});
     if (study == AgendaStudy::stability && a.stability) {
         std::vector<QString> labels;
         for (std::size_t i = 0; i < a.stability->means_mm.size(); ++i)
             labels.push_back(QString::number(i + 1));
-        views_.histogram->set_data(title, QStringLiteral("mm"), a.stability->means_mm, {});
+        views_.histogram->set_data(title, QStringLiteral("mm"), a.stability->means_mm, {}, false);
         return views_.trend->set_data(title, QStringLiteral("mm"), labels,
                                       {{tr("mean"), a.stability->means_mm}},
                                       {a.stability->mean_chart.low, a.stability->mean_chart.high});
@@ -357,7 +361,7 @@ void AcceptPage::draw() {
         return;
     std::erase_if(deviations, [](const StudyValue& v) { return !v.reference_mm; });
     for (StudyValue& v : deviations) v.value_mm -= *v.reference_mm;
-    draw_runs(deviations, title, {});
+    draw_runs(deviations, title, {}, {});
 }
 
 }  // namespace seamwright

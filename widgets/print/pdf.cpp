@@ -31,7 +31,8 @@ constexpr double kMarginMm = 18, kFooterMm = 8;
 constexpr double kTextPt = 9, kTablePt = 8, kWideTablePt = 6.5;
 constexpr double kNoHeightPt = 1;
 constexpr int kShortTable = 12;  // rows
-constexpr double kLastThird = 0.66;
+constexpr double kFirstThird = 0.33, kLastThird = 0.66;
+constexpr int kNear = 3;         // sentences between a heading and its table
 constexpr int kKeptBlocks = 14;  // a sentence and two rows of six columns
 constexpr int kWideColumns = 8;
 constexpr double kWidePlotPx = 600;  // wider drawings get a line of their own
@@ -254,54 +255,69 @@ class Builder {
     bool empty_ = true;  // the last block waits for its content
 };
 
-// A heading never stands alone at the foot of a page: it goes to the next one, and so it does with little more than a
-// sentence or a table's head, from a page's last third.
-void keep_headings(QTextDocument& document, double page_px) {
-    const auto* layout = document.documentLayout();
-    const auto page_of = [&](const QTextBlock& b) {
-        return static_cast<int>(layout->blockBoundingRect(b).top() / page_px);
-    };
-    for (QTextBlock b = document.begin(); b.isValid(); b = b.next()) {
-        if (b.blockFormat().headingLevel() == 0) continue;
-        // What stands below it: the next blocks that have something to show, up to a drawing.
-        const double at = std::fmod(layout->blockBoundingRect(b).top(), page_px) / page_px;
+// Where pages end. A heading never stands alone at the foot of a page: it goes to the next one, and so it does with little
+// more than a sentence or a table's head, from a page's last third. A short table stands on one page, with its heading
+// where that is near.
+class PageBreaks {
+  public:
+    PageBreaks(QTextDocument& document, double page_px)
+        : document_(document), layout_(*document.documentLayout()), page_px_(page_px) {}
+    // From the first block on: a break moves only what comes behind it.
+    void set() {
+        for (QTextBlock b = document_.begin(); b.isValid(); b = b.next()) {
+            QTextTable* table = QTextCursor(b).currentTable();
+            if (b.blockFormat().headingLevel() > 0)
+                heading(b);
+            else if (table && table->cellAt(0, 0).firstCursorPosition().block() == b && parted(*table))
+                before(*table);
+        }
+    }
+
+  private:
+    int page_of(const QTextBlock& b) const {
+        return static_cast<int>(layout_.blockBoundingRect(b).top() / page_px_);
+    }
+    bool parted(QTextTable& table) const {
+        return table.rows() <= kShortTable &&
+               page_of(table.cellAt(0, 0).firstCursorPosition().block()) !=
+                   page_of(table.cellAt(table.rows() - 1, 0).firstCursorPosition().block());
+    }
+    static void before(QTextTable& table) {
+        QTextTableFormat format = table.format();
+        format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+        table.setFormat(format);
+    }
+    void heading(QTextBlock b) const {
+        const double at = std::fmod(layout_.blockBoundingRect(b).top(), page_px_) / page_px_;
         const int wanted = at > kLastThird ? kKeptBlocks : 1;
-        bool parted = false;
+        bool away = false;
         int shown = 0;
-        for (QTextBlock next = b.next(); next.isValid() && shown < wanted; next = next.next()) {
+        // The next blocks that have something to show, up to a drawing.
+        for (QTextBlock next = b.next(); next.isValid() && shown < kKeptBlocks; next = next.next()) {
             if (next.length() <= 1) continue;
             if (next.blockFormat().headingLevel() > 0) {
                 if (shown > 0) break;
                 continue;
             }
+            if (QTextTable* table = QTextCursor(next).currentTable()) {
+                away = away || (at > kFirstThird && shown <= kNear && parted(*table));
+                if (shown >= wanted) break;
+            }
             ++shown;
-            parted = parted || page_of(next) != page_of(b);
+            away = away || (shown <= wanted && page_of(next) != page_of(b));
             if (next.text().contains(QChar::ObjectReplacementCharacter)) break;
         }
-        if (!parted) continue;
+        if (!away) return;
         QTextCursor cursor(b);
         QTextBlockFormat format = b.blockFormat();
         format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
         cursor.setBlockFormat(format);
     }
-}
 
-// A short table stands on one page.
-void keep_tables(QTextDocument& document, double page_px) {
-    const auto* layout = document.documentLayout();
-    const auto page_of = [&](const QTextTableCell& cell) {
-        return static_cast<int>(layout->blockBoundingRect(cell.firstCursorPosition().block()).top() /
-                                page_px);
-    };
-    for (QTextFrame* frame : document.rootFrame()->childFrames()) {
-        auto* table = qobject_cast<QTextTable*>(frame);
-        if (!table || table->rows() > kShortTable) continue;
-        if (page_of(table->cellAt(0, 0)) == page_of(table->cellAt(table->rows() - 1, 0))) continue;
-        QTextTableFormat format = table->format();
-        format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-        table->setFormat(format);
-    }
-}
+    QTextDocument& document_;
+    const QAbstractTextDocumentLayout& layout_;
+    double page_px_;
+};
 
 void ensure_application() {
     if (QCoreApplication::instance()) return;
@@ -348,8 +364,7 @@ Expected<void> write_pdf(const report::Page& page, const std::filesystem::path& 
             builder.heading(q(page.title()), 1);
             for (const Block& b : page.blocks()) builder.add(b);
         }
-        keep_tables(document, height);
-        keep_headings(document, height);
+        PageBreaks(document, height).set();
 
         QPainter painter(&writer);
         const int pages = document.pageCount();

@@ -84,8 +84,8 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     EXPECT_EQ(desk().project().requirements.acceptance.tolerance_mm, 0);
     desk().undo_stack().redo();
     me.choose("cg_variant", "Cg = 0.15 T / (4 s)");
-    EXPECT_EQ(desk().project().requirements.acceptance.cg_share, 0.2) << "chosen, not taken yet";
-    QTest::keyClick(me.find<QComboBox>("cg_variant"), Qt::Key_Return);
+    EXPECT_EQ(desk().project().requirements.acceptance.cg_share, 0.15);
+    EXPECT_EQ(desk().project().requirements.acceptance.cg_width, 4);
     me.write_parameter("grr_accepted_percent", "40");
     EXPECT_EQ(desk().project().requirements.acceptance.grr_accepted_percent, 10);
     ASSERT_EQ(troubles.size(), 1) << "more accepted than refused is refused";
@@ -108,7 +108,8 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     ASSERT_TRUE(me.wait([&] { return state(me, kType1).endsWith("of 25 runs"); }))
         << state(me, kType1).toStdString();
     const int before = static_cast<int>(desk().runs()->size());
-    EXPECT_TRUE(me.find<QPushButton>("accept_next")->text().contains("go on with run"));
+    EXPECT_TRUE(me.find<QPushButton>("accept_next")->text().contains("go on with run"))
+        << me.find<QPushButton>("accept_next")->text().toStdString();
     me.click("accept_next");
     ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
     ASSERT_TRUE(idle());
@@ -117,7 +118,7 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     EXPECT_GT(static_cast<int>(desk().runs()->size()), before);
     EXPECT_TRUE(me.text_of("study_result").contains("Cgk"));
     EXPECT_TRUE(me.text_of("study_forecast").contains("predicted"));
-    EXPECT_TRUE(me.text_of("accept_verdict").endsWith("simulated"));
+    EXPECT_TRUE(me.text_of("accept_verdict").contains("simulated"));
     me.picture("accept_type1");
     me.look_at(me.find<QLabel>("study_forecast"));
     me.picture("accept_type1_result");

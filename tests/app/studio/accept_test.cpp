@@ -66,7 +66,7 @@ class AcceptWay : public testing::Test {
     }
 };
 
-constexpr int kType1 = 3, kType3 = 4;
+constexpr int kRobot = 0, kTrigger = 1, kType1 = 3, kType3 = 4;
 
 TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     const Person me = begin("en");
@@ -186,6 +186,48 @@ TEST_F(AcceptWay, AKeptOffsetActsAndIsTakenBack) {
     EXPECT_EQ(acting(), 1);
     me.click("offset_off");
     EXPECT_EQ(acting(), 0);
+}
+
+// What they find are edits of the document; the runs before are of another process then.
+TEST_F(AcceptWay, RobotAndTriggerAreTakenAndGivenBack) {
+    const Person me = begin("en");
+    const auto covariance = [&] { return desk().project().robots.front().arrival_covariance; };
+    ASSERT_TRUE(me.wait([&] { return state(me, kRobot) == "not begun"; }));
+    choose(me, kRobot);
+    me.click("study_deed");
+    ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(me.wait([&] { return state(me, kRobot) == "done"; })) << state(me, kRobot).toStdString();
+    EXPECT_GT(covariance()(0, 0), 0);
+    EXPECT_TRUE(me.text_of("study_finding").startsWith("RP ")) << me.text_of("study_finding").toStdString();
+    me.look_at(me.find<QLabel>("study_result"));
+    me.picture("accept_robot");
+    desk().undo_stack().undo();
+    EXPECT_EQ(covariance()(0, 0), 0);
+    desk().undo_stack().redo();
+
+    choose(me, kTrigger);
+    me.click("study_deed");
+    ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
+    ASSERT_TRUE(idle());
+    ASSERT_TRUE(me.wait([&] { return state(me, kTrigger) == "done"; })) << state(me, kTrigger).toStdString();
+    EXPECT_NE(desk().project().robots.front().trigger_latency_ms, 0);
+    desk().undo_stack().undo();
+    EXPECT_EQ(desk().project().robots.front().trigger_latency_ms, 0);
+}
+
+// Where the simulation does not put the parts in, the page asks.
+TEST_F(AcceptWay, APersonIsAskedForThePart) {
+    const Person me = begin("en");
+    auto* asks = me.window().findChild<QWidget*>("place_study_part");
+    ASSERT_TRUE(asks);
+    EXPECT_FALSE(asks->isVisible());
+    emit desk().worker().place_study_part("P3", 2);
+    EXPECT_TRUE(asks->isVisible());
+    EXPECT_EQ(me.text_of("place_study_text"), "Put in part P3, time 2");
+    me.picture("accept_place");
+    me.click("study_later");
+    EXPECT_FALSE(asks->isVisible());
 }
 
 TEST_F(AcceptWay, FitsBothScreensInBothLanguages) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/acceptance/distributions.h"
+#include "projects/acceptance/acceptance_page_detail.h"
 #include "projects/file/project_file.h"
 #include "projects/report/svg_plot.h"
 
@@ -18,144 +18,8 @@ using report::Rows;
 using report::Series;
 namespace colour = report::colour;
 
-struct AcceptanceWriter {
-    const Acceptance& a;
-    Language language;
-    report::Page& page;
-    int level;  // of a study's heading
-
-    template <class... A>
-    std::string t(const char* english, const A&... arguments) const {
-        return Text::chosen(english, arguments...).in(language);
-    }
-    void heading(const std::string& text) { page.heading(text, level); }
-    std::string number(double value, int decimals) const {
-        return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
-    }
-    void index(Rows& rows, const std::string& name, double value, const Interval& limits, int decimals,
-               const std::string& required = {}) const {
-        rows.push_back({name, number(value, decimals), number(limits.low, decimals),
-                        number(limits.high, decimals), required});
-    }
-    Rows head() const { return {{t("Index"), t("Value"), t("from (95 %)"), t("to (95 %)"), t("Required")}}; }
-    void verdict(AcceptanceVerdict v, const std::string& why) const {
-        page.verdict(name_of(v).in(language), tone_of(v), why);
-    }
-    void verdict(Study study, AcceptanceVerdict v, const std::string& why) const {
-        const Text lacks = what_lacks(a, study);
-        verdict(v, lacks.empty() ? why : lacks.in(language));
-    }
-    double lower() const { return a.settings.nominal_mm - a.settings.tolerance_mm / 2; }
-    double upper() const { return a.settings.nominal_mm + a.settings.tolerance_mm / 2; }
-};
-
 std::string probability(double p) {
     return p < 0.0001 ? std::string("< 0.0001") : fmt::format("= {:.2g}", p);
-}
-
-std::string run_chart(const AcceptanceWriter& w) {
-    const Type1& r = *w.a.type1;
-    Plot plot;
-    plot.title = w.t("Run chart");
-    plot.x_label = w.t("number of the value");
-    plot.y_label = "mm";
-    plot.width_px = 400;
-    plot.height_px = 250;
-    Series values{w.t("value"), {}, {}, Mark::dots, colour::kBlue},
-        reference{w.t("reference"), {}, {}, Mark::line, colour::kGreen},
-        mean{w.t("mean"), {}, {}, Mark::dashed, colour::kVermilion};
-    const double half = w.a.settings.share * w.a.settings.tolerance_mm / 2;
-    for (const StudyValue& v : w.a.type1_values) {
-        values.x.push_back(static_cast<double>(values.x.size() + 1));
-        values.y.push_back(v.value_mm);
-    }
-    for (Series* s : {&reference, &mean}) {
-        s->x = {1, static_cast<double>(r.n)};
-        s->y.assign(2, s == &mean ? r.mean_mm : r.reference_mm);
-    }
-    plot.bands = {{r.reference_mm - half, r.reference_mm + half, w.t("share of the tolerance")}};
-    plot.series = {reference, mean, values};
-    return report::svg(plot);
-}
-
-// Classes of the values' own width (Freedman and Diaconis) before the limits of the tolerance.
-std::string histogram(const AcceptanceWriter& w) {
-    const Type1& r = *w.a.type1;
-    std::vector<double> values;
-    for (const StudyValue& v : w.a.type1_values) values.push_back(v.value_mm);
-    std::sort(values.begin(), values.end());
-    const std::size_t n = values.size();
-    const double low = values.front(), span = values.back() - low;
-    const double width =
-        2 * (values[3 * (n - 1) / 4] - values[(n - 1) / 4]) / std::cbrt(static_cast<double>(n));
-    const int classes = width > 0 ? std::clamp(static_cast<int>(std::ceil(span / width)), 5, 40) : 5;
-    std::vector<double> share(static_cast<std::size_t>(classes));
-    for (const double v : values) {
-        const int k = static_cast<int>((v - low) / span * classes);
-        share[static_cast<std::size_t>(std::clamp(k, 0, classes - 1))] += 100.0 / static_cast<double>(n);
-    }
-    Plot plot;
-    plot.title = w.t("Histogram over the tolerance");
-    plot.x_label = w.t("value (mm)");
-    plot.y_label = w.t("share (%)");
-    plot.width_px = 400;
-    plot.height_px = 250;
-    Series bars{w.t("share"), {low}, {0}, Mark::area, colour::kBlue},
-        limits{w.t("limits"), {}, {}, Mark::dashed, colour::kVermilion},
-        reference{w.t("reference"), {}, {}, Mark::line, colour::kGreen};
-    for (int k = 0; k < classes; ++k) {
-        for (const int edge : {k, k + 1}) {
-            bars.x.push_back(low + edge * span / classes);
-            bars.y.push_back(share[static_cast<std::size_t>(k)]);
-        }
-    }
-    bars.x.push_back(low + span);
-    bars.y.push_back(0);
-    const double top = *std::max_element(share.begin(), share.end());
-    limits.x = {w.lower(), w.lower(), std::nan(""), w.upper(), w.upper()};
-    limits.y = {0, top, std::nan(""), 0, top};
-    reference.x.assign(2, r.reference_mm);
-    reference.y = {0, top};
-    plot.series = {bars, limits, reference};
-    return report::svg(plot);
-}
-
-// Every value over its part: what the parts differ, and what repeats.
-std::vector<std::string> parts_plots(const AcceptanceWriter& w) {
-    std::vector<std::string> parts;
-    Series dots{w.t("value"), {}, {}, Mark::dots, colour::kBlue},
-        means{w.t("mean of the part"), {}, {}, Mark::crosses, colour::kVermilion};
-    std::map<std::string, std::pair<double, int>> sums;
-    for (const StudyValue& v : w.a.type3_values) {
-        auto at = std::find(parts.begin(), parts.end(), v.part);
-        if (at == parts.end()) at = parts.insert(parts.end(), v.part);
-        dots.x.push_back(static_cast<double>(at - parts.begin()));
-        dots.y.push_back(v.value_mm);
-        sums[v.part].first += v.value_mm;
-        ++sums[v.part].second;
-    }
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        means.x.push_back(static_cast<double>(k));
-        means.y.push_back(sums[parts[k]].first / sums[parts[k]].second);
-    }
-    Series deviations{w.t("value minus the part's mean"), {}, {}, Mark::dots, colour::kBlue};
-    deviations.x = dots.x;
-    for (const StudyValue& v : w.a.type3_values)
-        deviations.y.push_back(v.value_mm - sums[v.part].first / sums[v.part].second);
-    Plot plot;
-    plot.x_label = w.t("part");
-    plot.y_label = "mm";
-    plot.width_px = 400;
-    plot.height_px = 250;
-    const std::size_t every = std::max<std::size_t>(1, (parts.size() + 11) / 12);
-    for (std::size_t k = 0; k < parts.size(); ++k)
-        plot.categories.push_back(k % every ? std::string() : parts[k]);
-    plot.title = w.t("Values by part");
-    plot.series = {dots, means};
-    const std::string both = report::svg(plot);
-    plot.title = w.t("About the part's mean");
-    plot.series = {deviations};
-    return {both, report::svg(plot)};
 }
 
 void type1_chapter(AcceptanceWriter& w) {
@@ -257,29 +121,6 @@ void linearity_chapter(AcceptanceWriter& w) {
     }
     plot.series = {dots, line, low, high};
     w.page.figure(report::svg(plot));
-}
-
-std::string control_chart(const AcceptanceWriter& w, const Stability& r, bool spread) {
-    Plot plot;
-    plot.title = spread ? w.t("Standard deviations") : w.t("Means");
-    plot.x_label = w.t("subgroup");
-    plot.y_label = "mm";
-    plot.width_px = 400;
-    plot.height_px = 250;
-    const std::vector<double>& y = spread ? r.s_mm : r.means_mm;
-    const Interval& limits = spread ? r.s_chart : r.mean_chart;
-    Series line{w.t("value"), {}, y, Mark::line, colour::kBlue},
-        alarms{w.t("alarm"), {}, {}, Mark::crosses, colour::kVermilion};
-    for (std::size_t i = 0; i < y.size(); ++i) line.x.push_back(static_cast<double>(i + 1));
-    for (const StabilityAlarm& alarm : r.alarms) {
-        if (alarm.spread != spread) continue;
-        alarms.x.push_back(static_cast<double>(alarm.subgroup + 1));
-        alarms.y.push_back(y[alarm.subgroup]);
-    }
-    plot.bands = {{limits.low, limits.high, w.t("control limits")}};
-    plot.series = {line};
-    if (!alarms.x.empty()) plot.series.push_back(alarms);
-    return report::svg(plot);
 }
 
 void stability_chapter(AcceptanceWriter& w) {

@@ -332,10 +332,11 @@ void AcceptPage::draw_runs(const std::vector<StudyValue>& values, const QString&
 
 void AcceptPage::draw() {
     const StoredAcceptance* stored = acceptance_.stored();
-    if (!isVisible() || !stored || !stored->studies || desk_.worker().busy()) return;
-    const Acceptance& a = *stored->studies;
+    if (!isVisible() || !stored || desk_.worker().busy()) return;
     const AgendaStudy study = chosen();
     const QString title = shown(name_of(study));
+    if (!stored->studies) return draw_runs({}, title, {}, {});
+    const Acceptance& a = *stored->studies;
     if (study == AgendaStudy::type1 && a.type1) {
         const double half = a.settings.share * a.settings.tolerance_mm / 2;
         const AcceptanceSettings& s = a.settings;
@@ -358,7 +359,7 @@ void AcceptPage::draw() {
     else if (study == AgendaStudy::correlation && a.correlation)
         deviations = a.values.correlation;
     else
-        return;
+        return draw_runs({}, title, {}, {});  // not another page's
     std::erase_if(deviations, [](const StudyValue& v) { return !v.reference_mm; });
     for (StudyValue& v : deviations) v.value_mm -= *v.reference_mm;
     draw_runs(deviations, title, {}, {});

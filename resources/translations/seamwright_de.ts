@@ -1086,12 +1086,12 @@
         <translation>Wert</translation>
     </message>
     <message>
-        <source>Values in the tolerance</source>
-        <translation>Werte in der Toleranz</translation>
-    </message>
-    <message>
         <source>mean</source>
         <translation>Mittel</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1: %2</translation>
     </message>
 </context>
 <context>

@@ -108,8 +108,9 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     ASSERT_TRUE(me.wait([&] { return state(me, kType1).endsWith("of 25 runs"); }))
         << state(me, kType1).toStdString();
     const int before = static_cast<int>(desk().runs()->size());
-    EXPECT_TRUE(me.find<QPushButton>("accept_next")->text().contains("go on with run"))
-        << me.find<QPushButton>("accept_next")->text().toStdString();
+    EXPECT_TRUE(me.wait([&] {
+        return me.find<QPushButton>("accept_next")->text().contains("go on with run");
+    })) << me.find<QPushButton>("accept_next")->text().toStdString();
     me.click("accept_next");
     ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
     ASSERT_TRUE(idle());

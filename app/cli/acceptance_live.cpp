@@ -8,6 +8,7 @@
 #include "app/cli/signal_watch.h"
 #include "projects/acceptance/acceptance_json.h"
 #include "projects/acceptance/kept_offsets.h"
+#include "projects/acceptance/simulated_parts.h"
 #include "projects/acceptance/stored_values.h"
 #include "projects/station/fields.h"
 
@@ -63,7 +64,7 @@ Expected<StudyProgress> measure_live(const LiveArguments& a, Study study,
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
     };
-    if (!a.unattended && !a.parts.empty())
+    if (!a.unattended && !a.simulated_parts && !a.parts.empty())
         options.place = [&](const std::string& part, int rehang) {
             return ask_for_part(part, rehang, a.rehangs);
         };
@@ -82,7 +83,21 @@ Expected<StudyProgress> measure_live(const LiveArguments& a, Study study,
         fmt::print(stderr, "forecast: s {:.4f} mm, Cg {:.2f}, %GRR {:.1f}\n", forecast->type1_s_mm,
                    predicted_cg(*forecast, settings), predicted_grr_percent(*forecast, settings));
     if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    if (a.simulated_parts && !SimulatedParts::possible(station->project()))
+        return usage_error("only a simulated cell can put in its parts", "--simulated-parts", "leave it out");
+    SimulatedParts simulated(*station);
+    Expected<void> put;
+    if (a.simulated_parts && a.parts.empty()) {
+        put = simulated.put(a.part, 1);
+    } else if (a.simulated_parts) {
+        options.place = [&](const std::string& part, int rehang) {
+            put = simulated.put(part, rehang);
+            return put.has_value();
+        };
+    }
+    if (!put) return tl::unexpected(put.error());
     auto progress = measure_study(*station, options);
+    if (!put) return tl::unexpected(put.error());
     if (progress && progress->other_setup > 0)
         fmt::print(stderr, "the project was changed since: {} runs of before do not count\n",
                    progress->other_setup);

@@ -14,7 +14,7 @@ struct LiveArguments {
     std::string file, region, part;
     std::vector<std::string> parts;
     int runs = 0, rehangs = 1;
-    bool anew = false, unattended = false;
+    bool anew = false, unattended = false, simulated_parts = false;
 };
 
 // The forecast goes to stderr before anything moves. Between parts the person is asked, unless unattended.

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     const auto settings =
         option("settings", QApplication::translate("main", "settings file instead of the user's"), "FILE");
     const auto data = option("data", QApplication::translate("main", "folder for the demo project"), "DIR");
-    const auto step = option("step", QApplication::translate("main", "step to show, 1 to 7"), "N");
+    const auto step = option("step", QApplication::translate("main", "step to show, 1 to 8"), "N");
     const auto picture =
         option("screenshot",
                QApplication::translate("main", "writes a picture of the window after 3 s and ends"), "PNG");
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     seamwright::Studio studio(application, options);
     if (const QStringList wh = parser.value(size).split('x'); wh.size() == 2)
         studio.window().resize(wh[0].toInt(), wh[1].toInt());
-    if (const int n = parser.value(step).toInt(); n >= 1 && n <= 7)
+    if (const int n = parser.value(step).toInt(); n >= 1 && n <= static_cast<int>(seamwright::kSteps.size()))
         studio.window().show_step(seamwright::kSteps[static_cast<std::size_t>(n - 1)]);
     if (parser.isSet(picture))
         QTimer::singleShot(3000, &application, [&] {

@@ -26,6 +26,7 @@
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/exchange.h"
+#include "widgets/pages/accept_page.h"
 #include "widgets/pages/align_page.h"
 #include "widgets/pages/calibrate_page.h"
 #include "widgets/pages/cell_page.h"
@@ -358,12 +359,16 @@ void MainWindow::make_central() {
     auto* prove = new ProvePage(desk_, views_);
     connect(prove, &ProvePage::step_wanted, this, &MainWindow::show_step);
     connect(prove, &ProvePage::report_wanted, this, &MainWindow::make_report);
+    auto* accept = new AcceptPage(desk_, views_);
+    connect(accept, &AcceptPage::step_wanted, this, &MainWindow::show_step);
+    connect(accept, &AcceptPage::told, this, &MainWindow::tell_done);
     const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
                                                  new CalibratePage(desk_, views_),
                                                  new TeachPage(desk_, views_),
                                                  new AlignPage(desk_, views_),
                                                  new RegionsPage(desk_, views_),
                                                  prove,
+                                                 accept,
                                                  run_page_};
     for (StepPage* page : pages) {
         auto* scroll = new QScrollArea;
@@ -372,7 +377,17 @@ void MainWindow::make_central() {
         scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         scroll->setFocusPolicy(Qt::NoFocus);
         scroll->setWidget(page);
-        pages_->addWidget(scroll);
+        if (!page->head()) {
+            pages_->addWidget(scroll);
+            continue;
+        }
+        auto* with_head = new QWidget;
+        auto* box = new QVBoxLayout(with_head);
+        box->setContentsMargins(0, 0, 0, 0);
+        box->setSpacing(0);
+        box->addWidget(page->head());
+        box->addWidget(scroll, 1);
+        pages_->addWidget(with_head);
     }
     columns->addWidget(pages_, 1);
     connect(rail_, &StepRail::step_chosen, this, &MainWindow::show_step);

@@ -8,8 +8,8 @@
 namespace seamwright {
 
 QString step_icon(Step step) {
-    static const std::array<QString, 7> names{"sensor",  "calibrate", "target", "align",
-                                              "regions", "prove",     "measure"};
+    static const std::array<QString, kSteps.size()> names{"sensor",  "calibrate", "target", "align",
+                                                          "regions", "prove",     "accept", "measure"};
     return names[static_cast<std::size_t>(step)];
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The checklist as navigation: seven steps, each with its state in words, one of them next.
+// The checklist as navigation: the steps, each with its state in words, one of them next.
 
 #include <QLabel>
 #include <QPushButton>
@@ -22,8 +22,8 @@ class StepRail : public QWidget {
   private:
     void refresh();
     Desk& desk_;
-    std::array<QPushButton*, 7> buttons_{};
-    std::array<QLabel*, 7> states_{};
+    std::array<QPushButton*, kSteps.size()> buttons_{};
+    std::array<QLabel*, kSteps.size()> states_{};
 };
 
 QString step_icon(Step step);

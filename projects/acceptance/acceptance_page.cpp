@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/acceptance/distributions.h"
+#include "projects/acceptance/acceptance_page_detail.h"
 #include "projects/file/project_file.h"
 #include "projects/report/svg_plot.h"
 
@@ -17,100 +18,23 @@ using report::Rows;
 using report::Series;
 namespace colour = report::colour;
 
-struct AcceptanceWriter {
-    const Acceptance& a;
-    Language language;
-    report::Page& page;
-
-    template <class... A>
-    std::string t(const char* english, const A&... arguments) const {
-        return Text::chosen(english, arguments...).in(language);
-    }
-    std::string number(double value, int decimals) const {
-        return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
-    }
-    void index(Rows& rows, const std::string& name, double value, const Interval& limits, int decimals,
-               const std::string& required = {}) const {
-        rows.push_back({name, number(value, decimals), number(limits.low, decimals),
-                        number(limits.high, decimals), required});
-    }
-    Rows head() const { return {{t("Index"), t("Value"), t("from (95 %)"), t("to (95 %)"), t("Required")}}; }
-    void verdict(AcceptanceVerdict v, const std::string& why) const {
-        page.verdict(name_of(v).in(language), tone_of(v), why);
-    }
-    void verdict(Study study, AcceptanceVerdict v, const std::string& why) const {
-        const Text lacks = what_lacks(a, study);
-        verdict(v, lacks.empty() ? why : lacks.in(language));
-    }
-    double lower() const { return a.settings.nominal_mm - a.settings.tolerance_mm / 2; }
-    double upper() const { return a.settings.nominal_mm + a.settings.tolerance_mm / 2; }
-};
-
-std::string run_chart(const AcceptanceWriter& w) {
-    const Type1& r = *w.a.type1;
-    Plot plot;
-    plot.title = w.t("Run chart");
-    plot.x_label = w.t("value");
-    plot.y_label = "mm";
-    plot.width_px = 400;
-    plot.height_px = 250;
-    Series values{w.t("value"), {}, {}, Mark::dots, colour::kBlue},
-        reference{w.t("reference"), {}, {}, Mark::line, colour::kGreen},
-        mean{w.t("mean"), {}, {}, Mark::dashed, colour::kVermilion};
-    const double half = w.a.settings.share * w.a.settings.tolerance_mm / 2;
-    for (const StudyValue& v : w.a.type1_values) {
-        values.x.push_back(static_cast<double>(values.x.size() + 1));
-        values.y.push_back(v.value_mm);
-    }
-    for (Series* s : {&reference, &mean}) {
-        s->x = {1, static_cast<double>(r.n)};
-        s->y.assign(2, s == &mean ? r.mean_mm : r.reference_mm);
-    }
-    plot.bands = {{r.reference_mm - half, r.reference_mm + half, w.t("share of the tolerance")}};
-    plot.series = {reference, mean, values};
-    return report::svg(plot);
-}
-
-std::string histogram(const AcceptanceWriter& w) {
-    const Type1& r = *w.a.type1;
-    const double half = w.a.settings.tolerance_mm / 2;
-    double reach = std::max(half, 1e-9);
-    for (const StudyValue& v : w.a.type1_values)
-        reach = std::max(reach, std::abs(v.value_mm - r.reference_mm));
-    constexpr int kClasses = 41;
-    std::vector<double> share(kClasses);
-    for (const StudyValue& v : w.a.type1_values) {
-        const int k = static_cast<int>((v.value_mm - r.reference_mm + reach) / (2 * reach) * kClasses);
-        share[static_cast<std::size_t>(std::clamp(k, 0, kClasses - 1))] += 100.0 / r.n;
-    }
-    Plot plot;
-    plot.title = w.t("Histogram over the tolerance");
-    plot.x_label = w.t("value minus reference (mm)");
-    plot.y_label = w.t("share (%)");
-    plot.width_px = 400;
-    plot.height_px = 250;
-    Series bars{w.t("share"), {}, {}, Mark::bars, colour::kBlue};
-    for (int k = 0; k < kClasses; ++k) {
-        bars.x.push_back(k);
-        bars.y.push_back(share[static_cast<std::size_t>(k)]);
-        plot.categories.push_back(
-            k % 10 == 0 ? fmt::format("{:+.3f}", -reach + (k + 0.5) * 2 * reach / kClasses) : std::string());
-    }
-    plot.series = {bars};
-    return report::svg(plot);
+std::string probability(double p) {
+    return p < 0.0001 ? std::string("< 0.0001") : fmt::format("= {:.2g}", p);
 }
 
 void type1_chapter(AcceptanceWriter& w) {
     const Type1& r = *w.a.type1;
     const AcceptanceSettings& s = w.a.settings;
-    w.page.heading(w.t("Type 1: capability on a reference part"));
+    w.heading(w.t("Type 1: capability on a reference part"));
     const double required_cgk = s.required_cgk.value_or(s.required);
     w.verdict(Study::type1, r.verdict,
               required_cgk == s.required
                   ? w.t("Cg and Cgk must reach {}", w.number(s.required, 2))
                   : w.t("Cg must reach {} and Cgk {}", w.number(s.required, 2), w.number(required_cgk, 2)));
-    w.page.paragraph(w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).", w.a.type1_part, r.n,
-                         w.number(r.reference_mm, 4), s.share, s.width));
+    w.page.paragraph(
+        w.t("Part {}, {} values, reference {} mm. Cg = {} T / ({} s).",
+            w.a.source.unmoved_part_is(w.a.type1_part) ? w.t("as taught, unmoved") : w.a.type1_part, r.n,
+            w.number(r.reference_mm, 4), s.share, s.width));
     Rows rows = w.head();
     w.index(rows, w.t("mean (mm)"), r.mean_mm, r.mean_limits, 4);
     w.index(rows, w.t("s (mm)"), r.s_mm, r.s_limits, 4);
@@ -118,16 +42,15 @@ void type1_chapter(AcceptanceWriter& w) {
     w.index(rows, "Cg", r.cg, r.cg_limits, 2, w.number(s.required, 2));
     w.index(rows, "Cgk", r.cgk, r.cgk_limits, 2, w.number(required_cgk, 2));
     w.page.table(rows);
-    w.page.paragraph(r.bias_p < 0.05
-                         ? w.t("The bias is no chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p))
-                         : w.t("The bias may be chance (t-test, p = {}).", fmt::format("{:.2g}", r.bias_p)));
+    w.page.paragraph(r.bias_p < 0.05 ? w.t("The bias is no chance (t-test, p {}).", probability(r.bias_p))
+                                     : w.t("The bias may be chance (t-test, p {}).", probability(r.bias_p)));
     w.page.figures({run_chart(w), histogram(w)});
 }
 
 void type3_chapter(AcceptanceWriter& w) {
     const Type3& r = *w.a.type3;
     const AcceptanceSettings& s = w.a.settings;
-    w.page.heading(w.t("Type 3: repeatability and reproducibility"));
+    w.heading(w.t("Type 3: repeatability and reproducibility"));
     w.verdict(Study::type3, r.verdict,
               w.t("up to {:g} % of the tolerance with ndc of {} is accepted, beyond {:g} % not",
                   s.grr_accepted_percent, s.ndc, s.grr_refused_percent));
@@ -143,15 +66,15 @@ void type3_chapter(AcceptanceWriter& w) {
     w.index(rows, w.t("GRR of the total variation (%)"), r.grr_percent_total, r.total_limits, 1);
     w.index(rows, "ndc", r.ndc, r.ndc_limits, 0, std::to_string(s.ndc));
     w.page.table(rows);
-    Rows anova{{w.t("Source"), "df", "SS", "MS"}};
+    Rows anova{{w.t("Source"), "df", "SS (mm²)", "MS (mm²)"}};
     for (const AnovaRow& row : r.anova) {
         const std::string source = row.source;
         anova.push_back({source == "part"     ? w.t("part")
                          : source == "rehang" ? w.t("rehang")
                          : source == "repeat" ? w.t("repeat")
                                               : w.t("total"),
-                         w.number(row.df, 0), fmt::format("{:.6g}", row.ss),
-                         source == "total" ? std::string() : fmt::format("{:.6g}", row.ms)});
+                         w.number(row.df, 0), w.number(row.ss, 6),
+                         source == "total" ? std::string() : w.number(row.ms, 6)});
     }
     w.page.table(anova, w.t("Analysis of variance"));
     if (r.rehang_negative) w.page.paragraph(w.t("The component of the rehang came out negative and is 0."));
@@ -160,11 +83,12 @@ void type3_chapter(AcceptanceWriter& w) {
         w.page.paragraph(w.t("Each rehang was measured once: repeat and rehang cannot be told apart."));
     if (w.a.type1_part_left_out)
         w.page.paragraph(w.t("The reference part was measured unlike the others and is left out here."));
+    w.page.figures(parts_plots(w));
 }
 
 void linearity_chapter(AcceptanceWriter& w) {
     const Linearity& r = *w.a.linearity;
-    w.page.heading(w.t("Linearity"));
+    w.heading(w.t("Linearity"));
     w.verdict(Study::linearity, r.verdict,
               r.zero_inside ? w.t("the line of no bias lies inside the 95 % band")
                             : w.t("the line of no bias leaves the 95 % band"));
@@ -199,32 +123,9 @@ void linearity_chapter(AcceptanceWriter& w) {
     w.page.figure(report::svg(plot));
 }
 
-std::string control_chart(const AcceptanceWriter& w, const Stability& r, bool spread) {
-    Plot plot;
-    plot.title = spread ? w.t("Standard deviations") : w.t("Means");
-    plot.x_label = w.t("subgroup");
-    plot.y_label = "mm";
-    plot.width_px = 400;
-    plot.height_px = 250;
-    const std::vector<double>& y = spread ? r.s_mm : r.means_mm;
-    const Interval& limits = spread ? r.s_chart : r.mean_chart;
-    Series line{w.t("value"), {}, y, Mark::line, colour::kBlue},
-        alarms{w.t("alarm"), {}, {}, Mark::crosses, colour::kVermilion};
-    for (std::size_t i = 0; i < y.size(); ++i) line.x.push_back(static_cast<double>(i + 1));
-    for (const StabilityAlarm& alarm : r.alarms) {
-        if (alarm.spread != spread) continue;
-        alarms.x.push_back(static_cast<double>(alarm.subgroup + 1));
-        alarms.y.push_back(y[alarm.subgroup]);
-    }
-    plot.bands = {{limits.low, limits.high, w.t("control limits")}};
-    plot.series = {line};
-    if (!alarms.x.empty()) plot.series.push_back(alarms);
-    return report::svg(plot);
-}
-
 void stability_chapter(AcceptanceWriter& w) {
     const Stability& r = *w.a.stability;
-    w.page.heading(w.t("Stability"));
+    w.heading(w.t("Stability"));
     w.verdict(Study::stability, r.verdict,
               r.alarms.empty() ? w.t("{} subgroups, no alarm", r.means_mm.size())
                                : w.t("{} subgroups, {} alarms", r.means_mm.size(), r.alarms.size()));
@@ -248,7 +149,7 @@ void stability_chapter(AcceptanceWriter& w) {
 
 void correlation_chapter(AcceptanceWriter& w) {
     const Correlation& r = *w.a.correlation;
-    w.page.heading(w.t("Correlation with the reference instrument"));
+    w.heading(w.t("Correlation with the reference instrument"));
     w.verdict(Study::correlation, r.verdict,
               w.t("0 must lie inside the offset's limits and 1 inside the slope's"));
     Rows rows = w.head();
@@ -274,7 +175,7 @@ void correlation_chapter(AcceptanceWriter& w) {
 
 void vda5_chapter(AcceptanceWriter& w) {
     const ProcessUncertainty& r = *w.a.vda5;
-    w.page.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
+    w.heading(w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)"));
     const AcceptanceSettings& s = w.a.settings;
     w.verdict(Study::vda5, r.verdict,
               w.t("Q of the system up to {:g} %, of the process up to {:g} %", s.system_percent,
@@ -287,9 +188,19 @@ void vda5_chapter(AcceptanceWriter& w) {
     w.index(rows, w.t("conformity zone, lower (mm)"), r.conformity_zone.low, r.conformity_low_limits, 4);
     w.index(rows, w.t("conformity zone, upper (mm)"), r.conformity_zone.high, r.conformity_high_limits, 4);
     w.page.table(rows);
-    Rows terms{{w.t("Contribution"), "u (mm)", w.t("degrees of freedom"), w.t("counts in")}};
+    const auto meaning = [&](const std::string& name) {
+        return name == "u_CAL"   ? w.t("reference of the part")
+               : name == "u_BI"  ? w.t("bias")
+               : name == "u_RE"  ? w.t("resolution")
+               : name == "u_EVR" ? w.t("repeat on the reference part")
+               : name == "u_EVO" ? w.t("repeat on the parts")
+               : name == "u_REH" ? w.t("rehang")
+                                 : std::string();
+    };
+    Rows terms{{w.t("Contribution"), w.t("of what"), "u (mm)", w.t("degrees of freedom"), w.t("counts in")}};
     for (const UncertaintyTerm& t : r.terms)
-        terms.push_back({t.name, w.number(t.u_mm, 4), w.number(t.degrees, 1),
+        terms.push_back({t.name, meaning(t.name), w.number(t.u_mm, 4),
+                         t.degrees >= 0.05 ? w.number(t.degrees, 1) : "-",
                          t.in_system && t.in_process ? "MS, MP"
                          : t.in_system               ? "MS"
                          : t.in_process              ? "MP"
@@ -318,6 +229,34 @@ std::string study_name(const AcceptanceWriter& w, Study study) {
     }
 }
 
+void overview(AcceptanceWriter& w) {
+    Rows rows{{w.t("Study"), w.t("Result"), w.t("Verdict")}};
+    const auto row = [&](Study study, AcceptanceVerdict v, const std::string& result) {
+        rows.push_back({study_name(w, study), result, name_of(v).in(w.language)});
+    };
+    const Acceptance& a = w.a;
+    if (a.type1)
+        row(Study::type1, a.type1->verdict,
+            fmt::format("Cg {}, Cgk {}", w.number(a.type1->cg, 2), w.number(a.type1->cgk, 2)));
+    if (a.type3)
+        row(Study::type3, a.type3->verdict,
+            fmt::format("%GRR {}, ndc {}", w.number(a.type3->grr_percent_tolerance, 1), a.type3->ndc));
+    if (a.linearity)
+        row(Study::linearity, a.linearity->verdict,
+            w.t("{} mm per m", w.number(1000 * a.linearity->line.slope, 3)) + ", " +
+                w.number(a.linearity->line.intercept, 4) + " mm");
+    if (a.stability)
+        row(Study::stability, a.stability->verdict, w.t("{} alarms", a.stability->alarms.size()));
+    if (a.correlation)
+        row(Study::correlation, a.correlation->verdict,
+            w.t("offset {} mm", w.number(a.correlation->offset_mm, 4)));
+    if (a.vda5)
+        row(Study::vda5, a.vda5->verdict,
+            fmt::format("Q_MS {} %, Q_MP {} %", w.number(a.vda5->q_ms_percent, 1),
+                        w.number(a.vda5->q_mp_percent, 1)));
+    w.page.table(rows);
+}
+
 void source_chapter(AcceptanceWriter& w) {
     const StudySource& s = w.a.source;
     if (s.simulated) w.page.verdict(w.t("simulated"), report::Tone::attention, w.t("the cell was simulated"));
@@ -332,7 +271,7 @@ void source_chapter(AcceptanceWriter& w) {
         {{w.t("Requirement"), w.t("Value"), w.t("from where")},
          {w.t("tolerance T"), w.number(r.tolerance_mm, 4) + " mm", from("tolerance_mm")},
          {w.t("limits"), w.number(w.lower(), 4) + " .. " + w.number(w.upper(), 4) + " mm",
-          from("nominal_mm")},
+          from(from_of(r, "nominal_mm") == RequirementFrom::standard ? "tolerance_mm" : "nominal_mm")},
          {w.t("share of the tolerance in Cg"), fmt::format("{:g}", r.share), from("cg_share")},
          {w.t("standard deviations in Cg"), fmt::format("{:g}", r.width), from("cg_width")},
          {w.t("Cg, at least"), w.number(r.required, 2), from("cg")},
@@ -359,16 +298,16 @@ void source_chapter(AcceptanceWriter& w) {
 // What the stated covariance predicted, beside what came out.
 void forecast_chapter(AcceptanceWriter& w) {
     const StudyForecast& f = *w.a.source.forecast;
-    w.page.heading(w.t("Forecast and measurement"));
+    w.heading(w.t("Forecast and measurement"));
     bool beyond = false, measured = false;
     const auto finding = [&](const std::optional<ForecastCheck>& check) {
         if (!check) return w.t("not compared");
         measured = true;
         beyond = beyond || check->agreement != Agreement::agrees;
-        const std::string p = fmt::format("{:.2g}", check->p);
-        return check->agreement == Agreement::agrees      ? w.t("agree, p = {}", p)
-               : check->agreement == Agreement::beyond_95 ? w.t("differ beyond chance at 95 %, p = {}", p)
-                                                          : w.t("differ beyond chance at 99 %, p = {}", p);
+        const std::string p = probability(check->p);
+        return check->agreement == Agreement::agrees      ? w.t("agree, p {}", p)
+               : check->agreement == Agreement::beyond_95 ? w.t("differ beyond chance at 95 %, p {}", p)
+                                                          : w.t("differ beyond chance at 99 %, p {}", p);
     };
     Rows rows{{w.t("Index"), w.t("predicted"), w.t("measured"), w.t("Finding")}};
     const auto row = [&](const std::string& name, double predicted, std::optional<double> value, int decimals,
@@ -420,34 +359,80 @@ report::Tone tone_of(AcceptanceVerdict verdict) {
                                                   : report::Tone::attention;
 }
 
-report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& options) {
-    report::Page page(Text("Acceptance of the measuring process: {}", a.source.file).in(options.language),
-                      std::string(code_of(options.language)));
-    AcceptanceWriter w{a, options.language, page};
-    const std::string now = options.now_utc.empty() ? utc_now() : options.now_utc;
-    page.paragraph(w.t("File {}, {} UTC, {}.", a.source.file, now.substr(0, 10) + " " + now.substr(11, 5),
-                       options.program.empty() ? "Seamwright" : options.program));
+void add_chapters(report::Page& page, Language language, const Acceptance& a, int level) {
+    AcceptanceWriter w{a, language, page, level};
     w.verdict(a.verdict(), w.t("the worst of the studies below"));
+    overview(w);
     source_chapter(w);
-    if (a.source.forecast) forecast_chapter(w);
-    if (a.type1) type1_chapter(w);
-    if (a.type3) type3_chapter(w);
-    if (a.linearity) linearity_chapter(w);
-    if (a.stability) stability_chapter(w);
-    if (a.correlation) correlation_chapter(w);
-    if (a.vda5) vda5_chapter(w);
-    if (options.more) options.more(page, options.language);
-    if (!a.not_done.empty()) {
-        page.heading(w.t("Studies that the data do not allow"));
-        Rows rows{{w.t("Study"), w.t("Finding")}};
-        for (const auto& [study, error] : a.not_done)
-            rows.push_back({study_name(w, study), error.sentence()});
-        page.table(rows);
+    add_forecast_chapter(page, language, a, level);
+    for (const Study study : kStudies) add_chapter(page, language, a, study, level);
+}
+
+void add_chapter(report::Page& page, Language language, const Acceptance& a, Study study, int level) {
+    AcceptanceWriter w{a, language, page, level};
+    switch (study) {
+        case Study::type1:
+            return a.type1 ? type1_chapter(w) : void();
+        case Study::type3:
+            return a.type3 ? type3_chapter(w) : void();
+        case Study::linearity:
+            return a.linearity ? linearity_chapter(w) : void();
+        case Study::stability:
+            return a.stability ? stability_chapter(w) : void();
+        case Study::correlation:
+            return a.correlation ? correlation_chapter(w) : void();
+        default:
+            return a.vda5 ? vda5_chapter(w) : void();
     }
-    page.heading(w.t("Signatures"));
-    const std::string date = w.t("Place, date");
+}
+
+void add_forecast_chapter(report::Page& page, Language language, const Acceptance& a, int level) {
+    AcceptanceWriter w{a, language, page, level};
+    if (a.source.forecast) forecast_chapter(w);
+}
+
+void add_studies_not_done(report::Page& page, Language language, const Acceptance& a, int level) {
+    if (a.not_done.empty()) return;
+    AcceptanceWriter w{a, language, page, level};
+    w.heading(w.t("Studies that the data do not allow"));
+    Rows rows{{w.t("Study"), w.t("Finding")}};
+    for (const auto& [study, error] : a.not_done)
+        rows.push_back({study_name(w, study), error.text().in(language)});
+    page.table(rows);
+}
+
+report::Page begin_acceptance_page(const std::string& file, Language language, const std::string& now_utc,
+                                   const std::string& program) {
+    report::Page page(Text("Acceptance of the measuring process: {}", file).in(language),
+                      std::string(code_of(language)));
+    const std::string now = now_utc.empty() ? utc_now() : now_utc;
+    page.paragraph(Text("File {}, {} UTC, {}.", file, now.substr(0, 10) + " " + now.substr(11, 5),
+                        program.empty() ? "Seamwright" : program)
+                       .in(language));
+    return page;
+}
+
+void add_signatures(report::Page& page, Language language, const Acceptance* a) {
+    const auto t = [&](const char* english) { return Text::chosen(english).in(language); };
+    page.heading(t("Signatures"));
+    if (a) {  // what is signed
+        page.verdict(name_of(a->verdict()).in(language), tone_of(a->verdict()),
+                     t("the measuring process as reported here"));
+        AcceptanceWriter w{*a, language, page, 3};
+        overview(w);
+    }
+    const std::string date = t("Place, date");
     page.signatures(
-        {{date, w.t("Commissioning engineer"), w.t("Signature")}, {date, w.t("Customer"), w.t("Signature")}});
+        {{date, t("Commissioning engineer"), t("Signature")}, {date, t("Customer"), t("Signature")}});
+}
+
+report::Page acceptance_page(const Acceptance& a, const AcceptancePageOptions& options) {
+    report::Page page =
+        begin_acceptance_page(a.source.file, options.language, options.now_utc, options.program);
+    add_chapters(page, options.language, a);
+    if (options.more) options.more(page, options.language);
+    add_studies_not_done(page, options.language, a);
+    add_signatures(page, options.language, &a);
     return page;
 }
 

@@ -137,10 +137,10 @@ json trigger_study_json(const MeasuredTrigger& m) {
     return answer;
 }
 
-void add_chapter(report::Page& page, Language language, const MeasuredRobot& m) {
+void add_chapter(report::Page& page, Language language, const MeasuredRobot& m, int level) {
     const ChapterWriter w{page, language};
     const RobotStudy& s = m.study;
-    page.heading(w.t("Repeatability of robot {} (ISO 9283)", m.returns.robot_id));
+    page.heading(w.t("Repeatability of robot {} (ISO 9283)", m.returns.robot_id), level);
     w.source(m.source, m.utc);
     Rows rows = w.head();
     w.index(rows, s.seen == 6 ? w.t("RP in space (mm)") : w.t("RP in space, partly assumed (mm)"), s.rp_mm,
@@ -169,9 +169,9 @@ void add_chapter(report::Page& page, Language language, const MeasuredRobot& m) 
     page.table(counts);
 }
 
-void add_chapter(report::Page& page, Language language, const MeasuredTrigger& m) {
+void add_chapter(report::Page& page, Language language, const MeasuredTrigger& m, int level) {
     const ChapterWriter w{page, language};
-    page.heading(w.t("Trigger: latency and jitter at spot {}", m.passes.spot_id));
+    page.heading(w.t("Trigger: latency and jitter at spot {}", m.passes.spot_id), level);
     w.source(m.source, m.utc);
     if (!m.study) {
         page.verdict(w.t("not seen"), report::Tone::alarm, m.unseen.in(language));

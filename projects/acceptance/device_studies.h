@@ -19,7 +19,7 @@ namespace seamwright {
 nlohmann::json robot_study_json(const MeasuredRobot& measured);
 nlohmann::json trigger_study_json(const MeasuredTrigger& measured);
 
-void add_chapter(report::Page& page, Language language, const MeasuredRobot& measured);
-void add_chapter(report::Page& page, Language language, const MeasuredTrigger& measured);
+void add_chapter(report::Page& page, Language language, const MeasuredRobot& measured, int level = 2);
+void add_chapter(report::Page& page, Language language, const MeasuredTrigger& measured, int level = 2);
 
 }  // namespace seamwright

@@ -281,13 +281,18 @@ Expected<MeasuredRobot> measure_robot(Station& station, const MeasureRobotOption
         return tl::unexpected(kept.error());
     measured->utc = utc_now();
     Project project = station.project();
-    setup_of(project, measured->returns.robot_id)->arrival_covariance = measured->arrival_covariance;
+    apply(*measured, project);
     if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
     return measured;
 }
 
+void apply(const MeasuredRobot& measured, Project& project) {
+    if (RobotSetup* robot = setup_of(project, measured.returns.robot_id))
+        robot->arrival_covariance = measured.arrival_covariance;
+}
+
 Expected<std::optional<MeasuredRobot>> stored_robot_study(const ProjectFile& file,
-                                                          const std::string& robot_id) {
+                                                          const std::string& robot_id, const Project* now) {
     auto evidence = file.evidence();
     if (!evidence) return tl::unexpected(evidence.error());
     for (auto e = evidence->rbegin(); e != evidence->rend(); ++e) {
@@ -298,7 +303,7 @@ Expected<std::optional<MeasuredRobot>> stored_robot_study(const ProjectFile& fil
         auto measured = judged(*returns, *setup, file.path().filename().string());
         if (!measured) return tl::unexpected(measured.error());
         measured->utc = e->utc;
-        auto project = file.load();
+        auto project = now ? Expected<Project>(*now) : file.load();
         if (!project) return tl::unexpected(project.error());
         const RobotSetup* robot = find_robot(*project, returns->robot_id);
         if (!robot || robot->identity.serial != measured->source.robot_serial)

@@ -45,9 +45,14 @@ Matrix6 arrival_covariance_of(const RobotStudy& study);
 // check() that concern motion, a device, cancelled, the file.
 Expected<MeasuredRobot> measure_robot(Station& station, const MeasureRobotOptions& options);
 
-// The newest stored study of a robot (empty: of the project's only one, or the newest of all). nullopt: none.
+// What it finds becomes the project's.
+void apply(const MeasuredRobot& measured, Project& project);
+
+// The newest stored study of a robot (empty: of the project's only one, or the newest of all), compared with the
+// project as it is `now` (nullptr: as it is saved). nullopt: none.
 Expected<std::optional<MeasuredRobot>> stored_robot_study(const ProjectFile& file,
-                                                          const std::string& robot_id);
+                                                          const std::string& robot_id,
+                                                          const Project* now = nullptr);
 
 // Sets back what the newest study of the robot replaced, which becomes the project's again. Error: none is stored.
 Expected<void> undo_robot_study(Station& station, const std::string& robot_id);

@@ -222,12 +222,17 @@ RobotSetup* robot_setup(Project& project, const std::string& id) {
     return nullptr;
 }
 
-Expected<void> set_trigger(Station& station, const std::string& robot_id, double latency_ms,
-                           const std::map<std::string, double>& jitter_mm) {
-    Project project = station.project();
+void set_trigger(Project& project, const std::string& robot_id, double latency_ms,
+                 const std::map<std::string, double>& jitter_mm) {
     if (RobotSetup* robot = robot_setup(project, robot_id)) robot->trigger_latency_ms = latency_ms;
     for (Spot& s : project.spots)
         if (const auto at = jitter_mm.find(s.id); at != jitter_mm.end()) s.jitter_mm = at->second;
+}
+
+Expected<void> set_trigger(Station& station, const std::string& robot_id, double latency_ms,
+                           const std::map<std::string, double>& jitter_mm) {
+    Project project = station.project();
+    set_trigger(project, robot_id, latency_ms, jitter_mm);
     return station.edit(project);
 }
 
@@ -318,7 +323,15 @@ Expected<MeasuredTrigger> measure_trigger(Station& station, const MeasureTrigger
     return measured;
 }
 
-Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile& file) {
+void apply(const MeasuredTrigger& measured, Project& project) {
+    const Spot* spot = find_spot(project, measured.passes.spot_id);
+    if (!spot || !measured.study) return;
+    const std::string robot_id = spot->robot_id;
+    set_trigger(project, robot_id, measured.study->latency_ms, measured.jitter_mm);
+}
+
+Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile& file,
+                                                              const Project* project_now) {
     auto evidence = file.evidence();
     if (!evidence) return tl::unexpected(evidence.error());
     for (auto e = evidence->rbegin(); e != evidence->rend(); ++e) {
@@ -331,7 +344,7 @@ Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile&
         measured.utc = e->utc;
         if (auto judged = judge_passes(measured, *setup, file.path().filename().string()); !judged)
             return tl::unexpected(judged.error());
-        auto project = file.load();
+        auto project = project_now ? Expected<Project>(*project_now) : file.load();
         if (!project) return tl::unexpected(project.error());
         StudySource now;
         if (const Spot* spot = find_spot(*project, passes->spot_id)) name_devices(now, *project, *spot);

@@ -56,8 +56,12 @@ Expected<ProgramRequest> trigger_program(const Project& project, const MeasureTr
 // motion, the feature found in fewer than half of the passes, a device, cancelled, the file.
 Expected<MeasuredTrigger> measure_trigger(Station& station, const MeasureTriggerOptions& options);
 
-// The newest stored study. nullopt: none.
-Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile& file);
+// What it finds becomes the project's; nothing where the pass did not see its travel.
+void apply(const MeasuredTrigger& measured, Project& project);
+
+// The newest stored study, compared with the project as it is `now` (nullptr: as it is saved). nullopt: none.
+Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile& file,
+                                                              const Project* now = nullptr);
 
 // Sets back what the newest study replaced. Error: none is stored.
 Expected<void> undo_trigger_study(Station& station);

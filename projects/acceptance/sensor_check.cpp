@@ -317,11 +317,11 @@ json sensor_check_json(const SensorCheck& c) {
             {"verdict", to_string(c.study.verdict)}};
 }
 
-void add_chapter(report::Page& page, Language language, const SensorCheck& c) {
+void add_chapter(report::Page& page, Language language, const SensorCheck& c, int level) {
     const auto t = [&]<class... A>(const char* english, const A&... arguments) {
         return Text::chosen(english, arguments...).in(language);
     };
-    page.heading(t("Sensor against certified artefacts"));
+    page.heading(t("Sensor against certified artefacts"), level);
     page.verdict(name_of(c.study.verdict).in(language), tone_of(c.study.verdict),
                  c.study.verdict == AcceptanceVerdict::too_little_data
                      ? t("no largest permitted error is given: the values are stated, not judged")

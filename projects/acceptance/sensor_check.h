@@ -35,6 +35,6 @@ Expected<SensorCheck> sensor_check(const nlohmann::json& data, const std::string
 
 // {"spheres":[..],"planes":[..],"distances":[..],"verdict"}
 nlohmann::json sensor_check_json(const SensorCheck& check);
-void add_chapter(report::Page& page, Language language, const SensorCheck& check);
+void add_chapter(report::Page& page, Language language, const SensorCheck& check, int level = 2);
 
 }  // namespace seamwright

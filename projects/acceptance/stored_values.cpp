@@ -141,13 +141,20 @@ void name_devices(StudySource& source, const Project& setup, const Spot& spot) {
 }
 
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id) {
-    auto project = file.load();
+    const auto project = file.load();
     if (!project) return tl::unexpected(project.error());
-    if (project->regions.empty()) return input_error("the project has no region", file.path().string());
-    if (region_id.empty() && project->regions.size() > 1)
-        return usage_error(Text("the project has {} regions", project->regions.size()), file.path().string(),
-                           "name one with --region");
-    const std::string id = region_id.empty() ? project->regions.front().id : region_id;
+    return stored_values(file, *project, region_id);
+}
+
+Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
+                                    const std::string& region_id) {
+    if (project.regions.empty()) return input_error("the project has no region", file.path().string());
+    std::string ids;
+    for (const Region& r : project.regions) ids += (ids.empty() ? "" : ", ") + r.id;
+    if (region_id.empty() && project.regions.size() > 1)
+        return usage_error(Text("the project has {} regions", project.regions.size()), file.path().string(),
+                           Text("name one with --region: {}", ids));
+    const std::string id = region_id.empty() ? project.regions.front().id : region_id;
     auto summaries = file.runs();
     if (!summaries) return tl::unexpected(summaries.error());
     auto evidence = file.evidence();
@@ -199,6 +206,11 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
         r.found = record->correction->displacement.workobject_from_movedworkobject;
         used.push_back(std::move(r));
     }
+    const bool known_region = std::any_of(project.regions.begin(), project.regions.end(),
+                                          [&](const Region& r) { return r.id == id; });
+    if (used.empty() && !known_region)
+        return usage_error(Text("there is no region \"{}\"", id), file.path().string(),
+                           Text("there are: {}", ids));
     if (used.empty())
         return input_error(
             Text("no stored run holds a correction of region \"{}\" that the gate let pass", id),
@@ -255,7 +267,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& 
     source.file = file.path().filename().string();
     source.measurand =
         Text("region {}, spot {}, {}", id, worst->spot_id, worst->normal ? Text("normal") : Text("binormal"));
-    source.part_name = project->part.name;
+    source.part_name = project.part.name;
     source.runs = static_cast<int>(used.size());
     if (const Spot* spot = find_spot(*setup, worst->spot_id)) name_devices(source, *setup, *spot);
     if (refused > 0)

@@ -33,6 +33,9 @@ struct StoredStudy {
 // `region` may be empty where the project has one. Error (usage, input): an unknown region, several and none
 // named, no usable run; (file): the file.
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region);
+// The same of a project that is not saved yet.
+Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
+                                    const std::string& region);
 
 // What is predicted before anything was measured, of the worst of the region's path points and directions; EV of
 // parts that lie as taught. Error (input): no calibrated spot, under-determined.

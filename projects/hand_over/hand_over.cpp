@@ -285,6 +285,7 @@ Expected<report::Page> hand_over_report(const ProjectFile& file, const Project& 
     known_shift_chapter(w);
     limits_chapter(w);
     headless_chapter(w);
+    if (auto written = acceptance_chapter(w, file); !written) return tl::unexpected(written.error());
     if (auto written = panels_chapter(w, file); !written) return tl::unexpected(written.error());
     if (auto written = events_chapter(w, file); !written) return tl::unexpected(written.error());
     page.heading(w.t("Hand-over"));

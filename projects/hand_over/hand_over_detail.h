@@ -1,5 +1,6 @@
 #pragma once
-// Shared by the chapters of the hand-over report (hand_over.cpp, hand_over_panel.cpp, hand_over_proof.cpp).
+// Shared by the chapters of the hand-over report (hand_over.cpp, hand_over_acceptance.cpp, hand_over_panel.cpp,
+// hand_over_proof.cpp).
 
 #include <cmath>
 
@@ -43,6 +44,8 @@ void regions_chapter(HandOverWriter& w);
 void zero_shift_chapter(HandOverWriter& w);
 void known_shift_chapter(HandOverWriter& w);
 void headless_chapter(HandOverWriter& w);
+// The acceptance of each region's measuring process, as its own report has it. Error: the file.
+Expected<void> acceptance_chapter(HandOverWriter& w, const ProjectFile& file);
 // Panel jobs as taught, and each one's last panel. Error: the file.
 Expected<void> panels_chapter(HandOverWriter& w, const ProjectFile& file);
 

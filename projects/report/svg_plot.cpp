@@ -74,7 +74,7 @@ void draw_axes(std::string& out, const Plot& plot, const Frame& f) {
 void draw_series(std::string& out, const Series& s, const Frame& f, double bar_offset, double bar_width) {
     auto it = std::back_inserter(out);
     const std::size_t n = std::min(s.x.size(), s.y.size());
-    if (s.mark == Mark::line || s.mark == Mark::dashed) {
+    if (s.mark == Mark::line || s.mark == Mark::dashed || s.mark == Mark::area) {
         bool pen_down = false;
         std::string path;
         for (std::size_t i = 0; i < n; ++i) {
@@ -84,6 +84,12 @@ void draw_series(std::string& out, const Series& s, const Frame& f, double bar_o
             }
             path += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', f.px(s.x[i]), f.py(s.y[i]));
             pen_down = true;
+        }
+        if (s.mark == Mark::area) {
+            fmt::format_to(it,
+                           "<path d='{0}' fill='{1}' fill-opacity='0.5' stroke='{1}' stroke-width='0.8'/>",
+                           path, s.colour);
+            return;
         }
         fmt::format_to(it, "<path d='{}' fill='none' stroke='{}' stroke-width='1.6'{}/>", path, s.colour,
                        s.mark == Mark::dashed ? " stroke-dasharray='6 4'" : "");

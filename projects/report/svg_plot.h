@@ -17,7 +17,7 @@ inline constexpr const char* kGrey = "#6B7280";
 inline constexpr const char* kPurple = "#CC79A7";
 }  // namespace colour
 
-enum class Mark { line, dashed, dots, crosses, bars };
+enum class Mark { line, dashed, dots, crosses, bars, area };  // area: a line filled down to 0
 
 struct Series {
     std::string name;

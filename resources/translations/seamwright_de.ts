@@ -55,6 +55,18 @@
         <source>stale</source>
         <translation>veraltet</translation>
     </message>
+    <message>
+        <source>the studies that a customer asks for before the release</source>
+        <translation>die Untersuchungen, die ein Kunde vor der Freigabe verlangt</translation>
+    </message>
+    <message>
+        <source>Accept</source>
+        <translation>Abnehmen</translation>
+    </message>
+    <message>
+        <source>on request</source>
+        <translation>auf Verlangen</translation>
+    </message>
 </context>
 <context>
     <name>DeskCommand</name>
@@ -659,12 +671,446 @@
         <translation>Ordner für das Demoprojekt</translation>
     </message>
     <message>
-        <source>step to show, 1 to 7</source>
-        <translation>anzuzeigender Schritt, 1 bis 7</translation>
-    </message>
-    <message>
         <source>writes a picture of the window after 3 s and ends</source>
         <translation>schreibt nach 3 s ein Bild des Fensters und endet</translation>
+    </message>
+    <message>
+        <source>step to show, 1 to 8</source>
+        <translation>gezeigter Schritt, 1 bis 8</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::AcceptPage</name>
+    <message>
+        <source>Is the measuring process good enough for the tolerance? Each study of the release, as AIAG MSA, VDA 5 and ISO 22514-7 ask for it, of the bead&apos;s deviation across its path.</source>
+        <translation>Ist der Messprozess gut genug für die Toleranz? Jede Untersuchung der Freigabe, wie AIAG MSA, VDA 5 und ISO 22514-7 sie verlangen, an der Abweichung der Raupe quer zu ihrer Bahn.</translation>
+    </message>
+    <message>
+        <source>Put in part %1, time %2</source>
+        <translation>Teil %1 einlegen, zum %2. Mal</translation>
+    </message>
+    <message>
+        <source>Region</source>
+        <translation>Korrekturbereich</translation>
+    </message>
+    <message>
+        <source>The region whose measuring process is studied</source>
+        <translation>Der Korrekturbereich, dessen Messprozess untersucht wird</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>Weiter</translation>
+    </message>
+    <message>
+        <source>What comes next in the acceptance</source>
+        <translation>Was in der Abnahme als Nächstes kommt</translation>
+    </message>
+    <message>
+        <source>It stands</source>
+        <translation>Es liegt</translation>
+    </message>
+    <message>
+        <source>Measure this part</source>
+        <translation>Dieses Teil messen</translation>
+    </message>
+    <message>
+        <source>Later</source>
+        <translation>Später</translation>
+    </message>
+    <message>
+        <source>The study waits; it goes on from here another time</source>
+        <translation>Die Untersuchung wartet und geht ein andermal von hier weiter</translation>
+    </message>
+    <message>
+        <source>Studies</source>
+        <translation>Untersuchungen</translation>
+    </message>
+    <message>
+        <source>Study</source>
+        <translation>Untersuchung</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Stand</translation>
+    </message>
+    <message>
+        <source>Verdict</source>
+        <translation>Urteil</translation>
+    </message>
+    <message>
+        <source>Every study, how far it is and what came of it</source>
+        <translation>Jede Untersuchung, wie weit sie ist und was sie ergab</translation>
+    </message>
+    <message>
+        <source>Runs</source>
+        <translation>Läufe</translation>
+    </message>
+    <message>
+        <source>How often each part is measured, each time it is put in</source>
+        <translation>Wie oft jedes Teil je Einlegen gemessen wird</translation>
+    </message>
+    <message>
+        <source>Put in</source>
+        <translation>Einlegen</translation>
+    </message>
+    <message>
+        <source>How often each part is put in</source>
+        <translation>Wie oft jedes Teil eingelegt wird</translation>
+    </message>
+    <message>
+        <source>Parts</source>
+        <translation>Teile</translation>
+    </message>
+    <message>
+        <source>Names of the parts, separated by commas, in their order</source>
+        <translation>Namen der Teile, durch Kommas getrennt, in ihrer Reihenfolge</translation>
+    </message>
+    <message>
+        <source> deg</source>
+        <translation> °</translation>
+    </message>
+    <message>
+        <source>Travel turned by</source>
+        <translation>Fahrt gedreht um</translation>
+    </message>
+    <message>
+        <source>From the sensor&apos;s Y towards its X, so that the pass crosses the contour; the way must be free</source>
+        <translation>Von Y des Sensors zu seinem X hin, damit die Durchfahrt die Kontur kreuzt; der Weg muss frei sein</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>Messen</translation>
+    </message>
+    <message>
+        <source>Measures; nothing is written to the robot</source>
+        <translation>Misst; dem Roboter wird nichts geschrieben</translation>
+    </message>
+    <message>
+        <source>Begin anew</source>
+        <translation>Neu beginnen</translation>
+    </message>
+    <message>
+        <source>Measures the whole study again, whatever was measured; the old runs stay</source>
+        <translation>Misst die ganze Untersuchung noch einmal, was immer gemessen wurde; die alten Läufe bleiben</translation>
+    </message>
+    <message>
+        <source>In the charts</source>
+        <translation>In den Diagrammen</translation>
+    </message>
+    <message>
+        <source>Run chart, and histogram with the tolerance, in the charts beside</source>
+        <translation>Werteverlauf und Histogramm mit der Toleranz in den Diagrammen daneben</translation>
+    </message>
+    <message>
+        <source>Requirements</source>
+        <translation>Forderungen</translation>
+    </message>
+    <message>
+        <source>The customer&apos;s. They are kept in the project, and no run depends on them.</source>
+        <translation>Die des Kunden. Sie stehen im Projekt, und kein Lauf hängt von ihnen ab.</translation>
+    </message>
+    <message>
+        <source>Tolerance T</source>
+        <translation>Toleranz T</translation>
+    </message>
+    <message>
+        <source>Middle of the tolerance</source>
+        <translation>Mitte der Toleranz</translation>
+    </message>
+    <message>
+        <source>Share of T in Cg</source>
+        <translation>Anteil von T in Cg</translation>
+    </message>
+    <message>
+        <source>Sigmas in Cg</source>
+        <translation>Sigmas in Cg</translation>
+    </message>
+    <message>
+        <source>Cg, at least</source>
+        <translation>Cg, mindestens</translation>
+    </message>
+    <message>
+        <source>Cgk, at least</source>
+        <translation>Cgk, mindestens</translation>
+    </message>
+    <message>
+        <source>%GRR accepted</source>
+        <translation>%GRR, angenommen bis</translation>
+    </message>
+    <message>
+        <source>%GRR refused beyond</source>
+        <translation>%GRR, abgelehnt über</translation>
+    </message>
+    <message>
+        <source>ndc, at least</source>
+        <translation>ndc, mindestens</translation>
+    </message>
+    <message>
+        <source>Q system, at most</source>
+        <translation>Q System, höchstens</translation>
+    </message>
+    <message>
+        <source>Q process, at most</source>
+        <translation>Q Prozess, höchstens</translation>
+    </message>
+    <message>
+        <source>Cg = %1 T / (%2 s)</source>
+        <translation>Cg = %1 T / (%2 s)</translation>
+    </message>
+    <message>
+        <source>another, as above</source>
+        <translation>eine andere, wie oben</translation>
+    </message>
+    <message>
+        <source>Variant of Cg</source>
+        <translation>Art von Cg</translation>
+    </message>
+    <message>
+        <source>Share of the tolerance and sigmas as the company asks for</source>
+        <translation>Anteil der Toleranz und Sigmas, wie das Unternehmen sie verlangt</translation>
+    </message>
+    <message>
+        <source>Kept offsets</source>
+        <translation>Aufbewahrte Offsets</translation>
+    </message>
+    <message>
+        <source>An offset against a better instrument acts on every run of the region from the moment it is switched on, and every run says so. Undo takes the switch back.</source>
+        <translation>Ein Offset gegen ein besseres Messmittel wirkt auf jeden Lauf des Korrekturbereichs, sobald er eingeschaltet ist, und jeder Lauf sagt es. Rückgängig nimmt das Schalten zurück.</translation>
+    </message>
+    <message>
+        <source>Version</source>
+        <translation>Fassung</translation>
+    </message>
+    <message>
+        <source>X Y Z mm</source>
+        <translation>X Y Z mm</translation>
+    </message>
+    <message>
+        <source>From</source>
+        <translation>Woher</translation>
+    </message>
+    <message>
+        <source>Offsets kept of correlations, and which one acts</source>
+        <translation>Offsets aus Korrelationen und welcher wirkt</translation>
+    </message>
+    <message>
+        <source>Keep the offset found</source>
+        <translation>Gefundenen Offset aufbewahren</translation>
+    </message>
+    <message>
+        <source>The correlation&apos;s offset as a new version; it does not act yet</source>
+        <translation>Der Offset der Korrelation als neue Fassung; er wirkt noch nicht</translation>
+    </message>
+    <message>
+        <source>Kept as version %1; it does not act yet</source>
+        <translation>Als Fassung %1 aufbewahrt; er wirkt noch nicht</translation>
+    </message>
+    <message>
+        <source>Let it act</source>
+        <translation>Wirken lassen</translation>
+    </message>
+    <message>
+        <source>This version acts on every run from here on</source>
+        <translation>Diese Fassung wirkt von nun an auf jeden Lauf</translation>
+    </message>
+    <message>
+        <source>None acts</source>
+        <translation>Keiner wirkt</translation>
+    </message>
+    <message>
+        <source>No offset acts from here on</source>
+        <translation>Von nun an wirkt kein Offset</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation>Bericht</translation>
+    </message>
+    <message>
+        <source>English</source>
+        <translation>Englisch</translation>
+    </message>
+    <message>
+        <source>German</source>
+        <translation>Deutsch</translation>
+    </message>
+    <message>
+        <source>Language</source>
+        <translation>Sprache</translation>
+    </message>
+    <message>
+        <source>Of the report</source>
+        <translation>Des Berichts</translation>
+    </message>
+    <message>
+        <source>Report...</source>
+        <translation>Bericht ...</translation>
+    </message>
+    <message>
+        <source>PDF or HTML, with lines to sign</source>
+        <translation>PDF oder HTML, mit Zeilen zum Unterschreiben</translation>
+    </message>
+    <message>
+        <source>Q-DAS...</source>
+        <translation>Q-DAS ...</translation>
+    </message>
+    <message>
+        <source>The values as Q-DAS ASCII (.dfq)</source>
+        <translation>Die Werte als Q-DAS ASCII (.dfq)</translation>
+    </message>
+    <message>
+        <source>The artefact&apos;s certificate and points</source>
+        <translation>Schein und Punkte des Normals</translation>
+    </message>
+    <message>
+        <source>Parts measured by the other instrument</source>
+        <translation>Teile, vom anderen Messmittel gemessen</translation>
+    </message>
+    <message>
+        <source>JSON (*.json)</source>
+        <translation>JSON (*.json)</translation>
+    </message>
+    <message>
+        <source>CSV (*.csv)</source>
+        <translation>CSV (*.csv)</translation>
+    </message>
+    <message>
+        <source>Acceptance report</source>
+        <translation>Abnahmebericht</translation>
+    </message>
+    <message>
+        <source>PDF (*.pdf);;HTML (*.html)</source>
+        <translation>PDF (*.pdf);;HTML (*.html)</translation>
+    </message>
+    <message>
+        <source>The report is in %1</source>
+        <translation>Der Bericht steht in %1</translation>
+    </message>
+    <message>
+        <source>Values as Q-DAS</source>
+        <translation>Werte als Q-DAS</translation>
+    </message>
+    <message>
+        <source>Q-DAS (*.dfq)</source>
+        <translation>Q-DAS (*.dfq)</translation>
+    </message>
+    <message>
+        <source>The values are in %1</source>
+        <translation>Die Werte stehen in %1</translation>
+    </message>
+    <message>
+        <source>Tolerance T %1 mm, %2 to %3 mm</source>
+        <translation>Toleranz T %1 mm, %2 bis %3 mm</translation>
+    </message>
+    <message>
+        <source>The tolerance is not stated yet</source>
+        <translation>Die Toleranz ist noch nicht angegeben</translation>
+    </message>
+    <message>
+        <source>%1, simulated</source>
+        <translation>%1, simuliert</translation>
+    </message>
+    <message>
+        <source>looking at the stored runs</source>
+        <translation>die gespeicherten Läufe werden angesehen</translation>
+    </message>
+    <message>
+        <source>Next: state the tolerance</source>
+        <translation>Weiter: die Toleranz angeben</translation>
+    </message>
+    <message>
+        <source>Next: %1, %2</source>
+        <translation>Weiter: %1, %2</translation>
+    </message>
+    <message>
+        <source>Next: write the report...</source>
+        <translation>Weiter: den Bericht schreiben ...</translation>
+    </message>
+    <message>
+        <source>done</source>
+        <translation>fertig</translation>
+    </message>
+    <message>
+        <source>not begun</source>
+        <translation>nicht begonnen</translation>
+    </message>
+    <message>
+        <source>%1 of %2 runs</source>
+        <translation>%1 von %2 Läufen</translation>
+    </message>
+    <message>
+        <source>begun</source>
+        <translation>begonnen</translation>
+    </message>
+    <message>
+        <source>measure</source>
+        <translation>messen</translation>
+    </message>
+    <message>
+        <source>import JSON...</source>
+        <translation>JSON einlesen ...</translation>
+    </message>
+    <message>
+        <source>import CSV...</source>
+        <translation>CSV einlesen ...</translation>
+    </message>
+    <message>
+        <source>go to Prove</source>
+        <translation>zum Nachweis</translation>
+    </message>
+    <message>
+        <source>go on with run %1 of %2</source>
+        <translation>weiter mit Lauf %1 von %2</translation>
+    </message>
+    <message>
+        <source>measure %1 runs</source>
+        <translation>%1 Läufe messen</translation>
+    </message>
+    <message>
+        <source>Forecast and measurement</source>
+        <translation>Vorhersage und Messung</translation>
+    </message>
+    <message>
+        <source>&lt;p&gt;&lt;b&gt;Forecast&lt;/b&gt;: Cg %1, %GRR %2&lt;/p&gt;</source>
+        <translation>&lt;p&gt;&lt;b&gt;Vorhersage&lt;/b&gt;: Cg %1, %GRR %2&lt;/p&gt;</translation>
+    </message>
+    <message>
+        <source>acts</source>
+        <translation>wirkt</translation>
+    </message>
+    <message>
+        <source>off</source>
+        <translation>aus</translation>
+    </message>
+    <message>
+        <source>value</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>mean</source>
+        <translation>Mittel</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1: %2</translation>
+    </message>
+</context>
+<context>
+    <name>seamwright::AcceptanceDesk</name>
+    <message>
+        <source>Take the robot&apos;s repeatability</source>
+        <translation>Wiederholgenauigkeit des Roboters übernehmen</translation>
+    </message>
+    <message>
+        <source>Take the trigger&apos;s latency and jitter</source>
+        <translation>Latenz und Jitter des Triggers übernehmen</translation>
+    </message>
+    <message>
+        <source>the kept offsets</source>
+        <translation>aufbewahrte Offsets</translation>
+    </message>
+    <message>
+        <source>the acting offset</source>
+        <translation>wirkender Offset</translation>
     </message>
 </context>
 <context>
@@ -3961,6 +4407,34 @@ ausgelassen</translation>
     <message>
         <source>The sensor did not take the setting.</source>
         <translation>Der Sensor nahm die Einstellung nicht an.</translation>
+    </message>
+    <message>
+        <source>Study</source>
+        <translation>Untersuchung</translation>
+    </message>
+    <message>
+        <source>The part was not put in.</source>
+        <translation>Das Teil wurde nicht eingelegt.</translation>
+    </message>
+    <message>
+        <source>The study was not measured.</source>
+        <translation>Die Untersuchung wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>Robot&apos;s repeatability</source>
+        <translation>Wiederholgenauigkeit des Roboters</translation>
+    </message>
+    <message>
+        <source>The robot was not measured.</source>
+        <translation>Der Roboter wurde nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>Latency and jitter of the trigger</source>
+        <translation>Latenz und Jitter des Triggers</translation>
+    </message>
+    <message>
+        <source>The trigger was not measured.</source>
+        <translation>Der Trigger wurde nicht gemessen.</translation>
     </message>
 </context>
 <context>

@@ -11,6 +11,7 @@
 namespace seamwright {
 
 struct Histogram::Impl {
+    bool of_process = true;
     PlotCanvas* canvas = nullptr;
     QLabel* title = nullptr;
     QString name, unit;
@@ -40,9 +41,9 @@ void Histogram::Impl::rebuild() {
     text += "   " + Histogram::tr("n %1   mean %2   s %3 %4")
                         .arg(shown.count)
                         .arg(number(shown.mean), number(shown.standard_deviation), unit);
-    if (shown.cp) text += "   " + Histogram::tr("Cp %1").arg(*shown.cp, 0, 'f', 2);
-    if (shown.cpk) text += "   " + Histogram::tr("Cpk %1").arg(*shown.cpk, 0, 'f', 2);
-    if (shown.cpk && shown.count < 50) text += " " + Histogram::tr("(few values)");
+    if (of_process && shown.cp) text += "   " + Histogram::tr("Cp %1").arg(*shown.cp, 0, 'f', 2);
+    if (of_process && shown.cpk) text += "   " + Histogram::tr("Cpk %1").arg(*shown.cpk, 0, 'f', 2);
+    if (of_process && shown.cpk && shown.count < 50) text += " " + Histogram::tr("(few values)");
     title->setText(text);
 
     const std::size_t n = sorted.size();
@@ -114,7 +115,8 @@ Histogram::Histogram(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
 Histogram::~Histogram() = default;
 
 void Histogram::set_data(const QString& title, const QString& unit, const std::vector<double>& values,
-                         const TrendLimits& limits) {
+                         const TrendLimits& limits, bool of_process) {
+    impl_->of_process = of_process;
     impl_->name = title;
     impl_->unit = unit;
     impl_->values = values;

@@ -28,9 +28,10 @@ class Histogram : public QWidget {
   public:
     explicit Histogram(QWidget* parent = nullptr);
     ~Histogram() override;
-    // Classes: Freedman-Diaconis width, 5 to 60 of them.
+    // Classes: Freedman-Diaconis width, 5 to 60 of them. `of_process` false: the values are no process's, and neither
+    // Cp nor Cpk is said.
     void set_data(const QString& title, const QString& unit, const std::vector<double>& values,
-                  const TrendLimits& limits);
+                  const TrendLimits& limits, bool of_process = true);
     const Capability& shown() const;
     QSize sizeHint() const override { return {360, 220}; }
     QSize minimumSizeHint() const override { return {200, 140}; }

@@ -544,6 +544,22 @@ Expected<void> Desk::set_requirement(const std::string& field, double value) {
     return {};
 }
 
+Expected<void> Desk::edit_acceptance(const AcceptanceRequirements& after) {
+    if (after == project_.requirements.acceptance) return {};
+    if (auto valid = validate_fields(after); !valid) return valid;
+    Requirements all = project_.requirements;
+    all.acceptance = after;
+    push(std::make_unique<CmdRequirementsEdit>(editor(), project_.requirements, all));
+    return {};
+}
+
+Expected<void> Desk::edit_project(const std::function<void(Project&)>& change, const QString& text) {
+    Project after = project_;
+    change(after);
+    push(std::make_unique<CmdProjectReplace>(editor(), project_, std::move(after), text));
+    return {};
+}
+
 Expected<std::vector<MovedSpot>> Desk::reteach(const Exchange& exchange) {
     auto retaught = after_exchange(project_, exchange);
     if (!retaught) return tl::unexpected(retaught.error());
@@ -656,7 +672,7 @@ Expected<void> Desk::delete_run(std::int64_t number) {
     return deleted;
 }
 
-void Desk::note(EventKind kind, const std::string& subject, const std::string& text) {
+void Desk::note(EventKind kind, const std::string& subject, const Text& text) {
     if (!file_) return;
     if (auto id = file_->append_event({0, now_utc(), 0, kind, subject, text}); !id)
         emit trouble(shown_error(id.error()));

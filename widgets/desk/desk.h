@@ -75,6 +75,10 @@ class Desk : public QObject {
     Expected<void> import_part(const std::filesystem::path& mesh, const std::string& unit);
     Expected<void> rename_project(const std::string& name);
     Expected<void> set_requirement(const std::string& field, double value);
+    // What the acceptance asks for.
+    Expected<void> edit_acceptance(const AcceptanceRequirements& after);
+    // Whatever `change` does to the project, one step of undo.
+    Expected<void> edit_project(const std::function<void(Project&)>& change, const QString& text);
     // After an exchange of sensor or robot, see projects/reuse/reteach.h; one step of undo. Returns how far
     // spots moved.
     Expected<std::vector<MovedSpot>> reteach(const Exchange& exchange);
@@ -87,7 +91,7 @@ class Desk : public QObject {
     // --- what else is known
     const StationState& station() const { return *state_; }
     const std::vector<CheckItem>& checks() const { return checks_; }
-    const std::array<StepState, 7>& steps() const { return steps_; }
+    const StepStates& steps() const { return steps_; }
     const Facts& facts() const { return facts_; }
     Language language() const { return language_; }
     // Keeps what was proven with the project as it stands on the screen.
@@ -98,7 +102,7 @@ class Desk : public QObject {
     Expected<void> delete_run(std::int64_t number);
     const ProjectFile& file() const { return *file_; }
     void set_language(Language language);  // of the checklist
-    void note(EventKind kind, const std::string& subject, const std::string& text);
+    void note(EventKind kind, const std::string& subject, const Text& text);
 
   signals:
     void opened();           // another project, or none
@@ -138,7 +142,7 @@ class Desk : public QObject {
     std::shared_ptr<const StationState> state_ = std::make_shared<const StationState>();
     Facts facts_;  // evidence: of this file
     std::vector<CheckItem> checks_;
-    std::array<StepState, 7> steps_;
+    StepStates steps_;
     Language language_ = Language::english;
     bool restored_ = false, was_modified_ = false;
 };

@@ -148,15 +148,7 @@ void StationWorker::measure(const std::string& part_id, bool push, bool keep_ima
         options.progress = progress_sink();
         if (push)
             options.confirm_push = [&](const RunRecord& judged) {
-                {
-                    const std::lock_guard lock(mutex_);
-                    if (cancelled.stop_requested()) return false;
-                    push_answer_.reset();
-                }
-                emit confirm_push(std::make_shared<const RunRecord>(judged));
-                std::unique_lock lock(mutex_);
-                wake_.wait(lock, [&] { return push_answer_.has_value(); });
-                return *push_answer_;
+                return ask(cancelled, [&] { emit confirm_push(std::make_shared<const RunRecord>(judged)); });
             };
         run_one(station, options);
     });
@@ -189,15 +181,8 @@ void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid) {
         options.cancel = cancelled;
         options.progress = progress_sink();
         options.place = [&](const ShiftTest& test, const Pose& shift) {
-            {
-                const std::lock_guard lock(mutex_);
-                if (cancelled.stop_requested()) return false;
-                push_answer_.reset();
-            }
-            emit place_part(QString::fromStdString(shift_name(test, naming)), shift);
-            std::unique_lock lock(mutex_);
-            wake_.wait(lock, [&] { return push_answer_.has_value(); });
-            return *push_answer_;
+            return ask(cancelled,
+                       [&] { emit place_part(QString::fromStdString(shift_name(test, naming)), shift); });
         };
         auto proof = prove_known_shift(station, options);
         attach_feed(station);

@@ -16,6 +16,9 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
+#include "projects/acceptance/live_study.h"
+#include "projects/acceptance/measure_robot.h"
+#include "projects/acceptance/measure_trigger.h"
 #include "projects/calibrate/session/shot.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
@@ -67,6 +70,12 @@ class StationWorker : public QObject {
     void zero_shift(int runs);
     // by_hand: place_part() asks before each displacement, answer_push() answers.
     void known_shift(ShiftBy by, const ShiftGrid& grid);
+    // Goes on with what was begun (projects/acceptance/live_study.h). place_study_part() asks before each part,
+    // answer_push() answers; on a simulated cell the simulation puts them in.
+    void measure_study(const LiveStudyOptions& options);
+    // Measured, not kept: robot_studied(), trigger_studied() bring them.
+    void measure_robot(const MeasureRobotOptions& options);
+    void measure_trigger(const MeasureTriggerOptions& options);
     void teach(const Spot& draft, int repeats);
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
@@ -86,6 +95,10 @@ class StationWorker : public QObject {
     void measured(std::shared_ptr<const seamwright::RunRecord> run);
     void confirm_push(std::shared_ptr<const seamwright::RunRecord> judged);
     void place_part(QString name, seamwright::Pose base_from_shiftedbase);
+    void place_study_part(QString part, int rehang);
+    void studied(std::shared_ptr<const seamwright::StudyProgress> progress);
+    void robot_studied(std::shared_ptr<const seamwright::MeasuredRobot> robot);
+    void trigger_studied(std::shared_ptr<const seamwright::MeasuredTrigger> trigger);
     void proven();  // an evidence has come into the file
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
@@ -100,6 +113,8 @@ class StationWorker : public QObject {
     void stop_live();
     void publish(Station& station);
     void attach_feed(Station& station);
+    // Asks a person and waits: true for yes; false for no and when cancelled.
+    bool ask(const std::stop_token& cancelled, const std::function<void()>& question);
     void run_one(Station& station, const RunOptions& options);
     std::function<void(const RunProgress&)> progress_sink();
 

@@ -38,8 +38,8 @@ Step page_of(CheckStep item) {
     return item == CheckStep::limits ? Step::regions : step_of(item);
 }
 
-std::array<StepState, 7> steps_of(const std::vector<CheckItem>& items, Language language) {
-    std::array<StepState, 7> steps;
+StepStates steps_of(const std::vector<CheckItem>& items, Language language) {
+    StepStates steps;
     bool found = false;
     QString before;
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -55,11 +55,17 @@ std::array<StepState, 7> steps_of(const std::vector<CheckItem>& items, Language 
         state.stale = open && open->status == CheckStatus::stale;
         if (state.step == Step::run)
             state.why = Checklist::tr("measure the next part");
+        else if (state.step == Step::accept)
+            state.why = Checklist::tr("the studies that a customer asks for before the release");
         else if (open)
             state.why = QString::fromStdString(open->why.in(language));
         else
             state.why = there_is.join("; ");
-        if (state.step != Step::run && !open) {
+        if (state.step == Step::accept && !found) {
+            state.status = StepStatus::offered;
+        } else if (state.step == Step::accept) {
+            state.why = Checklist::tr("first: %1").arg(before);
+        } else if (state.step != Step::run && !open) {
             state.status = StepStatus::done;
         } else if (!found) {
             state.status = StepStatus::next;
@@ -73,7 +79,7 @@ std::array<StepState, 7> steps_of(const std::vector<CheckItem>& items, Language 
     return steps;
 }
 
-Step next_step(const std::array<StepState, 7>& steps) {
+Step next_step(const StepStates& steps) {
     for (const StepState& s : steps)
         if (s.status == StepStatus::next) return s.step;
     return Step::run;
@@ -93,6 +99,8 @@ QString step_name(Step step) {
             return Checklist::tr("Regions");
         case Step::prove:
             return Checklist::tr("Prove");
+        case Step::accept:
+            return Checklist::tr("Accept");
         case Step::run:
             return Checklist::tr("Run");
     }
@@ -109,6 +117,8 @@ QString status_word(StepStatus status) {
             return Checklist::tr("waits");
         case StepStatus::stale:
             return Checklist::tr("stale");
+        case StepStatus::offered:
+            return Checklist::tr("on request");
     }
     return {};
 }

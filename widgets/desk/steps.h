@@ -1,7 +1,8 @@
 #pragma once
-// The seven pages of the window as steps of the way: each gathers the items of the commissioning checklist
+// The pages of the window as steps of the way: each gathers the items of the commissioning checklist
 // (projects/proof/checklist.h) that are worked on there. Exactly one step is next: the first with an open
-// item, and measuring when there is none.
+// item, and measuring when there is none. The acceptance is on the way where a customer asks for it: it is offered
+// and never next.
 
 #include <QString>
 #include <array>
@@ -11,15 +12,17 @@
 
 namespace seamwright {
 
-enum class Step { cell, calibrate, teach, align, regions, prove, run };
-inline constexpr std::array<Step, 7> kSteps{Step::cell,    Step::calibrate, Step::teach, Step::align,
-                                            Step::regions, Step::prove,     Step::run};
+enum class Step { cell, calibrate, teach, align, regions, prove, accept, run };
+inline constexpr std::array<Step, 8> kSteps{Step::cell,    Step::calibrate, Step::teach,  Step::align,
+                                            Step::regions, Step::prove,     Step::accept, Step::run};
+using StepStates = std::array<struct StepState, kSteps.size()>;
 
 enum class StepStatus {
     done,
     next,     // the one to do
     blocked,  // waits for an earlier step
-    stale     // was done, but what it rests on was changed since; waits its turn
+    stale,    // was done, but what it rests on was changed since; waits its turn
+    offered   // may be done now, and need not
 };
 
 struct StepState {
@@ -33,8 +36,8 @@ struct StepState {
 Step step_of(CheckStep item);
 Step page_of(CheckStep item);
 
-std::array<StepState, 7> steps_of(const std::vector<CheckItem>& items, Language language);
-Step next_step(const std::array<StepState, 7>& steps);
+StepStates steps_of(const std::vector<CheckItem>& items, Language language);
+Step next_step(const StepStates& steps);
 
 // "Align": the step's name.
 QString step_name(Step step);

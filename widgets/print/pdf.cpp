@@ -12,6 +12,7 @@
 #include <QTextOption>
 #include <QTextTable>
 #include <clocale>
+#include <cmath>
 #include <memory>
 
 #include "devices/exchange/files.h"
@@ -29,6 +30,10 @@ constexpr int kResolution = 300;
 constexpr double kMarginMm = 18, kFooterMm = 8;
 constexpr double kTextPt = 9, kTablePt = 8, kWideTablePt = 6.5;
 constexpr double kNoHeightPt = 1;
+constexpr int kShortTable = 12;  // rows
+constexpr double kFirstThird = 0.33, kLastThird = 0.66;
+constexpr int kNear = 3;         // sentences between a heading and its table
+constexpr int kKeptBlocks = 14;  // a sentence and two rows of six columns
 constexpr int kWideColumns = 8;
 constexpr double kWidePlotPx = 600;  // wider drawings get a line of their own
 
@@ -96,8 +101,8 @@ class Builder {
         const double pt = level <= 1 ? 17 : level == 2 ? 13 : 10.5;
         QTextBlockFormat format;
         format.setHeadingLevel(level);
-        format.setTopMargin(points(level <= 1 ? 0 : level == 2 ? 16 : 9));
-        format.setBottomMargin(points(4));
+        format.setTopMargin(points(level <= 1 ? 0 : level == 2 ? 24 : 16));
+        format.setBottomMargin(points(6));
         begin(format);
         cursor_.insertText(text, characters(pt, QFont::DemiBold));
     }
@@ -128,7 +133,8 @@ class Builder {
     }
 
   private:
-    static double points(double pt) { return pt * kResolution / 72; }
+    // Lengths in formats are Qt's pixels of 96 to the inch, which it scales to the device.
+    static double points(double pt) { return pt * 96 / 72; }
     static QTextCharFormat characters(double pt, int weight = QFont::Normal) {
         QTextCharFormat format;
         format.setFontFamilies({"DejaVu Sans"});
@@ -139,8 +145,8 @@ class Builder {
     }
     static QTextBlockFormat plain() {
         QTextBlockFormat format;
-        format.setTopMargin(points(3));
-        format.setBottomMargin(points(3));
+        format.setTopMargin(points(4));
+        format.setBottomMargin(points(4));
         return format;
     }
     void begin(const QTextBlockFormat& format) {
@@ -175,9 +181,9 @@ class Builder {
         QTextTableFormat format;
         format.setHeaderRowCount(1);
         format.setBorder(0);
-        format.setCellPadding(points(2));
+        format.setCellPadding(points(3.5));
         format.setCellSpacing(0);
-        format.setTopMargin(points(3));
+        format.setTopMargin(points(6));
         format.setBottomMargin(0);  // at the foot of a page it would repeat the table's head on the next
         format.setBorderCollapse(true);
         QTextTable* t = insert_table(rows, columns, format);
@@ -187,7 +193,7 @@ class Builder {
                 QTextTableCell cell = t->cellAt(r, c);
                 QTextTableCellFormat look = cell.format().toTableCellFormat();
                 look.setBottomBorderStyle(QTextFrameFormat::BorderStyle_Solid);
-                look.setBottomBorder(points(r == 0 ? 0.9 : 0.3));
+                look.setBottomBorder(points(r == 0 ? 1.2 : 0.5));
                 look.setBottomBorderBrush(QColor(r == 0 ? "#6b7280" : "#c3c8ce"));
                 cell.setFormat(look);
                 QTextCursor in = cell.firstCursorPosition();
@@ -228,13 +234,13 @@ class Builder {
         format.setColumnWidthConstraints(QList<QTextLength>(
             static_cast<qsizetype>(fields.size()),
             QTextLength(QTextLength::PercentageLength, 100.0 / static_cast<double>(fields.size()))));
-        format.setTopMargin(points(26));
+        format.setTopMargin(points(52));
         QTextTable* t = insert_table(1, static_cast<int>(fields.size()), format);
         for (int c = 0; c < t->columns(); ++c) {
             QTextTableCell cell = t->cellAt(0, c);
             QTextTableCellFormat look = cell.format().toTableCellFormat();
             look.setTopBorderStyle(QTextFrameFormat::BorderStyle_Solid);
-            look.setTopBorder(points(0.6));
+            look.setTopBorder(points(0.8));
             look.setTopBorderBrush(QColor("#1e2226"));
             look.setTopPadding(points(3));
             cell.setFormat(look);
@@ -249,25 +255,69 @@ class Builder {
     bool empty_ = true;  // the last block waits for its content
 };
 
-// A heading never stands alone at the foot of a page: it goes to the next one.
-void keep_headings(QTextDocument& document, double page_px) {
-    const auto* layout = document.documentLayout();
-    const auto page_of = [&](const QTextBlock& b) {
-        return static_cast<int>(layout->blockBoundingRect(b).top() / page_px);
-    };
-    for (QTextBlock b = document.begin(); b.isValid(); b = b.next()) {
-        if (b.blockFormat().headingLevel() == 0) continue;
-        // What stands below it: the next block that has something to show.
-        QTextBlock next = b.next();
-        while (next.isValid() && (next.length() <= 1 || next.blockFormat().headingLevel() > 0))
-            next = next.next();
-        if (!next.isValid() || page_of(next) == page_of(b)) continue;
+// Where pages end. A heading never stands alone at the foot of a page: it goes to the next one, and so it does with little
+// more than a sentence or a table's head, from a page's last third. A short table stands on one page, with its heading
+// where that is near.
+class PageBreaks {
+  public:
+    PageBreaks(QTextDocument& document, double page_px)
+        : document_(document), layout_(*document.documentLayout()), page_px_(page_px) {}
+    // From the first block on: a break moves only what comes behind it.
+    void set() {
+        for (QTextBlock b = document_.begin(); b.isValid(); b = b.next()) {
+            QTextTable* table = QTextCursor(b).currentTable();
+            if (b.blockFormat().headingLevel() > 0)
+                heading(b);
+            else if (table && table->cellAt(0, 0).firstCursorPosition().block() == b && parted(*table))
+                before(*table);
+        }
+    }
+
+  private:
+    int page_of(const QTextBlock& b) const {
+        return static_cast<int>(layout_.blockBoundingRect(b).top() / page_px_);
+    }
+    bool parted(QTextTable& table) const {
+        return table.rows() <= kShortTable &&
+               page_of(table.cellAt(0, 0).firstCursorPosition().block()) !=
+                   page_of(table.cellAt(table.rows() - 1, 0).firstCursorPosition().block());
+    }
+    static void before(QTextTable& table) {
+        QTextTableFormat format = table.format();
+        format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+        table.setFormat(format);
+    }
+    void heading(QTextBlock b) const {
+        const double at = std::fmod(layout_.blockBoundingRect(b).top(), page_px_) / page_px_;
+        const int wanted = at > kLastThird ? kKeptBlocks : 1;
+        bool away = false;
+        int shown = 0;
+        // The next blocks that have something to show, up to a drawing.
+        for (QTextBlock next = b.next(); next.isValid() && shown < kKeptBlocks; next = next.next()) {
+            if (next.length() <= 1) continue;
+            if (next.blockFormat().headingLevel() > 0) {
+                if (shown > 0) break;
+                continue;
+            }
+            if (QTextTable* table = QTextCursor(next).currentTable()) {
+                away = away || (at > kFirstThird && shown <= kNear && parted(*table));
+                if (shown >= wanted) break;
+            }
+            ++shown;
+            away = away || (shown <= wanted && page_of(next) != page_of(b));
+            if (next.text().contains(QChar::ObjectReplacementCharacter)) break;
+        }
+        if (!away) return;
         QTextCursor cursor(b);
         QTextBlockFormat format = b.blockFormat();
         format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
         cursor.setBlockFormat(format);
     }
-}
+
+    QTextDocument& document_;
+    const QAbstractTextDocumentLayout& layout_;
+    double page_px_;
+};
 
 void ensure_application() {
     if (QCoreApplication::instance()) return;
@@ -314,7 +364,7 @@ Expected<void> write_pdf(const report::Page& page, const std::filesystem::path& 
             builder.heading(q(page.title()), 1);
             for (const Block& b : page.blocks()) builder.add(b);
         }
-        keep_headings(document, height);
+        PageBreaks(document, height).set();
 
         QPainter painter(&writer);
         const int pages = document.pageCount();

@@ -6,12 +6,12 @@
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
-#include "devices/quality/qdas.h"
 #include "devices/quality/study_csv.h"
 #include "projects/acceptance/acceptance_json.h"
 #include "projects/acceptance/acceptance_page.h"
 #include "projects/acceptance/device_studies.h"
 #include "projects/acceptance/sensor_check.h"
+#include "projects/acceptance/stored_acceptance.h"
 #include "projects/acceptance/stored_values.h"
 #include "projects/station/fields.h"
 #include "widgets/print/pdf.h"
@@ -83,27 +83,6 @@ Expected<StoredStudy> values_of(const AcceptanceArguments& a) {
         add_references(study.values, *table);
     }
     return study;
-}
-
-QdasStudy qdas_of(const Acceptance& a) {
-    const StudySource& s = a.source;
-    QdasStudy q;
-    q.part_number = s.part_name.empty() ? s.file : s.part_name;
-    q.part_name = s.part_name;
-    q.machine_number = s.robot_serial;
-    q.machine_name = s.robot;
-    q.gauge_number = s.sensor_serial;
-    q.gauge_name = s.sensor;
-    q.characteristic_number = "1";
-    q.characteristic_name = s.measurand.empty() ? "deviation across the bead"
-                                                : fmt::format("deviation across the bead, {}{}",
-                                                              s.measurand.in(Language::english),
-                                                              s.simulated ? " (simulated)" : "");
-    q.nominal_mm = a.settings.nominal_mm;
-    q.lower_mm = q.nominal_mm - a.settings.tolerance_mm / 2;
-    q.upper_mm = q.nominal_mm + a.settings.tolerance_mm / 2;
-    q.values = a.values.all();
-    return q;
 }
 
 // Those of the robot and its trigger that the file holds.
@@ -299,7 +278,7 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
         if (auto kept = keep_offset_of(a.file, *acceptance, answer); !kept)
             return tl::unexpected(kept.error());
     if (!a.dfq.empty()) {
-        if (auto done = write_text_file(a.dfq, dfq_text(qdas_of(*acceptance))); !done)
+        if (auto done = write_text_file(a.dfq, dfq_text(qdas_study(*acceptance))); !done)
             return tl::unexpected(done.error());
         answer.json["dfq"] = a.dfq;
         answer.text += a.dfq + " written\n";
@@ -399,6 +378,11 @@ void add_acceptance(CommandLine& line) {
     command
         ->add_flag("--unattended", a->live.unattended,
                    "With --runs: the parts are changed without a word from here")
+        ->needs(a->runs);
+    command
+        ->add_flag(
+            "--simulated-parts", a->live.simulated_parts,
+            "With --runs on a simulated cell: the simulation puts the parts in, each where its name draws it")
         ->needs(a->runs);
     auto* keep =
         command->add_flag("--keep-offset", a->keep_offset,

@@ -90,7 +90,7 @@ class Accessibility : public testing::Test {
     }
     void measure_once() {
         Person me(window());
-        me.step(7);
+        me.step(8);
         me.click("measure");
         ASSERT_TRUE(me.wait([&] { return studio->desk().runs()->size() == 1; }));
         ASSERT_TRUE(me.wait([&] { return !studio->desk().worker().busy(); }));

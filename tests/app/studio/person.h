@@ -130,7 +130,7 @@ class Person {
     }
     void step(int n) const {
         const auto rails = window_.findChildren<QPushButton*>("rail");
-        ASSERT_EQ(rails.size(), 7);
+        ASSERT_EQ(rails.size(), static_cast<qsizetype>(kSteps.size()));
         QTest::mouseClick(rails[n - 1], Qt::LeftButton);
         QApplication::processEvents();
     }

@@ -95,7 +95,7 @@ class Worker {
             me.step(1);
             me.click("place_part");
         } else if (chosen == 8) {
-            me.step(7);
+            me.step(8);
             if (!desk.worker().busy()) {
                 me.click("measure");
                 ASSERT_TRUE(me.wait([&] { return desk.worker().busy(); }));

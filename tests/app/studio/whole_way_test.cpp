@@ -413,7 +413,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
         me.step(1);
         me.click("place_part");
         ASSERT_TRUE(me.wait([&] { return desk.station().connected && !desk.worker().busy(); }));
-        me.step(7);
+        me.step(8);
         me.write(me.find<QLineEdit>("part_id"), "CAR-0815");
         const auto asked = [&] {
             auto* confirm = window.findChild<QWidget*>("confirm");
@@ -454,7 +454,7 @@ TEST_F(WholeWay, FromAnEmptyProjectToPushedFrames) {
     Person me(again.window());
     ASSERT_TRUE(me.wait([&] { return again.desk().station().connected; }));
     QTest::qWait(300);
-    me.step(7);
+    me.step(8);
     auto* history = me.find<QTableWidget>("history");
     ASSERT_TRUE(history);
     int row = -1;

@@ -11,13 +11,13 @@ StepPage::StepPage(Desk& desk, const Views& views, Step step, const QString& pur
     : desk_(desk), views_(views), step_(step), box_(new QVBoxLayout(this)) {
     box_->setContentsMargins(12, 10, 12, 12);
     box_->setSpacing(8);
-    auto* title = new QLabel(step_name(step));
-    QFont font = title->font();
+    title_ = new QLabel(step_name(step));
+    QFont font = title_->font();
     font.setPointSizeF(font.pointSizeF() * 1.4);
     font.setBold(true);
-    title->setFont(font);
-    title->setObjectName("page_title");
-    box_->addWidget(title);
+    title_->setFont(font);
+    title_->setObjectName("page_title");
+    box_->addWidget(title_);
     box_->addWidget(make_text(purpose));
     state_ = make_text({});
     state_->setObjectName("page_state");
@@ -26,6 +26,16 @@ StepPage::StepPage(Desk& desk, const Views& views, Step step, const QString& pur
     connect(&desk_, &Desk::checklist_changed, this, &StepPage::later);
     connect(&desk_, &Desk::runs_changed, this, &StepPage::later);
     connect(&desk_.selection(), &Selection::changed, this, &StepPage::later);
+}
+
+QVBoxLayout& StepPage::make_head() {
+    head_ = new QWidget;
+    auto* box = new QVBoxLayout(head_);
+    box->setContentsMargins(12, 10, 12, 6);
+    box->setSpacing(6);
+    box->addWidget(title_);
+    box->addWidget(state_);
+    return *box;
 }
 
 void StepPage::showEvent(QShowEvent* event) {

@@ -18,6 +18,8 @@ class StepPage : public QWidget {
   public:
     StepPage(Desk& desk, const Views& views, Step step, const QString& purpose);
     Step step() const { return step_; }
+    // What stays above the page while it scrolls; nullptr: nothing.
+    QWidget* head() const { return head_; }
 
   signals:
     void run_shown(std::shared_ptr<const seamwright::RunRecord> run);  // a page shows this run: for the scene
@@ -28,6 +30,8 @@ class StepPage : public QWidget {
     virtual void entered() {}
     void showEvent(QShowEvent* event) override;
     QVBoxLayout& box() { return *box_; }
+    // Makes the head, with title and state in it; for what a page adds there.
+    QVBoxLayout& make_head();
     // Says an edit's Error in the window's message line; true when there was none.
     bool done(const Expected<void>& result);
     // Start, cancel, and how far it is; shown while the worker is busy.
@@ -40,7 +44,8 @@ class StepPage : public QWidget {
     void later();
     Step step_;
     QVBoxLayout* box_;
-    QLabel* state_;
+    QLabel *title_, *state_;
+    QWidget* head_ = nullptr;
     bool due_ = false;
 };
 

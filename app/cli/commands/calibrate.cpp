@@ -1,6 +1,7 @@
 // seamwright calibrate METHOD DATA: every calibration, from files.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -34,6 +35,12 @@ Text where(const CalibrationMethod& method) {
     return Text("calibrate {}", method.id);
 }
 
+// Frame by frame, for a person who waits; nothing into a log.
+void show_progress(int done, int total) {
+    if (isatty(STDERR_FILENO))
+        fmt::print(stderr, "\rimage {} of {}{}", done, total, done == total ? "\n" : "");
+}
+
 // What is solved: data, and who of them takes no part.
 struct Given {
     json data;
@@ -47,7 +54,7 @@ Expected<Given> read_data(const CalibrationMethod& method, const CalibrateArgume
     if (images) {
         if (a.board.empty() || !(a.pitch_mm > 0))
             return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm", where(method));
-        auto data = method.data_of_images({a.data, a.board, a.pitch_mm, a.pattern, a.exclude});
+        auto data = method.data_of_images({a.data, a.board, a.pitch_mm, a.pattern, a.exclude, show_progress});
         if (!data) return tl::unexpected(data.error());
         given = {std::move(*data), {}};
     } else {

@@ -120,7 +120,7 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
         if (auto set = expose(cell, sensor, 0, kPlateExposureUs); !set) return set;
         auto image = look(cell, sensor, robot, plate_views()[i], base_from_flange);
         if (!image) return tl::unexpected(image.error());
-        observation.board = find_board((*image)->image, board);
+        observation.board = find_board((*image)->image, board).board;
         observation.base_from_flange = base_from_flange;
         if (auto set = expose(cell, sensor, 1, exposure_us); !set) return set;
         image = snap(sensor);  // the robot stands still between the two

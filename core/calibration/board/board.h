@@ -1,9 +1,12 @@
 #pragma once
 // Finding a calibration plate in a grey image: chessboard corners, circle grids (all dots alike, or one
 // bigger dot in a corner as orientation mark), ChArUco. Pixel centres lie on whole numbers. Made for
-// under-exposed plates beside a saturated laser stripe: contrast is stretched on what is not saturated, the
-// stripe and its halo are painted over, and several detectors and scales are tried, the first complete board
-// wins.
+// under-exposed plates beside a saturated laser stripe.
+//
+// A chessboard's corners are saddle points strung to a lattice at several scales (board_checker.h), measured in
+// the picture as taken by a model of two crossing edges; those under a stripe, a glint or a thing in front of the
+// board are left out. For the others contrast is stretched on what is not saturated and the stripe and its halo
+// are painted over.
 
 #include <Eigen/Core>
 #include <optional>
@@ -12,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/profile/stripe_image.h"
+#include "core/text.h"
 
 namespace seamwright {
 
@@ -43,14 +47,31 @@ struct FoundBoard {
     std::string detector;  // which attempt found it
 };
 
-// `thorough` is for images that nobody can take again: a chessboard that is cut off may cost a minute.
-// `quick` is for a person who stands at the camera and can move the board or the lamp: a moment when the
-// board is there, a second or two at 1.3 megapixels when it is not.
-enum class BoardEffort { thorough, quick };
+// Inner corners of a chessboard.
+struct BoardCount {
+    int columns = 0, rows = 0;
+};
 
-// nullopt: no complete board (ChArUco: fewer than 6 corners). Never throws; damaged images are "not found".
-std::optional<FoundBoard> find_board(const StripeImage& image, const BoardSpec& spec,
-                                     BoardEffort effort = BoardEffort::thorough);
+// What a picture shows in place of the chessboard asked for.
+struct BoardMiss {
+    // A whole board of another size is seen; its longer side as in the spec.
+    std::optional<BoardCount> counted;
+    bool several = false;  // not taken: more than one board of that size is seen
+};
+struct BoardSearch {
+    std::optional<FoundBoard> board;
+    BoardMiss miss;
+};
+
+// No board: none of that size, or not enough of it. A chessboard is taken with 45 % of its corners (7 at least)
+// where each of its sides is seen to end, so that another size is out of the question; at the picture's rim one of
+// two opposite sides may be cut off behind its last corners. Circle grids: all dots but a few beside the
+// orientation mark; ChArUco: 6 corners. Never throws; damaged images are "not found".
+BoardSearch find_board(const StripeImage& image, const BoardSpec& spec);
+
+// Why there is no board, and what to do about it.
+Text why_missed(const BoardSpec& spec, const BoardMiss& miss);
+Text cure_of(const BoardMiss& miss);
 
 // The same board with its indices turned by `quarter_turns` quarter turns (only half turns when columns !=
 // rows): the alternative reading of a symmetric board.

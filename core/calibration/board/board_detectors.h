@@ -1,5 +1,5 @@
 #pragma once
-// The detectors behind find_board, on OpenCV images. Private to core/calibration/board.
+// The detectors behind find_board for circle grids and ChArUco, on OpenCV images. Private to core/calibration/board.
 
 #include <opencv2/core.hpp>
 #include <optional>

@@ -89,7 +89,7 @@ class Solver {
             if (excluded)
                 f.note = "excluded";
             else if (!f.board_found)
-                f.note = "no board found";
+                f.note = o.miss.counted || o.miss.several ? why_missed(spec_, o.miss) : "no board found";
             else if (const int twin = same_as_earlier(*o.board); twin >= 0)
                 f.note = Text("the same image as {}", observations_[static_cast<std::size_t>(twin)].id);
             else {
@@ -99,10 +99,14 @@ class Solver {
             }
             result_.frames.push_back(std::move(f));
         }
-        if (result_.boards_found == 0)
+        if (result_.boards_found == 0) {
+            for (const auto& o : observations_)
+                if (o.miss.counted || o.miss.several)
+                    return input_error(why_missed(spec_, o.miss), "board", cure_of(o.miss));
             return input_error(Text("no board of {}x{} points was found in any of {} images", spec_.columns,
                                     spec_.rows, observations_.size()),
                                "board", "check the number of inner corners, the light and the focus");
+        }
         if (count() < 3)
             return input_error(
                 Text("only {} different frames show the board, at least 3 are needed", count()), "images",

@@ -37,6 +37,7 @@ struct StripeObservation {
     std::string id;
     int width = 0, height = 0;
     std::optional<FoundBoard> board;
+    BoardMiss miss;  // of the picture; nothing of what was stored
     ScanLines scan = ScanLines::rows;
     std::vector<Eigen::Vector2d>
         stripe;  // candidates of all lines, several a line where there are reflections
@@ -45,8 +46,7 @@ struct StripeObservation {
 
 // Finds plate and stripe. Never fails for what is not in the image: then the board is empty or the stripe has
 // no points.
-StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec,
-                          BoardEffort effort = BoardEffort::thorough);
+StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec);
 
 struct StripeCameraOptions {
     std::vector<std::string> exclude;      // frames left out of the solution

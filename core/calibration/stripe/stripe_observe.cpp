@@ -63,14 +63,16 @@ std::vector<Eigen::Vector2d> peaks_of(const StripeImage& image, ScanLines scan, 
 
 }  // namespace
 
-StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec, BoardEffort effort) {
+StripeObservation observe(const StripeFrame& frame, const BoardSpec& spec) {
     StripeObservation out;
     out.id = frame.id;
     out.width = frame.image.width;
     out.height = frame.image.height;
     out.base_from_flange = frame.base_from_flange;
     if (frame.image.empty()) return out;
-    out.board = find_board(frame.image, spec, effort);
+    BoardSearch search = find_board(frame.image, spec);
+    out.board = std::move(search.board);
+    out.miss = search.miss;
     const double threshold = half_level(frame.image);
     if (threshold < 0.02 * frame.image.full_scale()) return out;  // nothing stands out of the background
     // A stripe gives about one peak on each line that crosses it; cut along it, it gives few and wide ones.

@@ -2,6 +2,7 @@
 // Folders of plate images, as the camera and stripe-camera commands read them.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "core/error.h"
 
 namespace seamwright {
+
+// Called after each image of a folder.
+using ReadProgress = std::function<void(int done, int total)>;
 
 // "7x6" -> columns and rows; "chessboard" | "circles" | "charuco" -> pattern.
 Expected<BoardSpec> parse_board(const std::string& counts, double pitch_mm, const std::string& pattern);

@@ -121,6 +121,8 @@ Expected<json> camera_images(const BoardImages& images) {
     if (!files) return tl::unexpected(files.error());
     CameraData data;
     json missed = json::array();
+    BoardMiss miss;
+    int done = 0;
     for (const auto& path : *files) {
         Frame frame;
         if (auto read = read_image_file(path, frame); !read)
@@ -133,11 +135,16 @@ Expected<json> camera_images(const BoardImages& images) {
             return input_error("the images have different sizes", path.string(),
                                "give images of one camera at one resolution");
         }
-        if (auto found = find_board(frame.image, *spec))
-            data.views.push_back({path.stem().string(), found->object_mm, found->pixel});
+        const BoardSearch search = find_board(frame.image, *spec);
+        if (search.board)
+            data.views.push_back({path.stem().string(), search.board->object_mm, search.board->pixel});
         else
             missed.push_back(path.stem().string());
+        if (search.miss.counted || search.miss.several) miss = search.miss;
+        if (images.progress) images.progress(++done, static_cast<int>(files->size()));
     }
+    if (data.views.empty() && (miss.counted || miss.several))
+        return input_error(why_missed(*spec, miss), images.folder, cure_of(miss));
     if (data.views.empty())
         return input_error(Text("no board of {} points was found in any of {} images", images.board,
                                 std::to_string(files->size())),

@@ -11,6 +11,7 @@
 
 #include "core/calibration/pose/convention_detective.h"
 #include "core/parameter.h"
+#include "projects/calibrate/input/plate_images.h"
 #include "projects/calibrate/input/pose_lists.h"
 #include "projects/calibrate/methods/solution.h"
 #include "projects/model/project.h"
@@ -66,7 +67,8 @@ struct BoardImages {
     std::string board;  // "7x6"
     double pitch_mm = 0;
     std::string pattern = "chessboard";
-    ExcludedIds exclude;  // names without extension; they are not even read
+    ExcludedIds exclude;         // names without extension; they are not even read
+    ReadProgress progress = {};  // may be empty
 };
 
 // What the conventions of its poses are judged by.

@@ -236,6 +236,8 @@ Expected<json> stripe_folder_data(const BoardImages& images) {
     auto files = plate_images(images.folder, images.exclude);
     if (!files) return tl::unexpected(files.error());
     json frames = json::array();
+    BoardMiss miss;
+    bool found = false;
     for (const auto& path : *files) {
         auto o = read_stripe_frame(path, *spec);
         if (!o) return tl::unexpected(o.error());
@@ -251,7 +253,13 @@ Expected<json> stripe_folder_data(const BoardImages& images) {
                 {"quat_wxyz", {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}}};
         }
         frames.push_back(std::move(frame));
+        found |= o->board.has_value();
+        if (o->miss.counted || o->miss.several) miss = o->miss;
+        if (images.progress)
+            images.progress(static_cast<int>(frames.size()), static_cast<int>(files->size()));
     }
+    if (!found && (miss.counted || miss.several))
+        return input_error(why_missed(*spec, miss), images.folder, cure_of(miss));
     return json{{"board", board_json(*spec)}, {"frames", std::move(frames)}};
 }
 

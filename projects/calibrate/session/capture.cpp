@@ -67,9 +67,8 @@ Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, con
     return json{{"base_from_flange", pose_json(base_from_flange)}, {"profile", std::move(points)}};
 }
 
-Error no_board(const BoardSpec& spec, const Text& where) {
-    return {ErrorKind::input, Text("no complete board of {} x {} corners is seen", spec.columns, spec.rows),
-            where, "bring the whole board into the picture, more light, less gloss, and check its counts"};
+Error no_board(const BoardSpec& spec, const BoardMiss& miss, const Text& where) {
+    return {ErrorKind::input, why_missed(spec, miss), where, cure_of(miss)};
 }
 
 Expected<BoardSpec> board_of(const json& settings) {
@@ -87,16 +86,18 @@ Expected<json> stripe_entry(const json& settings, const SensorSetup& sensor, con
         o.width = stripe.image.width;
         o.height = stripe.image.height;
         o.scan = ScanLines::columns;
-        o.board = find_board(board->image, *spec, BoardEffort::quick);
+        BoardSearch search = find_board(board->image, *spec);
+        o.board = std::move(search.board);
+        o.miss = search.miss;
         StripePeaks peaks;
         auto points = stripe_points(stripe.image, peaks);
         if (!points) return tl::unexpected(points.error());
         o.stripe = std::move(*points);
     } else {
-        o = observe({"", stripe.image, base_from_flange}, *spec, BoardEffort::quick);
+        o = observe({"", stripe.image, base_from_flange}, *spec);
     }
     o.base_from_flange = base_from_flange;
-    if (!o.board) return tl::unexpected(no_board(*spec, Text("sensor {}", sensor.id)));
+    if (!o.board) return tl::unexpected(no_board(*spec, o.miss, Text("sensor {}", sensor.id)));
     return stripe_frame_json(o);
 }
 
@@ -107,19 +108,20 @@ void note_outline(json& entry, const Calibration& base, const FoundBoard& board,
     for (const Eigen::Vector2d& p : outline(board, spec)) entry["outline"].push_back({p.x(), p.y()});
 }
 
-Expected<json> board_entry(const Text& where, const Calibration* base, const std::optional<FoundBoard>& board,
+Expected<json> board_entry(const Text& where, const Calibration* base, const BoardSearch& search,
                            const BoardSpec& spec, const std::optional<Pose>& base_from_flange) {
     if (!base || !base->model)
         return input_error("the camera is not known", where, "calibrate camera and laser plane first");
-    if (!board) return tl::unexpected(no_board(spec, where));
+    if (!search.board) return tl::unexpected(no_board(spec, search.miss, where));
+    const FoundBoard& board = *search.board;
     if (!base_from_flange)
         return input_error("the robot's pose is missing", where,
                            "connect the robot, or put its pose file beside the image");
-    auto target = locate_target(base->model->camera, {"", board->object_mm, board->pixel});
+    auto target = locate_target(base->model->camera, {"", board.object_mm, board.pixel});
     if (!target) return tl::unexpected(target.error());
     json entry{{"base_from_flange", pose_json(*base_from_flange)},
                {"camera_from_target", pose_json(target->camera_from_target)}};
-    note_outline(entry, *base, *board, spec);
+    note_outline(entry, *base, board, spec);
     return entry;
 }
 
@@ -137,9 +139,9 @@ std::array<std::size_t, 4> outer_corners(const FoundBoard& board) {
 }
 
 // Outer corners of the board, on it and in the robot's base.
-Expected<json> plate_entry(const Text& where, const Calibration* base, const std::optional<FoundBoard>& board,
+Expected<json> plate_entry(const Text& where, const Calibration* base, const BoardSearch& search,
                            const BoardSpec& spec, const std::optional<Pose>& base_from_flange) {
-    auto seen = board_entry(where, base, board, spec, base_from_flange);
+    auto seen = board_entry(where, base, search, spec, base_from_flange);
     if (!seen) return seen;
     if (base->flange_from_sensor.isApprox(Pose::Identity()))
         return input_error("where the camera sits on the flange is not known", where,
@@ -148,8 +150,8 @@ Expected<json> plate_entry(const Text& where, const Calibration* base, const std
     const auto camera_from_target = parse_pose((*seen)["camera_from_target"], "camera_from_target");
     const Pose base_from_target = *base_from_flange * flange_from_camera * *camera_from_target;
     json points = json::array();
-    for (const std::size_t i : outer_corners(*board)) {
-        const Eigen::Vector3d on_plate = board->object_mm[i];
+    for (const std::size_t i : outer_corners(*search.board)) {
+        const Eigen::Vector3d on_plate = search.board->object_mm[i];
         const Eigen::Vector3d world = base_from_target * on_plate;
         points.push_back({{"plate", {on_plate.x(), on_plate.y(), on_plate.z()}},
                           {"world", {world.x(), world.y(), world.z()}}});
@@ -159,12 +161,12 @@ Expected<json> plate_entry(const Text& where, const Calibration* base, const std
 
 // One shot: the chain ends on the flange, where it stood when the first sensor was shot.
 Expected<json> chain_entry(json& settings, const Text& where, const Calibration* base,
-                           const std::optional<FoundBoard>& board, const BoardSpec& spec,
+                           const BoardSearch& search, const BoardSpec& spec,
                            const std::optional<Pose>& base_from_flange) {
     if (!settings.contains("world_from_plate"))
         return input_error("where the plate stands is not known", where,
                            "find it with \"Plate in the world\" first, or load the chain");
-    auto seen = board_entry(where, base, board, spec, base_from_flange);
+    auto seen = board_entry(where, base, search, spec, base_from_flange);
     if (!seen) return seen;
     const auto reference = settings.find("reference_from_world");
     if (reference == settings.end()) {
@@ -240,7 +242,7 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
         case CaptureKind::board_chain: {
             auto spec = board_of(settings);
             if (!spec) return tl::unexpected(spec.error());
-            const auto found = find_board((board ? *board : stripe).image, *spec, BoardEffort::quick);
+            const auto found = find_board((board ? *board : stripe).image, *spec);
             entry = method.capture == CaptureKind::board_pose
                         ? board_entry(where, base, found, *spec, base_from_flange)
                     : method.capture == CaptureKind::board_points
@@ -350,7 +352,7 @@ Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json
         if (method.capture == CaptureKind::board_and_stripe) {
             c.entry = stripe_frame_json(*o);
             read.captures.push_back(std::move(c));
-        } else if (auto entry = board_entry(c.id, base, o->board, *spec, o->base_from_flange)) {
+        } else if (auto entry = board_entry(c.id, base, {o->board, o->miss}, *spec, o->base_from_flange)) {
             c.entry = std::move(*entry);
             read.captures.push_back(std::move(c));
         } else {

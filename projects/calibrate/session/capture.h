@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "devices/frame.h"
+#include "projects/calibrate/input/plate_images.h"
 #include "projects/calibrate/session/session.h"
 
 namespace seamwright {
@@ -26,7 +27,6 @@ struct ReadCaptures {
     nlohmann::json settings;
     std::vector<Text> skipped;  // sentences: images without a board
 };
-using ReadProgress = std::function<void(int done, int total)>;
 // A JSON file as the command line takes it, or, for stripe-camera and hand-eye, a folder of images with their
 // pose files. Cancelled = Error whose `what` is kCancelled (projects/station/acquire.h).
 Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const nlohmann::json& settings,

@@ -71,7 +71,7 @@ TEST(BoardOrder, OnlyTurnsThatLookAlikeAreLeftOpen) {
             seen.width = image.cols, seen.height = image.rows;
             seen.row_bytes = static_cast<std::size_t>(image.step);
             const BoardSpec spec{.columns = c.columns, .rows = c.rows, .pitch_mm = 10};
-            const auto board = find_board(seen, spec);
+            const auto board = find_board(seen, spec).board;
             ASSERT_TRUE(board) << c.columns << " x " << c.rows << " turned " << turns;
             EXPECT_EQ(board->symmetry, c.symmetry) << c.columns << " x " << c.rows;
             // One of the readings that are left open is that of the upright print.

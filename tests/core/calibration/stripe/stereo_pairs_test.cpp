@@ -25,7 +25,7 @@ CameraData seen(const char* side) {
         StripeImage view;
         view.pixels = reinterpret_cast<const std::byte*>(image.data);
         view.width = image.cols, view.height = image.rows, view.row_bytes = image.step;
-        const auto board = find_board(view, spec);
+        const auto board = find_board(view, spec).board;
         if (!board) {
             ADD_FAILURE() << "no board found in " << name;
             continue;

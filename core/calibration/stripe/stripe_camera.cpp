@@ -302,7 +302,7 @@ class Solver {
         p.shape = model.shape;
         const auto all = solve_plate_bundle(p, state_);
         std::vector<double> error(count(), std::numeric_limits<double>::infinity());
-        if (!std::isfinite(all.normal.cost)) return error;
+        if (!std::isfinite(all.cost)) return error;
         for (std::size_t k = 0; k < count(); ++k) {
             p.view_used.assign(count(), 1);
             p.view_used[k] = 0;
@@ -460,7 +460,7 @@ class Solver {
             const auto frames = std::count(bundle_.stripe_used.begin(), bundle_.stripe_used.end(), 1);
             const auto best_frames = best ? std::count(best_used_.begin(), best_used_.end(), 1) : 0;
             if (!best || frames > best_frames ||
-                (frames == best_frames && fit->normal.cost < best->normal.cost)) {
+                (frames == best_frames && fit->cost < best->cost)) {
                 best = fit;
                 best_used_ = bundle_.stripe_used;
                 best_on_bow_ = on_bow;
@@ -499,7 +499,7 @@ class Solver {
             CameraPoints bent = data_.views[k];
             for (auto& x : bent.object_mm) x = state_.shape.apply(x);
             f.corner_rms_px = std::sqrt(
-                accumulate_view(state_.intrinsics, f.camera_from_target, bent, {}, nullptr, nullptr) /
+                squares_px2(state_.intrinsics, f.camera_from_target, bent) /
                 static_cast<double>(bent.pixel.size()));
             if (const auto& at = observations_[view_frame_[k]].base_from_flange; has_robot() && at) {
                 const Pose target = *at * *state_.flange_from_camera * f.camera_from_target;

@@ -23,6 +23,17 @@ class NoDifference : public ceres::Manifold {
     bool MinusJacobian(const double*, double*) const override { return false; }
 };
 
+// d quaternion / d rotation vector. Ceres aborts where a manifold has none, so what is no turn has zeros; the solve
+// then refuses the start.
+Eigen::Matrix<double, 4, 3> turn_by_tangent(const double* x) {
+    const Eigen::Vector3d v(x[3], x[4], x[5]);
+    Eigen::Matrix<double, 4, 3> j;
+    j.topRows<3>() = 0.5 * (x[6] * Eigen::Matrix3d::Identity() - skew(v));
+    j.bottomRows<1>() = -0.5 * v.transpose();
+    if (!j.allFinite()) j.setZero();
+    return j;
+}
+
 class PoseManifold final : public NoDifference {
   public:
     int AmbientSize() const override { return 7; }
@@ -38,11 +49,9 @@ class PoseManifold final : public NoDifference {
     }
     bool PlusJacobian(const double* x, double* out) const override {
         Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>> j(out);
-        const Eigen::Vector3d v(x[3], x[4], x[5]);
         j.setZero();
         j.topLeftCorner<3, 3>().setIdentity();
-        j.block<3, 3>(3, 3) = 0.5 * (x[6] * Eigen::Matrix3d::Identity() - skew(v));
-        j.bottomRightCorner<1, 3>() = -0.5 * v.transpose();
+        j.bottomRightCorner<4, 3>() = turn_by_tangent(x);
         return true;
     }
 };
@@ -83,6 +92,7 @@ class PlaneManifold final : public NoDifference {
         Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> j(out);
         j.setZero();
         j.topLeftCorner<3, 2>() = across({x[0], x[1], x[2]});
+        if (!j.allFinite()) j.setZero();
         j(3, 2) = 1;
         return true;
     }
@@ -147,6 +157,10 @@ PoseBlock block_of(const Pose& pose) {
 
 Pose pose_of(const PoseBlock& block) {
     return make_pose(turn_of(block.data()).toRotationMatrix(), block.head<3>());
+}
+
+Eigen::Matrix<double, 3, 4> tangent_by_turn(const double* block) {
+    return 4 * turn_by_tangent(block).transpose();  // its columns are orthogonal, of length 1/2
 }
 
 ceres::Manifold* pose_manifold() {

@@ -40,6 +40,9 @@ Vector3<T> shift_of(const T* block) {
     return {block[0], block[1], block[2]};
 }
 
+// How the tangent of a turn goes with its quaternion, for derivatives by hand: [3, 4].
+Eigen::Matrix<double, 3, 4> tangent_by_turn(const double* block);
+
 // Rotation vector of a unit quaternion (|w| <= pi), with derivatives at no turn too.
 template <class T>
 Vector3<T> rotation_vector(const Eigen::Quaternion<T>& q) {

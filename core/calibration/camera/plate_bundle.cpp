@@ -51,14 +51,14 @@ class Bundle {
         add_camera(fit);
         add_shape(fit);
         if (robot_) {
-            fit.hand_eye_at = add(hand_eye_.data(), 7, pose_manifold(), 6);
-            fit.target_at = add(target_.data(), 7, pose_manifold(), 6);
             hand_eye_ = block_of(*start.flange_from_camera);
             target_ = block_of(*start.base_from_target);
+            fit.hand_eye_at = add(hand_eye_.data(), 7, pose_manifold(), 6);
+            fit.target_at = add(target_.data(), 7, pose_manifold(), 6);
         }
         if (start.plane) {
-            fit.plane_at = add(plane_.data(), 4, plane_manifold(), 3);
             plane_ << start.plane->normal, start.plane->offset_mm;
+            fit.plane_at = add(plane_.data(), 4, plane_manifold(), 3);
         }
         for (std::size_t i = 0; i < data_.views.size(); ++i)
             if (seen.view_used.empty() || seen.view_used[i]) add_view(i);

@@ -95,6 +95,20 @@ TEST(CalibrationProblem, NaNAndFreedomWithoutDataEndInAnAnswerAndInSilence) {
         start.scale = std::numeric_limits<double>::infinity();
         EXPECT_TRUE(std::isinf(solve(start.problem, start.views, 100, 1e-12).cost));
     }
+    for (const double none : {std::numeric_limits<double>::quiet_NaN(), 0.0}) {
+        Pose lost = Pose::Identity();
+        lost.linear().setConstant(none);
+        PoseBlock pose = block_of(lost);
+        Eigen::Vector4d plane = Eigen::Vector4d::Constant(none);
+        double scale = 1;
+        ceres::Problem problem;
+        problem.AddParameterBlock(plane.data(), 4, plane_manifold());
+        problem.AddParameterBlock(pose.data(), 7, pose_manifold());
+        problem.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<Pull, 3, 1, 7>(new Pull{{1, 2, 3}, {4, 5, 6}}), nullptr, &scale,
+            pose.data());
+        solve(problem, {pose.data()}, 100, 1e-12);
+    }
     {
         ceres::Problem nothing;
         EXPECT_FALSE(std::isnan(solve(nothing, {}, 100, 1e-12).cost));

@@ -41,31 +41,23 @@ Expected<BundlePose> bundle_object(const std::vector<PlacedCamera>& cameras,
     }
     if (counted < 3)
         return input_error("fewer than three features were seen", "sights", "give three or more");
-    std::vector<std::vector<camera_costs::Corner>> seen(cameras.size());
+    std::vector<camera_costs::Sights> seen;
+    for (const auto& c : cameras) seen.push_back({intrinsics_of(c.camera), c.camera_from_world, {}});
     for (const auto& s : sights)
         if (s.weight > 0)
-            seen[static_cast<std::size_t>(s.camera)].push_back({s.object_mm, s.pixel, std::sqrt(s.weight)});
-    PoseBlock block = block_of(start);
-    ceres::Problem problem;
-    problem.AddParameterBlock(block.data(), 7, pose_manifold());
-    for (std::size_t i = 0; i < cameras.size(); ++i)
-        if (!seen[i].empty())
-            problem.AddResidualBlock(camera_costs::known_camera(seen[i], intrinsics_of(cameras[i].camera),
-                                                                cameras[i].camera_from_world),
-                                     nullptr, block.data());
-    const Solved solved = solve(problem, {block.data()}, 100, 1e-12);
-    if (!std::isfinite(solved.cost))
-        return input_error("a feature lies behind its camera at the start", "start", "give a better start");
+            seen[static_cast<std::size_t>(s.camera)].corners.push_back(
+                {s.object_mm, s.pixel, std::sqrt(s.weight)});
     BundlePose out;
-    out.world_from_object = pose_of(block);
-    const Matrix6 normal = normal_blocks(problem, {}, {block.data()}).vv.front();
+    out.world_from_object = start;
+    const auto [cost, normal] = camera_costs::solve_pose(std::move(seen), out.world_from_object);
+    if (!std::isfinite(cost))
+        return input_error("a feature lies behind its camera at the start", "start", "give a better start");
     // Directions by the information scaled to unit diagonal, so that mm and rad do not matter.
     const Vector6 scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Matrix6 unit = scale.asDiagonal() * normal * scale.asDiagonal();
     out.determined = symmetric_eigen(unit).values(0) > 1e-9;
-    out.rms_px = std::sqrt(solved.cost / counted);
-    if (out.determined && 2 * counted > 6)
-        out.covariance = solved.cost / (2 * counted - 6) * inverse_matrix(normal);
+    out.rms_px = std::sqrt(cost / counted);
+    if (out.determined && 2 * counted > 6) out.covariance = cost / (2 * counted - 6) * inverse_matrix(normal);
     return out;
 }
 

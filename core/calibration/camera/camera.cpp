@@ -11,6 +11,7 @@
 #include "core/calibration/camera/plate_bundle.h"
 #include "core/calibration/camera/projection.h"
 #include "core/calibration/pose_set.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -182,9 +183,7 @@ int drop_outliers(const CameraData& data, const CameraSolution& solution, double
     for (std::size_t i = 0; i < data.views.size(); ++i)
         for (std::size_t k = 0; k < data.views[i].pixel.size(); ++k)
             if (used[i][k]) size.push_back(residual(i, k));
-    const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-    std::nth_element(size.begin(), middle, size.end());
-    const double limit = std::max(sigmas * *middle / 1.1774, 1e-6);  // median of a Rayleigh distribution
+    const double limit = std::max(sigmas * median(size) / 1.1774, 1e-6);  // median of a Rayleigh distribution
     int dropped = 0;
     for (std::size_t i = 0; i < data.views.size(); ++i) {
         int room = static_cast<int>(data.views[i].pixel.size() / 10);

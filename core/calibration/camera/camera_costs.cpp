@@ -35,7 +35,8 @@ bool possible(const T* k) {
 // Derivatives by hand: automatic ones of 21 numbers made whole camera calibrations three times as long.
 class Corners final : public ceres::CostFunction {
   public:
-    Corners(std::vector<Corner> view, const PlateShape& place) : view_(std::move(view)), place_(place) {
+    Corners(std::vector<Corner> view, const PlateShape& place, const Pose& camera_from_frame)
+        : view_(std::move(view)), place_(place), camera_from_frame_(camera_from_frame) {
         set_num_residuals(2 * static_cast<int>(view_.size()));
         *mutable_parameter_block_sizes() = {9, 5, 7};
     }
@@ -46,7 +47,7 @@ class Corners final : public ceres::CostFunction {
         const Eigen::Vector3d shift = shift_of(pose);
         for (std::size_t i = 0; i < view_.size(); ++i) {
             const Eigen::Vector3d turned = turn * place_.bent(shape, view_[i].object_mm);
-            const Eigen::Vector3d point = turned + shift;
+            const Eigen::Vector3d point = camera_from_frame_ * Eigen::Vector3d(turned + shift);
             if (!miss(k, point, view_[i], residual + 2 * i)) return false;
             if (jacobian) differentiate(k, i, point, turned, turn, pose, jacobian);
         }
@@ -74,6 +75,7 @@ class Corners final : public ceres::CostFunction {
         Eigen::Matrix<double, 2, 3> by_point;
         by_point.leftCols<2>() = w / point.z() * pixel_by_ray(k, x, y);
         by_point.col(2) = -by_point.leftCols<2>() * Eigen::Vector2d(x, y);
+        by_point *= camera_from_frame_.linear();
         if (jacobian[1]) {
             const Eigen::Vector3d& p = view_[i].object_mm;
             const Eigen::Vector2d from = p.head<2>() - place_.middle_mm;
@@ -94,23 +96,7 @@ class Corners final : public ceres::CostFunction {
 
     std::vector<Corner> view_;
     PlateShape place_;
-};
-
-struct KnownCamera {
-    std::vector<Corner> view;
-    Intrinsics k;
-    Pose camera_from_world;
-    template <class T>
-    bool operator()(const T* pose, T* residual) const {
-        const Eigen::Matrix<T, 3, 3> turn = camera_from_world.linear() * turn_of(pose).toRotationMatrix();
-        const Vector3<T> shift =
-            camera_from_world.linear() * shift_of(pose) + camera_from_world.translation();
-        for (const Corner& corner : view) {
-            if (!miss(k.data(), Vector3<T>(turn * corner.object_mm + shift), corner, residual)) return false;
-            residual += 2;
-        }
-        return true;
-    }
+    Pose camera_from_frame_;
 };
 
 struct Robot {
@@ -174,21 +160,32 @@ struct Stripe {
     }
 };
 
-int rows(const std::vector<Corner>& view) {
-    return 2 * static_cast<int>(view.size());
-}
-
 }  // namespace
 
-ceres::CostFunction* corners(std::vector<Corner> view, const PlateShape& place) {
-    return new Corners(std::move(view), place);
+ceres::CostFunction* corners(std::vector<Corner> view, const PlateShape& place,
+                             const Pose& camera_from_frame) {
+    return new Corners(std::move(view), place, camera_from_frame);
 }
 
-ceres::CostFunction* known_camera(std::vector<Corner> view, const Intrinsics& camera,
-                                  const Pose& camera_from_world) {
-    const int count = rows(view);
-    return new ceres::AutoDiffCostFunction<KnownCamera, ceres::DYNAMIC, 7>(
-        new KnownCamera{std::move(view), camera, camera_from_world}, count);
+KnownCamerasFit solve_pose(std::vector<Sights> sights, Pose& world_from_object) {
+    PoseBlock pose = block_of(world_from_object);
+    Shape flat = Shape::Zero();
+    ceres::Problem problem;
+    problem.AddParameterBlock(pose.data(), 7, pose_manifold());
+    problem.AddParameterBlock(flat.data(), 5);
+    problem.SetParameterBlockConstant(flat.data());
+    for (Sights& s : sights) {
+        if (s.corners.empty()) continue;
+        problem.AddParameterBlock(s.camera.data(), 9);
+        problem.SetParameterBlockConstant(s.camera.data());
+        problem.AddResidualBlock(corners(std::move(s.corners), PlateShape{}, s.camera_from_world), nullptr,
+                                 s.camera.data(), flat.data(), pose.data());
+    }
+    KnownCamerasFit fit;
+    fit.cost = solve(problem, {pose.data()}, 100, 1e-12).cost;
+    fit.information = normal_blocks(problem, {}, {pose.data()}).vv.front();
+    world_from_object = pose_of(pose);
+    return fit;
 }
 
 ceres::CostFunction* robot(const Pose& base_from_flange, double sigma_mm, double sigma_rad) {

@@ -22,11 +22,22 @@ struct Corner {
     double weight = 1;  // of the residual, not of its square
 };
 
-// Intrinsics, shape, camera_from_target: weight * (projection - pixel) of every corner of a view.
-ceres::CostFunction* corners(std::vector<Corner> view, const PlateShape& place);
-// world_from_object alone, seen by a known camera that stands at camera_from_world.
-ceres::CostFunction* known_camera(std::vector<Corner> view, const Intrinsics& camera,
-                                  const Pose& camera_from_world);
+// Intrinsics, shape, frame_from_target: weight * (projection - pixel) of every corner of a view, whose camera stands
+// at camera_from_frame.
+ceres::CostFunction* corners(std::vector<Corner> view, const PlateShape& place,
+                             const Pose& camera_from_frame = Pose::Identity());
+
+// Pose of a body under cameras that are known, from where it stands.
+struct Sights {
+    Intrinsics camera;
+    Pose camera_from_world = Pose::Identity();
+    std::vector<Corner> corners;
+};
+struct KnownCamerasFit {
+    double cost = 0;  // weighted sum of squares; infinity when a corner lies behind its camera at the start
+    Matrix6 information = Matrix6::Zero();
+};
+KnownCamerasFit solve_pose(std::vector<Sights> sights, Pose& world_from_object);
 // flange_from_camera, base_from_target, camera_from_target: base_from_flange * X * C against Z, (mm, rad) over
 // their sigmas.
 ceres::CostFunction* robot(const Pose& base_from_flange, double sigma_mm, double sigma_rad);

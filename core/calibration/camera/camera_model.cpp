@@ -109,20 +109,6 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
     return make_pose(rotation, m.col(3) / s / scale - rotation * f.centre);
 }
 
-double refine_pose(const Intrinsics& k, const CameraPoints& view, Pose& pose, Matrix6* information) {
-    std::vector<camera_costs::Corner> corners;
-    for (std::size_t i = 0; i < view.pixel.size(); ++i) corners.push_back({view.object_mm[i], view.pixel[i]});
-    PoseBlock block = block_of(pose);
-    ceres::Problem problem;
-    problem.AddParameterBlock(block.data(), 7, pose_manifold());
-    problem.AddResidualBlock(camera_costs::known_camera(std::move(corners), k, Pose::Identity()), nullptr,
-                             block.data());
-    const Solved solved = solve(problem, {block.data()}, 60, 1e-12);
-    pose = pose_of(block);
-    if (information) *information = normal_blocks(problem, {}, {block.data()}).vv.front();
-    return solved.cost;
-}
-
 // Best of the closed-form pose and its mirror (the two poses of a plate that look alike from afar).
 std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraPoints& view, int width, int height,
                                        Matrix6* information, double* cost) {
@@ -152,12 +138,14 @@ std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraPoints& 
     std::optional<Pose> best;
     double best_cost = kInfinity;
     for (Pose pose : starts) {
-        Matrix6 info;
-        const double c = refine_pose(k, view, pose, &info);
-        if (c < best_cost) {
-            best_cost = c;
+        std::vector<camera_costs::Corner> corners;
+        for (std::size_t i = 0; i < view.pixel.size(); ++i)
+            corners.push_back({view.object_mm[i], view.pixel[i]});
+        const auto fit = camera_costs::solve_pose({{k, Pose::Identity(), std::move(corners)}}, pose);
+        if (fit.cost < best_cost) {
+            best_cost = fit.cost;
             best = pose;
-            if (information) *information = info;
+            if (information) *information = fit.information;
         }
     }
     if (cost) *cost = best_cost;

@@ -13,6 +13,7 @@
 #include "core/calibration/camera/projection.h"
 #include "core/calibration/problem.h"
 #include "core/geometry/decompositions.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -232,13 +233,6 @@ Solution solve_lens(const Lines& lines, const Intrinsics& k, const std::vector<i
     return s;
 }
 
-double lens_median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // Judges every point anew by the lens found so far, and leaves out the worst line that is none. Whether
 // anything has changed.
 bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<PoseResidual>& poses) {
@@ -254,15 +248,15 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
         rms_used.push_back(rms[i]);
     }
     const int fewest = std::max(3, (2 * static_cast<int>(data.lines.size()) + 2) / 3);
-    const double bent = std::max(kBentPx, kBentTimes * lens_median(rms_used));
+    const double bent = std::max(kBentPx, kBentTimes * median(rms_used));
     const auto worst = static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
     if (lines.count() > fewest && rms[worst] > bent) {
         lines.used[worst] = 0;
         poses[worst].note = Text("left out: it stays bent by {:.2f} px, the others by {:.2f} px", rms[worst],
-                                 lens_median(rms_used));
+                                 median(rms_used));
         return true;
     }
-    const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * lens_median(std::move(all)));
+    const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * median(all));
     bool changed = false;
     for (std::size_t i = 0; i < data.lines.size(); ++i) {
         if (!lines.used[i]) continue;
@@ -391,11 +385,9 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         result.corner_sigma_px = std::isfinite(sigma) ? std::max(result.corner_sigma_px, sigma) : kInfinity;
     }
     const char* cure = "take lines in all parts of the image, in two directions, from edge to edge";
-    std::string left_out;
-    for (const PoseResidual& p : poses)
-        if (!p.used && !p.excluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
+    const std::string without = left_out(poses);
     const auto say = [&](const Text& reason) {
-        return left_out.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, left_out);
+        return without.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, without);
     };
     if (lines.count() < 3 || !solved.converged || !(result.corner_sigma_px < 3) ||
         !report.covariance.allFinite()) {

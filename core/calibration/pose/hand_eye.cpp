@@ -10,13 +10,13 @@
 #include "core/calibration/pose/hand_eye_start.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
 using namespace hand_eye;
-using Vector12 = Eigen::Matrix<double, 12, 1>;
 
 constexpr double kUndetermined_mm = 20.0, kUndetermined_rad = 0.05;
 constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
@@ -271,7 +271,6 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     result.degenerate = degenerate_words(robot);
     const Determination known = determination(chain, x, y, scales);
     report.poses.resize(pairs.size());
-    std::string wrong;
     for (size_t i = 0; i < pairs.size(); ++i) {
         auto& pose = report.poses[i];
         pose.id = pairs[i].id;
@@ -281,10 +280,10 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             pose.note = "excluded by the user";
         } else if (!chain.used[i]) {
             pose.note = "contradicts what the other pairs agree on: wrong robot pose or wrong target pose";
-            wrong += (wrong.empty() ? "" : ", ") + pose.id;
         }
     }
-    if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
+    if (const std::string wrong = left_out(report.poses); !wrong.empty())
+        result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
     const double n = static_cast<double>(chain.used_count());
     double squares_t = 0, squares_r = 0;
@@ -329,19 +328,9 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     const Matrix12 covariance = known.covariance * student * student;
     result.covariance_x = covariance.topLeftCorner<6, 6>();
     result.covariance_y = covariance.bottomRightCorner<6, 6>();
-    const auto add = [&report](const std::string& prefix, const Pose& pose) {
-        const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear()) * (180 / kPi);
-        static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
-        for (int k = 0; k < 3; ++k) report.parameters.push_back({prefix + names[k], t[k], "mm", 0});
-        for (int k = 0; k < 3; ++k) report.parameters.push_back({prefix + names[3 + k], w[k], "deg", 0});
-    };
-    add("", x);
-    add("target_", y);
-    Vector12 unit = Vector12::Ones();
-    unit.segment<3>(3).setConstant(180 / kPi);
-    unit.tail<3>().setConstant(180 / kPi);
-    report.covariance = unit.asDiagonal() * covariance * unit.asDiagonal();
-    finish_statistics(report);
+    add_pose(report, x);
+    add_pose(report, y, "target_");
+    state_covariance(report, covariance);
     report.hold_out = verify(chain, x, y, scales);
 
     const double check_mm = std::isnan(report.hold_out.rms_mm) ? result.rms_mm : report.hold_out.rms_mm;

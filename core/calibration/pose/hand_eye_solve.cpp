@@ -8,6 +8,7 @@
 
 #include "core/calibration/problem.h"
 #include "core/geometry/decompositions.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright::hand_eye {
@@ -156,12 +157,6 @@ double pair_square(const Chain& chain, std::size_t i, const Pose& x, const Pose&
 
 void refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int most_iterations) {
     Pairs(chain, x, y, s, k).solve(most_iterations, x, y);
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // Chi-squared with three degrees of freedom has median 2.366.

@@ -45,6 +45,4 @@ struct Determination {
 };
 Determination determination(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales);
 
-double median(std::vector<double> values);
-
 }  // namespace seamwright::hand_eye

@@ -20,22 +20,33 @@ constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact
 constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
 
 // A X C against Y, each over its scale.
-struct PairMiss {
-    Pose a, c;
-    Eigen::Quaterniond turn_a, turn_c;
-    Scales s;
+class PairMiss {
+  public:
+    PairMiss(const Pose& a, const Pose& c, const Scales& s) : a_(a), shift_c_(c.translation()), s_(s) {
+        const Eigen::Quaterniond left(a.linear()), right(c.linear());
+        for (int i = 0; i < 4; ++i)
+            around_.col(i) =
+                (left * Eigen::Quaterniond(Eigen::Vector4d(Eigen::Vector4d::Unit(i))) * right).coeffs();
+    }
     template <class T>
     bool operator()(const T* x, const T* y, T* residual) const {
-        const Vector3<T> in_a = turn_of(x) * Vector3<T>(c.translation().cast<T>()) + shift_of(x);
-        const Vector3<T> mm = a.linear() * in_a + a.translation() - shift_of(y);
-        const Vector3<T> rad = rotation_vector(
-            Eigen::Quaternion<T>(turn_of(y).conjugate() * turn_a.cast<T>() * turn_of(x) * turn_c.cast<T>()));
+        const Vector3<T> in_a = turn_of(x) * Vector3<T>(shift_c_.cast<T>()) + shift_of(x);
+        const Vector3<T> mm = a_.linear() * in_a + a_.translation() - shift_of(y);
+        Eigen::Quaternion<T> turn;
+        turn.coeffs() = around_ * turn_of(x).coeffs();
+        const Vector3<T> rad = rotation_vector(Eigen::Quaternion<T>(turn_of(y).conjugate() * turn));
         for (int i = 0; i < 3; ++i) {
-            residual[i] = mm[i] / s.mm;
-            residual[3 + i] = rad[i] / s.rad;
+            residual[i] = mm[i] * (1 / s_.mm);
+            residual[3 + i] = rad[i] * (1 / s_.rad);
         }
         return true;
     }
+
+  private:
+    Pose a_;
+    Eigen::Vector3d shift_c_;
+    Eigen::Matrix4d around_;  // the quaternion of a x c by that of x
+    Scales s_;
 };
 
 // Residuals and derivatives, six rows a used pair, over their scales.
@@ -52,9 +63,8 @@ class Pairs {
         problem_.AddParameterBlock(y_.data(), 7, pose_manifold());
         for (std::size_t i = 0; i < chain.size(); ++i)
             if (chain.used[i])
-                problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PairMiss, 6, 7, 7>(new PairMiss{
-                                              chain.a[i], chain.c[i], Eigen::Quaterniond(chain.a[i].linear()),
-                                              Eigen::Quaterniond(chain.c[i].linear()), s}),
+                problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PairMiss, 6, 7, 7>(
+                                              new PairMiss(chain.a[i], chain.c[i], s)),
                                           std::isinf(k) ? nullptr : geman_mcclure(k), x_.data(), y_.data());
     }
     void solve(int most_iterations, Pose& x, Pose& y) {

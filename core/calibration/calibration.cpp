@@ -26,6 +26,30 @@ std::vector<CorrelatedPair> strong_correlations(const std::vector<CalibratedPara
     return pairs;
 }
 
+void add_pose(CalibrationReport& report, const Pose& pose, const std::string& prefix) {
+    static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
+    const Eigen::Vector3d w = rotation_log(pose.linear());
+    for (int i = 0; i < 6; ++i)
+        report.parameters.push_back({prefix + names[i],
+                                     i < 3 ? pose.translation()(i) : deg_from_rad(w(i - 3)),
+                                     i < 3 ? "mm" : "deg", 0});
+}
+
+void state_covariance(CalibrationReport& report, const Eigen::MatrixXd& solved) {
+    Eigen::VectorXd unit = Eigen::VectorXd::Ones(solved.rows());
+    for (std::size_t i = 0; i < report.parameters.size(); ++i)
+        if (report.parameters[i].unit == "deg") unit(static_cast<Eigen::Index>(i)) = deg_from_rad(1);
+    report.covariance = unit.asDiagonal() * solved * unit.asDiagonal();
+    finish_statistics(report);
+}
+
+std::string left_out(const std::vector<PoseResidual>& poses) {
+    std::string ids;
+    for (const PoseResidual& p : poses)
+        if (!p.used && !p.excluded) ids += (ids.empty() ? "" : ", ") + p.id;
+    return ids;
+}
+
 void finish_statistics(CalibrationReport& report) {
     for (size_t i = 0; i < report.parameters.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/calibration/verdict.h"
+#include "core/geometry/pose.h"
 #include "core/text.h"
 
 namespace seamwright {
@@ -74,6 +75,16 @@ struct CalibrationReport {
 // Rows of zero or non-finite variance (fixed parameters) pair with nothing.
 std::vector<CorrelatedPair> strong_correlations(const std::vector<CalibratedParameter>& parameters,
                                                 const Eigen::MatrixXd& covariance, double limit = 0.8);
+
+// Adds x, y, z (mm) and rx, ry, rz (deg, rotation vector) of a pose, each name after `prefix`.
+void add_pose(CalibrationReport& report, const Pose& pose, const std::string& prefix = "");
+
+// The covariance of the parameters as it was solved, in mm and rad: kept in their units, sigmas and correlations with
+// it.
+void state_covariance(CalibrationReport& report, const Eigen::MatrixXd& solved);
+
+// Ids of those that the method left out, "a, b"; not those that the user excluded.
+std::string left_out(const std::vector<PoseResidual>& poses);
 
 // Sets each sigma from the diagonal of report.covariance and fills report.correlations.
 void finish_statistics(CalibrationReport& report);

@@ -1,7 +1,8 @@
 #include "core/calibration/camera/bundle.h"
 
-#include <limits>
+#include <cmath>
 
+#include "core/calibration/camera/camera_costs.h"
 #include "core/geometry/decompositions.h"
 
 namespace seamwright {
@@ -40,55 +41,17 @@ Expected<BundlePose> bundle_object(const std::vector<PlacedCamera>& cameras,
     }
     if (counted < 3)
         return input_error("fewer than three features were seen", "sights", "give three or more");
-    const double infinity = std::numeric_limits<double>::infinity();
-    const auto evaluate = [&](const Pose& world_from_object, Matrix6* normal, Vector6* gradient) {
-        double cost = 0;
-        for (const auto& s : sights) {
-            if (!(s.weight > 0)) continue;
-            const auto& c = cameras[static_cast<std::size_t>(s.camera)];
-            const Eigen::Vector3d turned = world_from_object.linear() * s.object_mm;
-            const Eigen::Vector3d point =
-                c.camera_from_world * Eigen::Vector3d(turned + world_from_object.translation());
-            if (!(point.z() > 1e-6)) return infinity;
-            Eigen::Vector2d pixel;
-            Eigen::Matrix<double, 2, 3> by_point;
-            project_with_jacobian(intrinsics_of(c.camera), point, pixel, &by_point, nullptr);
-            const Eigen::Vector2d e = pixel - s.pixel;
-            cost += s.weight * e.squaredNorm();
-            if (!normal) continue;
-            Eigen::Matrix<double, 2, 6> j;
-            j.leftCols<3>() = by_point * c.camera_from_world.linear();
-            j.rightCols<3>() = -j.leftCols<3>() * skew(turned);
-            *normal += s.weight * j.transpose() * j;
-            *gradient += s.weight * j.transpose() * e;
-        }
-        return std::isfinite(cost) ? cost : infinity;
-    };
+    std::vector<camera_costs::Sights> seen;
+    for (const auto& c : cameras) seen.push_back({intrinsics_of(c.camera), c.camera_from_world, {}});
+    for (const auto& s : sights)
+        if (s.weight > 0)
+            seen[static_cast<std::size_t>(s.camera)].corners.push_back(
+                {s.object_mm, s.pixel, std::sqrt(s.weight)});
     BundlePose out;
     out.world_from_object = start;
-    Matrix6 normal = Matrix6::Zero();
-    Vector6 gradient = Vector6::Zero();
-    double cost = evaluate(start, &normal, &gradient), damping = 1e-4;
+    const auto [cost, normal] = camera_costs::solve_pose(std::move(seen), out.world_from_object);
     if (!std::isfinite(cost))
         return input_error("a feature lies behind its camera at the start", "start", "give a better start");
-    for (int i = 0; i < 100 && damping < 1e12; ++i) {
-        Matrix6 damped = normal;
-        damped.diagonal() *= 1 + damping;
-        const Vector6 step = -solve_symmetric(damped, gradient);
-        const Pose trial = retract(out.world_from_object, step);
-        const double c = step.allFinite() ? evaluate(trial, nullptr, nullptr) : infinity;
-        if (!(c <= cost)) {
-            damping *= 10;
-            continue;
-        }
-        const double gain = cost - c;
-        out.world_from_object = trial;
-        normal.setZero();
-        gradient.setZero();
-        cost = evaluate(trial, &normal, &gradient);
-        damping = std::max(damping * 0.1, 1e-12);
-        if (gain <= 1e-12 * cost + 1e-24) break;
-    }
     // Directions by the information scaled to unit diagonal, so that mm and rad do not matter.
     const Vector6 scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Matrix6 unit = scale.asDiagonal() * normal * scale.asDiagonal();

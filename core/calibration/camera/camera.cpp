@@ -9,7 +9,9 @@
 #include <set>
 
 #include "core/calibration/camera/plate_bundle.h"
+#include "core/calibration/camera/projection.h"
 #include "core/calibration/pose_set.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -128,13 +130,7 @@ Prediction predict(const CameraData& data, const std::vector<std::vector<char>>&
         const CameraModel camera = camera_of(rest.intrinsics, data.width, data.height);
         for (std::size_t i = 0; i < n; ++i) {
             if (!drop[i]) continue;
-            CameraPoints view;
-            view.id = data.views[i].id;
-            for (std::size_t k = 0; k < data.views[i].pixel.size(); ++k)
-                if (used[i][k])
-                    view.pixel.push_back(data.views[i].pixel[k]),
-                        view.object_mm.push_back(data.views[i].object_mm[k]);
-            if (const auto t = locate_target(camera, view)) {
+            if (const auto t = locate_target(camera, chosen(data.views[i], used[i]))) {
                 out.view[i] = t->rms_px * t->rms_px;
                 const double mm = t->rms_px * t->camera_from_target.translation().norm() / camera.fx;
                 out.max_mm = std::max(out.max_mm, mm);
@@ -179,18 +175,15 @@ int drop_outliers(const CameraData& data, const CameraSolution& solution, double
                   std::vector<std::vector<char>>& used) {
     std::vector<double> size;
     const auto residual = [&](std::size_t i, std::size_t k) {
-        Eigen::Vector2d pixel;
-        project_with_jacobian(solution.intrinsics,
-                              solution.camera_from_target[i] * data.views[i].object_mm[k], pixel, nullptr,
-                              nullptr);
-        return (pixel - data.views[i].pixel[k]).norm();
+        const Eigen::Vector3d ray = solution.camera_from_target[i] * data.views[i].object_mm[k];
+        return (pixel_of_ray(solution.intrinsics.data(), ray.x() / ray.z(), ray.y() / ray.z()) -
+                data.views[i].pixel[k])
+            .norm();
     };
     for (std::size_t i = 0; i < data.views.size(); ++i)
         for (std::size_t k = 0; k < data.views[i].pixel.size(); ++k)
             if (used[i][k]) size.push_back(residual(i, k));
-    const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
-    std::nth_element(size.begin(), middle, size.end());
-    const double limit = std::max(sigmas * *middle / 1.1774, 1e-6);  // median of a Rayleigh distribution
+    const double limit = std::max(sigmas * median(size) / 1.1774, 1e-6);  // median of a Rayleigh distribution
     int dropped = 0;
     for (std::size_t i = 0; i < data.views.size(); ++i) {
         int room = static_cast<int>(data.views[i].pixel.size() / 10);
@@ -382,9 +375,9 @@ Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOpt
         if (unit.size()) result.pose_covariance[i] = variance * view_covariance(solution.normal, unit, k);
         result.point_used[i] = used[k];
         const auto n = static_cast<double>(std::count(used[k].begin(), used[k].end(), 1));
-        p.rms_px = std::sqrt(accumulate_view(solution.intrinsics, solution.camera_from_target[k],
-                                             data.views[k], used[k], nullptr, nullptr) /
-                             std::max(n, 1.0));
+        p.rms_px = std::sqrt(
+            squares_px2(solution.intrinsics, solution.camera_from_target[k], chosen(data.views[k], used[k])) /
+            std::max(n, 1.0));
         p.rms_mm = p.rms_px * (solution.camera_from_target[k] * data.views[k].object_mm.front()).z() /
                    result.camera.fx;
         if (unit.size())

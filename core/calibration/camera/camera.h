@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/calibration/calibration.h"
-#include "core/calibration/camera/block_solver.h"
+#include "core/calibration/normal_blocks.h"
 #include "core/error.h"
 #include "core/profile/sensor_model.h"
 
@@ -94,10 +94,6 @@ inline constexpr std::array<const char*, 9> kIntrinsicNames{"fx", "fy", "cx", "c
 Intrinsics intrinsics_of(const CameraModel& camera);
 CameraModel camera_of(const Intrinsics& intrinsics, int width, int height);
 
-// Pixel of a camera-frame point and its derivatives to the point and to the intrinsics. Precondition: z > 0.
-void project_with_jacobian(const Intrinsics& k, const Eigen::Vector3d& point, Eigen::Vector2d& pixel,
-                           Eigen::Matrix<double, 2, 3>* by_point, Eigen::Matrix<double, 2, 9>* by_intrinsics);
-
 // Columns: how each free unknown moves the nine intrinsics.
 Eigen::MatrixXd freedom_basis(const CameraFreedom& freedom);
 
@@ -115,19 +111,18 @@ HeldIntrinsics held_intrinsics(const CameraFreedom& freedom, double focal_px, in
 // What is not free set to its fixed value: fy = fx, centre of the image, zero distortion.
 Intrinsics conform(const Intrinsics& k, const CameraFreedom& freedom, int width, int height);
 
-// Sum of squares of one view, in px^2; adds to the 15x15 normal matrix (intrinsics, pose) and its gradient
-// when given. Infinity when a point falls behind the camera. `used` may be empty (all).
-using ViewNormal = Eigen::Matrix<double, 15, 15>;
-using ViewGradient = Eigen::Matrix<double, 15, 1>;
-double accumulate_view(const Intrinsics& k, const Pose& camera_from_target, const CameraPoints& view,
-                       const std::vector<char>& used, ViewNormal* normal, ViewGradient* gradient);
+// The points of a view that are used; all when `used` is empty.
+CameraPoints chosen(const CameraPoints& view, const std::vector<char>& used);
+
+// Sum of squares of one view, in px^2. Infinity when a point falls behind the camera.
+double squares_px2(const Intrinsics& k, const Pose& camera_from_target, const CameraPoints& view);
 
 // Bare joint refinement from a start, no verdict. `normal` is that of the free unknowns at the solution.
 struct CameraSolution {
     Intrinsics intrinsics = Intrinsics::Zero();
     std::vector<Pose> camera_from_target;
-    BlockNormal normal;
-    double cost = 0;  // px^2
+    NormalBlocks normal;
+    double cost = 0;  // px^2; infinity at an impossible start
     std::size_t points = 0;
     bool converged = false;
 };

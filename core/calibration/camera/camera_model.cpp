@@ -7,7 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "core/calibration/camera/camera.h"
+#include "core/calibration/camera/camera_costs.h"
+#include "core/calibration/camera/projection.h"
 #include "core/geometry/decompositions.h"
 #include "core/numbers.h"
 
@@ -108,36 +109,6 @@ std::optional<Pose> body_pose(const std::vector<Eigen::Vector3d>& object,
     return make_pose(rotation, m.col(3) / s / scale - rotation * f.centre);
 }
 
-double refine_pose(const Intrinsics& k, const CameraPoints& view, const std::vector<char>& used, Pose& pose,
-                   Matrix6* information) {
-    double damping = 1e-4;
-    ViewNormal n = ViewNormal::Zero();
-    ViewGradient g = ViewGradient::Zero();
-    double cost = accumulate_view(k, pose, view, used, &n, &g);
-    for (int i = 0; i < 60 && std::isfinite(cost); ++i) {
-        Matrix6 a = n.bottomRightCorner<6, 6>();
-        a.diagonal() *= 1 + damping;
-        const Vector6 step = -solve_symmetric(a, g.tail<6>());
-        if (!step.allFinite()) break;
-        const Pose trial = retract(pose, step);
-        const double c = accumulate_view(k, trial, view, used, nullptr, nullptr);
-        if (c <= cost) {
-            const double gain = cost - c;
-            pose = trial;
-            n.setZero();
-            g.setZero();
-            cost = accumulate_view(k, pose, view, used, &n, &g);
-            damping = std::max(damping * 0.1, 1e-12);
-            if (gain <= 1e-12 * cost + 1e-26) break;
-        } else {
-            damping *= 10;
-            if (damping > 1e10) break;
-        }
-    }
-    if (information) *information = n.bottomRightCorner<6, 6>();
-    return cost;
-}
-
 // Best of the closed-form pose and its mirror (the two poses of a plate that look alike from afar).
 std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraPoints& view, int width, int height,
                                        Matrix6* information, double* cost) {
@@ -167,12 +138,14 @@ std::optional<Pose> plate_or_body_pose(const Intrinsics& k, const CameraPoints& 
     std::optional<Pose> best;
     double best_cost = kInfinity;
     for (Pose pose : starts) {
-        Matrix6 info;
-        const double c = refine_pose(k, view, {}, pose, &info);
-        if (c < best_cost) {
-            best_cost = c;
+        std::vector<camera_costs::Corner> corners;
+        for (std::size_t i = 0; i < view.pixel.size(); ++i)
+            corners.push_back({view.object_mm[i], view.pixel[i]});
+        const auto fit = camera_costs::solve_pose({{k, Pose::Identity(), std::move(corners)}}, pose);
+        if (fit.cost < best_cost) {
+            best_cost = fit.cost;
             best = pose;
-            if (information) *information = info;
+            if (information) *information = fit.information;
         }
     }
     if (cost) *cost = best_cost;
@@ -193,33 +166,6 @@ CameraModel camera_of(const Intrinsics& k, int width, int height) {
     c.k3 = k(8);
     c.width = width, c.height = height;
     return c;
-}
-
-void project_with_jacobian(const Intrinsics& k, const Eigen::Vector3d& point, Eigen::Vector2d& pixel,
-                           Eigen::Matrix<double, 2, 3>* by_point,
-                           Eigen::Matrix<double, 2, 9>* by_intrinsics) {
-    const double iz = 1 / point.z(), x = point.x() * iz, y = point.y() * iz;
-    const double k1 = k(4), k2 = k(5), p1 = k(6), p2 = k(7), k3 = k(8);
-    const double r2 = x * x + y * y, r4 = r2 * r2, r6 = r4 * r2;
-    const double radial = 1 + k1 * r2 + k2 * r4 + k3 * r6;
-    const double xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x);
-    const double yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
-    pixel = {k(0) * xd + k(2), k(1) * yd + k(3)};
-    if (by_point) {
-        const double slope = k1 + 2 * k2 * r2 + 3 * k3 * r4;  // d radial / d r^2
-        const double xx = radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x;
-        const double xy = 2 * x * y * slope + 2 * p1 * x + 2 * p2 * y;
-        const double yy = radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x;
-        (*by_point) << k(0) * xx * iz, k(0) * xy * iz, -k(0) * (xx * x + xy * y) * iz,  //
-            k(1) * xy * iz, k(1) * yy * iz, -k(1) * (xy * x + yy * y) * iz;
-    }
-    if (by_intrinsics) {
-        (*by_intrinsics) << xd, 0, 1, 0, k(0) * x * r2, k(0) * x * r4, 2 * k(0) * x * y,
-            k(0) * (r2 + 2 * x * x),
-            k(0) * x * r6,  //
-            0, yd, 0, 1, k(1) * y * r2, k(1) * y * r4, k(1) * (r2 + 2 * y * y), 2 * k(1) * x * y,
-            k(1) * y * r6;
-    }
 }
 
 Eigen::MatrixXd freedom_basis(const CameraFreedom& freedom) {
@@ -278,31 +224,27 @@ Intrinsics conform(const Intrinsics& k, const CameraFreedom& freedom, int width,
     return out;
 }
 
-double accumulate_view(const Intrinsics& k, const Pose& pose, const CameraPoints& view,
-                       const std::vector<char>& used, ViewNormal* normal, ViewGradient* gradient) {
-    double cost = 0;
-    const Eigen::Matrix3d r = pose.linear();
-    const Eigen::Vector3d t = pose.translation();
-    Eigen::Matrix<double, 2, 3> by_point;
-    Eigen::Matrix<double, 2, 9> by_k;
-    Eigen::Matrix<double, 2, 15> jacobian;
+CameraPoints chosen(const CameraPoints& view, const std::vector<char>& used) {
+    if (used.empty()) return view;
+    CameraPoints out;
+    out.id = view.id;
+    for (std::size_t i = 0; i < view.pixel.size(); ++i)
+        if (used[i]) {
+            out.object_mm.push_back(view.object_mm[i]);
+            out.pixel.push_back(view.pixel[i]);
+        }
+    return out;
+}
+
+double squares_px2(const Intrinsics& k, const Pose& pose, const CameraPoints& view) {
+    double sum = 0;
     for (std::size_t i = 0; i < view.pixel.size(); ++i) {
-        if (!used.empty() && !used[i]) continue;
-        const Eigen::Vector3d turned = r * view.object_mm[i];
-        const Eigen::Vector3d point = turned + t;
+        const Eigen::Vector3d point = pose * view.object_mm[i];
         if (!(point.z() > 1e-6)) return kInfinity;
-        Eigen::Vector2d pixel;
-        project_with_jacobian(k, point, pixel, normal ? &by_point : nullptr, normal ? &by_k : nullptr);
-        const Eigen::Vector2d e = pixel - view.pixel[i];
-        cost += e.squaredNorm();
-        if (!normal) continue;
-        jacobian.leftCols<9>() = by_k;
-        jacobian.middleCols<3>(9) = by_point;
-        jacobian.rightCols<3>() = -by_point * skew(turned);
-        normal->noalias() += jacobian.transpose() * jacobian;
-        gradient->noalias() += jacobian.transpose() * e;
+        sum += (pixel_of_ray(k.data(), point.x() / point.z(), point.y() / point.z()) - view.pixel[i])
+                   .squaredNorm();
     }
-    return std::isfinite(cost) ? cost : kInfinity;
+    return std::isfinite(sum) ? sum : kInfinity;
 }
 
 std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>& from,
@@ -329,55 +271,6 @@ std::optional<Eigen::Matrix3d> homography_dlt(const std::vector<Eigen::Vector2d>
     h = b.inverse() * h * a;
     if (!h.allFinite()) return std::nullopt;
     return h;
-}
-
-CameraSolution refine_camera(const CameraData& data, const std::vector<std::vector<char>>& used,
-                             const CameraFreedom& freedom, const CameraSolution& start) {
-    struct State {
-        Intrinsics k;
-        std::vector<Pose> poses;
-    };
-    const Eigen::MatrixXd basis = freedom_basis(freedom);
-    State state{conform(start.intrinsics, freedom, data.width, data.height), start.camera_from_target};
-    CameraSolution out;
-    const std::vector<char> all;
-    const auto evaluate = [&](const State& s, BlockNormal* normal) {
-        if (!(s.k(0) > 1e-3) || !(s.k(1) > 1e-3)) return kInfinity;
-        if (normal) normal->reset(basis.cols(), data.views.size());
-        double cost = 0;
-        ViewNormal n;
-        ViewGradient g;
-        for (std::size_t i = 0; i < data.views.size(); ++i) {
-            const auto& mask = used.empty() ? all : used[i];
-            if (!normal) {
-                cost += accumulate_view(s.k, s.poses[i], data.views[i], mask, nullptr, nullptr);
-                if (!std::isfinite(cost)) return kInfinity;
-                continue;
-            }
-            n.setZero();
-            g.setZero();
-            cost += accumulate_view(s.k, s.poses[i], data.views[i], mask, &n, &g);
-            normal->gg.noalias() += basis.transpose() * n.topLeftCorner<9, 9>() * basis;
-            normal->g.noalias() += basis.transpose() * g.head<9>();
-            normal->gv[i] = basis.transpose() * n.topRightCorner<9, 6>();
-            normal->vv[i] = n.bottomRightCorner<6, 6>();
-            normal->v[i] = g.tail<6>();
-        }
-        if (normal) normal->cost = cost;
-        return cost;
-    };
-    const auto apply = [&](State& s, const Eigen::VectorXd& step, const std::vector<Vector6>& view_steps) {
-        s.k += basis * step;
-        for (std::size_t i = 0; i < s.poses.size(); ++i) s.poses[i] = retract(s.poses[i], view_steps[i]);
-    };
-    out.converged = minimise_blocks(state, out.normal, evaluate, apply, 100);
-    out.intrinsics = state.k;
-    out.camera_from_target = state.poses;
-    out.cost = out.normal.cost;
-    for (std::size_t i = 0; i < data.views.size(); ++i)
-        out.points += used.empty() ? data.views[i].pixel.size()
-                                   : static_cast<std::size_t>(std::count(used[i].begin(), used[i].end(), 1));
-    return out;
 }
 
 namespace {
@@ -443,7 +336,7 @@ std::optional<CameraSolution> start_camera(const CameraData& data) {
         }
         if (!complete) continue;
         CameraSolution refined = refine_camera(data, {}, only_focal, s);
-        if (!std::isfinite(refined.cost) || refined.normal.cost <= 0) continue;
+        if (!std::isfinite(refined.cost) || refined.cost <= 0) continue;
         if (!best || refined.cost < best->cost) best = refined;
         // A start that explains the data to a few pixels needs no rivals.
         if (c == 0 && candidates.size() > 5 && best->cost < 25.0 * static_cast<double>(best->points)) break;

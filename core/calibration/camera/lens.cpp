@@ -1,5 +1,7 @@
 #include "core/calibration/camera/lens.h"
 
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/normal_prior.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,10 @@
 
 #include "core/calibration/camera/bent_line.h"
 #include "core/calibration/camera/camera.h"
+#include "core/calibration/camera/projection.h"
+#include "core/calibration/problem.h"
 #include "core/geometry/decompositions.h"
+#include "core/median.h"
 #include "core/numbers.h"
 
 namespace seamwright {
@@ -21,32 +26,39 @@ constexpr double kLineShare = 0.6;  // of its points that a line must keep
 constexpr double kBentTimes = 4;    // rms of a line over the middling line's, beyond which it is no line ..
 constexpr double kBentPx = 0.1;     // .. unless it is this small
 constexpr int kCleaningRounds = 8;
+constexpr double kRestShare =
+    1e-4;  // of the cost that a further step may still promise: a hundredth of a sigma
 
+template <class T>
+using Plane2 = Eigen::Matrix<T, 2, 1>;
+
+template <class T>
 struct Spread {
-    double least = 0, most = 0;    // eigenvalues of the centred covariance
-    Eigen::Vector2d mean, normal;  // of the line
+    T most = T(0);           // larger eigenvalue of the centred covariance
+    Plane2<T> mean, normal;  // of the line
 };
 
-// Of the points by their weights.
-template <class Weights>
-Spread spread_of(const std::vector<Eigen::Vector2d>& points, const Weights& weight) {
-    Spread s;
+// Of the points by their weights; those without one take no part.
+template <class T, class Point, class Weight>
+Spread<T> spread_of(const std::vector<Point>& points, const std::vector<Weight>& weight) {
+    using std::atan2, std::cos, std::sin, std::sqrt;
+    Spread<T> s;
     s.mean.setZero();
-    double n = 0;
+    T n = T(0);
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (weight[i] > 0) s.mean += weight[i] * points[i], n += weight[i];
+        if (weight[i] > Weight(0)) s.mean += points[i] * T(weight[i]), n += T(weight[i]);
     s.mean /= n;
-    double xx = 0, xy = 0, yy = 0;
+    T xx = T(0), xy = T(0), yy = T(0);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!(weight[i] > 0)) continue;
-        const Eigen::Vector2d d = points[i] - s.mean;
-        xx += weight[i] * d.x() * d.x(), xy += weight[i] * d.x() * d.y(), yy += weight[i] * d.y() * d.y();
+        if (!(weight[i] > Weight(0))) continue;
+        const Plane2<T> d = points[i] - s.mean;
+        const T w = T(weight[i]);
+        xx += w * d.x() * d.x(), xy += w * d.x() * d.y(), yy += w * d.y() * d.y();
     }
-    const double half = 0.5 * (xx + yy) / n, root = std::hypot(0.5 * (xx - yy), xy) / n;
-    s.most = half + root;
-    s.least = std::max(0.0, half - root);
-    const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
-    s.normal = {-std::sin(angle), std::cos(angle)};
+    const T half_gap = (xx - yy) * 0.5;
+    s.most = ((xx + yy) * 0.5 + sqrt(half_gap * half_gap + xy * xy)) / n;
+    const T angle = atan2(xy * 2.0, xx - yy) * 0.5;
+    s.normal = {-sin(angle), cos(angle)};
     return s;
 }
 
@@ -56,176 +68,169 @@ using Support = std::vector<std::vector<char>>;
 // Signed distances of all points of a line, in px of the image, from the line fitted to its support: the
 // distance in the undistorted plane over how far a pixel across the line reaches there. False where the lens
 // cannot be undone.
-bool distances(const std::vector<Eigen::Vector2d>& points, const std::vector<char>& on, const Intrinsics& k,
-               const CameraModel& lens, std::vector<Eigen::Vector2d>& straight,
-               std::vector<Eigen::Matrix2d>& across, std::vector<double>& weight, std::vector<double>& out) {
-    straight.clear();
-    across.clear();
-    weight.clear();
-    out.clear();
+template <class T>
+bool distances(const std::vector<Eigen::Vector2d>& points, const std::vector<char>& on,
+               const CameraModel& lens, const T* k, std::vector<T>& out) {
+    using std::isfinite;
+    const Eigen::Vector2d nowhere = Eigen::Vector2d::Constant(std::nan(""));
+    const Intrinsics at = intrinsics_of(lens);
+    std::vector<Plane2<T>> straight(points.size(), nowhere.cast<T>());
+    std::vector<Eigen::Matrix<T, 2, 2>> across(points.size(), Eigen::Matrix<T, 2, 2>::Identity());
+    std::vector<T> weight;
+    for (const char taken : on) weight.push_back(T(taken));
     for (std::size_t i = 0; i < points.size(); ++i) {
-        straight.push_back(lens.undistort(points[i]));
-        weight.push_back(on[i]);
-        if (!straight[i].allFinite()) {
+        const Eigen::Vector2d ray = lens.undistort(points[i]);
+        if (!ray.allFinite()) {
             if (on[i]) return false;
-            across.push_back(Eigen::Matrix2d::Identity());
             continue;
         }
-        Eigen::Vector2d pixel;
-        Eigen::Matrix<double, 2, 3> by_point;
-        project_with_jacobian(k, {straight[i].x(), straight[i].y(), 1}, pixel, &by_point, nullptr);
-        const Eigen::Matrix2d j = by_point.leftCols<2>();
-        across.emplace_back();
-        across.back() << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);  // inverse, transposed
-        across.back() /= j.determinant();
+        // One Newton step from the ray found carries the derivatives.
+        const Eigen::Matrix2d back = pixel_by_ray(at.data(), ray.x(), ray.y()).inverse();
+        const Plane2<T> off = pixel_of_ray(k, T(ray.x()), T(ray.y())) - points[i];
+        straight[i] = {ray.x() - off.x() * back(0, 0) - off.y() * back(0, 1),
+                       ray.y() - off.x() * back(1, 0) - off.y() * back(1, 1)};
+        const Eigen::Matrix<T, 2, 2> j = pixel_by_ray(k, straight[i].x(), straight[i].y());
+        const T determinant = j(0, 0) * j(1, 1) - j(0, 1) * j(1, 0);
+        across[i] << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);  // inverse, transposed
+        across[i] /= determinant;
     }
-    Spread s = spread_of(straight, weight);
+    Spread<T> s = spread_of<T>(straight, weight);
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (on[i]) weight[i] = 1 / (across[i] * s.normal).squaredNorm();
-    s = spread_of(straight, weight);
-    if (!(s.most > 0) || !std::isfinite(s.most)) return false;
-    if (s.normal.dot(spread_of(points, on).normal) < 0)
-        s.normal = -s.normal;  // one side for all, or derivatives jump
-    for (std::size_t i = 0; i < points.size(); ++i)
-        out.push_back(s.normal.dot(straight[i] - s.mean) / (across[i] * s.normal).norm());
+        if (on[i]) weight[i] = T(1.0) / (across[i] * s.normal).squaredNorm();
+    s = spread_of<T>(straight, weight);
+    if (!(s.most > T(0.0)) || !isfinite(s.most)) return false;
+    const Eigen::Vector2d side = spread_of<double>(points, on).normal;  // one for all, or derivatives jump
+    if (s.normal.x() * side.x() + s.normal.y() * side.y() < T(0.0)) s.normal = -s.normal;
+    out.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const T reach = (across[i] * s.normal).norm();
+        out.push_back(s.normal.dot(straight[i] - s.mean) / reach);
+    }
     return true;
 }
+
+CameraModel lens_of(const double* k, const LensData& data) {
+    return camera_of(Eigen::Map<const Intrinsics>(k), data.width, data.height);
+}
+template <class Jet>
+CameraModel lens_of(const Jet* k, const LensData& data) {
+    Intrinsics at;
+    for (Eigen::Index i = 0; i < 9; ++i) at(i) = k[i].a;
+    return camera_of(at, data.width, data.height);
+}
+
+// Of the points on one line, by the intrinsics.
+struct Straightness {
+    const LensData& data;
+    const std::vector<Eigen::Vector2d>& points;
+    const std::vector<char>& on;
+    template <class T>
+    bool operator()(const T* k, T* residual) const {
+        using std::isfinite;
+        std::vector<T> off;
+        if (!distances(points, on, lens_of(k, data), k, off)) return false;
+        for (std::size_t i = 0; i < off.size(); ++i) {
+            if (!on[i]) continue;
+            if (!isfinite(off[i])) return false;
+            *residual++ = off[i];
+        }
+        return true;
+    }
+};
 
 // What the solver sees of the lines: those used, and of these the points on them.
 class Lines {
   public:
-    explicit Lines(const LensData& data) : data_(data), used(data.lines.size(), 1) {
+    explicit Lines(const LensData& data) : used(data.lines.size(), 1), data_(data) {
         for (const auto& line : data.lines) on.emplace_back(line.size(), 1);
     }
-    Eigen::Index points() const {
-        Eigen::Index n = 0;
-        for (std::size_t i = 0; i < on.size(); ++i)
-            if (used[i]) n += std::count(on[i].begin(), on[i].end(), 1);
+    int points(std::size_t line) const {
+        return static_cast<int>(std::count(on[line].begin(), on[line].end(), 1));
+    }
+    double points() const {
+        int n = 0;
+        for (std::size_t i = 0; i < on.size(); ++i) n += used[i] ? points(i) : 0;
         return n;
     }
     int count() const { return static_cast<int>(std::count(used.begin(), used.end(), 1)); }
-    CameraModel camera(const Intrinsics& k) const { return camera_of(k, data_.width, data_.height); }
-    bool residuals(const Intrinsics& k, Eigen::VectorXd& out) {
-        const CameraModel lens = camera(k);
-        out.resize(points());
-        Eigen::Index at = 0;
-        for (std::size_t i = 0; i < data_.lines.size(); ++i) {
-            if (!used[i]) continue;
-            if (!distances(data_.lines[i], on[i], k, lens, straight_, across_, weight_, off_)) return false;
-            for (std::size_t j = 0; j < off_.size(); ++j)
-                if (on[i][j]) out(at++) = off_[j];
-        }
-        return out.allFinite();
-    }
-    // Central differences. False where the lens cannot be undone beside k.
-    bool jacobian(const Intrinsics& k, const std::vector<int>& free, Eigen::MatrixXd& out) {
-        out.resize(points(), static_cast<Eigen::Index>(free.size()));
-        for (Eigen::Index j = 0; j < out.cols(); ++j) {
-            const int p = free[static_cast<std::size_t>(j)];
-            const double h = p < 4 ? 0.05 : 1e-5;
-            Intrinsics a = k, b = k;
-            a(p) += h, b(p) -= h;
-            if (!residuals(a, plus_) || !residuals(b, minus_)) return false;
-            out.col(j) = (plus_ - minus_) / (2 * h);
-        }
-        return out.allFinite();
+    void add_to(ceres::Problem& problem, double* k) const {
+        for (std::size_t i = 0; i < on.size(); ++i)
+            if (used[i])
+                problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Straightness, ceres::DYNAMIC, 9>(
+                                             new Straightness{data_, data_.lines[i], on[i]}, points(i)),
+                                         nullptr, k);
     }
     // Distances of all points of a line, used or not; empty where the lens cannot be undone.
-    std::vector<double> all_distances(std::size_t line, const Intrinsics& k) {
+    std::vector<double> all_distances(std::size_t line, const Intrinsics& k) const {
         std::vector<double> out;
-        if (!distances(data_.lines[line], on[line], k, camera(k), straight_, across_, weight_, out))
-            out.clear();
+        if (!distances(data_.lines[line], on[line], lens_of(k.data(), data_), k.data(), out)) out.clear();
         return out;
     }
+    // Of the points on the lines used, px^2; infinity where the lens cannot be undone.
+    double squares(const Intrinsics& k) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < on.size(); ++i) {
+            if (!used[i]) continue;
+            const std::vector<double> off = all_distances(i, k);
+            if (off.empty()) return kInfinity;
+            for (std::size_t j = 0; j < off.size(); ++j)
+                if (on[i][j]) sum += off[j] * off[j];
+        }
+        return sum;
+    }
+
+    std::vector<char> used;
+    Support on;
 
   private:
     const LensData& data_;
-    std::vector<Eigen::Vector2d> straight_;
-    std::vector<Eigen::Matrix2d> across_;
-    std::vector<double> weight_, off_;
-    Eigen::VectorXd plus_, minus_;
-
-  public:
-    std::vector<char> used;
-    Support on;
 };
 
 struct Solution {
     Intrinsics k;
-    Eigen::VectorXd r;
+    double squares = 0;  // px^2
     Eigen::MatrixXd information;
     double variance = 0;
     bool converged = false;
 };
 
-// Levenberg-Marquardt from k. The prior that holds the centre weighs by the noise estimate: a few outer
-// rounds. A step to where the lens can no longer be undone (its fold reaches a point) is refused like one
-// uphill.
-Solution solve(Lines& lines, Intrinsics k, const std::vector<int>& free, const Eigen::Vector2d& middle,
-               double hold_px) {
+// From k. The prior that holds the centre weighs by the noise estimate: a few outer rounds.
+Solution solve_lens(const Lines& lines, const Intrinsics& k, const std::vector<int>& free,
+                    const Eigen::Vector2d& middle, double hold_px) {
     Solution s;
-    const auto n = static_cast<Eigen::Index>(free.size());
-    const auto points = static_cast<double>(lines.points());
-    const double freedom = std::max(1.0, points - 2.0 * lines.count() - static_cast<double>(n));
-    Eigen::MatrixXd jacobian, trial_jacobian;
-    Eigen::VectorXd e;
     s.k = k;
-    if (!lines.residuals(s.k, s.r) || !lines.jacobian(s.k, free, jacobian)) return s;
-    s.variance = std::max(s.r.squaredNorm() / points, 1e-12);
-    double damping = 1e-4;
+    s.squares = lines.squares(k);
+    if (!std::isfinite(s.squares)) return s;
+    const auto n = static_cast<Eigen::Index>(free.size());
+    Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(9, n), centre = Eigen::MatrixXd::Zero(2, 9);
+    for (Eigen::Index j = 0; j < n; ++j) moves(free[static_cast<std::size_t>(j)], j) = 1;
+    centre(0, 2) = centre(1, 3) = 1;
+    Eigen::VectorXd held = Eigen::VectorXd::Zero(9);
+    held.segment<2>(2) = middle;
+    const double freedom = std::max(1.0, lines.points() - 2.0 * lines.count() - static_cast<double>(n));
+    s.variance = std::max(s.squares / lines.points(), 1e-12);
     for (int outer = 0; outer < 4; ++outer) {
-        const double weight = s.variance / (hold_px * hold_px);
-        const auto held = [&](const Intrinsics& q) {
-            return weight * (q.segment<2>(2) - middle).squaredNorm();
-        };
-        double cost = s.r.squaredNorm() + held(s.k);
-        s.converged = false;
-        for (int iteration = 0; iteration < 60 && !s.converged; ++iteration) {
-            s.information = jacobian.transpose() * jacobian;
-            Eigen::VectorXd gradient = jacobian.transpose() * s.r;
-            for (Eigen::Index j = 0; j < 2; ++j) {
-                s.information(j, j) += weight;
-                gradient(j) += weight * (s.k(2 + j) - middle(j));
-            }
-            bool better = false, folded = false;
-            for (int attempt = 0; attempt < 24 && !better; ++attempt) {
-                Eigen::MatrixXd damped = s.information;
-                damped.diagonal() *= 1 + damping;
-                const Eigen::VectorXd step = -solve_symmetric(damped, gradient);
-                Intrinsics trial = s.k;
-                for (Eigen::Index j = 0; j < n; ++j) trial(free[static_cast<std::size_t>(j)]) += step(j);
-                const bool possible = step.allFinite() && lines.residuals(trial, e);
-                const double c = possible ? e.squaredNorm() + held(trial) : kInfinity;
-                if (c <= cost && lines.jacobian(trial, free, trial_jacobian)) {
-                    better = true;
-                    s.converged = cost - c <= 1e-7 * cost + 1e-18;  // a hundredth of a sigma
-                    s.k = trial;
-                    s.r = e;
-                    jacobian.swap(trial_jacobian);
-                    cost = c;
-                    damping = std::max(damping * 0.1, 1e-12);
-                } else {
-                    folded = !possible || c <= cost;  // even a short step
-                    damping *= 10;
-                }
-            }
-            if (!better) {
-                s.converged = !folded;
-                break;
-            }
-        }
+        ceres::Problem problem;
+        problem.AddParameterBlock(s.k.data(), 9, linear_manifold(moves));
+        lines.add_to(problem, s.k.data());
+        problem.AddResidualBlock(new ceres::NormalPrior(std::sqrt(s.variance) / hold_px * centre, held),
+                                 nullptr, s.k.data());
+        const Solved solved = solve(problem, {}, 60, 1e-8);
+        Eigen::VectorXd residuals;
+        Eigen::MatrixXd jacobian;
+        s.converged = solved.converged && linearise(problem, {s.k.data()}, residuals, jacobian);
+        if (!s.converged) break;
+        s.information = jacobian.transpose() * jacobian;
+        // Steps that end at the lens' fold, where it can no longer be undone, shrink to nothing too.
+        const Eigen::VectorXd gradient = jacobian.transpose() * residuals;
+        s.converged =
+            gradient.dot(solve_symmetric(s.information, gradient).col(0)) <= kRestShare * solved.cost + 1e-18;
         const double before = s.variance;
-        s.variance = std::max(s.r.squaredNorm() / freedom, 1e-12);
+        s.squares = lines.squares(s.k);
+        s.variance = std::max(s.squares / freedom, 1e-12);
         if (!s.converged || std::abs(s.variance - before) < 1e-3 * before) break;
     }
     return s;
-}
-
-double lens_median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // Judges every point anew by the lens found so far, and leaves out the worst line that is none. Whether
@@ -243,15 +248,15 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
         rms_used.push_back(rms[i]);
     }
     const int fewest = std::max(3, (2 * static_cast<int>(data.lines.size()) + 2) / 3);
-    const double bent = std::max(kBentPx, kBentTimes * lens_median(rms_used));
+    const double bent = std::max(kBentPx, kBentTimes * median(rms_used));
     const auto worst = static_cast<std::size_t>(std::max_element(rms.begin(), rms.end()) - rms.begin());
     if (lines.count() > fewest && rms[worst] > bent) {
         lines.used[worst] = 0;
         poses[worst].note = Text("left out: it stays bent by {:.2f} px, the others by {:.2f} px", rms[worst],
-                                 lens_median(rms_used));
+                                 median(rms_used));
         return true;
     }
-    const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * lens_median(std::move(all)));
+    const double far = std::max(kNearPx, kFarSigmas * kMadToSigma * median(all));
     bool changed = false;
     for (std::size_t i = 0; i < data.lines.size(); ++i) {
         if (!lines.used[i]) continue;
@@ -290,7 +295,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         for (const auto& p : line)
             if (!p.allFinite() || p.x() < -1 || p.y() < -1 || p.x() > data.width || p.y() > data.height)
                 return input_error("a point is not finite or lies outside the image", where, "leave it out");
-        if (!(spread_of(line, lines.on[i]).most > 1))
+        if (!(spread_of<double>(line, lines.on[i]).most > 1))
             return input_error("all points of the line are the same", where, "leave it out");
         lines.on[i] = on_bent_line(line);
         PoseResidual p;
@@ -323,20 +328,20 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     solved.k = start;
     for (int round = 0; round < kCleaningRounds && lines.count() > 0; ++round) {
         const int before = lines.count();
-        solved = solve(lines, k, free, middle, hold);
+        solved = solve_lens(lines, k, free, middle, hold);
         if (!clean(data, solved.k, lines, poses)) break;
         k = solved.converged && lines.count() == before
                 ? solved.k
                 : start;  // a line that was none may have led it far astray
     }
     k = solved.k;
-    const auto points = static_cast<double>(std::max<Eigen::Index>(1, lines.points()));
-    if (Eigen::VectorXd before; lines.count() > 0 && lines.residuals(start, before))
-        result.straightness_before_px = std::sqrt(before.squaredNorm() / points);
+    const double points = std::max(1.0, lines.points());
+    if (const double before = lines.squares(start); std::isfinite(before))
+        result.straightness_before_px = std::sqrt(before / points);
     result.lens = camera_of(k, data.width, data.height);
     result.k1_px = k(4) / (half * half);
     result.k2_px = k(5) / std::pow(half, 4);
-    result.straightness_after_px = std::sqrt(solved.r.squaredNorm() / points);
+    result.straightness_after_px = std::sqrt(solved.squares / points);
     for (std::size_t i = 0; i < data.lines.size(); ++i) {
         poses[i].used = lines.used[i];
         // Lines that took no part judge the lens as well, with all their points.
@@ -380,11 +385,9 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         result.corner_sigma_px = std::isfinite(sigma) ? std::max(result.corner_sigma_px, sigma) : kInfinity;
     }
     const char* cure = "take lines in all parts of the image, in two directions, from edge to edge";
-    std::string left_out;
-    for (const PoseResidual& p : poses)
-        if (!p.used && !p.excluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
+    const std::string without = left_out(poses);
     const auto say = [&](const Text& reason) {
-        return left_out.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, left_out);
+        return without.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, without);
     };
     if (lines.count() < 3 || !solved.converged || !(result.corner_sigma_px < 3) ||
         !report.covariance.allFinite()) {

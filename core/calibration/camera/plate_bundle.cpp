@@ -1,47 +1,14 @@
 #include "core/calibration/camera/plate_bundle.h"
 
-#include <algorithm>
-#include <limits>
+#include <ceres/normal_prior.h>
 
+#include <cmath>
+
+#include "core/calibration/camera/camera_costs.h"
+#include "core/calibration/problem.h"
 #include "core/numbers.h"
 
 namespace seamwright {
-namespace {
-
-// Inverse of the left Jacobian of rotation, first order in the (small) residual.
-Eigen::Matrix3d log_jacobian(const Eigen::Vector3d& w) {
-    return Eigen::Matrix3d::Identity() - 0.5 * skew(w) + skew(w) * skew(w) / 12;
-}
-
-// Tangent basis of the unit sphere at n.
-Eigen::Matrix<double, 3, 2> tangent(const Eigen::Vector3d& n) {
-    Eigen::Matrix<double, 3, 2> t;
-    t.col(0) = n.unitOrthogonal();
-    t.col(1) = n.cross(t.col(0));
-    return t;
-}
-
-}  // namespace
-
-Eigen::Vector3d PlateShape::bow_basis(double x, double y) const {
-    const double a = (x - middle_mm.x()) / half_mm, b = (y - middle_mm.y()) / half_mm;
-    return {a * a, a * b, b * b};
-}
-
-Eigen::Vector3d PlateShape::apply(const Eigen::Vector3d& p) const {
-    const double x = p.x() - middle_mm.x(), y = p.y() - middle_mm.y();
-    return {p.x() - 0.5 * stretch * x + 0.5 * shear * y, p.y() + 0.5 * stretch * y + 0.5 * shear * x,
-            p.z() + height_mm(p.x(), p.y())};
-}
-
-Eigen::Matrix<double, 3, 5> PlateShape::jacobian(const Eigen::Vector3d& p) const {
-    const double x = p.x() - middle_mm.x(), y = p.y() - middle_mm.y();
-    Eigen::Matrix<double, 3, 5> j = Eigen::Matrix<double, 3, 5>::Zero();
-    j.col(0) << -0.5 * x, 0.5 * y, 0;
-    j.col(1) << 0.5 * y, 0.5 * x, 0;
-    j.block<1, 3>(2, 2) = bow_basis(p.x(), p.y()).transpose();
-    return j;
-}
 
 std::optional<Eigen::Vector3d> meet_plate(const CameraModel& camera, const Eigen::Vector2d& pixel,
                                           const Pose& camera_from_target, const PlateShape& shape,
@@ -53,208 +20,212 @@ std::optional<Eigen::Vector3d> meet_plate(const CameraModel& camera, const Eigen
     if (std::abs(along) < 1e-3 * ray.norm()) return std::nullopt;
     const double base = normal.dot(camera_from_target.translation());
     double s = base / along;
+    const auto bent = shape.numbers();
     if (on_bow && !shape.bow_mm.isZero())
         for (int i = 0; i < 8; ++i) {
             const Eigen::Vector3d q = camera_from_target.inverse() * (s * ray);
-            s = (base + shape.height_mm(q.x(), q.y())) / along;
+            s = (base + shape.height(bent.data(), q.x(), q.y())) / along;
         }
     if (!(s > 0) || !std::isfinite(s)) return std::nullopt;
     return s * ray;
 }
 
-PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleState& start) {
-    const CameraData& data = *problem.data;
-    PlateBundleFit fit;
-    fit.basis = freedom_basis(problem.freedom);
-    const Eigen::Index free = fit.basis.cols();
-    const Intrinsics held_at = conform(start.intrinsics, problem.freedom, data.width, data.height);
-    HeldIntrinsics held;
-    if (!problem.hold_exactly) {
-        held = held_intrinsics(problem.freedom, 0.5 * (held_at(0) + held_at(1)), data.width);
-        fit.basis.conservativeResize(9, free + held.sigma.size());
-        fit.basis.rightCols(held.sigma.size()) = held.directions;
-    }
-    Eigen::Index shared = fit.basis.cols();
-    const Eigen::Index shape_count = problem.shape == ShapeFreedom::rigid      ? 0
-                                     : problem.shape == ShapeFreedom::in_plane ? 2
-                                                                               : 5;
-    if (shape_count) fit.shape_at = shared, shared += shape_count;
-    const bool robot = start.flange_from_camera && start.base_from_target;
-    if (robot) {
-        fit.hand_eye_at = shared;
-        fit.target_at = shared + 6;
-        shared += 12;
-    }
-    if (start.plane) fit.plane_at = shared, shared += 3;
-    const auto used = [&](std::size_t i) { return problem.view_used.empty() || problem.view_used[i]; };
+namespace {
 
-    const auto evaluate = [&](const PlateBundleState& s, BlockNormal* normal) {
-        if (!(s.intrinsics(0) > 1e-3) || !(s.intrinsics(1) > 1e-3)) return kInfinity;
-        if (normal) normal->reset(shared, data.views.size());
-        const CameraModel camera = camera_of(s.intrinsics, data.width, data.height);
-        double cost = 0, corner_cost = 0, robot_mm = 0, robot_rad = 0, stripe_mm = 0;
-        std::size_t corners = 0, robot_views = 0, rows = 0;
-        Eigen::MatrixXd jg;
-        Eigen::Matrix<double, 2, 3> by_point;
-        Eigen::Matrix<double, 2, 9> by_k;
-        for (std::size_t i = 0; i < data.views.size(); ++i) {
-            if (!used(i)) {
-                if (normal) normal->vv[i].setIdentity();
-                continue;
-            }
-            const auto& view = data.views[i];
-            const Pose& pose = s.camera_from_target[i];
-            const double wc = 1 / problem.corner_sigma_px;
-            for (std::size_t k = 0; k < view.pixel.size(); ++k) {
-                if (!problem.point_used.empty() && !problem.point_used[i][k]) continue;
-                const Eigen::Vector3d turned = pose.linear() * s.shape.apply(view.object_mm[k]);
-                const Eigen::Vector3d point = turned + pose.translation();
-                if (!(point.z() > 1e-6)) return kInfinity;
-                Eigen::Vector2d pixel;
-                project_with_jacobian(s.intrinsics, point, pixel, &by_point, &by_k);
-                const Eigen::Vector2d e = pixel - view.pixel[k];
-                corner_cost += e.squaredNorm();
-                ++corners;
-                cost += wc * wc * e.squaredNorm();
-                if (!normal) continue;
-                jg.setZero(2, shared);
-                jg.leftCols(fit.basis.cols()) = wc * by_k * fit.basis;
-                if (shape_count)
-                    jg.middleCols(fit.shape_at, shape_count) =
-                        wc * by_point * pose.linear() *
-                        s.shape.jacobian(view.object_mm[k]).leftCols(shape_count);
-                Eigen::Matrix<double, 2, 6> jv;
-                jv << wc * by_point, -wc * by_point * skew(turned);
-                normal->gg.noalias() += jg.transpose() * jg;
-                normal->g.noalias() += wc * jg.transpose() * e;
-                normal->gv[i].noalias() += jg.transpose() * jv;
-                normal->vv[i].noalias() += jv.transpose() * jv;
-                normal->v[i].noalias() += wc * jv.transpose() * e;
-            }
-            if (robot && problem.base_from_flange[i]) {
-                // base_from_flange * flange_from_camera * camera_from_target against base_from_target.
-                const Pose& a = *problem.base_from_flange[i];
-                const Pose& x = *s.flange_from_camera;
-                const Pose& z = *s.base_from_target;
-                const Pose found = a * x * pose;
-                const Eigen::Vector3d dt = found.translation() - z.translation();
-                const Eigen::Vector3d dw = rotation_log(found.linear() * z.linear().transpose());
-                const double wt = 1 / problem.robot_sigma_mm, wr = 1 / problem.robot_sigma_rad;
-                robot_mm += dt.squaredNorm();
-                robot_rad += dw.squaredNorm();
+constexpr double kRobustSigmas = 3;  // a reflection must not pull the plane
+
+// The unknowns as blocks, and the problem of what was seen of them.
+class Bundle {
+  public:
+    Bundle(const PlateBundle& seen, const PlateBundleState& start, PlateBundleFit& fit)
+        : seen_(seen),
+          data_(*seen.data),
+          state_(start),
+          robot_(start.flange_from_camera && start.base_from_target) {
+        k_ = start.intrinsics;
+        shape_ = start.shape.numbers();
+        if (seen.shape == ShapeFreedom::rigid) shape_.head<2>().setZero();
+        if (seen.shape != ShapeFreedom::bowed) shape_.tail<3>().setZero();
+        for (const Pose& pose : start.camera_from_target) poses_.push_back(block_of(pose));
+        for (PoseBlock& pose : poses_) views_.push_back(pose.data());
+        add_camera(fit);
+        add_shape(fit);
+        if (robot_) {
+            hand_eye_ = block_of(*start.flange_from_camera);
+            target_ = block_of(*start.base_from_target);
+            fit.hand_eye_at = add(hand_eye_.data(), 7, pose_manifold(), 6);
+            fit.target_at = add(target_.data(), 7, pose_manifold(), 6);
+        }
+        if (start.plane) {
+            plane_ << start.plane->normal, start.plane->offset_mm;
+            fit.plane_at = add(plane_.data(), 4, plane_manifold(), 3);
+        }
+        for (std::size_t i = 0; i < data_.views.size(); ++i)
+            if (seen.view_used.empty() || seen.view_used[i]) add_view(i);
+    }
+
+    void solve(PlateBundleFit& fit) {
+        const Solved solved = seamwright::solve(problem_, views_, 100, 1e-10);
+        fit.converged = solved.converged;
+        fit.cost = solved.cost;
+        fit.normal = normal_blocks(problem_, shared_, views_);
+        state_.intrinsics = k_;
+        state_.shape.stretch = shape_(0);
+        state_.shape.shear = shape_(1);
+        state_.shape.bow_mm = shape_.tail<3>();
+        for (std::size_t i = 0; i < poses_.size(); ++i)
+            if (problem_.HasParameterBlock(views_[i])) state_.camera_from_target[i] = pose_of(poses_[i]);
+        if (robot_) {
+            state_.flange_from_camera = pose_of(hand_eye_);
+            state_.base_from_target = pose_of(target_);
+        }
+        if (state_.plane) state_.plane = LaserPlane{plane_.head<3>(), plane_(3)};
+        fit.state = state_;
+        measure(fit);
+    }
+
+  private:
+    Eigen::Index add(double* block, int size, ceres::Manifold* manifold, Eigen::Index moves) {
+        problem_.AddParameterBlock(block, size, manifold);
+        shared_.push_back(block);
+        const Eigen::Index at = next_;
+        next_ += moves;
+        return at;
+    }
+
+    void add_camera(PlateBundleFit& fit) {
+        const Intrinsics held_at = conform(k_, seen_.freedom, data_.width, data_.height);
+        fit.basis = freedom_basis(seen_.freedom);
+        HeldIntrinsics held;
+        if (seen_.hold_exactly) {
+            k_ = held_at;
+        } else {
+            held = held_intrinsics(seen_.freedom, 0.5 * (held_at(0) + held_at(1)), data_.width);
+            fit.basis.conservativeResize(9, fit.basis.cols() + held.sigma.size());
+            fit.basis.rightCols(held.sigma.size()) = held.directions;
+        }
+        add(k_.data(), 9, linear_manifold(fit.basis), fit.basis.cols());
+        if (held.sigma.size() == 0) return;
+        const Eigen::VectorXd per_sigma =
+            (held.directions.colwise().squaredNorm().transpose().cwiseProduct(held.sigma)).cwiseInverse();
+        problem_.AddResidualBlock(
+            new ceres::NormalPrior(per_sigma.asDiagonal() * held.directions.transpose(), held_at), nullptr,
+            k_.data());
+    }
+
+    void add_shape(PlateBundleFit& fit) {
+        if (seen_.shape == ShapeFreedom::rigid) {
+            problem_.AddParameterBlock(shape_.data(), 5);
+            problem_.SetParameterBlockConstant(shape_.data());
+        } else if (seen_.shape == ShapeFreedom::in_plane) {
+            fit.shape_at = add(shape_.data(), 5, new ceres::SubsetManifold(5, {2, 3, 4}), 2);
+        } else {
+            fit.shape_at = add(shape_.data(), 5, nullptr, 5);
+        }
+    }
+
+    void add_view(std::size_t i) {
+        double* pose = views_[i];
+        problem_.AddParameterBlock(pose, 7, pose_manifold());
+        const CameraPoints view = used_of(i);
+        std::vector<camera_costs::Corner> corners;
+        for (std::size_t k = 0; k < view.pixel.size(); ++k)
+            corners.push_back({view.object_mm[k], view.pixel[k], 1 / seen_.corner_sigma_px});
+        if (!corners.empty())
+            problem_.AddResidualBlock(camera_costs::corners(std::move(corners), state_.shape), nullptr,
+                                      k_.data(), shape_.data(), pose);
+        if (robot_ && seen_.base_from_flange[i])
+            problem_.AddResidualBlock(
+                camera_costs::robot(*seen_.base_from_flange[i], seen_.robot_sigma_mm, seen_.robot_sigma_rad),
+                nullptr, hand_eye_.data(), target_.data(), pose);
+        if (!has_stripe(i)) return;
+        for (const auto& pixel : seen_.stripe[i])
+            problem_.AddResidualBlock(camera_costs::stripe(pixel, state_.shape, seen_.stripe_on_bow,
+                                                           data_.width, data_.height, seen_.stripe_sigma_mm),
+                                      new ceres::HuberLoss(kRobustSigmas), k_.data(), shape_.data(),
+                                      plane_.data(), pose);
+    }
+
+    CameraPoints used_of(std::size_t view) const {
+        return chosen(data_.views[view],
+                      seen_.point_used.empty() ? std::vector<char>{} : seen_.point_used[view]);
+    }
+    bool has_stripe(std::size_t view) const {
+        return state_.plane && view < seen_.stripe.size() && seen_.stripe_used[view];
+    }
+
+    // What remains, each in its own unit.
+    void measure(PlateBundleFit& fit) const {
+        const CameraModel camera = camera_of(k_, data_.width, data_.height);
+        double robot_mm2 = 0, robot_rad2 = 0, stripe_mm2 = 0;
+        std::size_t robot_views = 0, rows = 0;
+        for (std::size_t i = 0; i < data_.views.size(); ++i) {
+            if (!problem_.HasParameterBlock(views_[i])) continue;
+            const Pose& pose = state_.camera_from_target[i];
+            CameraPoints bent = used_of(i);
+            for (auto& point : bent.object_mm) point = state_.shape.apply(point);
+            fit.corners += bent.pixel.size();
+            fit.corner_cost += squares_px2(k_, pose, bent);
+            if (robot_ && seen_.base_from_flange[i]) {
+                const Pose found = *seen_.base_from_flange[i] * *state_.flange_from_camera * pose;
+                robot_mm2 += std::pow(distance_mm(found, *state_.base_from_target), 2);
+                robot_rad2 += std::pow(angle_rad(found, *state_.base_from_target), 2);
                 ++robot_views;
-                cost += wt * wt * dt.squaredNorm() + wr * wr * dw.squaredNorm();
-                if (normal) {
-                    Vector6 e;
-                    e << wt * dt, wr * dw;
-                    jg.setZero(6, shared);
-                    const Eigen::Matrix3d ra = a.linear(), rax = a.linear() * x.linear(),
-                                          l = log_jacobian(dw);
-                    jg.block<3, 3>(0, fit.hand_eye_at) = wt * ra;
-                    jg.block<3, 3>(0, fit.hand_eye_at + 3) = -wt * ra * skew(x.linear() * pose.translation());
-                    jg.block<3, 3>(3, fit.hand_eye_at + 3) = wr * l * ra;
-                    jg.block<3, 3>(0, fit.target_at) = -wt * Eigen::Matrix3d::Identity();
-                    jg.block<3, 3>(3, fit.target_at + 3) = -wr * log_jacobian(-dw);
-                    Matrix6 jv = Matrix6::Zero();
-                    jv.block<3, 3>(0, 0) = wt * rax;
-                    jv.block<3, 3>(3, 3) = wr * l * rax;
-                    normal->gg.noalias() += jg.transpose() * jg;
-                    normal->g.noalias() += jg.transpose() * e;
-                    normal->gv[i].noalias() += jg.transpose() * jv;
-                    normal->vv[i].noalias() += jv.transpose() * jv;
-                    normal->v[i].noalias() += jv.transpose() * e;
-                }
             }
-            if (s.plane && i < problem.stripe.size() && problem.stripe_used[i]) {
-                const Eigen::Vector3d n = s.plane->normal, m = pose.linear().col(2), t = pose.translation();
-                const Eigen::Matrix<double, 3, 2> across = tangent(n);
-                for (const auto& pixel : problem.stripe[i]) {
-                    const auto met = meet_plate(camera, pixel, pose, s.shape, problem.stripe_on_bow);
-                    if (!met) return kInfinity;
-                    const double e = n.dot(*met) + s.plane->offset_mm;
-                    stripe_mm += e * e;
+            if (!has_stripe(i)) continue;
+            for (const auto& pixel : seen_.stripe[i])
+                if (const auto met = meet_plate(camera, pixel, pose, state_.shape, seen_.stripe_on_bow)) {
+                    stripe_mm2 += std::pow(plane_.head<3>().dot(*met) + plane_(3), 2);
                     ++rows;
-                    // Huber at 3 sigma: a reflection must not pull the plane.
-                    const double q = std::abs(e) / problem.stripe_sigma_mm;
-                    const double w = (q <= 3 ? 1.0 : std::sqrt(3 / q)) / problem.stripe_sigma_mm;
-                    cost += q <= 3 ? q * q : 3 * (2 * q - 3);
-                    if (!normal) continue;
-                    const double depth = met->z();
-                    const Eigen::Vector3d ray = *met / depth;
-                    const double mr = m.dot(ray), nr = n.dot(ray);
-                    Eigen::Vector2d back;
-                    project_with_jacobian(s.intrinsics, ray, back, &by_point, &by_k);
-                    Eigen::Matrix<double, 3, 9> ray_by_k = Eigen::Matrix<double, 3, 9>::Zero();
-                    ray_by_k.topRows<2>() = -by_point.leftCols<2>().inverse() * by_k;
-                    jg.setZero(1, shared);
-                    jg.leftCols(fit.basis.cols()) =
-                        (depth * (n.transpose() - nr / mr * m.transpose()) * ray_by_k) * fit.basis;
-                    if (shape_count == 5 && problem.stripe_on_bow) {
-                        const Eigen::Vector3d q_plate = pose.inverse() * *met;
-                        jg.middleCols(fit.shape_at + 2, 3) =
-                            nr / mr * s.shape.bow_basis(q_plate.x(), q_plate.y()).transpose();
-                    }
-                    jg.middleCols(fit.plane_at, 2) = met->transpose() * across;
-                    jg(0, fit.plane_at + 2) = 1;
-                    Eigen::Matrix<double, 1, 6> jv;
-                    jv.leftCols<3>() = nr / mr * m.transpose();
-                    jv.rightCols<3>() = nr / mr * (m.cross(t) - depth * m.cross(ray)).transpose();
-                    jg *= w;
-                    jv *= w;
-                    normal->gg.noalias() += jg.transpose() * jg;
-                    normal->g.noalias() += w * e * jg.transpose();
-                    normal->gv[i].noalias() += jg.transpose() * jv;
-                    normal->vv[i].noalias() += jv.transpose() * jv;
-                    normal->v[i].noalias() += w * e * jv.transpose();
                 }
-            }
         }
-        for (Eigen::Index j = 0; j < held.sigma.size(); ++j) {
-            const auto d = held.directions.col(j);
-            const double e = d.dot(s.intrinsics - held_at) / (d.squaredNorm() * held.sigma(j));
-            cost += e * e;
-            if (!normal) continue;
-            normal->gg(free + j, free + j) += 1 / (held.sigma(j) * held.sigma(j));
-            normal->g(free + j) += e / held.sigma(j);
-        }
-        if (normal) {
-            normal->cost = cost;
-            fit.corners = corners;
-            fit.corner_cost = corner_cost;
-            fit.corner_rms_px = corners ? std::sqrt(corner_cost / static_cast<double>(corners)) : 0;
-            fit.robot_rms_mm = robot_views ? std::sqrt(robot_mm / static_cast<double>(robot_views)) : 0;
-            fit.robot_rms_rad = robot_views ? std::sqrt(robot_rad / static_cast<double>(robot_views)) : 0;
-            fit.stripe_rms_mm = rows ? std::sqrt(stripe_mm / static_cast<double>(rows)) : 0;
-        }
-        return std::isfinite(cost) ? cost : kInfinity;
-    };
-    const auto apply = [&](PlateBundleState& s, const Eigen::VectorXd& step,
-                           const std::vector<Vector6>& view_steps) {
-        s.intrinsics += fit.basis * step.head(fit.basis.cols());
-        if (shape_count) {
-            s.shape.stretch += step(fit.shape_at);
-            s.shape.shear += step(fit.shape_at + 1);
-            if (shape_count == 5) s.shape.bow_mm += step.segment<3>(fit.shape_at + 2);
-        }
-        if (robot) {
-            s.flange_from_camera = retract(*s.flange_from_camera, step.segment<6>(fit.hand_eye_at));
-            s.base_from_target = retract(*s.base_from_target, step.segment<6>(fit.target_at));
-        }
-        if (s.plane) {
-            s.plane->normal =
-                (s.plane->normal + tangent(s.plane->normal) * step.segment<2>(fit.plane_at)).normalized();
-            s.plane->offset_mm += step(fit.plane_at + 2);
-        }
-        for (std::size_t i = 0; i < s.camera_from_target.size(); ++i)
-            if (used(i)) s.camera_from_target[i] = retract(s.camera_from_target[i], view_steps[i]);
-    };
-    fit.state = start;
-    if (problem.hold_exactly) fit.state.intrinsics = held_at;
-    if (shape_count == 0) fit.state.shape.stretch = fit.state.shape.shear = 0;
-    if (shape_count < 5) fit.state.shape.bow_mm.setZero();
-    fit.converged = minimise_blocks(fit.state, fit.normal, evaluate, apply, 60, 1e-9);
+        const auto rms = [](double sum, std::size_t n) {
+            return n ? std::sqrt(sum / static_cast<double>(n)) : 0;
+        };
+        fit.corner_rms_px = rms(fit.corner_cost, fit.corners);
+        fit.robot_rms_mm = rms(robot_mm2, robot_views);
+        fit.robot_rms_rad = rms(robot_rad2, robot_views);
+        fit.stripe_rms_mm = rms(stripe_mm2, rows);
+    }
+
+    const PlateBundle& seen_;
+    const CameraData& data_;
+    PlateBundleState state_;
+    bool robot_;
+    Intrinsics k_;
+    camera_costs::Shape shape_;
+    PoseBlock hand_eye_, target_;
+    Eigen::Vector4d plane_;
+    std::vector<PoseBlock> poses_;
+    std::vector<double*> shared_, views_;
+    Eigen::Index next_ = 0;
+    ceres::Problem problem_;
+};
+
+}  // namespace
+
+PlateBundleFit solve_plate_bundle(const PlateBundle& problem, const PlateBundleState& start) {
+    PlateBundleFit fit;
+    Bundle(problem, start, fit).solve(fit);
     fit.covariance = shared_covariance(fit.normal);
     return fit;
+}
+
+CameraSolution refine_camera(const CameraData& data, const std::vector<std::vector<char>>& used,
+                             const CameraFreedom& freedom, const CameraSolution& start) {
+    PlateBundle rigid;
+    rigid.data = &data;
+    rigid.point_used = used;
+    rigid.freedom = freedom;
+    rigid.hold_exactly = true;
+    rigid.corner_sigma_px = 1;
+    PlateBundleState state;
+    state.intrinsics = start.intrinsics;
+    state.camera_from_target = start.camera_from_target;
+    PlateBundleFit fit = solve_plate_bundle(rigid, state);
+    return {fit.state.intrinsics,  std::move(fit.state.camera_from_target),
+            std::move(fit.normal), fit.cost,
+            fit.corners,           fit.converged};
 }
 
 }  // namespace seamwright

@@ -22,10 +22,25 @@ struct PlateShape {
     Eigen::Vector3d bow_mm = Eigen::Vector3d::Zero();  // at the distance half_mm
     Eigen::Vector2d middle_mm = Eigen::Vector2d::Zero();
     double half_mm = 1;
-    Eigen::Vector3d bow_basis(double x, double y) const;
-    double height_mm(double x, double y) const { return bow_mm.dot(bow_basis(x, y)); }
-    Eigen::Vector3d apply(const Eigen::Vector3d& nominal) const;  // nominal point to true point, plate frame
-    Eigen::Matrix<double, 3, 5> jacobian(const Eigen::Vector3d& nominal) const;  // by stretch, shear, bow
+    Eigen::Matrix<double, 5, 1> numbers() const {
+        return {stretch, shear, bow_mm.x(), bow_mm.y(), bow_mm.z()};
+    }
+    Eigen::Vector3d apply(const Eigen::Vector3d& nominal) const {  // nominal point to true point, plate frame
+        return bent(numbers().data(), nominal);
+    }
+    // The same by other numbers than its own (stretch, shear, bow), of any type.
+    template <class T>
+    T height(const T* shape, const T& x, const T& y) const {
+        const T a = (x - middle_mm.x()) / half_mm, b = (y - middle_mm.y()) / half_mm;
+        return a * a * shape[2] + a * b * shape[3] + b * b * shape[4];
+    }
+    template <class T>
+    Eigen::Matrix<T, 3, 1> bent(const T* shape, const Eigen::Vector3d& nominal) const {
+        const double x = nominal.x() - middle_mm.x(), y = nominal.y() - middle_mm.y();
+        return {shape[0] * (-0.5 * x) + shape[1] * (0.5 * y) + nominal.x(),
+                shape[0] * (0.5 * y) + shape[1] * (0.5 * x) + nominal.y(),
+                height(shape, T(nominal.x()), T(nominal.y())) + nominal.z()};
+    }
 };
 
 // How much of the shape is free.
@@ -67,7 +82,9 @@ struct PlateBundleState {
 
 struct PlateBundleFit {
     PlateBundleState state;
-    BlockNormal normal;
+    NormalBlocks normal;
+    double cost =
+        0;  // sum of squares over the stated sigmas, priors included; infinity at an impossible start
     Eigen::MatrixXd covariance;  // of the shared unknowns for the stated sigmas; empty when singular
     // Where the shared unknowns stand: intrinsics basis [0, n), then shape, hand-eye, target, plane; -1 =
     // absent.

@@ -2,183 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 
+#include "core/calibration/pose/hand_eye_solve.h"
 #include "core/calibration/pose/hand_eye_start.h"
 #include "core/calibration/pose_set.h"
 #include "core/calibration/statistics.h"
-#include "core/geometry/decompositions.h"
+#include "core/median.h"
+#include "core/numbers.h"
 
 namespace seamwright {
 namespace {
 
-using hand_eye::Closed;
-using Vector12 = Eigen::Matrix<double, 12, 1>;
-using Matrix12 = Eigen::Matrix<double, 12, 12>;
-using Matrix3x12 = Eigen::Matrix<double, 3, 12>;
+using namespace hand_eye;
 
-constexpr double kSmallest_mm = 1e-6, kSmallest_rad = 1e-8;  // weights of exact data stay finite
-constexpr double kFloor_mm = 0.02, kFloor_rad = 2e-4;  // no camera and robot are better: for determinability
 constexpr double kUndetermined_mm = 20.0, kUndetermined_rad = 0.05;
 constexpr double kGoodHand_mm = 1.0, kGoodHand_deg = 0.3, kUsableHand_mm = 3.0, kUsableHand_deg = 1.0;
-
-struct Chain {
-    std::vector<Pose> a, c;
-    std::vector<bool> used;
-    size_t size() const { return a.size(); }
-    size_t used_count() const { return static_cast<size_t>(std::count(used.begin(), used.end(), true)); }
-};
-
-struct Scales {
-    double mm = 1, rad = 0.01;
-};
-
-Eigen::Vector3d residual_mm(const Chain& chain, size_t i, const Pose& x, const Pose& y) {
-    return chain.a[i] * (x * chain.c[i].translation()) - y.translation();
-}
-Eigen::Vector3d residual_rad(const Chain& chain, size_t i, const Pose& x, const Pose& y) {
-    return rotation_log(y.linear().transpose() * chain.a[i].linear() * x.linear() * chain.c[i].linear());
-}
-
-void jacobians(const Chain& chain, size_t i, const Pose& x, const Pose& y, Matrix3x12& jt, Matrix3x12& jr) {
-    const Eigen::Matrix3d ra = chain.a[i].linear();
-    jt.setZero();
-    jt.leftCols<3>() = ra;
-    jt.middleCols<3>(3) = -ra * skew(x.linear() * chain.c[i].translation());
-    jt.middleCols<3>(6) = -Eigen::Matrix3d::Identity();
-    jr.setZero();
-    // log(Exp(d) E) = r + J_l^-1(r) d, J_l^-1 = I - [r]x / 2 to first order in the residual r.
-    const Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() - 0.5 * skew(residual_rad(chain, i, x, y));
-    jr.middleCols<3>(3) = turn * y.linear().transpose() * ra;
-    jr.middleCols<3>(9) = -turn * y.linear().transpose();
-}
-
-// Geman-McClure over whole pairs: q = |r_t|^2/s_t^2 + |r_r|^2/s_r^2, cost q k / (q + k); k infinite = least
-// squares.
-double pair_square(const Chain& chain, size_t i, const Pose& x, const Pose& y, const Scales& s) {
-    return residual_mm(chain, i, x, y).squaredNorm() / (s.mm * s.mm) +
-           residual_rad(chain, i, x, y).squaredNorm() / (s.rad * s.rad);
-}
-double cost_of(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
-    double cost = 0;
-    for (size_t i = 0; i < chain.size(); ++i) {
-        if (!chain.used[i]) continue;
-        const double q = pair_square(chain, i, x, y, s);
-        cost += std::isinf(k) ? q : q * k / (q + k);
-    }
-    return cost;
-}
-
-struct Normal {
-    Matrix12 translation = Matrix12::Zero(), rotation = Matrix12::Zero();  // each divided by its variance
-    Vector12 gradient = Vector12::Zero();
-    Matrix12 sum() const { return translation + rotation; }
-};
-
-Normal normal_equations(const Chain& chain, const Pose& x, const Pose& y, const Scales& s, double k) {
-    Normal normal;
-    Matrix3x12 jt, jr;
-    for (size_t i = 0; i < chain.size(); ++i) {
-        if (!chain.used[i]) continue;
-        jacobians(chain, i, x, y, jt, jr);
-        double weight = 1;
-        if (!std::isinf(k)) {
-            const double q = pair_square(chain, i, x, y, s);
-            weight = k / (q + k) * k / (q + k);
-        }
-        const double wt = weight / (s.mm * s.mm), wr = weight / (s.rad * s.rad);
-        normal.translation.noalias() += (wt * jt.transpose()).lazyProduct(jt);
-        normal.rotation.noalias() += (wr * jr.transpose()).lazyProduct(jr);
-        normal.gradient.noalias() += wt * jt.transpose() * residual_mm(chain, i, x, y) +
-                                     wr * jr.transpose() * residual_rad(chain, i, x, y);
-    }
-    return normal;
-}
-
-double refine(const Chain& chain, Pose& x, Pose& y, const Scales& s, double k, int iterations) {
-    double cost = cost_of(chain, x, y, s, k), lambda = 1e-6;
-    for (int iteration = 0; iteration < iterations; ++iteration) {
-        const Normal normal = normal_equations(chain, x, y, s, k);
-        const Matrix12 h = normal.sum();
-        const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-        bool moved = false;
-        double gain = 0;
-        for (int attempt = 0; attempt < 10; ++attempt) {
-            Matrix12 damped = scale.asDiagonal() * h * scale.asDiagonal();
-            damped.diagonal().array() += lambda + 1e-14;
-            const Vector12 step =
-                -(scale.asDiagonal() * solve_symmetric(damped, scale.asDiagonal() * normal.gradient));
-            const Pose next_x = retract(x, step.head<6>()), next_y = retract(y, step.tail<6>());
-            const double next = cost_of(chain, next_x, next_y, s, k);
-            if (next <= cost) {
-                gain = cost - next;
-                x = next_x;
-                y = next_y;
-                cost = next;
-                lambda = std::max(1e-12, lambda * 0.1);
-                moved = true;
-                break;
-            }
-            lambda = std::max(1e-9, lambda * 10);
-        }
-        if (!moved || gain <= 1e-12 * cost) break;
-    }
-    return cost;
-}
-
-double hand_eye_median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-// Axis sigmas from medians of squared norms (chi-squared with three degrees of freedom has median 2.366).
-Scales scales_from_medians(const Chain& chain, const Pose& x, const Pose& y) {
-    std::vector<double> t, r;
-    for (size_t i = 0; i < chain.size(); ++i) {
-        if (!chain.used[i]) continue;
-        t.push_back(residual_mm(chain, i, x, y).squaredNorm());
-        r.push_back(residual_rad(chain, i, x, y).squaredNorm());
-    }
-    return {std::max(kSmallest_mm, std::sqrt(hand_eye_median(t) / 2.366)),
-            std::max(kSmallest_rad, std::sqrt(hand_eye_median(r) / 2.366))};
-}
-
-// Variance components by the hat matrix' share of each group: s^2 = sum r^2 / (3 n - tr(H^-1 H_group)).
-Scales estimated_scales(const Chain& chain, const Pose& x, const Pose& y, const Scales& s) {
-    const Normal normal = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity());
-    const Matrix12 sum = normal.sum();
-    const double p_t = solve_symmetric(sum, normal.translation).trace(),
-                 p_r = solve_symmetric(sum, normal.rotation).trace();
-    double squares_t = 0, squares_r = 0;
-    for (size_t i = 0; i < chain.size(); ++i) {
-        if (!chain.used[i]) continue;
-        squares_t += residual_mm(chain, i, x, y).squaredNorm();
-        squares_r += residual_rad(chain, i, x, y).squaredNorm();
-    }
-    const double rows = 3 * static_cast<double>(chain.used_count());
-    return {std::max(kSmallest_mm, std::sqrt(squares_t / std::max(1.0, rows - p_t))),
-            std::max(kSmallest_rad, std::sqrt(squares_r / std::max(1.0, rows - p_r)))};
-}
-
-// Least squares with the two scales estimated along.
-Scales solve(const Chain& chain, Pose& x, Pose& y, Scales scales) {
-    for (int round = 0; round < 8; ++round) {
-        refine(chain, x, y, scales, std::numeric_limits<double>::infinity(), 30);
-        const Scales next = estimated_scales(chain, x, y, scales);
-        const double change = std::abs(
-            std::log((next.mm / next.rad) / (scales.mm / scales.rad)));  // only the ratio moves the solution
-        scales = next;
-        if (change < 1e-4) break;
-    }
-    return scales;
-}
 
 // Sum of absolute residuals with angles on the lever of the camera's distance: one number for all closed
 // forms.
@@ -203,7 +44,7 @@ Chain subset(const Chain& chain, const std::vector<size_t>& pick) {
 
 struct Began {
     Closed closed;
-    double cost = std::numeric_limits<double>::infinity();
+    double cost = kInfinity;
 };
 
 Began best_start(const Chain& chain) {
@@ -218,7 +59,7 @@ Began best_start(const Chain& chain) {
     Began best;
     const auto consider = [&](const std::vector<size_t>& pick) {
         const Chain part = subset(chain, pick);
-        for (const auto& closed : hand_eye::closed_forms(part.a, part.c)) {
+        for (const auto& closed : closed_forms(part.a, part.c)) {
             const double cost = absolute_cost(chain, closed.x, closed.y, lever);
             if (cost < best.cost) best = {closed, cost};
         }
@@ -231,7 +72,7 @@ Began best_start(const Chain& chain) {
     for (const size_t i : used)
         each.push_back(std::hypot(residual_mm(chain, i, best.closed.x, best.closed.y).norm(),
                                   lever * residual_rad(chain, i, best.closed.x, best.closed.y).norm()));
-    const double middle = hand_eye_median(each);
+    const double middle = median(each);
     if (*std::max_element(each.begin(), each.end()) < 3 * middle + 1e-9) return best;
     std::mt19937 random(11u);
     for (int trial = 0; trial < 60; ++trial) {
@@ -241,63 +82,6 @@ Began best_start(const Chain& chain) {
         consider(pick);
     }
     return best;
-}
-
-struct Determination {
-    Matrix12 inverse = Matrix12::Zero();
-    double worst_mm = 0, worst_rad = 0;  // sigma of X with the noise floor
-};
-
-// The covariance as the pairs themselves scatter (Liang and Zeger's sandwich, each residual freed from its own
-// other pairs see it), in the directions in which it is the larger: a camera knows the target's distance and
-// tilt ten times worse than its place across, and a turn and a shift of one pair err together.
-Matrix12 by_pairs(const Chain& chain, const Pose& x, const Pose& y, const Scales& s,
-                  const Matrix12& isotropic) {
-    Matrix12 meat = Matrix12::Zero();
-    Matrix3x12 jt, jr;
-    for (size_t i = 0; i < chain.size(); ++i) {
-        if (!chain.used[i]) continue;
-        jacobians(chain, i, x, y, jt, jr);
-        Eigen::Matrix<double, 6, 12> j;
-        j << jt / s.mm, jr / s.rad;
-        Vector6 r;
-        r << residual_mm(chain, i, x, y) / s.mm, residual_rad(chain, i, x, y) / s.rad;
-        // I - J C J^T; a pair that alone knows something has no residual there.
-        const SymmetricEigen left = symmetric_eigen(Matrix6::Identity() - j * isotropic * j.transpose());
-        const Vector6 alone = left.vectors.transpose() * r;
-        const Vector6 others = left.vectors * alone.cwiseQuotient(left.values.cwiseMax(0.05).cwiseSqrt());
-        const Vector12 pull = j.transpose() * others;
-        meat.noalias() += pull * pull.transpose();
-    }
-    const Eigen::LLT<Matrix12> root(isotropic);
-    if (root.info() != Eigen::Success) return isotropic;
-    const Matrix12 l = root.matrixL();
-    const SymmetricEigen ratio = symmetric_eigen(l.transpose() * meat * l);
-    // Where the pairs scatter alike the largest ratio comes out near (1 + sqrt(12 / n))^2 by chance; its root is
-    // taken off before it counts, so that such pairs are not stated too unsure.
-    const double chance = 1 + std::sqrt(12.0 / std::max(1.0, static_cast<double>(chain.used_count())));
-    return l * ratio.vectors * (ratio.values / chance).cwiseMax(1).asDiagonal() * ratio.vectors.transpose() *
-           l.transpose();
-}
-
-Determination determination(const Chain& chain, const Pose& x, const Pose& y, const Scales& scales) {
-    const Scales floor{std::max(scales.mm, kFloor_mm), std::max(scales.rad, kFloor_rad)};
-    const auto inverse_of = [&](const Scales& s) {
-        const Matrix12 h = normal_equations(chain, x, y, s, std::numeric_limits<double>::infinity()).sum();
-        const Vector12 scale = h.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-        const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * h * scale.asDiagonal());
-        const Vector12 inverse = eigen.values.cwiseMax(1e-15).cwiseInverse();
-        return Matrix12(scale.asDiagonal() * eigen.vectors * inverse.asDiagonal() *
-                        eigen.vectors.transpose() * scale.asDiagonal());
-    };
-    Determination result;
-    const Matrix12 floored = inverse_of(floor);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> t(Eigen::Matrix3d(floored.topLeftCorner<3, 3>()));
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> w(Eigen::Matrix3d(floored.block<3, 3>(3, 3)));
-    result.worst_mm = std::sqrt(std::max(0.0, t.eigenvalues()[2]));
-    result.worst_rad = std::sqrt(std::max(0.0, w.eigenvalues()[2]));
-    result.inverse = by_pairs(chain, x, y, scales, inverse_of(scales));
-    return result;
 }
 
 std::vector<Text> degenerate_words(const std::vector<Pose>& base_from_flange) {
@@ -397,7 +181,7 @@ HoldOut verify(const Chain& chain, const Pose& x, const Pose& y, const Scales& s
         if (!chain.used[i]) continue;
         rest.used[i] = false;
         Pose rx = x, ry = y;
-        refine(rest, rx, ry, scales, std::numeric_limits<double>::infinity(), 20);
+        refine(rest, rx, ry, scales, kInfinity, 20);
         rest.used[i] = true;
         const double t = residual_mm(chain, i, rx, ry).norm(), r = residual_rad(chain, i, rx, ry).norm();
         squares_t += t * t;
@@ -487,7 +271,6 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
     result.degenerate = degenerate_words(robot);
     const Determination known = determination(chain, x, y, scales);
     report.poses.resize(pairs.size());
-    std::string wrong;
     for (size_t i = 0; i < pairs.size(); ++i) {
         auto& pose = report.poses[i];
         pose.id = pairs[i].id;
@@ -497,10 +280,10 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
             pose.note = "excluded by the user";
         } else if (!chain.used[i]) {
             pose.note = "contradicts what the other pairs agree on: wrong robot pose or wrong target pose";
-            wrong += (wrong.empty() ? "" : ", ") + pose.id;
         }
     }
-    if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
+    if (const std::string wrong = left_out(report.poses); !wrong.empty())
+        result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
     const double n = static_cast<double>(chain.used_count());
     double squares_t = 0, squares_r = 0;
@@ -542,22 +325,12 @@ Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEy
         report.poses[i].deg = deg_from_rad(residual_rad(chain, i, x, y).norm());
     }
     const double student = student_quantile(0.975, std::max(1.0, 6 * n - 12)) / 1.959964;
-    const Matrix12 covariance = known.inverse * student * student;
+    const Matrix12 covariance = known.covariance * student * student;
     result.covariance_x = covariance.topLeftCorner<6, 6>();
     result.covariance_y = covariance.bottomRightCorner<6, 6>();
-    const auto add = [&report](const std::string& prefix, const Pose& pose) {
-        const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear()) * (180 / kPi);
-        static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
-        for (int k = 0; k < 3; ++k) report.parameters.push_back({prefix + names[k], t[k], "mm", 0});
-        for (int k = 0; k < 3; ++k) report.parameters.push_back({prefix + names[3 + k], w[k], "deg", 0});
-    };
-    add("", x);
-    add("target_", y);
-    Vector12 unit = Vector12::Ones();
-    unit.segment<3>(3).setConstant(180 / kPi);
-    unit.tail<3>().setConstant(180 / kPi);
-    report.covariance = unit.asDiagonal() * covariance * unit.asDiagonal();
-    finish_statistics(report);
+    add_pose(report, x);
+    add_pose(report, y, "target_");
+    state_covariance(report, covariance);
     report.hold_out = verify(chain, x, y, scales);
 
     const double check_mm = std::isnan(report.hold_out.rms_mm) ? result.rms_mm : report.hold_out.rms_mm;

@@ -228,13 +228,8 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
     result.scale = std::sqrt(m.spread_to / m.spread_from);
 
     for (size_t i = 0; i < points.size(); ++i) report.poses[i].rms_mm = (world[i] - pose * plate[i]).norm();
-    const Eigen::Vector3d t = pose.translation(), w = rotation_log(pose.linear()) * (180 / kPi);
-    report.parameters = {{"x", t.x(), "mm", 0},   {"y", t.y(), "mm", 0},   {"z", t.z(), "mm", 0},
-                         {"rx", w.x(), "deg", 0}, {"ry", w.y(), "deg", 0}, {"rz", w.z(), "deg", 0}};
-    Vector6 unit = Vector6::Ones();
-    unit.tail<3>().setConstant(180 / kPi);
-    report.covariance = unit.asDiagonal() * result.covariance * unit.asDiagonal();
-    finish_statistics(report);
+    add_pose(report, pose);
+    state_covariance(report, result.covariance);
 
     // Leave-one-out.
     if (count >= 4) {

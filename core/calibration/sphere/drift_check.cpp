@@ -215,13 +215,8 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
     const bool explained = freedom < 1 || after <= chi_squared_quantile(0.999, freedom) * 1.5;
 
     auto& report = result.report;
-    const Eigen::Vector3d t = fit.change.translation(), w = rotation_log(fit.change.linear()) * (180 / kPi);
-    report.parameters = {{"x", t.x(), "mm", 0},   {"y", t.y(), "mm", 0},   {"z", t.z(), "mm", 0},
-                         {"rx", w.x(), "deg", 0}, {"ry", w.y(), "deg", 0}, {"rz", w.z(), "deg", 0}};
-    Vector6 unit = Vector6::Ones();
-    unit.tail<3>().setConstant(180 / kPi);
-    report.covariance = unit.asDiagonal() * fit.covariance * unit.asDiagonal();
-    finish_statistics(report);
+    add_pose(report, fit.change);
+    state_covariance(report, fit.covariance);
 
     const bool significant = result.chi_squared > result.chi_squared_limit;
     const bool beyond =

@@ -356,19 +356,14 @@ void write_statistics(const Model& model, const Matrix10& covariance, bool radiu
     result.working_sigma_mm = std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 
     auto& report = result.report;
-    const Eigen::Vector3d t = model.flange_from_sensor.translation();
-    const Eigen::Vector3d w = rotation_log(model.flange_from_sensor.linear()) * (180 / kPi);
     const Eigen::Vector3d& c = model.centre_base;
-    report.parameters = {
-        {"x", t.x(), "mm", 0},        {"y", t.y(), "mm", 0},        {"z", t.z(), "mm", 0},
-        {"rx", w.x(), "deg", 0},      {"ry", w.y(), "deg", 0},      {"rz", w.z(), "deg", 0},
-        {"centre_x", c.x(), "mm", 0}, {"centre_y", c.y(), "mm", 0}, {"centre_z", c.z(), "mm", 0}};
+    add_pose(report, model.flange_from_sensor);
+    report.parameters.insert(
+        report.parameters.end(),
+        {{"centre_x", c.x(), "mm", 0}, {"centre_y", c.y(), "mm", 0}, {"centre_z", c.z(), "mm", 0}});
     if (radius_free) report.parameters.push_back({"radius", model.radius, "mm", 0});
     const auto n = static_cast<Eigen::Index>(report.parameters.size());
-    Vector10 unit = Vector10::Ones();
-    unit.segment<3>(3).setConstant(180 / kPi);
-    report.covariance = (unit.asDiagonal() * covariance * unit.asDiagonal()).topLeftCorner(n, n);
-    finish_statistics(report);
+    state_covariance(report, covariance.topLeftCorner(n, n));
 }
 
 }  // namespace
@@ -535,9 +530,7 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     // Verdict.
     const double three_sigma = 3 * result.working_sigma_mm;
     const double hold_out = result.report.hold_out.rms_mm;
-    std::string rejected;
-    for (const auto& pose : result.report.poses)
-        if (!pose.used && !pose.excluded) rejected += (rejected.empty() ? "" : ", ") + pose.id;
+    const std::string rejected = left_out(result.report.poses);
     if (!rejected.empty()) result.notices.push_back(Text("not used: {}", rejected));
     if (noise.poses_disagree)
         result.notices.push_back(

@@ -1,6 +1,11 @@
 #pragma once
 // Inner parts of calibrate_tcp_sphere(); see tcp_sphere.h for the model. Parameter order everywhere: t (3),
 // rotation vector (3, retract() of pose.h), c (3), r.
+//
+// Its own Levenberg-Marquardt, not ceres::Problem as the other calibrations: the search from no start solves hundreds
+// of small problems on three sufficient numbers a profile, and the points' normal equations are sums over a profile that
+// the compiler keeps in vector registers. A whole calibration, search and noise model included, takes half the time
+// of one plain solve of the points by Ceres from a start a few millimetres off (tests/bench/bench_calibration_pose.cpp).
 
 #include <vector>
 

@@ -109,15 +109,8 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     result.camera_from_laser = solved->camera_from_target;
     result.covariance = solved->covariance;
     result.rms_px = solved->rms_px;
-    const Eigen::Vector3d w = rotation_log(result.camera_from_laser.linear());
-    Matrix6 scale = Matrix6::Identity();
-    scale.bottomRightCorner<3, 3>() *= deg_from_rad(1);
-    for (int i = 0; i < 6; ++i)
-        report.parameters.push_back(
-            {names[i], i < 3 ? result.camera_from_laser.translation()(i) : deg_from_rad(w(i - 3)),
-             i < 3 ? "mm" : "deg", 0});
-    report.covariance = scale * result.covariance * scale;
-    finish_statistics(report);
+    add_pose(report, result.camera_from_laser);
+    state_covariance(report, result.covariance);
 
     double hold = 0, hold_mm = 0, hold_mm_max = 0;
     int folds = 0;
@@ -148,9 +141,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     }
     const double sigma_mm = std::sqrt(result.covariance.topLeftCorner<3, 3>().trace());
     const double sigma_deg = deg_from_rad(std::sqrt(result.covariance.bottomRightCorner<3, 3>().trace()));
-    std::string left_out;
-    for (const auto& p : report.poses)
-        if (!p.used && !p.excluded) left_out += (left_out.empty() ? "" : ", ") + p.id;
+    const std::string without = left_out(report.poses);
     const char* more = "add pairs in the corners of the field of view, near and far";
     if (!(sigma_mm < 5) || !(sigma_deg < 2)) {
         report.parameters.clear();
@@ -161,9 +152,9 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     if (result.rms_px > 3)
         report.judgement = {Verdict::poor, Text("the pairs fit to {:.1f} px only", result.rms_px),
                             "check the camera and that pixels and laser points belong together"};
-    else if (!left_out.empty())
+    else if (!without.empty())
         report.judgement = {Verdict::usable,
-                            Text("the pair {} contradicts the others and was left out", left_out),
+                            Text("the pair {} contradicts the others and was left out", without),
                             "measure it again"};
     else if (count() < 10)
         report.judgement = {Verdict::usable, Text("{} pairs are few", count()),

@@ -13,6 +13,7 @@
 #include "core/calibration/stripe/stripe_line.h"
 #include "core/calibration/stripe/stripe_plane.h"
 #include "core/geometry/decompositions.h"
+#include "core/median.h"
 
 namespace seamwright {
 namespace {
@@ -306,7 +307,7 @@ class Solver {
         p.shape = model.shape;
         const auto all = solve_plate_bundle(p, state_);
         std::vector<double> error(count(), std::numeric_limits<double>::infinity());
-        if (!std::isfinite(all.normal.cost)) return error;
+        if (!std::isfinite(all.cost)) return error;
         for (std::size_t k = 0; k < count(); ++k) {
             p.view_used.assign(count(), 1);
             p.view_used[k] = 0;
@@ -463,8 +464,7 @@ class Solver {
             if (!fit) continue;
             const auto frames = std::count(bundle_.stripe_used.begin(), bundle_.stripe_used.end(), 1);
             const auto best_frames = best ? std::count(best_used_.begin(), best_used_.end(), 1) : 0;
-            if (!best || frames > best_frames ||
-                (frames == best_frames && fit->normal.cost < best->normal.cost)) {
+            if (!best || frames > best_frames || (frames == best_frames && fit->cost < best->cost)) {
                 best = fit;
                 best_used_ = bundle_.stripe_used;
                 best_on_bow_ = on_bow;
@@ -502,9 +502,8 @@ class Solver {
             f.camera_from_target = state_.camera_from_target[k];
             CameraPoints bent = data_.views[k];
             for (auto& x : bent.object_mm) x = state_.shape.apply(x);
-            f.corner_rms_px = std::sqrt(
-                accumulate_view(state_.intrinsics, f.camera_from_target, bent, {}, nullptr, nullptr) /
-                static_cast<double>(bent.pixel.size()));
+            f.corner_rms_px = std::sqrt(squares_px2(state_.intrinsics, f.camera_from_target, bent) /
+                                        static_cast<double>(bent.pixel.size()));
             if (const auto& at = observations_[view_frame_[k]].base_from_flange; has_robot() && at) {
                 const Pose target = *at * *state_.flange_from_camera * f.camera_from_target;
                 f.robot_used = bundle_.base_from_flange[k].has_value();
@@ -516,7 +515,6 @@ class Solver {
             const auto& line = lines_[k][choice_[k]];
             f.stripe_used = bundle_.stripe_used[k];
             f.rows_on_board = static_cast<int>(line.on.size()) + line.missed;
-            std::vector<double> size;
             for (const auto i : line.on) {
                 const auto& pixel = observations_[view_frame_[k]].stripe[i];
                 const auto met = meet_plate(result_.camera, pixel, f.camera_from_target, state_.shape,
@@ -528,12 +526,7 @@ class Solver {
                 f.rows_on_plane += std::abs(e) < kOnPlaneMm;
                 if (f.stripe_used) square += e * e, ++points_used;
             }
-            size = f.off_plane_mm;
-            if (!size.empty()) {
-                std::nth_element(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2),
-                                 size.end());
-                f.median_off_plane_mm = size[size.size() / 2];
-            }
+            if (std::vector<double> off = f.off_plane_mm; !off.empty()) f.median_off_plane_mm = median(off);
             rows_all += f.rows_on_board, on_all += f.rows_on_plane;
             if (f.stripe_used)
                 rows += f.rows_on_board, on += f.rows_on_plane;

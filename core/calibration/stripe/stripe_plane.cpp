@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "core/median.h"
+
 namespace seamwright::detail {
 
 std::optional<LaserPlane> fit_plane(const StripePoints& points, const std::vector<char>& chosen) {
@@ -47,9 +49,7 @@ double median_off_plane(const LaserPlane& plane, const std::vector<Eigen::Vector
     std::vector<double> d;
     d.reserve(points.size());
     for (const auto& p : points) d.push_back(std::abs(plane.normal.dot(p) + plane.offset_mm));
-    const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
-    std::nth_element(d.begin(), middle, d.end());
-    return *middle;
+    return median(d);
 }
 
 std::optional<PlaneConsensus> consensus_plane(const StripePoints& points, double limit_mm) {

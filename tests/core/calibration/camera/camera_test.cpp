@@ -25,30 +25,6 @@ CameraOptions excluding(const std::string& id) {
     return o;
 }
 
-TEST(CameraProjection, DerivativesMatchDifferences) {
-    Intrinsics k;
-    k << 540, 543, 325, 236, -0.25, 0.08, 0.0012, -0.0008, 0.02;
-    const Eigen::Vector3d p(80, -60, 400);
-    Eigen::Vector2d pixel;
-    Eigen::Matrix<double, 2, 3> by_point;
-    Eigen::Matrix<double, 2, 9> by_k;
-    project_with_jacobian(k, p, pixel, &by_point, &by_k);
-    EXPECT_LT((pixel - camera_of(k, 640, 480).project(p)).norm(), 1e-9);
-    const auto at = [](const Intrinsics& kk, const Eigen::Vector3d& q) {
-        Eigen::Vector2d u;
-        project_with_jacobian(kk, q, u, nullptr, nullptr);
-        return u;
-    };
-    for (int i = 0; i < 3; ++i) {
-        const Eigen::Vector3d d = 1e-4 * Eigen::Vector3d::Unit(i);
-        EXPECT_LT((by_point.col(i) - (at(k, p + d) - at(k, p - d)) / 2e-4).norm(), 1e-6);
-    }
-    for (int i = 0; i < 9; ++i) {
-        const Intrinsics d = 1e-5 * Intrinsics::Unit(i);
-        EXPECT_LT((by_k.col(i) - (at(k + d, p) - at(k - d, p)) / 2e-5).norm(), 1e-4) << i;
-    }
-}
-
 TEST(CameraCalibration, ExactDataGivesTheTruth) {
     std::mt19937 random(1);
     const auto truth = camera_640();

@@ -12,12 +12,12 @@
 #include <thread>
 #include <vector>
 
-#include "app/cli/evaluate/cell.h"
+#include "projects/evaluate/cell.h"
 
 namespace {
 
 using namespace seamwright;
-using namespace seamwright::cli;
+using namespace seamwright::evaluation;
 
 constexpr std::size_t kRuns = 64;
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include "app/cli/command.h"
-#include "app/cli/evaluate/panel_experiment.h"
-#include "app/cli/evaluate/report.h"
 #include "devices/exchange/files.h"
+#include "projects/evaluate/panel_experiment.h"
+#include "projects/evaluate/report.h"
 
 namespace seamwright::cli {
 namespace {
+
+using namespace evaluation;
 
 Answer panel_answer(int panels, std::uint64_t seed) {
     const PanelComparison c = compare_panel_fitting(panels, seed);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/evaluate/online.h"
+#include "projects/evaluate/online.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 // What was simulated, and what the table's columns say.
 std::string online_caption(const OnlineExperiment& o);
@@ -21,4 +21,4 @@ nlohmann::json online_json(const OnlineExperiment& o);
 std::string online_curve(const OnlineExperiment& o, bool bent);
 std::string online_speeds(const OnlineExperiment& o);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

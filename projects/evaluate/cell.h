@@ -18,7 +18,7 @@
 #include "devices/simulated/scene/random.h"
 #include "devices/simulated/scene/renderer.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 inline constexpr int kOnline = 6;  // the online correction, simulated (online.h)
 
@@ -107,4 +107,4 @@ std::optional<RegionCorrection> correct(const Cell& cell, const Method& method,
 // the index says, so that they do not depend on the number of threads.
 void spread_out(int jobs, std::size_t count, const std::function<std::function<void(std::size_t)>()>& worker);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

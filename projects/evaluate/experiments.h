@@ -16,12 +16,12 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/evaluate/cell.h"
-#include "app/cli/evaluate/curves.h"
-#include "app/cli/evaluate/online.h"
 #include "core/evaluation/statistics.h"
+#include "projects/evaluate/cell.h"
+#include "projects/evaluate/curves.h"
+#include "projects/evaluate/online.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 // One displacement of one column.
 struct EvaluationTrial {
@@ -102,4 +102,4 @@ Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
 Expected<StraightTrials> straight_trials(const EvaluationSettings& settings,
                                          std::atomic<std::size_t>& profiles);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

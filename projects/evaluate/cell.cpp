@@ -1,4 +1,4 @@
-#include "app/cli/evaluate/cell.h"
+#include "projects/evaluate/cell.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "devices/simulated/scene/profile_cut.h"
 #include "devices/simulated/scene/swept_rim.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 constexpr int kRepeats = 100;          // measures that make the reference
@@ -326,4 +326,4 @@ void spread_out(int jobs, std::size_t count,
     run();
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

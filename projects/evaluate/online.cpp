@@ -1,4 +1,4 @@
-#include "app/cli/evaluate/online.h"
+#include "projects/evaluate/online.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/profile_cut.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 constexpr int kParts = 2;
@@ -429,4 +429,4 @@ Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
     return out;
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

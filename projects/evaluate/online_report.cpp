@@ -1,10 +1,10 @@
-#include "app/cli/evaluate/online_report.h"
+#include "projects/evaluate/online_report.h"
 
 #include <fmt/format.h>
 
 #include "projects/report/svg_plot.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 constexpr double kMostBehind = 0.01;  // of the cycles
@@ -141,4 +141,4 @@ std::string online_speeds(const OnlineExperiment& o) {
     return report::svg(plot);
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

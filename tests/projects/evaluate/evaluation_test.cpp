@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "app/cli/evaluate/online_report.h"
-#include "app/cli/evaluate/report.h"
+#include "projects/evaluate/online_report.h"
+#include "projects/evaluate/report.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 EvaluationSettings settings(int experiment = 0, int trials = 300) {
@@ -221,4 +221,4 @@ TEST(Evaluation, OnlineFollowsWhatOfflineCannotAndFallsBehindWithoutLookAhead) {
 }
 
 }  // namespace
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -5,9 +5,9 @@
 #include <atomic>
 #include <vector>
 
-#include "app/cli/evaluate/cell.h"
+#include "projects/evaluate/cell.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 // One displacement e along X, that is along the contour of six of the twelve spots and across that of the
 // others (curved_cell). Means over repeated measures with noise and the robot's repeatability.
@@ -33,4 +33,4 @@ inline constexpr double kCurveRadiiMm[] = {200, 350, 500, 700, 1000, 2000, 3000}
 Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, double radius_mm,
                                        std::atomic<std::size_t>& profiles);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -1,15 +1,15 @@
-#include "app/cli/evaluate/report.h"
+#include "projects/evaluate/report.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/cli/evaluate/online_report.h"
+#include "projects/evaluate/online_report.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 using nlohmann::json;
@@ -509,4 +509,4 @@ std::string evaluation_text(const EvaluationResult& r) {
     return text;
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -1,4 +1,4 @@
-#include "app/cli/evaluate/experiments.h"
+#include "projects/evaluate/experiments.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "core/geometry/decompositions.h"
 #include "devices/simulated/scene/profile_cut.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 constexpr std::size_t kSteps = 41;  // of a grid's axis
@@ -409,4 +409,4 @@ Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
     return out;
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 struct PanelWay {
     double rms_mm = 0, worst_mm = 0;  // gap and flush against taught, over all panels
@@ -24,4 +24,4 @@ struct PanelComparison {
 };
 PanelComparison compare_panel_fitting(int panels, std::uint64_t seed);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -1,4 +1,4 @@
-#include "app/cli/evaluate/panel_experiment.h"
+#include "projects/evaluate/panel_experiment.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 #include "core/panel/servoing.h"
 #include "devices/simulated/scene/random.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 struct PanelStudyCell {
@@ -123,4 +123,4 @@ PanelComparison compare_panel_fitting(int panels, std::uint64_t seed) {
     return out;
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/cli/evaluate/experiments.h"
+#include "projects/evaluate/experiments.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 std::string evaluation_text(const EvaluationResult& result);
 nlohmann::json evaluation_json(const EvaluationResult& result);
@@ -19,4 +19,4 @@ struct EvaluationCheck {
 };
 std::vector<EvaluationCheck> evaluation_checks(const EvaluationResult& result);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -20,11 +20,11 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/evaluate/cell.h"
 #include "core/evaluation/statistics.h"
 #include "devices/cyclic/ramp.h"
+#include "projects/evaluate/cell.h"
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 
 struct OnlineWay {
     bool online = true;
@@ -59,4 +59,4 @@ inline constexpr double kRunInMm = 300, kBehindMm = 0.05;
 Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
                                              std::atomic<std::size_t>& profiles);
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

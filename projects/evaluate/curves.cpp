@@ -1,10 +1,10 @@
-#include "app/cli/evaluate/curves.h"
+#include "projects/evaluate/curves.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace seamwright::cli {
+namespace seamwright::evaluation {
 namespace {
 
 constexpr int kRepeatsPerPlace = 10;
@@ -110,4 +110,4 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
     return out;
 }
 
-}  // namespace seamwright::cli
+}  // namespace seamwright::evaluation

@@ -5,11 +5,10 @@
 #include "app/cli/feature_setting.h"
 #include "app/cli/signal_watch.h"
 #include "projects/calibrate/live.h"
+#include "projects/calibrate/session/answer.h"
 
 namespace seamwright::cli {
 namespace {
-
-using nlohmann::json;
 
 Expected<std::map<std::string, double>> settings_of(const CalibrationMethod& method,
                                                     const std::vector<std::string>& given) {
@@ -27,17 +26,6 @@ Expected<std::map<std::string, double>> settings_of(const CalibrationMethod& met
         values[name] = *value;
     }
     return values;
-}
-
-json verification_json(const Verification& v) {
-    return {{"poses", v.poses},
-            {"confirmed", v.confirmed},
-            {"worst_mm", number_json(v.worst_mm)},
-            {"limit_mm", number_json(v.limit_mm)},
-            {"worst_deg", number_json(v.worst_deg)},
-            {"limit_deg", number_json(v.limit_deg)},
-            {"worst_px", number_json(v.worst_px)},
-            {"limit_px", number_json(v.limit_px)}};
 }
 
 std::string verified_text(const Verification& v) {

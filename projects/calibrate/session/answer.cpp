@@ -184,18 +184,21 @@ Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSess
         c->source = answers.size() > 1
                         ? Text("one shot of {} sensors", answers.size())
                         : Text("{} captures, {} for verification", session.solving_captures(), v.poses);
-        if (v.poses > 0 && session.method().keeps_back)
-            c->result["verification"] = {{"poses", v.poses},
-                                         {"confirmed", v.confirmed},
-                                         {"worst_mm", number_json(v.worst_mm)},
-                                         {"limit_mm", number_json(v.limit_mm)},
-                                         {"worst_deg", number_json(v.worst_deg)},
-                                         {"limit_deg", number_json(v.limit_deg)},
-                                         {"worst_px", number_json(v.worst_px)},
-                                         {"limit_px", number_json(v.limit_px)}};
+        if (v.poses > 0 && session.method().keeps_back) c->result["verification"] = verification_json(v);
         made.push_back(std::move(*c));
     }
     return made;
+}
+
+json verification_json(const Verification& v) {
+    return {{"poses", v.poses},
+            {"confirmed", v.confirmed},
+            {"worst_mm", number_json(v.worst_mm)},
+            {"limit_mm", number_json(v.limit_mm)},
+            {"worst_deg", number_json(v.worst_deg)},
+            {"limit_deg", number_json(v.limit_deg)},
+            {"worst_px", number_json(v.worst_px)},
+            {"limit_px", number_json(v.limit_px)}};
 }
 
 CalibrationDifference difference(const Calibration& now, const Calibration& before) {

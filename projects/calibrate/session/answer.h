@@ -20,6 +20,9 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
 Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSession& session,
                                                            const Project& project);
 
+// As it stands in a calibration's result and in the answer of the command line.
+nlohmann::json verification_json(const Verification& verification);
+
 // How far apart two calibrations put the same pixel (or the same profile point), on the flange, over the
 // field.
 struct CalibrationDifference {

@@ -431,6 +431,7 @@ TEST_F(Guided, EveryPageFitsTheScreenInGerman) {
     Person me(window);
     Desk& desk = studio.desk();
     for (const CalibrationMethod& method : calibration_methods()) {
+        if (!method.guided) continue;
         if (method.id == "drift") continue;  // needs a calibration made with the sphere
         const QString id = QString::fromStdString(method.id);
         go_to_page(me, desk, id);

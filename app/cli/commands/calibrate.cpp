@@ -8,6 +8,7 @@
 #include "app/cli/command.h"
 #include "app/cli/commands/calibrate_live.h"
 #include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"
 #include "projects/calibrate/detect_convention.h"
 #include "projects/calibrate/methods/methods.h"

@@ -57,7 +57,7 @@ void judge_excluded(const StripeCameraResult& solved, const StripeObservation& o
         bool inside = edge.size() >= 3;
         double side = 0;
         for (std::size_t i = 0; i < edge.size() && inside; ++i) {
-            const Eigen::Vector2d a = edge[i], b = edge[(i + 1) % edge.size()];
+            const Eigen::Vector2d &a = edge[i], &b = edge[(i + 1) % edge.size()];
             const double cross = (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x();
             if (side != 0 && cross * side < 0) inside = false;
             if (cross != 0) side = cross;

@@ -159,9 +159,11 @@ class Grower {
         if (!(std::min(a.x(), b.x()) >= 0 && std::min(a.y(), b.y()) >= 0 &&
               std::max(a.x(), b.x()) < soft_.cols - 1 && std::max(a.y(), b.y()) < soft_.rows - 1))
             return 0;
-        return static_cast<double>(
-            soft_.at<float>(static_cast<int>(a.y() + 0.5), static_cast<int>(a.x() + 0.5)) -
-            soft_.at<float>(static_cast<int>(b.y() + 0.5), static_cast<int>(b.x() + 0.5)));
+        const auto grey = [&](const Vector2d& at) {
+            return soft_.at<float>(static_cast<int>(std::lround(at.y())),
+                                   static_cast<int>(std::lround(at.x())));
+        };
+        return static_cast<double>(grey(a) - grey(b));
     }
 
     // The next corner along an edge of `from`: along its first edge (`second` false) forwards or backwards.

@@ -90,6 +90,24 @@ TEST(CalibrateLutJson, WritesNoTableThatMustNotBeUsed) {
     EXPECT_EQ(table_of(grid(8, 0.1), folder, folder.path() / "no" / "where.lut").exit_code, 3);
 }
 
+TEST(CalibrateLive, ItsOptionsAreNotPassedOverWithData) {
+    const TemporaryFolder folder;
+    const std::string data = (folder.path() / "sphere.json").string();
+    const auto solved = [&](std::vector<std::string> more) {
+        std::vector<std::string> all{"calibrate", "tcp-sphere", data};
+        all.insert(all.end(), more.begin(), more.end());
+        return run_program(all, folder.path());
+    };
+    ASSERT_EQ(solved({"--example", data}).exit_code, 0);
+    EXPECT_EQ(solved({}).exit_code, 0);
+    for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+             {"--set", "radius=30"}, {"--captures", "9"}, {"--robot", "R1"}, {"--anew"}, {"--use"}}) {
+        const auto refused = solved(more);
+        EXPECT_EQ(refused.exit_code, 2) << more.front();
+        EXPECT_NE(refused.err.find("--live"), std::string::npos) << refused.err;
+    }
+}
+
 TEST(CalibrateLutJson, RefusesBadInput) {
     const json good = grid(8, 0.1);
     EXPECT_TRUE(solved_lut(good));

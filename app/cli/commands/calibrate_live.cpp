@@ -44,34 +44,44 @@ std::string verified_text(const Verification& v) {
 void add_live_options(CLI::App& command, const CalibrationMethod& method, LiveCalibrationArguments& a) {
     std::string names;
     for (const MethodSetting& s : method.settings) names += (names.empty() ? "" : ", ") + s.info.name;
-    command
-        .add_flag("--live", a.live,
-                  "The data are a project: capture with its sensor, where its robot stands still; what was "
-                  "captured is kept beside the project and resumed")
-        ->group("From devices");
+    // Without it the others would be passed over without a word.
+    CLI::Option* live =
+        command
+            .add_flag(
+                "--live", a.live,
+                "The data are a project: capture with its sensor, where its robot stands still; what was "
+                "captured is kept beside the project and resumed")
+            ->group("From devices");
     command.add_option("--robot", a.robot, "The project's robot that carries the sensor (its only one)")
+        ->needs(live)
         ->group("From devices");
     if (!names.empty())
         command.add_option("--set", a.settings, "Setting of the target, NAME=VALUE, of " + names)
             ->type_name("NAME=VALUE")
             ->allow_extra_args(false)
+            ->needs(live)
             ->group("From devices");
     command
         .add_option("--captures", a.captures,
                     fmt::format("How many to solve with ({}; at least {})", method.advised, method.fewest))
         ->check(CLI::Range(method.fewest, 1000))
+        ->needs(live)
         ->group("From devices");
     if (method.keeps_back)
         command.add_option("--verification", a.verification, "How many more to verify the answer with (1)")
             ->check(CLI::Range(0, 100))
+            ->needs(live)
             ->group("From devices");
     command.add_option("--patience-s", a.patience_s, "How long the robot's next stand is waited for (300)")
         ->check(CLI::Range(1.0, 86400.0))
+        ->needs(live)
         ->group("From devices");
     command.add_flag("--anew", a.anew, "Begin over; what was captured before is put aside")
+        ->needs(live)
         ->group("From devices");
     if (method.use == AnswerUse::sensor)
         command.add_flag("--use", a.use, "Put the calibration to use when it is verified")
+            ->needs(live)
             ->group("From devices");
 }
 

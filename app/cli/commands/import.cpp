@@ -60,8 +60,9 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
     if (path.ends_with(".json")) {
         auto answer = read_json_file(path);
         if (!answer) return tl::unexpected(answer.error());
+        const auto named = answer->find("method");
         const CalibrationMethod* method =
-            answer->is_object() ? find_method(answer->value("method", "")) : nullptr;
+            named != answer->end() && named->is_string() ? find_method(named->get<std::string>()) : nullptr;
         auto solution = solution_from_document(*answer);
         const bool turns = solution && (std::holds_alternative<CameraAndLaser>(solution->found) ||
                                         std::holds_alternative<SensorOnFlange>(solution->found));

@@ -1,6 +1,10 @@
 #include "projects/calibrate/methods/solution.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "core/geometry/notation.h"
 #include "devices/exchange/json_fields.h"
@@ -79,6 +83,24 @@ void put_report(const CalibrationReport& report, json& document) {
                             {"rms_px", number_json(h.rms_px)}};
 }
 
+// Fields of another type count as absent: documents come from people and from disks.
+template <class T>
+T field_or(const json& entry, const char* key, T otherwise) {
+    const auto it = entry.find(key);
+    if (it == entry.end()) return otherwise;
+    if constexpr (std::is_same_v<T, bool>)
+        return it->is_boolean() ? it->get<bool>() : otherwise;
+    else if constexpr (std::is_same_v<T, int>)
+        return it->is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(
+                                             it->get<std::int64_t>(), 0, std::numeric_limits<int>::max()))
+                                       : otherwise;
+    else
+        return it->is_string() ? it->get<std::string>() : otherwise;
+}
+std::string word_or_none(const json& entry, const char* key) {
+    return field_or<std::string>(entry, key, "");
+}
+
 double number_or_none(const json& entry, const char* key) {
     const auto it = entry.find(key);
     return it != entry.end() && it->is_number() ? it->get<double>()
@@ -103,26 +125,26 @@ CalibrationReport report_in(const json& document) {
                 if (one.is_object()) take(one);
     };
     each("parameters", [&](const json& p) {
-        report.parameters.push_back({p.value("name", ""), number_or_none(p, "value"), p.value("unit", ""),
-                                     number_or_none(p, "sigma")});
+        report.parameters.push_back({word_or_none(p, "name"), number_or_none(p, "value"),
+                                     word_or_none(p, "unit"), number_or_none(p, "sigma")});
     });
     each("correlations", [&](const json& c) {
         report.correlations.push_back(
-            {c.value("first", ""), c.value("second", ""), number_or_none(c, "correlation")});
+            {word_or_none(c, "first"), word_or_none(c, "second"), number_or_none(c, "correlation")});
     });
     each("per_pose", [&](const json& p) {
         PoseResidual one;
-        one.id = p.value("id", "");
+        one.id = word_or_none(p, "id");
         one.rms_mm = number_or_none(p, "rms_mm");
         one.deg = number_or_none(p, "deg");
         one.rms_px = number_or_none(p, "rms_px");
-        one.used = p.value("used", true);
-        one.contradicts = p.value("contradicts", false);
+        one.used = field_or(p, "used", true);
+        one.contradicts = field_or(p, "contradicts", false);
         one.note = text_in(p, "note");
         report.poses.push_back(std::move(one));
     });
     if (const auto h = document.find("hold_out"); h != document.end() && h->is_object())
-        report.hold_out = {h->value("folds", 0),          h->value("left_out", 0),
+        report.hold_out = {field_or(*h, "folds", 0),      field_or(*h, "left_out", 0),
                            number_or_none(*h, "rms_mm"),  number_or_none(*h, "max_mm"),
                            number_or_none(*h, "rms_deg"), number_or_none(*h, "rms_px")};
     return report;
@@ -155,7 +177,7 @@ Expected<CalibrationFinding> chains_in(const json& list) {
     SensorChains found;
     for (const json& one : list) {
         if (!one.is_object()) return input_error("this is no chain of a sensor", "sensors");
-        SensorChains::Chain chain{one.value("id", ""), std::nullopt, judgement_in(one)};
+        SensorChains::Chain chain{word_or_none(one, "id"), std::nullopt, judgement_in(one)};
         if (holds(one, "reference_from_laser")) {
             auto pose = uncertain_in(one, "reference_from_laser", "covariance");
             if (!pose) return tl::unexpected(pose.error());

@@ -72,6 +72,34 @@ TEST_P(EveryMethod, RefusesWhatIsNoData) {
     for (const json& bad : {json(), json(3), json::array()}) EXPECT_FALSE(solution_from_document(bad));
 }
 
+// Every field of a document in turn as something else: an answer or one sentence, and never an exception.
+TEST_P(EveryMethod, AHostileDocumentIsReadOrRefused) {
+    const auto solution = solve_calibration(method_, method_.example(), {});
+    ASSERT_TRUE(solution);
+    const json flat = solution->document.flatten();
+    int tried = 0;
+    for (const auto& [pointer, value] : flat.items()) {
+        if (++tried > 400) break;
+        for (const json& other :
+             {json(7), json("x"), json(nullptr), json::array({1}), json{{"a", true}}, json(1e300)}) {
+            json hostile = solution->document;
+            hostile[json::json_pointer(pointer)] = other;
+            EXPECT_NO_THROW({
+                const auto read = solution_from_document(hostile);
+                EXPECT_TRUE(read || !read.error().sentence().empty());
+            }) << pointer
+               << " = " << other;
+        }
+    }
+    for (const char* list : {"parameters", "per_pose", "correlations", "proposals", "sensors", "hold_out"}) {
+        json hostile = solution->document;
+        for (const json& other : {json(7), json::array({7}), json::array({json::array()}), json("x")}) {
+            hostile[list] = other;
+            EXPECT_NO_THROW((void)solution_from_document(hostile)) << list << " = " << other;
+        }
+    }
+}
+
 // A plate seen from several stands, each off by its own pose error: what the stands disagree by is in the sigma, and a
 // set that contradicts itself is never good because its mean is smooth.
 json stands(std::mt19937& random, int count, double mm, double deg, const Pose& world_from_plate) {

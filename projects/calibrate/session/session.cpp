@@ -155,10 +155,15 @@ Expected<void> CalibrationSession::read() {
     auto data = read_json_file(list_file);
     const auto mend = "move the folder away to begin anew";
     if (!data) return file_error(data.error().what, list_file.string(), mend);
-    if (data->value("format", "") != kFormat || data->value("method", "") != method_->id)
+    const auto whole = [](const json& holder, const char* key) {
+        const auto it = holder.find(key);
+        return it != holder.end() && it->is_number_integer() ? it->get<int>() : 0;
+    };
+    if (!data->is_object() || data->value("format", json()) != kFormat ||
+        data->value("method", json()) != method_->id)
         return file_error(Text("this is no calibration session of {}", method_->id), list_file.string(),
                           mend);
-    if (data->value("version", 0) > kVersion)
+    if (whole(*data, "version") > kVersion)
         return file_error("a newer Seamwright has written this session", list_file.string(), "use that one");
     auto settings = json_field(*data, "settings", "");
     auto captures = json_array(*data, "captures", "");
@@ -169,9 +174,14 @@ Expected<void> CalibrationSession::read() {
         for (const json& id : used->is_array() ? *used : json::array({*used}))
             if (id.is_string() && !id.get_ref<const std::string&>().empty()) used_as_.push_back(id);
     }
-    last_number_ = data->value("last_number", 0);
+    last_number_ = whole(*data, "last_number");
     for (const json& mark : **captures) {
-        const std::string id = mark.value("id", "");
+        const auto marked = [&](const char* key) {
+            const auto it = mark.find(key);
+            return it != mark.end() && it->is_boolean() && it->get<bool>();
+        };
+        const auto named = mark.find("id");
+        const std::string id = named != mark.end() && named->is_string() ? named->get<std::string>() : "";
         const fs::path file = folder_ / "captures" / (file_name(id) + ".json");
         auto stored = read_json_file(file);
         auto capture = stored ? parse_capture(*stored, id) : tl::unexpected(stored.error());
@@ -181,7 +191,7 @@ Expected<void> CalibrationSession::read() {
         }
         last_number_ = std::max(last_number_, number_of(id));
         state_.captures.push_back({std::make_shared<const CalibrationCapture>(std::move(*capture)),
-                                   mark.value("left_out", false), mark.value("verification", false)});
+                                   marked("left_out"), marked("verification")});
     }
     // A solution that does not belong to exactly these captures and marks is solved again; so is one that its document
     // does not hold whole.
@@ -189,9 +199,9 @@ Expected<void> CalibrationSession::read() {
         solved && solved->contains("result") && solved->value("settings", json()) == state_.settings &&
         solved->value("captures", json()) == marks_json(state_)) {
         auto solution = solution_from_document((*solved)["result"]);
-        const bool whole = solution && (method_->use != AnswerUse::sensor || !serves(solution->verdict()) ||
-                                        solution->found.index() != 0);
-        if (whole) {
+        const bool complete = solution && (method_->use != AnswerUse::sensor ||
+                                           !serves(solution->verdict()) || solution->found.index() != 0);
+        if (complete) {
             solution_ = std::move(*solution);
             solved_from_ = state_;
         }

@@ -242,6 +242,19 @@ TEST_F(Session, ResumesWithItsSolution) {
     ASSERT_EQ(damaged.notices().size(), 1U);
     EXPECT_THAT(damaged.notices()[0], HasSubstr("P4"));
     EXPECT_EQ(damaged.solution(), nullptr);
+    // Lists whose fields are of another type: refused, or read without what is wrong in them.
+    const json list = json::parse(std::ifstream(s.folder() / "session.json"));
+    const json fields = list.flatten();
+    for (const auto& [pointer, value] : fields.items())
+        for (const json& other : {json(7), json("x"), json(nullptr), json::array({1}), json::object()}) {
+            json hostile = list;
+            hostile[json::json_pointer(pointer)] = other;
+            std::ofstream(s.folder() / "session.json") << hostile;
+            EXPECT_NO_THROW((void)CalibrationSession::open(project, "tcp-sphere", "A", "R1"))
+                << pointer << " = " << other;
+        }
+    std::ofstream(s.folder() / "session.json") << "[1]";
+    EXPECT_FALSE(CalibrationSession::open(project, "tcp-sphere", "A", "R1"));
     // Foreign files are refused with a sentence.
     std::ofstream(s.folder() / "session.json") << "{\"format\":\"something\"}";
     const auto refused = CalibrationSession::open(project, "tcp-sphere", "A", "R1");

@@ -59,3 +59,17 @@ inline tl::unexpected<Error> file_error(Text what, Text where = {}, Text mend = 
 }
 
 }  // namespace seamwright
+
+// An Expected that failed ends the function with its error; else the function goes on.
+//   SEAM_TRY(const auto pose, read_pose(json));   the value, under a name: pose is a Pose from here on
+//   SEAM_OK(write(pose));                         only that it went well
+// Two statements each: not the body of an `if` without braces (SEAM_TRY), and one a line.
+#define SEAM_TRY(declaration, ...) SEAM_TRY_ON_LINE(__LINE__, declaration, __VA_ARGS__)
+#define SEAM_TRY_ON_LINE(line, ...) SEAM_TRY_NAMED(line, __VA_ARGS__)
+#define SEAM_TRY_NAMED(line, ...) SEAM_TRY_INTO(seam_try_##line, __VA_ARGS__)
+#define SEAM_TRY_INTO(result, declaration, ...)                    \
+    auto result = (__VA_ARGS__);                                   \
+    if (!result) return tl::unexpected(std::move(result).error()); \
+    declaration = *std::move(result)
+#define SEAM_OK(...) \
+    if (auto seam_ok = (__VA_ARGS__); !seam_ok) return tl::unexpected(std::move(seam_ok).error())

@@ -10,9 +10,8 @@ CellServer& CellServer::operator=(CellServer&&) noexcept = default;
 CellServer::~CellServer() = default;
 
 Expected<CellServer> CellServer::start(const CellServerOptions& options) {
-    auto cell = SimulatedCell::open(options.cell);
-    if (!cell) return tl::unexpected(cell.error());
-    return start(options, *cell);
+    SEAM_TRY(auto cell, SimulatedCell::open(options.cell));
+    return start(options, cell);
 }
 
 Expected<CellServer> CellServer::start(const CellServerOptions& options,
@@ -25,20 +24,17 @@ Expected<CellServer> CellServer::start(const CellServerOptions& options,
     if (!options.camera_address.empty()) {
         nlohmann::json settings = options.camera;
         settings["address"] = options.camera_address;
-        auto camera = ServedCamera::open(cell, settings);
-        if (!camera) return tl::unexpected(camera.error());
-        server.camera_ = std::move(*camera);
+        SEAM_TRY(auto camera, ServedCamera::open(cell, settings));
+        server.camera_ = std::move(camera);
         server.camera_address_ = server.camera_->address();
     }
     if (!options.gocator.is_null()) {
-        auto gocator = ServedGocator::open(cell, options.gocator);
-        if (!gocator) return tl::unexpected(gocator.error());
-        server.gocator_ = std::move(*gocator);
+        SEAM_TRY(auto gocator, ServedGocator::open(cell, options.gocator));
+        server.gocator_ = std::move(gocator);
     }
     for (const ServedController& c : options.controllers) {
-        auto controller = start_controller(c.name, cell, c.settings);
-        if (!controller) return tl::unexpected(controller.error());
-        server.controllers_.emplace_back(c.name, std::move(*controller));
+        SEAM_TRY(auto controller, start_controller(c.name, cell, c.settings));
+        server.controllers_.emplace_back(c.name, std::move(controller));
     }
     return server;
 }

@@ -31,7 +31,7 @@ std::string program_signature(const std::vector<MeasuringMove>& moves) {
 
 Expected<void> check_path_program(const PathProgramRequest& request) {
     const std::string& name = request.name;
-    if (auto named = check_program_name(name, "name"); !named) return named;
+    SEAM_OK(check_program_name(name, "name"));
     if (request.frame_from_tool.empty() || request.frame_from_tool.size() > kMostPathPoints)
         return input_error(Text("{} points make no path program", request.frame_from_tool.size()), name,
                            Text("give 1 to {}", kMostPathPoints));

@@ -68,24 +68,20 @@ Expected<StudyProgress> measure_live(const LiveArguments& a, Study study,
         options.place = [&](const std::string& part, int rehang) {
             return ask_for_part(part, rehang, a.rehangs);
         };
-    auto station = Station::open(a.file);
-    if (!station) return tl::unexpected(station.error());
+    SEAM_TRY(auto station, Station::open(a.file));
     // Options that are none are refused before a device is opened, and a study that is complete needs none.
-    auto before = study_progress(station->file(), station->project(), options);
-    if (!before) return tl::unexpected(before.error());
-    Project project = station->project();
-    auto setup = station->file().setup_of(project);
-    if (!setup) return tl::unexpected(setup.error());
-    if (*before && (*before)->complete() && (*before)->setup == *setup && !a.anew) return std::move(**before);
-    const auto region = region_in(project, a.file, a.region);
-    if (!region) return tl::unexpected(region.error());
-    if (const auto forecast = forecast_studies(project, **region))
+    SEAM_TRY(auto before, study_progress(station.file(), station.project(), options));
+    Project project = station.project();
+    SEAM_TRY(auto setup, station.file().setup_of(project));
+    if (before && before->complete() && before->setup == setup && !a.anew) return std::move(*before);
+    SEAM_TRY(const auto region, region_in(project, a.file, a.region));
+    if (const auto forecast = forecast_studies(project, *region))
         fmt::print(stderr, "forecast: s {:.4f} mm, Cg {:.2f}, %GRR {:.1f}\n", forecast->type1_s_mm,
                    predicted_cg(*forecast, settings), predicted_grr_percent(*forecast, settings));
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
-    if (a.simulated_parts && !SimulatedParts::possible(station->project()))
+    SEAM_OK(station.connect());
+    if (a.simulated_parts && !SimulatedParts::possible(station.project()))
         return usage_error("only a simulated cell can put in its parts", "--simulated-parts", "leave it out");
-    SimulatedParts simulated(*station);
+    SimulatedParts simulated(station);
     Expected<void> put;
     if (a.simulated_parts && a.parts.empty()) {
         put = simulated.put(a.part, 1);
@@ -96,7 +92,7 @@ Expected<StudyProgress> measure_live(const LiveArguments& a, Study study,
         };
     }
     if (!put) return tl::unexpected(put.error());
-    auto progress = measure_study(*station, options);
+    auto progress = measure_study(station, options);
     if (!put) return tl::unexpected(put.error());
     if (progress && progress->other_setup > 0)
         fmt::print(stderr, "the project was changed since: {} runs of before do not count\n",
@@ -116,54 +112,43 @@ Answer incomplete_answer(const StudyProgress& progress) {
 }
 
 Expected<void> keep_requirements(const std::string& path, const AcceptanceRequirements& requirements) {
-    if (auto valid = validate_fields(requirements); !valid) return valid;
-    auto file = ProjectFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    project->requirements.acceptance = requirements;
-    return file->save(*project);
+    SEAM_OK(validate_fields(requirements));
+    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto project, file.load());
+    project.requirements.acceptance = requirements;
+    return file.save(project);
 }
 
 Expected<void> keep_offset_of(const std::string& path, const Acceptance& acceptance, Answer& answer) {
-    auto file = ProjectFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto region = region_in(*project, path,
-                            acceptance.source.offset ? acceptance.source.offset->region_id : std::string());
-    if (!region) return tl::unexpected(region.error());
-    auto version = keep_offset(**region, acceptance, utc_now());
-    if (!version) return tl::unexpected(version.error());
-    if (auto saved = file->save(*project); !saved) return saved;
-    list_offsets(**region, answer);
-    answer.json["offsets"]["kept"] = *version;
-    answer.text +=
-        fmt::format("kept as version {}; it does not act: --switch-offset {}\n", *version, *version);
+    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto region,
+             region_in(project, path,
+                       acceptance.source.offset ? acceptance.source.offset->region_id : std::string()));
+    SEAM_TRY(auto version, keep_offset(*region, acceptance, utc_now()));
+    SEAM_OK(file.save(project));
+    list_offsets(*region, answer);
+    answer.json["offsets"]["kept"] = version;
+    answer.text += fmt::format("kept as version {}; it does not act: --switch-offset {}\n", version, version);
     return {};
 }
 
 Expected<Answer> switch_offset_command(const std::string& path, const std::string& region_id,
                                        const OffsetSwitch& to) {
-    auto file = ProjectFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto region = region_in(*project, path, region_id);
-    if (!region) return tl::unexpected(region.error());
-    if (auto done = to.undo ? undo_offset(**region) : switch_offset(**region, to.version); !done)
-        return tl::unexpected(done.error());
-    if (auto saved = file->save(*project); !saved) return tl::unexpected(saved.error());
-    const KeptOffset* acting = acting_offset(**region);
+    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto region, region_in(project, path, region_id));
+    SEAM_OK(to.undo ? undo_offset(*region) : switch_offset(*region, to.version));
+    SEAM_OK(file.save(project));
+    const KeptOffset* acting = acting_offset(*region);
     // The correction is another one from here on, and the log says since when and why.
     const Text note =
         acting ? said_of(ActingOffset{acting->version, acting->offset_mm}) : Text("no kept offset acts");
-    if (auto noted = file->append_event({0, utc_now(), 0, EventKind::note, (*region)->id, note}); !noted)
-        return tl::unexpected(noted.error());
+    SEAM_OK(file.append_event({0, utc_now(), 0, EventKind::note, region->id, note}));
     Answer answer;
     answer.json = {{"status", "ok"}};
-    answer.text = fmt::format("region {}: {}\n", (*region)->id, note.english());
-    list_offsets(**region, answer);
+    answer.text = fmt::format("region {}: {}\n", region->id, note.english());
+    list_offsets(*region, answer);
     return answer;
 }
 

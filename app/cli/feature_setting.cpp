@@ -41,9 +41,8 @@ Expected<std::pair<std::string, double>> feature_setting(const FeatureKind& kind
     if (equals == std::string::npos)
         return usage_error(Text("\"{}\" is not NAME=VALUE", assignment), "--set");
     const std::string name = assignment.substr(0, equals);
-    auto value = feature_setting(kind, name, assignment.substr(equals + 1));
-    if (!value) return tl::unexpected(value.error());
-    return std::pair{name, *value};
+    SEAM_TRY(auto value, feature_setting(kind, name, assignment.substr(equals + 1)));
+    return std::pair{name, value};
 }
 
 Expected<const FeatureKind*> find_feature_kind(const std::string& name) {

@@ -10,13 +10,11 @@ Expected<Pose> read_pose_argument(const std::string& argument, const std::string
     if (argument.empty()) return Pose::Identity();
     std::string text = argument;
     if (text.find('{') == std::string::npos) {
-        auto read = read_text_file(argument);
-        if (!read) return tl::unexpected(read.error());
-        text = *read;
+        SEAM_TRY(auto read, read_text_file(argument));
+        text = read;
     }
-    auto document = parse_json(text, where);
-    if (!document) return tl::unexpected(document.error());
-    return parse_pose(*document, where);
+    SEAM_TRY(auto document, parse_json(text, where));
+    return parse_pose(document, where);
 }
 
 }  // namespace seamwright::cli

@@ -12,7 +12,7 @@ Expected<void> write_program_files(const std::filesystem::path& folder, const st
     answer.json["files"] = nlohmann::json::array();
     for (const ProgramFile& f : files) {
         const auto path = folder / f.name;
-        if (auto written = write_text_file(path, f.text); !written) return written;
+        SEAM_OK(write_text_file(path, f.text));
         answer.json["files"].push_back(path.string());
         answer.text += path.string() + "\n";
     }

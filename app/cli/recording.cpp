@@ -21,44 +21,40 @@ std::string counters_text(const CaptureCounters& c) {
 
 Expected<std::shared_ptr<Recorder>> open_recorder(const std::string& file, const RecorderOptions& options) {
     if (file.empty()) return std::shared_ptr<Recorder>();
-    auto recorder = Recorder::create(file, options);
-    if (!recorder) return tl::unexpected(recorder.error());
-    return std::shared_ptr<Recorder>(std::move(*recorder));
+    SEAM_TRY(auto recorder, Recorder::create(file, options));
+    return std::shared_ptr<Recorder>(std::move(recorder));
 }
 
 Expected<void> tell_recording(Recorder* recorder, const std::string& file, Answer& answer) {
     if (!recorder) return {};
-    auto status = recorder->finish();
-    if (!status) return tl::unexpected(status.error());
+    SEAM_TRY(auto status, recorder->finish());
     json sources = json::object();
-    for (const auto& [name, counters] : status->sources) {
+    for (const auto& [name, counters] : status.sources) {
         sources[name] = counters_json(counters);
         answer.text += fmt::format("{}: {}\n", name, counters_text(counters));
     }
-    answer.json["recording"] = {{"file", file}, {"bytes", status->bytes}, {"sources", sources}};
-    answer.text += fmt::format("{}: {:.1f} MiB\n", file, static_cast<double>(status->bytes) / (1 << 20));
+    answer.json["recording"] = {{"file", file}, {"bytes", status.bytes}, {"sources", sources}};
+    answer.text += fmt::format("{}: {:.1f} MiB\n", file, static_cast<double>(status.bytes) / (1 << 20));
     return {};
 }
 
 Expected<Answer> capture_info(const std::string& file) {
-    auto reader = CaptureReader::open(file);
-    if (!reader) return tl::unexpected(reader.error());
+    SEAM_TRY(auto reader, CaptureReader::open(file));
     Answer answer;
     answer.json = {{"status", "ok"},
                    {"kind", "capture"},
-                   {"started_utc", reader->started_utc()},
-                   {"finished_utc", reader->finished_utc()},
-                   {"end", reader->end()},
-                   {"duration_s", reader->duration_s()},
+                   {"started_utc", reader.started_utc()},
+                   {"finished_utc", reader.finished_utc()},
+                   {"end", reader.end()},
+                   {"duration_s", reader.duration_s()},
                    {"sources", json::array()}};
     answer.text =
-        fmt::format("{}: recorded {}, {:.1f} s, {}\n", file, reader->started_utc(), reader->duration_s(),
-                    reader->finished_utc().empty() ? "not finished" : reader->end());
-    for (const CaptureSource& s : reader->sources()) {
-        auto events = reader->events(s.id);
-        if (!events) return tl::unexpected(events.error());
+        fmt::format("{}: recorded {}, {:.1f} s, {}\n", file, reader.started_utc(), reader.duration_s(),
+                    reader.finished_utc().empty() ? "not finished" : reader.end());
+    for (const CaptureSource& s : reader.sources()) {
+        SEAM_TRY(auto events, reader.events(s.id));
         json counted = json::object(), notes = json::array();
-        for (const CaptureEvent& e : *events) {
+        for (const CaptureEvent& e : events) {
             json& n = counted[std::string(to_string(e.kind))];
             n = n.is_null() ? 1 : n.get<int>() + 1;
             if (e.kind == CaptureEventKind::note) notes.push_back(e.text);
@@ -78,11 +74,10 @@ Expected<Answer> capture_info(const std::string& file) {
 }
 
 Expected<Answer> capture_check(const std::string& file) {
-    auto reader = CaptureReader::open(file);
-    if (!reader) return tl::unexpected(reader.error());
+    SEAM_TRY(auto reader, CaptureReader::open(file));
     Answer answer;
     json integrity = json::array();
-    for (const Error& e : reader->check()) integrity.push_back(e.sentence());
+    for (const Error& e : reader.check()) integrity.push_back(e.sentence());
     answer.exit_code = integrity.empty() ? kExitOk : kExitDevice;
     answer.json = {{"status", integrity.empty() ? "ok" : "damaged"}, {"integrity", integrity}};
     answer.text = integrity.empty() ? "integrity ok\n" : "the file is damaged\n";

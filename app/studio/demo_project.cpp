@@ -40,13 +40,11 @@ Expected<Project> demo_project() {
     for (const DoorRegion& region : default_door_regions())
         settings["robot"]["frames"]["BASE_" + region.id] =
             pose_json(default_cell_settings().base_from_workobject);
-    auto opened = SimulatedCell::open(settings);
-    if (!opened) return tl::unexpected(opened.error());
-    const std::shared_ptr<SimulatedCell> cell = *opened;
+    SEAM_TRY(auto opened, SimulatedCell::open(settings));
+    const std::shared_ptr<SimulatedCell> cell = opened;
     const auto sensor = make_simulated_sensor(cell);
     const auto robot = make_simulated_robot(cell);
-    auto robot_identity = robot->identity();
-    if (!robot_identity) return tl::unexpected(robot_identity.error());
+    SEAM_TRY(auto robot_identity, robot->identity());
 
     Project p;
     p.name = "Demo: door left";
@@ -61,13 +59,12 @@ Expected<Project> demo_project() {
     r.id = kRobot;
     r.driver = "simulated";
     r.settings = settings;
-    r.identity = *robot_identity;
+    r.identity = robot_identity;
     r.required_mode = RobotMode::automatic;
     p.robots = {r};
-    auto truth = simulated_truth(a, r);
-    if (!truth) return tl::unexpected(truth.error());
-    p.sensors[0].calibration_id = truth->id;
-    p.calibrations = {*truth};
+    SEAM_TRY(auto truth, simulated_truth(a, r));
+    p.sensors[0].calibration_id = truth.id;
+    p.calibrations = {truth};
     const Calibration& c = p.calibrations.front();
 
     StripePeaks peaks;
@@ -91,11 +88,9 @@ Expected<Project> demo_project() {
         if (capture_frame(frame, a.peaks, &*c.model, peaks, capture, reason) != SpotStatus::measured)
             return device_error(Text("the simulated sensor sees no stripe: {}", reason),
                                 Text("spot {}", s.id));
-        if (auto tracked = track_capture(capture, a.filter, s.reference_profile); !tracked)
-            return tl::unexpected(tracked.error());
-        auto finder = make_feature_finder(s.feature);
-        if (!finder) return tl::unexpected(finder.error());
-        const Feature edge = (*finder)->find(s.reference_profile);
+        SEAM_OK(track_capture(capture, a.filter, s.reference_profile));
+        SEAM_TRY(auto finder, make_feature_finder(s.feature));
+        const Feature edge = finder->find(s.reference_profile);
         if (edge.status != FeatureStatus::ok)
             return input_error(Text("the edge is not found: {}", edge.message), Text("spot {}", s.id));
         // Around the hem as template, the edge as its landmark.
@@ -115,9 +110,8 @@ Expected<Project> demo_project() {
                 piece.intensity.push_back(s.reference_profile.intensity[i]);
             piece.segment.push_back(s.reference_profile.segment[i]);
         }
-        auto curve = edge_curve(door);
-        if (!curve) return tl::unexpected(curve.error());
-        s.curve = *curve;
+        SEAM_TRY(auto curve, edge_curve(door));
+        s.curve = curve;
         p.spots.push_back(std::move(s));
     }
     for (const DoorRegion& door : default_door_regions()) {

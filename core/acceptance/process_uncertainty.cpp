@@ -45,11 +45,10 @@ Expected<ProcessUncertainty> process_uncertainty(std::span<const StudyValue> ref
                                                  const std::optional<Type3>& production,
                                                  const ProcessSettings& settings) {
     const double tolerance = settings.upper_mm - settings.lower_mm;
-    if (auto ok = check_positive(tolerance, "tolerance"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_positive(tolerance, "tolerance"));
     for (const auto& [value, word] : {std::pair{settings.reference_u_mm, "uncertainty of the reference"},
                                       {settings.resolution_mm, "resolution"}})
-        if (value != 0)
-            if (auto ok = check_positive(value, word); !ok) return tl::unexpected(ok.error());
+        if (value != 0) SEAM_OK(check_positive(value, word));
     std::map<std::string, Standard> parts;
     for (const StudyValue& v : references) {
         if (!v.reference_mm) continue;

@@ -265,9 +265,8 @@ Expected<RobotStudy> robot_study(std::span<const SpotReturns> spots) {
     if (spots.empty()) return input_error("no spot was returned to", "robot study");
     std::vector<Scatter> scatters;
     for (const SpotReturns& spot : spots) {
-        auto s = scatter_of(spot);
-        if (!s) return tl::unexpected(s.error());
-        scatters.push_back(std::move(*s));
+        SEAM_TRY(auto s, scatter_of(spot));
+        scatters.push_back(std::move(s));
     }
     const Together together(scatters);
     RobotStudy study;

@@ -57,7 +57,7 @@ SensorIndex judged(double value, double U, double limit) {
 // Geometric least squares by Gauss-Newton from the algebraic sphere, about the points' mean.
 Expected<ProbedSphere> probe(const SphereProbing& sphere, const SensorLimits& limits) {
     const Text where("sphere {}", sphere.id);
-    if (auto good = check_points(sphere.points_mm, where); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_points(sphere.points_mm, where));
     if (!is_size(sphere.diameter_u_mm) || !is_size(sphere.form_mm) ||
         (sphere.diameter_mm && !(is_size(*sphere.diameter_mm) && *sphere.diameter_mm > 0)))
         return input_error("the certificate holds a number that is none", where);
@@ -121,7 +121,7 @@ Expected<ProbedSphere> probe(const SphereProbing& sphere, const SensorLimits& li
 
 Expected<ProbedPlane> probe(const PlaneProbing& plane, const SensorLimits& limits) {
     const Text where("plane {}", plane.id);
-    if (auto good = check_points(plane.points_mm, where); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_points(plane.points_mm, where));
     if (!is_size(plane.flatness_mm)) return input_error("the certificate holds a number that is none", where);
     const Eigen::Vector3d mean = mean_of(plane.points_mm);
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -160,16 +160,14 @@ Expected<SensorStudy> sensor_study(const SensorStudyData& data) {
         return input_error(Text("two artefacts are called \"{}\"", id), "sensor", "rename one");
     };
     for (const SphereProbing& sphere : data.spheres) {
-        if (auto good = once(sphere.id); !good) return tl::unexpected(good.error());
-        auto probed = probe(sphere, data.limits);
-        if (!probed) return tl::unexpected(probed.error());
-        study.spheres.push_back(std::move(*probed));
+        SEAM_OK(once(sphere.id));
+        SEAM_TRY(auto probed, probe(sphere, data.limits));
+        study.spheres.push_back(std::move(probed));
     }
     for (const PlaneProbing& plane : data.planes) {
-        if (auto good = once(plane.id); !good) return tl::unexpected(good.error());
-        auto probed = probe(plane, data.limits);
-        if (!probed) return tl::unexpected(probed.error());
-        study.planes.push_back(std::move(*probed));
+        SEAM_OK(once(plane.id));
+        SEAM_TRY(auto probed, probe(plane, data.limits));
+        study.planes.push_back(std::move(probed));
     }
     for (const CertifiedDistance& d : data.distances) {
         const auto find = [&](const std::string& id) {

@@ -135,13 +135,12 @@ Expected<TravelSight> travel_sight(std::span<const TravelPoint> points, double t
         return input_error(Text("a travel of {} degrees from the sensor's Y", travel_deg), "trigger study",
                            "give -90 to 90");
     if (!x && !z) return input_error("the spot observes neither x nor z", "trigger study", "take another");
-    auto curve = fit_contour_curve(points);
-    if (!curve) return tl::unexpected(curve.error());
+    SEAM_TRY(auto curve, fit_contour_curve(points));
     TravelSight sight;
     sight.travel_deg = travel_deg;
     sight.x = x;
     sight.z = z;
-    sight.curve = *curve;
+    sight.curve = curve;
     std::vector<double> y, px, pz;
     for (const TravelPoint& p : points) {
         if (!std::isfinite(p.travel_mm) || !std::isfinite(p.x_mm) || !std::isfinite(p.z_mm)) continue;

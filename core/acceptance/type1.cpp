@@ -45,7 +45,7 @@ Expected<Type1> type1_study(std::span<const double> values_mm, double reference_
                                       {settings.width, "width"},
                                       {settings.required, "limit of Cg and Cgk"},
                                       {settings.required_cgk.value_or(1), "limit of Cgk"}})
-        if (auto ok = check_positive(value, word); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_positive(value, word));
     if (values_mm.size() < 2)
         return input_error(Text("{} value(s) of the reference part", values_mm.size()), "type 1",
                            Text("measure it at least {} times", kType1Values));

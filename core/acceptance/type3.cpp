@@ -57,14 +57,13 @@ Expected<Type3> type3_study(std::span<const StudyValue> values, const Type3Setti
                                       {settings.accepted_percent, "limit of %GRR"},
                                       {settings.refused_percent, "limit of %GRR"},
                                       {static_cast<double>(settings.required_ndc), "limit of ndc"}})
-        if (auto ok = check_positive(value, word); !ok) return tl::unexpected(ok.error());
-    auto sorted = balanced(values);
-    if (!sorted) return tl::unexpected(sorted.error());
+        SEAM_OK(check_positive(value, word));
+    SEAM_TRY(auto sorted, balanced(values));
 
     Type3 r;
-    r.parts = static_cast<int>(sorted->size());
-    r.rehangs = static_cast<int>(sorted->begin()->second.size());
-    r.runs = static_cast<int>(sorted->begin()->second.begin()->second.size());
+    r.parts = static_cast<int>(sorted.size());
+    r.rehangs = static_cast<int>(sorted.begin()->second.size());
+    r.runs = static_cast<int>(sorted.begin()->second.begin()->second.size());
     if (r.rehangs == 1 && r.runs == 1)
         return input_error("every part was measured once", "type 3", "measure each at least twice");
     r.nested = r.rehangs > 1 && r.runs > 1;
@@ -73,7 +72,7 @@ Expected<Type3> type3_study(std::span<const StudyValue> values, const Type3Setti
     const double k = r.parts, h = r.rehangs, n = r.runs, all = k * h * n;
     for (const StudyValue& v : values) r.mean_mm += v.value_mm / all;
     double ss_part = 0, ss_rehang = 0, ss_within = 0;
-    for (const auto& [name, rehangs] : *sorted) {
+    for (const auto& [name, rehangs] : sorted) {
         double part_mean = 0;
         for (const auto& [rehang, runs] : rehangs)
             for (const double v : runs) part_mean += v / (h * n);

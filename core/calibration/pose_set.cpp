@@ -12,8 +12,7 @@ namespace seamwright {
 Expected<void> check_rigid(const std::vector<Pose>& poses, const std::vector<std::string>& ids,
                            const Text& where) {
     for (size_t i = 0; i < poses.size(); ++i)
-        if (auto pose = pose_from_matrix(poses[i].matrix(), fmt::format("{} '{}'", where, ids[i])); !pose)
-            return tl::unexpected(pose.error());
+        SEAM_OK(pose_from_matrix(poses[i].matrix(), fmt::format("{} '{}'", where, ids[i])));
     return {};
 }
 

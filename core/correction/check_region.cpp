@@ -152,9 +152,9 @@ Expected<void> check_region(std::span<const SpotObservation> spots, const Correc
     if (o.max_iterations < 1)
         return input_error("at least one iteration is needed", "max_iterations", "use e.g. 50");
     for (std::size_t n = 0; n < spots.size(); ++n) {
-        if (auto good = check_spot(n, spots[n], measured); !good) return good;
+        SEAM_OK(check_spot(n, spots[n], measured));
     }
-    if (auto good = check_sensors(spots, o.sensors); !good) return good;
+    SEAM_OK(check_sensors(spots, o.sensors));
     // Few spots are compared pair by pair, which needs no memory; many are sorted.
     if (spots.size() <= 64) {
         for (std::size_t n = 0; n < spots.size(); ++n) {

@@ -161,7 +161,7 @@ struct RegionSolver::Impl {
 
     Expected<void> solve(std::span<const SpotObservation> spots, const CorrectionOptions& options,
                          RegionCorrection& r) {
-        if (auto good = check_region(spots, options, true); !good) return good;
+        SEAM_OK(check_region(spots, options, true));
         r.status = CorrectionStatus::not_converged;
         r.displacement = {};
         r.covariance.setZero();
@@ -266,7 +266,7 @@ Expected<RegionCorrection> solve_region(std::span<const SpotObservation> spots,
                                         const CorrectionOptions& options) {
     RegionSolver solver;
     RegionCorrection result;
-    if (auto good = solver.solve(spots, options, result); !good) return tl::unexpected(good.error());
+    SEAM_OK(solver.solve(spots, options, result));
     return result;
 }
 

@@ -44,8 +44,7 @@ Expected<void> check(std::span<const PathPoint> points, std::span<const PathRegi
     bool any = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Text where("path point {}", i + 1);
-        const auto rigid = pose_from_matrix(points[i].workobject_from_tool.matrix(), where, 1e-6);
-        if (!rigid) return tl::unexpected(rigid.error());
+        SEAM_OK(pose_from_matrix(points[i].workobject_from_tool.matrix(), where, 1e-6));
         if (points[i].region < -1 || points[i].region >= static_cast<int>(regions.size()))
             return input_error("its region is not known", where);
         any = any || points[i].region >= 0;
@@ -181,7 +180,7 @@ double blend_pace(double u) {
 
 Expected<CorrectedPath> correct_path(std::span<const PathPoint> points, std::span<const PathRegion> regions,
                                      std::span<const std::string> names, const PathBlendOptions& options) {
-    if (auto ok = check(points, regions, names, options); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check(points, regions, names, options));
     const std::vector<double> s = lengths(points, options.closed);
     const std::vector<Stretch> stretches = stretches_of(points, s, options.closed);
     const std::vector<Transition> transitions = transitions_of(points, s, stretches, options);

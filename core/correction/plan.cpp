@@ -252,7 +252,7 @@ Text advise(std::span<const SpotObservation> spots, const CorrectionOptions& opt
 }  // namespace
 
 Expected<RegionPlan> plan_region(std::span<const SpotObservation> spots, const CorrectionOptions& options) {
-    if (auto good = check_region(spots, options, false); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_region(spots, options, false));
     RegionSystem system;
     const Judgement now = judge(system, spots, options);
     const State start;

@@ -40,7 +40,7 @@ Expected<PredictedCovariance> predicted_covariance(std::span<const SpotObservati
                                                    const CorrectionOptions& options,
                                                    const Displacement& displacement) {
     using namespace correction;
-    if (auto good = check_region(spots, options, false); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_region(spots, options, false));
     const Predicted p = predict(spots, options, displacement);
     const RegionSystem::Parts parts = p.system.parts(p.lin, p.shared, p.state, p.factor, p.spread);
     RegionPlan out;

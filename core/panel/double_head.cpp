@@ -49,8 +49,7 @@ Expected<void> check_head(const Profile& profile, const Head& head, const Text& 
         return input_error("the columns of the profile differ in length", where);
     if (n > 0 && !profile.filtered())
         return input_error("the profile is not filtered", where, "filter it before the heads are merged");
-    if (auto rigid = pose_from_matrix(head.sensor_from_head.matrix(), where); !rigid)
-        return tl::unexpected(rigid.error());
+    SEAM_OK(pose_from_matrix(head.sensor_from_head.matrix(), where));
     if (!(head.sigma_mm > 0) || !std::isfinite(head.sigma_mm))
         return input_error(Text("sigma of {} mm is not positive", head.sigma_mm), where,
                            "state the standard deviation of a point");
@@ -266,9 +265,8 @@ std::string_view to_string(DoubleHeadStatus status) {
 
 Expected<DoubleHeadProfile> merge_heads(const Profile& first, const Head& first_head, const Profile& second,
                                         const Head& second_head, const DoubleHeadOptions& options) {
-    if (auto good = check_head(first, first_head, "first head"); !good) return tl::unexpected(good.error());
-    if (auto good = check_head(second, second_head, "second head"); !good)
-        return tl::unexpected(good.error());
+    SEAM_OK(check_head(first, first_head, "first head"));
+    SEAM_OK(check_head(second, second_head, "second head"));
     if (!(options.disagreement_limit_mm > 0 && options.disagreement_limit_mm < kSameSurfaceMm))
         return input_error(
             Text("a disagreement limit of {} mm is out of range", options.disagreement_limit_mm),

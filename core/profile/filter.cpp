@@ -398,7 +398,7 @@ Expected<void> check(const FilterOptions& o) {
 }
 
 Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
-    if (auto ok = check(options); !ok) return ok;
+    SEAM_OK(check(options));
     const std::size_t n = profile.x_mm.size();
     if (profile.z_mm.size() != n || (!profile.intensity.empty() && profile.intensity.size() != n))
         return input_error("the columns of the profile differ in length", "x_mm, z_mm, intensity",

@@ -344,7 +344,7 @@ Expected<void> check(const StripeImage& image, const PeakOptions& options) {
 
 Expected<void> find_peaks(const StripeImage& image, const PeakOptions& options, StripePeaks& peaks,
                           Kernel kernel) {
-    if (auto ok = check(image, options); !ok) return ok;
+    SEAM_OK(check(image, options));
     thread_local Workspace work;
     peaks.scan = options.scan;
     peaks.lines = options.scan == ScanLines::columns ? image.width : image.height;
@@ -386,7 +386,7 @@ Expected<ScanLines> guess_scan_lines(const StripeImage& image) {
         PeakOptions options;
         options.scan = scan;
         options.per_line = 1;
-        if (auto ok = find_peaks(image, options, peaks); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(find_peaks(image, options, peaks));
         for (int i = 1; i < peaks.lines; ++i) {
             if (!peaks.count[i - 1] || !peaks.count[i]) continue;
             // A stripe flatter than 45 degrees moves less than a pixel a line; noise of its position is

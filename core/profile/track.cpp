@@ -160,7 +160,7 @@ Workspace& workspace() {
 }  // namespace
 
 Expected<void> track_stripe(const ProfileCandidates& input, const FilterOptions& options, Profile& profile) {
-    if (auto ok = check(options); !ok) return ok;
+    SEAM_OK(check(options));
     if (input.lines < 0 || input.per_line < 1)
         return input_error("the candidates have no lines or no room per line", "lines, per_line",
                            "give lines >= 0 and per_line >= 1");

@@ -15,16 +15,15 @@ const SettingTable& abb_egm_settings() {
 
 Expected<std::unique_ptr<RobotLink>> open_abb_egm(const nlohmann::json& settings, DeviceSession& session,
                                                   OpenRobot open_robot) {
-    auto common = parse_cyclic_settings(settings, abb_egm_settings(), "abb-egm");
-    if (!common) return tl::unexpected(common.error());
-    common->brand = "ABB";
+    SEAM_TRY(auto common, parse_cyclic_settings(settings, abb_egm_settings(), "abb-egm"));
+    common.brand = "ABB";
     SettingsReader f(settings, "", abb_egm_settings());
     std::string frame;
     Pose tcp_from_sensor = Pose::Identity();
     f.text("frame", frame);
     f.pose("tcp_from_sensor", tcp_from_sensor);
     if (f.failed()) return tl::unexpected(f.error());
-    return CyclicLink::open(*common, make_egm_protocol({frame == "sensor", tcp_from_sensor}), open_robot,
+    return CyclicLink::open(common, make_egm_protocol({frame == "sensor", tcp_from_sensor}), open_robot,
                             session);
 }
 

@@ -16,27 +16,26 @@ class EgmProtocol final : public CyclicProtocol {
     explicit EgmProtocol(const EgmOptions& options) : options_(options) {}
 
     Expected<CyclicPacket> parse(std::span<const std::byte> datagram) override {
-        auto s = parse_egm_robot(datagram);
-        if (!s) return tl::unexpected(s.error());
+        SEAM_TRY(auto s, parse_egm_robot(datagram));
         CyclicPacket p;
-        p.number = s->seqno;
+        p.number = s.seqno;
         p.number_wrap = std::uint64_t{1} << 32;
-        p.time_ms = s->tm_ms;
-        p.missing = !s->planned    ? "planned Cartesian pose (EGM for joints alone cannot correct a path)"
-                    : !s->measured ? "measured Cartesian pose (feedBack)"
-                                   : nullptr;
-        if (!s->usable) {
+        p.time_ms = s.tm_ms;
+        p.missing = !s.planned    ? "planned Cartesian pose (EGM for joints alone cannot correct a path)"
+                    : !s.measured ? "measured Cartesian pose (feedBack)"
+                                  : nullptr;
+        if (!s.usable) {
             p.problem = "the robot tells a position that it cannot have";
             p.missing = nullptr;
         } else {
-            p.programmed = s->planned;
-            p.actual = s->measured;
+            p.programmed = s.planned;
+            p.actual = s.measured;
         }
-        p.running = s->motors_on && s->rapid_running && s->mci == EgmMci::running;
-        p.ended = s->motors_on && s->rapid_running && s->mci == EgmMci::stopped;
-        if (s->mci == EgmMci::error)
+        p.running = s.motors_on && s.rapid_running && s.mci == EgmMci::running;
+        p.ended = s.motors_on && s.rapid_running && s.mci == EgmMci::stopped;
+        if (s.mci == EgmMci::error)
             p.mode = RobotMode::fault;
-        else if (!s->motors_on || !s->rapid_running)
+        else if (!s.motors_on || !s.rapid_running)
             p.mode = RobotMode::stopped;
         return p;
     }

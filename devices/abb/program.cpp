@@ -91,9 +91,7 @@ Expected<Load> load_from(const nlohmann::json& settings) {
                            "give \"tool\" or \"load\"");
     if (load.inertia_kgm2.minCoeff() < 0 || load.centre_mm.cwiseAbs().maxCoeff() > 1e4)
         return input_error("a load of this centre or inertia cannot be", "settings.load");
-    if (!load.tool.empty())
-        if (auto named = check_name(load.tool, "tool", "settings.tool"); !named)
-            return tl::unexpected(named.error());
+    if (!load.tool.empty()) SEAM_OK(check_name(load.tool, "tool", "settings.tool"));
     return load;
 }
 
@@ -166,8 +164,7 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     f.text("address", address);
     f.whole("port", port);
     if (f.failed()) return tl::unexpected(f.error());
-    const auto load = load_from(request.settings);
-    if (!load) return tl::unexpected(load.error());
+    SEAM_TRY(const auto load, load_from(request.settings));
     if (address.empty() || address.find_first_not_of("0123456789.") != std::string::npos)
         return input_error(Text("\"{}\" is no address", address), "settings.address",
                            "give it as four numbers");
@@ -184,8 +181,7 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
                                "give up to 2000 mm/s");
         std::vector<const Pose*> poses = {&move.entry, &move.trigger, &move.exit};
         for (const Pose& pose : move.via) poses.push_back(&pose);
-        for (const Pose* pose : poses)
-            if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
+        for (const Pose* pose : poses) SEAM_OK(check_pose(*pose, where));
         const std::string point = fmt::format("s{:02}", ++n);
         targets += fmt::format("    ! spot {}\n", move.spot_id) + robtarget(point + "_entry", move.entry) +
                    robtarget(point + "_spot", move.trigger) + robtarget(point + "_exit", move.exit) +
@@ -206,12 +202,11 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     std::set<std::string> known;
     for (const ApplicationFrame& frame : request.frames) {
         const Text where("frame of region {}", frame.region_id);
-        if (auto named = check_name(frame.name, "work object", where); !named)
-            return tl::unexpected(named.error());
+        SEAM_OK(check_name(frame.name, "work object", where));
         if (!known.insert(folded(frame.name)).second)
             return input_error(Text("two regions have the work object \"{}\"", frame.name), where,
                                "name one of them otherwise");
-        if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_pose(frame.base_from_frame, where));
         objects += fmt::format(
             "    ! region {}\n    PERS wobjdata {}:=[FALSE,TRUE,\"\",[[0,0,0],[1,0,0,0]],\n        [{}]];\n",
             plain(frame.region_id), frame.name, rapid_pose(frame.base_from_frame));
@@ -223,8 +218,8 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
         "ENDPROC\n\n"
         "    PROC SW_Spots()\n{}    ENDPROC\nENDMODULE\n",
         plain(request.project), program_signature(request.moves), request.moves.size(), names,
-        load_lines(*load), objects, targets,
-        load->tool.empty() ? "" : fmt::format("        swTool.tload:={}.tload;\n", load->tool), passes);
+        load_lines(load), objects, targets,
+        load.tool.empty() ? "" : fmt::format("        swTool.tload:={}.tload;\n", load.tool), passes);
     return std::vector<ProgramFile>{
         {"SeamwrightServer.mod",
          filled(resources::SeamwrightServer_mod, {{"ADDRESS", address}, {"PORT", std::to_string(port)}})},
@@ -233,9 +228,8 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
 }
 
 Expected<std::vector<ProgramFile>> write_abb_path(const PathProgramRequest& request) {
-    if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
-    if (auto named = check_name(request.name, "program", "name"); !named)
-        return tl::unexpected(named.error());
+    SEAM_OK(check_path_program(request));
+    SEAM_OK(check_name(request.name, "program", "name"));
     static const std::set<std::string> own = {"frame", "speed", "rounding",
                                               "point", "tool",  "i"};  // of the module
     if (own.count(folded(request.name)) > 0)

@@ -61,9 +61,8 @@ class AbbRapidLink final : public RobotLink {
     }
 
     Expected<RobotMode> mode() override {
-        auto answer = ask({0, "MODE", {}, {}, {}}, settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
-        const auto& f = answer->fields;
+        SEAM_TRY(auto answer, ask({0, "MODE", {}, {}, {}}, settings_.timeout));
+        const auto& f = answer.fields;
         const auto one_of = [&](std::size_t i, std::initializer_list<std::string_view> known) {
             return i < f.size() && std::find(known.begin(), known.end(), f[i]) != known.end();
         };
@@ -91,7 +90,7 @@ class AbbRapidLink final : public RobotLink {
                 starts_.pop_front();
                 return start;
             }
-            if (auto got = next_event(until); !got) return tl::unexpected(got.error());
+            SEAM_OK(next_event(until));
         }
     }
 
@@ -104,11 +103,10 @@ class AbbRapidLink final : public RobotLink {
                                    "use at most 32 characters without blanks, quotes and backslashes");
             names.push_back(move.spot_id);
         }
-        if (auto open = connected(); !open) return open;
+        SEAM_OK(connected());
         next_trigger_ = 0;  // until the answer every trigger and end is of the measuring before
-        auto answer = ask({0, "MEASURE", {std::to_string(names.size()), program_signature(moves)}, {}, {}},
-                          settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
+        SEAM_OK(ask({0, "MEASURE", {std::to_string(names.size()), program_signature(moves)}, {}, {}},
+                    settings_.timeout));
         triggers_.clear();
         ended_ = false;
         next_trigger_ = 1;
@@ -128,22 +126,21 @@ class AbbRapidLink final : public RobotLink {
             if (next_trigger_ == 0)
                 return device_error("the connection was lost while the part was measured", where_,
                                     "measure the part again");
-            if (auto got = next_event(until); !got) return tl::unexpected(got.error());
+            SEAM_OK(next_event(until));
         }
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
-        if (auto ok = check_frame_name(name); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_frame_name(name));
         return pose_of(ask({0, "READ", {name}, {}, {}}, settings_.timeout));
     }
 
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
-        if (auto ok = check_frame_name(name); !ok) return ok;
+        SEAM_OK(check_frame_name(name));
         Message request{0, "WRITE", {name}, {}, {}};
-        if (auto ok = put_pose(request, base_from_frame); !ok) return ok;
-        if (auto same = same_robot(); !same) return same;
-        auto staged = pose_of(ask(std::move(request), settings_.timeout));
-        if (!staged) return tl::unexpected(staged.error());
+        SEAM_OK(put_pose(request, base_from_frame));
+        SEAM_OK(same_robot());
+        SEAM_OK(pose_of(ask(std::move(request), settings_.timeout)));
         return {};
     }
 
@@ -151,49 +148,43 @@ class AbbRapidLink final : public RobotLink {
         const char* word = verdict == PartVerdict::corrected ? "CORRECTED"
                            : verdict == PartVerdict::refused ? "REFUSED"
                                                              : "FAILED";
-        if (verdict == PartVerdict::corrected)
-            if (auto same = same_robot(); !same) return same;
-        auto answer = ask({0, "VERDICT", {word}, text, {}}, settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
+        if (verdict == PartVerdict::corrected) SEAM_OK(same_robot());
+        SEAM_OK(ask({0, "VERDICT", {word}, text, {}}, settings_.timeout));
         return {};
     }
 
     Expected<Permission> permission() override {
-        auto answer = ask({0, "PERMIT", {}, {}, {}}, settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
+        SEAM_TRY(auto answer, ask({0, "PERMIT", {}, {}, {}}, settings_.timeout));
         for (const auto& [word, permission] : {std::pair{"NONE", Permission::none},
                                                {"GIVEN", Permission::given},
                                                {"TAKEN", Permission::taken}})
-            if (answer->fields == std::vector<std::string>{word}) return permission;
+            if (answer.fields == std::vector<std::string>{word}) return permission;
         return broken(fmt::format("the controller tells a permission that does not exist: \"{}\"",
-                                  fmt::join(answer->fields, " ")));
+                                  fmt::join(answer.fields, " ")));
     }
 
     Expected<void> move_to(const Pose& base_from_flange) override {
         Message request{0, "MOVE", {}, {}, {}};
-        if (auto ok = put_pose(request, base_from_flange); !ok) return ok;
-        if (auto same = same_robot(); !same) return same;
-        auto from = this->base_from_flange();
-        if (!from) return tl::unexpected(from.error());
-        const double way_s = std::max(distance_mm(*from, base_from_flange) / kTeachSpeed_mm_s,
-                                      deg_from_rad(angle_rad(*from, base_from_flange)) / kTeachTurn_deg_s);
-        auto answer = ask(std::move(request),
-                          settings_.move_timeout + Milliseconds(static_cast<long>(1000 * way_s / kSlowest)));
-        if (!answer) return tl::unexpected(answer.error());
+        SEAM_OK(put_pose(request, base_from_flange));
+        SEAM_OK(same_robot());
+        SEAM_TRY(auto from, this->base_from_flange());
+        const double way_s = std::max(distance_mm(from, base_from_flange) / kTeachSpeed_mm_s,
+                                      deg_from_rad(angle_rad(from, base_from_flange)) / kTeachTurn_deg_s);
+        SEAM_OK(ask(std::move(request),
+                    settings_.move_timeout + Milliseconds(static_cast<long>(1000 * way_s / kSlowest))));
         return {};
     }
 
   private:
     Expected<RobotIdentity> ask_identity() {
-        auto answer = ask({0, "HELLO", {"2"}, {}, {}}, settings_.timeout);
-        if (!answer) return tl::unexpected(answer.error());
-        const auto& version = answer->fields;
+        SEAM_TRY(auto answer, ask({0, "HELLO", {"2"}, {}, {}}, settings_.timeout));
+        const auto& version = answer.fields;
         if (version.size() != 1 || (version[0] != "1" && version[0] != "2"))
             return broken("the controller's module speaks another version of the protocol than 1 and 2");
-        return RobotIdentity{"abb-rapid", "ABB", answer->line3, answer->line2};
+        return RobotIdentity{"abb-rapid", "ABB", answer.line3, answer.line2};
     }
     Expected<void> same_robot() {
-        if (auto open = connected(); !open) return open;
+        SEAM_OK(connected());
         return robot_.check([this] { return ask_identity(); }, where_);
     }
     Expected<void> check_frame_name(const std::string& name) const {
@@ -276,10 +267,9 @@ class AbbRapidLink final : public RobotLink {
             }
             const auto left =
                 std::chrono::duration_cast<Milliseconds>(until - Clock::now()) + Milliseconds(1);
-            auto got = connection_->receive_some(std::as_writable_bytes(std::span(buffer)),
-                                                 std::max(left, Milliseconds(1)));
-            if (!got) return tl::unexpected(got.error());
-            received_.append(buffer, *got);
+            SEAM_TRY(auto got, connection_->receive_some(std::as_writable_bytes(std::span(buffer)),
+                                                         std::max(left, Milliseconds(1))));
+            received_.append(buffer, got);
             if (received_.size() >= abb::kMessageBytes) continue;
             if (Clock::now() >= until)
                 return device_error(ErrorCode::silence, Text("{}: half a message came", kNoAnswer), where_);
@@ -316,10 +306,9 @@ class AbbRapidLink final : public RobotLink {
         if (*count != next_trigger_)
             return device_error(Text("trigger {} came instead of {}", *count, next_trigger_), where_,
                                 "a trigger was lost; the part has to be measured again");
-        auto pose = abb::parse_pose_lines(event, where_);
-        if (!pose) return tl::unexpected(pose.error());
+        SEAM_TRY(auto pose, abb::parse_pose_lines(event, where_));
         ++next_trigger_;
-        triggers_.push_back({event.fields[2], host_now_ns(), *pose});
+        triggers_.push_back({event.fields[2], host_now_ns(), pose});
         return {};
     }
 
@@ -337,8 +326,7 @@ class AbbRapidLink final : public RobotLink {
                 error.where = where_;
                 return tl::unexpected(error);
             }
-            auto alive = ask({0, "PING", {}, {}, {}}, settings_.timeout);
-            if (!alive) return tl::unexpected(alive.error());
+            SEAM_OK(ask({0, "PING", {}, {}, {}}, settings_.timeout));
             return {};
         }
         if (message->number != 0)
@@ -351,7 +339,7 @@ class AbbRapidLink final : public RobotLink {
     }
 
     Expected<Message> ask(Message request, Milliseconds timeout) {
-        if (auto open = connected(); !open) return tl::unexpected(open.error());
+        SEAM_OK(connected());
         number_ = number_ % abb::kHighestNumber + 1;
         request.number = number_;
         asked_ = Clock::now();
@@ -421,9 +409,8 @@ const SettingTable& abb_rapid_settings() {
 }
 
 Expected<std::unique_ptr<RobotLink>> open_abb_rapid(const nlohmann::json& settings, DeviceSession&) {
-    auto parsed = parse_link_settings(settings);
-    if (!parsed) return tl::unexpected(parsed.error());
-    return std::make_unique<AbbRapidLink>(std::move(*parsed));
+    SEAM_TRY(auto parsed, parse_link_settings(settings));
+    return std::make_unique<AbbRapidLink>(std::move(parsed));
 }
 
 }  // namespace seamwright

@@ -66,10 +66,10 @@ CREATE TABLE events (
 )sql";
 
 Expected<Database::Tables> fresh_tables() {
-    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kCaptureFile);
-    if (!fresh) return tl::unexpected(fresh.error());
-    if (auto made = fresh->execute(kTables); !made) return tl::unexpected(made.error());
-    return fresh->tables();
+    SEAM_TRY(auto fresh,
+             Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kCaptureFile));
+    SEAM_OK(fresh.execute(kTables));
+    return fresh.tables();
 }
 
 constexpr auto kEventNames = std::to_array<std::string_view>({"trigger", "pose", "mode", "note"});
@@ -101,9 +101,9 @@ Expected<CaptureWriter> CaptureWriter::create(const fs::path& path, std::uint64_
     if (!fs::is_directory(folder, code))
         return file_error("the folder does not exist", folder.string(), "make it first");
     fs::remove(path.string() + "-journal", code);  // of a file that was deleted by hand
-    auto db = Database::open(path.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kCaptureFile);
-    if (!db) return tl::unexpected(db.error());
-    CaptureWriter writer(path, std::move(*db));
+    SEAM_TRY(auto db,
+             Database::open(path.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kCaptureFile));
+    CaptureWriter writer(path, std::move(db));
     const auto make = [&]() -> Expected<void> {
         Database& d = writer.db_;
         if (auto ok = d.execute(fmt::format("PRAGMA page_size = {}; PRAGMA journal_mode = TRUNCATE; PRAGMA "
@@ -111,18 +111,16 @@ Expected<CaptureWriter> CaptureWriter::create(const fs::path& path, std::uint64_
                                             kPageBytes));
             !ok)
             return ok;
-        auto transaction = Transaction::begin(d);
-        if (!transaction) return tl::unexpected(transaction.error());
-        if (auto ok = d.execute(kTables); !ok) return ok;
+        SEAM_TRY(auto transaction, Transaction::begin(d));
+        SEAM_OK(d.execute(kTables));
         if (auto ok = d.execute(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}",
                                             kCaptureApplicationId, kCaptureVersion));
             !ok)
             return ok;
-        auto row = d.prepare("INSERT INTO capture VALUES (1, ?, '', '')");
-        if (!row) return tl::unexpected(row.error());
-        row->bind(1, utc_now());
-        if (auto ok = row->run(); !ok) return ok;
-        if (auto ok = transaction->commit(); !ok) return ok;
+        SEAM_TRY(auto row, d.prepare("INSERT INTO capture VALUES (1, ?, '', '')"));
+        row.bind(1, utc_now());
+        SEAM_OK(row.run());
+        SEAM_OK(transaction.commit());
         if (limit_bytes > 0)
             return d.execute(fmt::format("PRAGMA max_page_count = {}",
                                          std::max<std::uint64_t>(limit_bytes / kPageBytes, 1)));
@@ -136,89 +134,80 @@ Expected<CaptureWriter> CaptureWriter::create(const fs::path& path, std::uint64_
 }
 
 Expected<std::int64_t> CaptureWriter::add_source(const CaptureSource& s) {
-    auto row = db_.prepare("INSERT INTO sources VALUES (NULL, ?, ?, ?, ?, ?, ?, 0, 0, 0)");
-    if (!row) return tl::unexpected(row.error());
-    auto twice = db_.prepare("SELECT count(*) FROM sources WHERE name = ?");
-    if (!twice) return tl::unexpected(twice.error());
-    twice->bind(1, s.name);
-    auto found = twice->step();
-    if (!found) return tl::unexpected(found.error());
-    if (s.name.empty() || twice->integer(0) != 0)
+    SEAM_TRY(auto row, db_.prepare("INSERT INTO sources VALUES (NULL, ?, ?, ?, ?, ?, ?, 0, 0, 0)"));
+    SEAM_TRY(auto twice, db_.prepare("SELECT count(*) FROM sources WHERE name = ?"));
+    twice.bind(1, s.name);
+    SEAM_OK(twice.step());
+    if (s.name.empty() || twice.integer(0) != 0)
         return input_error("every source of a capture needs a name of its own",
                            Text("source \"{}\"", s.name));
-    twice->reset();
-    row->bind(1, s.kind == SourceKind::sensor ? "sensor" : "robot");
-    row->bind(2, s.name);
-    row->bind(3, s.driver);
-    row->bind(4, s.vendor);
-    row->bind(5, s.model);
-    row->bind(6, s.serial);
-    if (auto ok = row->run(); !ok) return tl::unexpected(ok.error());
+    twice.reset();
+    row.bind(1, s.kind == SourceKind::sensor ? "sensor" : "robot");
+    row.bind(2, s.name);
+    row.bind(3, s.driver);
+    row.bind(4, s.vendor);
+    row.bind(5, s.model);
+    row.bind(6, s.serial);
+    SEAM_OK(row.run());
     return db_.last_rowid();
 }
 
 Expected<void> CaptureWriter::write(std::span<const Block> blocks, std::span<const CaptureEvent> events,
                                     const std::map<std::int64_t, CaptureCounters>& counters) {
-    auto transaction = Transaction::begin(db_);
-    if (!transaction) return tl::unexpected(transaction.error());
+    SEAM_TRY(auto transaction, Transaction::begin(db_));
     if (!blocks.empty()) {
-        auto row = db_.prepare("INSERT INTO blocks VALUES (NULL, ?, ?, ?, ?, ?, ?, ?)");
-        if (!row) return tl::unexpected(row.error());
-        auto spot = db_.prepare("INSERT INTO spots VALUES (?, ?, ?)");
-        if (!spot) return tl::unexpected(spot.error());
+        SEAM_TRY(auto row, db_.prepare("INSERT INTO blocks VALUES (NULL, ?, ?, ?, ?, ?, ?, ?)"));
+        SEAM_TRY(auto spot, db_.prepare("INSERT INTO spots VALUES (?, ?, ?)"));
         for (const Block& b : blocks) {
-            row->bind(1, b.source);
-            row->bind(2, static_cast<std::int64_t>(b.first));
-            row->bind(3, std::int64_t{b.frames});
-            row->bind(4, b.first_host_ns);
-            row->bind(5, b.last_host_ns);
-            row->bind(6, static_cast<std::int64_t>(b.unpacked));
-            row->bind(7, b.bytes);
-            if (auto ok = row->run(); !ok) return ok;
+            row.bind(1, b.source);
+            row.bind(2, static_cast<std::int64_t>(b.first));
+            row.bind(3, std::int64_t{b.frames});
+            row.bind(4, b.first_host_ns);
+            row.bind(5, b.last_host_ns);
+            row.bind(6, static_cast<std::int64_t>(b.unpacked));
+            row.bind(7, b.bytes);
+            SEAM_OK(row.run());
             for (const auto& [frame, id] : b.spots) {
-                spot->bind(1, b.source);
-                spot->bind(2, static_cast<std::int64_t>(frame));
-                spot->bind(3, id);
-                if (auto ok = spot->run(); !ok) return ok;
+                spot.bind(1, b.source);
+                spot.bind(2, static_cast<std::int64_t>(frame));
+                spot.bind(3, id);
+                SEAM_OK(spot.run());
             }
         }
     }
     if (!events.empty()) {
-        auto row = db_.prepare("INSERT INTO events VALUES (NULL, ?, ?, ?, ?, ?, ?)");
-        if (!row) return tl::unexpected(row.error());
+        SEAM_TRY(auto row, db_.prepare("INSERT INTO events VALUES (NULL, ?, ?, ?, ?, ?, ?)"));
         for (const CaptureEvent& e : events) {
             std::array<double, 12> numbers{};
             if (e.base_from_flange) numbers = pose_numbers(*e.base_from_flange);
-            row->bind(1, e.source);
-            row->bind(2, to_string(e.kind));
-            row->bind(3, e.host_time_ns);
-            row->bind(4, e.spot_id);
-            row->bind(5, e.text);
-            row->bind(6,
-                      e.base_from_flange ? std::as_bytes(std::span(numbers)) : std::span<const std::byte>());
-            if (auto ok = row->run(); !ok) return ok;
+            row.bind(1, e.source);
+            row.bind(2, to_string(e.kind));
+            row.bind(3, e.host_time_ns);
+            row.bind(4, e.spot_id);
+            row.bind(5, e.text);
+            row.bind(6,
+                     e.base_from_flange ? std::as_bytes(std::span(numbers)) : std::span<const std::byte>());
+            SEAM_OK(row.run());
         }
     }
     if (!counters.empty()) {
-        auto row = db_.prepare("UPDATE sources SET damaged = ?, lost = ?, dropped = ? WHERE id = ?");
-        if (!row) return tl::unexpected(row.error());
+        SEAM_TRY(auto row, db_.prepare("UPDATE sources SET damaged = ?, lost = ?, dropped = ? WHERE id = ?"));
         for (const auto& [source, c] : counters) {
-            row->bind(1, static_cast<std::int64_t>(c.damaged));
-            row->bind(2, static_cast<std::int64_t>(c.lost));
-            row->bind(3, static_cast<std::int64_t>(c.dropped));
-            row->bind(4, source);
-            if (auto ok = row->run(); !ok) return ok;
+            row.bind(1, static_cast<std::int64_t>(c.damaged));
+            row.bind(2, static_cast<std::int64_t>(c.lost));
+            row.bind(3, static_cast<std::int64_t>(c.dropped));
+            row.bind(4, source);
+            SEAM_OK(row.run());
         }
     }
-    return transaction->commit();
+    return transaction.commit();
 }
 
 Expected<void> CaptureWriter::finish(const std::string& how) {
-    auto row = db_.prepare("UPDATE capture SET finished_utc = ?, end = ?");
-    if (!row) return tl::unexpected(row.error());
-    row->bind(1, utc_now());
-    row->bind(2, how);
-    return row->run();
+    SEAM_TRY(auto row, db_.prepare("UPDATE capture SET finished_utc = ?, end = ?"));
+    row.bind(1, utc_now());
+    row.bind(2, how);
+    return row.run();
 }
 
 SeamFile seam_file_kind(const fs::path& path) {
@@ -245,49 +234,43 @@ Expected<CaptureReader> CaptureReader::open(const fs::path& path) {
         if (auto healing = Database::open(path.string(), SQLITE_OPEN_READWRITE, kCaptureFile))
             (void)healing->integer("PRAGMA user_version");
     }
-    auto db = Database::open(path.string(), SQLITE_OPEN_READONLY, kCaptureFile);
-    if (!db) return tl::unexpected(db.error());
-    CaptureReader reader(path, std::move(*db));
-    auto id = reader.db_.integer("PRAGMA application_id");
-    if (!id) return tl::unexpected(id.error());
-    if (*id == kProjectApplicationId)
+    SEAM_TRY(auto db, Database::open(path.string(), SQLITE_OPEN_READONLY, kCaptureFile));
+    CaptureReader reader(path, std::move(db));
+    SEAM_TRY(auto id, reader.db_.integer("PRAGMA application_id"));
+    if (id == kProjectApplicationId)
         return file_error("this is a project, no recorded capture", path.string(),
                           "choose the file that `seamwright record` wrote");
-    if (*id != kCaptureApplicationId)
+    if (id != kCaptureApplicationId)
         return file_error("this is another program's database, no capture", path.string(),
                           "choose the file that `seamwright record` wrote");
-    auto version = reader.db_.integer("PRAGMA user_version");
-    if (!version) return tl::unexpected(version.error());
-    if (*version > kCaptureVersion)
+    SEAM_TRY(auto version, reader.db_.integer("PRAGMA user_version"));
+    if (version > kCaptureVersion)
         return file_error(
-            Text("the capture has version {}, this program knows up to {}", *version, kCaptureVersion),
+            Text("the capture has version {}, this program knows up to {}", version, kCaptureVersion),
             path.string(), "open it with a newer Seamwright");
-    if (*version < 1) return file_error("the capture has no valid version", path.string());
-    if (auto whole = reader.db_.check_length(); !whole) return tl::unexpected(whole.error());
+    if (version < 1) return file_error("the capture has no valid version", path.string());
+    SEAM_OK(reader.db_.check_length());
     static const Expected<Database::Tables> wanted = fresh_tables();
     if (!wanted) return tl::unexpected(wanted.error());
-    const auto found = reader.db_.tables();
-    if (!found) return tl::unexpected(found.error());
-    if (*found != *wanted) return damaged(path, "its tables are not those of a capture");
-    if (auto read = reader.read_tables(); !read) return tl::unexpected(read.error());
+    SEAM_TRY(const auto found, reader.db_.tables());
+    if (found != *wanted) return damaged(path, "its tables are not those of a capture");
+    SEAM_OK(reader.read_tables());
     return reader;
 }
 
 Expected<void> CaptureReader::read_tables() {
     const auto rows = [&](const char* sql, auto each) -> Expected<void> {
-        auto s = db_.prepare(sql);
-        if (!s) return tl::unexpected(s.error());
+        SEAM_TRY(auto s, db_.prepare(sql));
         for (;;) {
-            auto row = s->step();
-            if (!row) return tl::unexpected(row.error());
-            if (!*row) return {};
-            Expected<void> done = each(*s);
-            if (done) done = s->row_ok();
+            SEAM_TRY(auto row, s.step());
+            if (!row) return {};
+            Expected<void> done = each(s);
+            if (done) done = s.row_ok();
             if (!done) return done;
         }
     };
     // One read transaction: a recorder that is still writing adds its blocks before or after.
-    if (auto begun = db_.execute("BEGIN"); !begun) return begun;
+    SEAM_OK(db_.execute("BEGIN"));
     bool head = false;
     if (auto ok = rows("SELECT started_utc, finished_utc, end FROM capture",
                        [&](Statement& s) -> Expected<void> {
@@ -380,14 +363,12 @@ std::uint64_t CaptureReader::frames(std::int64_t source) const {
 Expected<void> CaptureReader::decode(const BlockRow& row, std::vector<Capture>& frames) {
     frames.clear();
     const std::string where = fmt::format("{}, block {}", path_.string(), row.id);
-    auto s = db_.prepare("SELECT data FROM blocks WHERE id = ?");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, row.id);
-    auto found = s->step();
-    if (!found) return tl::unexpected(found.error());
-    if (!*found) return file_error("the block of frames is gone", where);
-    std::span<const std::byte> data = s->blob(0);
-    if (auto ok = s->row_ok(); !ok) return ok;
+    SEAM_TRY(auto s, db_.prepare("SELECT data FROM blocks WHERE id = ?"));
+    s.bind(1, row.id);
+    SEAM_TRY(auto found, s.step());
+    if (!found) return file_error("the block of frames is gone", where);
+    std::span<const std::byte> data = s.blob(0);
+    SEAM_OK(s.row_ok());
     std::vector<std::byte> unpacked;
     if (row.unpacked > 0) {
         // zlib packs no more than about 1030 to 1; a forged size takes no memory.
@@ -401,7 +382,7 @@ Expected<void> CaptureReader::decode(const BlockRow& row, std::vector<Capture>& 
             return file_error("the block of frames cannot be unpacked: the file is damaged", where);
         data = unpacked;
     }
-    if (auto ok = unpack_frames(data, where, frames); !ok) return ok;
+    SEAM_OK(unpack_frames(data, where, frames));
     if (frames.size() != static_cast<std::size_t>(row.frames))
         return file_error("the block holds another number of frames than it says", where);
     return {};
@@ -424,44 +405,38 @@ Expected<const Capture*> CaptureReader::frame(std::int64_t source, std::uint64_t
 }
 
 Expected<std::vector<std::pair<std::uint64_t, std::string>>> CaptureReader::spots(std::int64_t source) {
-    auto s = db_.prepare("SELECT frame, spot_id FROM spots WHERE source = ? ORDER BY frame");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, source);
+    SEAM_TRY(auto s, db_.prepare("SELECT frame, spot_id FROM spots WHERE source = ? ORDER BY frame"));
+    s.bind(1, source);
     std::vector<std::pair<std::uint64_t, std::string>> out;
     for (;;) {
-        auto row = s->step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) return out;
-        const std::int64_t frame = s->integer(0);
-        out.emplace_back(static_cast<std::uint64_t>(frame), s->text(1));
-        if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
+        SEAM_TRY(auto row, s.step());
+        if (!row) return out;
+        const std::int64_t frame = s.integer(0);
+        out.emplace_back(static_cast<std::uint64_t>(frame), s.text(1));
+        SEAM_OK(s.row_ok());
         if (frame < 0 || out.back().first >= frames(source))
             return damaged(path_, "a spot names a frame that is not there");
     }
 }
 
 Expected<std::vector<CaptureEvent>> CaptureReader::events(std::int64_t source) {
-    auto s = db_.prepare(
-        "SELECT source, kind, host_time_ns, spot_id, text, pose FROM events WHERE ?1 = 0 OR source = ?1 "
-        "ORDER "
-        "BY host_time_ns, id");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, source);
+    SEAM_TRY(auto s, db_.prepare("SELECT source, kind, host_time_ns, spot_id, text, pose FROM events WHERE "
+                                 "?1 = 0 OR source = ?1 ORDER BY host_time_ns, id"));
+    s.bind(1, source);
     std::vector<CaptureEvent> out;
     for (;;) {
-        auto row = s->step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) return out;
+        SEAM_TRY(auto row, s.step());
+        if (!row) return out;
         CaptureEvent& e = out.emplace_back();
-        e.source = s->integer(0);
-        const std::string kind = s->text(1);
+        e.source = s.integer(0);
+        const std::string kind = s.text(1);
         const auto name = std::find(kEventNames.begin(), kEventNames.end(), kind);
         if (name == kEventNames.end()) return damaged(path_, "an event of no known kind");
         e.kind = static_cast<CaptureEventKind>(name - kEventNames.begin());
-        e.host_time_ns = s->integer(2);
-        e.spot_id = s->text(3);
-        e.text = s->text(4);
-        const auto pose = s->blob(5);
+        e.host_time_ns = s.integer(2);
+        e.spot_id = s.text(3);
+        e.text = s.text(4);
+        const auto pose = s.blob(5);
         if (!pose.empty()) {
             std::array<double, 12> numbers;
             if (pose.size() != sizeof numbers) return damaged(path_, "a pose of another size");
@@ -471,7 +446,7 @@ Expected<std::vector<CaptureEvent>> CaptureReader::events(std::int64_t source) {
                 for (int c = 0; c < 4; ++c) p.matrix()(r, c) = numbers[static_cast<std::size_t>(r * 4 + c)];
             e.base_from_flange = p;
         }
-        if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(s.row_ok());
     }
 }
 
@@ -481,11 +456,9 @@ std::vector<Error> CaptureReader::check() {
         if (!result) findings.push_back(result.error());
     };
     const auto sqlite = [&]() -> Expected<void> {
-        auto s = db_.prepare("PRAGMA integrity_check(1)");
-        if (!s) return tl::unexpected(s.error());
-        auto row = s->step();
-        if (!row) return tl::unexpected(row.error());
-        if (const std::string answer = *row ? s->text(0) : "no answer"; answer != "ok")
+        SEAM_TRY(auto s, db_.prepare("PRAGMA integrity_check(1)"));
+        SEAM_TRY(auto row, s.step());
+        if (const std::string answer = row ? s.text(0) : "no answer"; answer != "ok")
             return damaged(path_, answer);
         return {};
     };

@@ -303,12 +303,11 @@ Expected<std::vector<std::byte>> pack_profile(const Profile& profile) {
 }
 
 Expected<Profile> unpack_profile(std::span<const std::byte> blob, const std::string& where) {
-    auto payload = checked(blob, kProfileRecords, where);
-    if (!payload) return tl::unexpected(payload.error());
-    Reader r(payload->first);
+    SEAM_TRY(auto payload, checked(blob, kProfileRecords, where));
+    Reader r(payload.first);
     Profile profile;
     read_profile(r, profile);
-    if (!r.ok() || r.left() || payload->second != 1) return file_error("the profile is not whole", where);
+    if (!r.ok() || r.left() || payload.second != 1) return file_error("the profile is not whole", where);
     return profile;
 }
 
@@ -338,10 +337,9 @@ Expected<std::vector<CaptureBlob>> pack_captures(std::span<const Capture> captur
 
 Expected<void> unpack_captures(std::span<const std::byte> blob, const std::string& where,
                                std::vector<Capture>& captures) {
-    auto payload = checked(blob, kCaptureRecords, where);
-    if (!payload) return tl::unexpected(payload.error());
-    Reader r(payload->first);
-    for (std::uint32_t i = 0; i < payload->second && r.ok(); ++i) {
+    SEAM_TRY(auto payload, checked(blob, kCaptureRecords, where));
+    Reader r(payload.first);
+    for (std::uint32_t i = 0; i < payload.second && r.ok(); ++i) {
         captures.emplace_back();
         read_capture(r, captures.back());
         if (!r.ok()) captures.pop_back();
@@ -409,11 +407,10 @@ std::size_t frame_record_bytes(const Frame& frame, const ProfileCandidates* cand
 
 Expected<void> unpack_frames(std::span<const std::byte> blob, const std::string& where,
                              std::vector<Capture>& captures) {
-    auto payload = checked(blob, kFrameRecords, where);
-    if (!payload) return tl::unexpected(payload.error());
-    Reader r(payload->first);
+    SEAM_TRY(auto payload, checked(blob, kFrameRecords, where));
+    Reader r(payload.first);
     std::vector<double> last_x_mm;
-    for (std::uint32_t i = 0; i < payload->second && r.ok(); ++i) {
+    for (std::uint32_t i = 0; i < payload.second && r.ok(); ++i) {
         Capture& c = captures.emplace_back();
         read_capture(r, c, &last_x_mm);
         if (r.ok()) read_image(r, c);

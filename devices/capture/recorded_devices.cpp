@@ -162,7 +162,7 @@ Expected<std::unique_ptr<RecordingSession>> RecordingSession::start(std::shared_
     std::unique_ptr<RecordingSession> session(new RecordingSession);
     session->recorder_ = std::move(recorder);
     for (const Sensor& s : sensors) {
-        if (auto started = s.sensor->start(); !started) return tl::unexpected(started.error());
+        SEAM_OK(s.sensor->start());
         session->started_.push_back(s.sensor);
     }
     session->live_ = static_cast<int>(sensors.size());

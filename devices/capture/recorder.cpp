@@ -31,9 +31,8 @@ Expected<std::unique_ptr<Recorder>> Recorder::create(const std::filesystem::path
         return input_error("must be 4 to 65536 MiB", "queue_mib");
     if (options.flush_ms < 10 || options.flush_ms > 10000)
         return input_error("must be 10 to 10000 ms", "flush_ms");
-    auto writer = CaptureWriter::create(path, options.limit_bytes);
-    if (!writer) return tl::unexpected(writer.error());
-    std::unique_ptr<Recorder> recorder(new Recorder(std::move(*writer), options));
+    SEAM_TRY(auto writer, CaptureWriter::create(path, options.limit_bytes));
+    std::unique_ptr<Recorder> recorder(new Recorder(std::move(writer), options));
     recorder->thread_ = std::thread(&Recorder::write_loop, recorder.get());
     return recorder;
 }

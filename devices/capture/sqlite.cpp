@@ -128,9 +128,8 @@ Expected<bool> Statement::step() {
 
 Expected<void> Statement::run() {
     for (;;) {
-        auto row = step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) return {};
+        SEAM_TRY(auto row, step());
+        if (!row) return {};
     }
 }
 
@@ -194,10 +193,9 @@ Expected<Database> Database::open(const std::string& path, int flags, std::strin
                                                 SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY,
                                                 nullptr, row_checksum, nullptr, nullptr, nullptr);
     if (made != SQLITE_OK) return sqlite_error(raw, made, path, kind);
-    auto set = db.execute(
+    SEAM_OK(db.execute(
         "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0; PRAGMA synchronous = FULL; PRAGMA temp_store = "
-        "MEMORY");
-    if (!set) return tl::unexpected(set.error());
+        "MEMORY"));
     return db;
 }
 
@@ -222,13 +220,11 @@ Expected<Statement> Database::prepare(std::string_view sql) {
 }
 
 Expected<std::int64_t> Database::integer(const std::string& sql) {
-    auto s = prepare(sql);
-    if (!s) return tl::unexpected(s.error());
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return file_error(Text("a value is missing in the {}", kind_), path_);
-    const std::int64_t value = s->integer(0);
-    if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
+    SEAM_TRY(auto s, prepare(sql));
+    SEAM_TRY(auto row, s.step());
+    if (!row) return file_error(Text("a value is missing in the {}", kind_), path_);
+    const std::int64_t value = s.integer(0);
+    SEAM_OK(s.row_ok());
     return value;
 }
 
@@ -243,11 +239,9 @@ Expected<void> Database::copy_to(Database& target) {
 }
 
 Expected<bool> Database::write_ahead() {
-    auto s = prepare("PRAGMA journal_mode");
-    if (!s) return tl::unexpected(s.error());
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    return *row && s->text(0) == "wal";
+    SEAM_TRY(auto s, prepare("PRAGMA journal_mode"));
+    SEAM_TRY(auto row, s.step());
+    return row && s.text(0) == "wal";
 }
 
 Expected<bool> Database::set_write_ahead(bool on) {
@@ -263,14 +257,12 @@ Expected<bool> Database::set_write_ahead(bool on) {
 }
 
 Expected<void> Database::check_length() {
-    auto pages = integer("PRAGMA page_count");
-    if (!pages) return tl::unexpected(pages.error());
-    auto page_bytes = integer("PRAGMA page_size");
-    if (!page_bytes) return tl::unexpected(page_bytes.error());
+    SEAM_TRY(auto pages, integer("PRAGMA page_count"));
+    SEAM_TRY(auto page_bytes, integer("PRAGMA page_size"));
     std::error_code code;
     const auto bytes = std::filesystem::file_size(path_, code);
-    if (code || bytes % static_cast<std::uintmax_t>(*page_bytes) != 0 ||
-        bytes / static_cast<std::uintmax_t>(*page_bytes) < static_cast<std::uintmax_t>(*pages))
+    if (code || bytes % static_cast<std::uintmax_t>(page_bytes) != 0 ||
+        bytes / static_cast<std::uintmax_t>(page_bytes) < static_cast<std::uintmax_t>(pages))
         return file_error(Text("the {} is cut short", kind_), path_,
                           "take the last good copy from the backup");
     return {};
@@ -289,22 +281,20 @@ Expected<void> Database::check_place() const {
 }
 
 Expected<Database::Tables> Database::tables() {
-    auto s = prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'");
-    if (!s) return tl::unexpected(s.error());
+    SEAM_TRY(auto s,
+             prepare("SELECT name, ifnull(sql, '') FROM sqlite_schema WHERE name NOT LIKE 'sqlite_stat%'"));
     Tables entries;
     for (;;) {
-        auto row = s->step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) return entries;
-        entries.emplace(s->text(0), s->text(1));
-        if (auto ok = s->row_ok(); !ok) return tl::unexpected(ok.error());
+        SEAM_TRY(auto row, s.step());
+        if (!row) return entries;
+        entries.emplace(s.text(0), s.text(1));
+        SEAM_OK(s.row_ok());
     }
 }
 
 Expected<Transaction> Transaction::begin(Database& db) {
-    if (auto there = db.check_place(); !there) return tl::unexpected(there.error());
-    auto begun = db.execute("BEGIN IMMEDIATE");
-    if (!begun) return tl::unexpected(begun.error());
+    SEAM_OK(db.check_place());
+    SEAM_OK(db.execute("BEGIN IMMEDIATE"));
     return Transaction(db);
 }
 

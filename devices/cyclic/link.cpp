@@ -59,7 +59,7 @@ Expected<CyclicLinkSettings> parse_cyclic_settings(const nlohmann::json& setting
     f.text("listen", s.listen);
     f.text("robot_address", s.robot_address);
     if (f.failed()) return tl::unexpected(f.error());
-    if (auto ok = check_robot_address(s.listen, s.robot_address); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_robot_address(s.listen, s.robot_address));
     f.whole("port", s.port);
     f.whole("cycle_ms", s.cycle_ms);
     f.whole("timeout_ms", r.timeout_ms);
@@ -125,13 +125,11 @@ Expected<std::unique_ptr<CyclicLink>> CyclicLink::open(const CyclicLinkSettings&
     std::unique_ptr<RobotLink> measuring;
     if (!settings.measuring_driver.empty()) {
         if (!open_robot) return usage_error("no measuring link can be opened here", "measuring");
-        auto opened = open_robot(settings.measuring_driver, settings.measuring, session);
-        if (!opened) return tl::unexpected(opened.error());
-        measuring = std::move(*opened);
+        SEAM_TRY(auto opened, open_robot(settings.measuring_driver, settings.measuring, session));
+        measuring = std::move(opened);
     }
-    auto server = CyclicServer::start(settings.server, std::move(protocol));
-    if (!server) return tl::unexpected(server.error());
-    return std::unique_ptr<CyclicLink>(new CyclicLink(settings, std::move(*server), std::move(measuring)));
+    SEAM_TRY(auto server, CyclicServer::start(settings.server, std::move(protocol)));
+    return std::unique_ptr<CyclicLink>(new CyclicLink(settings, std::move(server), std::move(measuring)));
 }
 
 Expected<void> CyclicLink::no_alarm() {
@@ -144,7 +142,7 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
     const auto deadline = Clock::now() + milliseconds(settings_.timeout_ms);
     const std::int64_t fresh_ns = std::max<std::int64_t>(20LL * settings_.server.cycle_ms, 100) * 1000000;
     while (true) {
-        if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(no_alarm());
         CyclicServer::State state = server_->state();
         if (state.age_ns >= 0 && state.age_ns < fresh_ns) {
             if (state.packet.problem) return device_error(state.packet.problem, settings_.driver);
@@ -159,7 +157,7 @@ Expected<CyclicServer::State> CyclicLink::fresh_state() {
 }
 
 Expected<RobotIdentity> CyclicLink::identity() {
-    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(no_alarm());
     const std::uint64_t session = server_->state().session;
     RobotIdentity identity{settings_.driver, settings_.brand, "", ""};
     if (measuring_) {
@@ -177,9 +175,8 @@ Expected<RobotIdentity> CyclicLink::identity() {
 Expected<void> CyclicLink::same_robot() {
     if (!identified_ || server_->state().session == identified_->session) return {};
     const Identified before = *identified_;
-    auto now = identity();
-    if (!now) return tl::unexpected(now.error());
-    if (*now == before.identity && (before.address.empty() || identified_->address == before.address))
+    SEAM_TRY(auto now, identity());
+    if (now == before.identity && (before.address.empty() || identified_->address == before.address))
         return {};
     identified_ = before;
     return device_error(Text("the robot at {} is another one than at {}", server_->robot(), before.address),
@@ -187,7 +184,7 @@ Expected<void> CyclicLink::same_robot() {
 }
 
 Expected<Permission> CyclicLink::permission() {
-    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(no_alarm());
     switch (server_->state().path) {
         case PathPhase::none:
             return Permission::none;
@@ -202,11 +199,10 @@ Expected<Permission> CyclicLink::permission() {
 }
 
 Expected<RobotMode> CyclicLink::mode() {
-    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(no_alarm());
     if (measuring_) return measuring_->mode();
-    auto state = fresh_state();
-    if (!state) return tl::unexpected(state.error());
-    return state->packet.mode;
+    SEAM_TRY(auto state, fresh_state());
+    return state.packet.mode;
 }
 
 Expected<Pose> CyclicLink::base_from_flange() {
@@ -224,27 +220,27 @@ Expected<Pose> CyclicLink::base_from_flange() {
 }
 
 Expected<StartSignal> CyclicLink::wait_start(milliseconds timeout) {
-    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(no_alarm());
     return measuring_ ? measuring_->wait_start(timeout) : RobotLink::wait_start(timeout);
 }
 
 Expected<void> CyclicLink::start_measuring(const std::vector<MeasuringMove>& moves) {
-    if (auto ok = no_alarm(); !ok) return ok;
+    SEAM_OK(no_alarm());
     if (!measuring_)
         return usage_error("a cyclic correction alone cannot measure", settings_.driver,
                            "name a measuring driver in the settings (\"measuring\")");
-    if (auto zero = back_to_zero(); !zero) return zero;
+    SEAM_OK(back_to_zero());
     return measuring_->start_measuring(moves);
 }
 
 Expected<TriggerEvent> CyclicLink::wait_trigger(milliseconds timeout) {
-    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(no_alarm());
     if (!measuring_) return usage_error("a cyclic correction alone has no triggers", settings_.driver);
     return measuring_->wait_trigger(timeout);
 }
 
 Expected<Pose> CyclicLink::read_frame(const std::string& name) {
-    if (auto ok = no_alarm(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(no_alarm());
     const auto it = written_.find(name);
     if (it == written_.end())
         return input_error("no frame of this name is in the settings", name, "add it under \"frames\"");
@@ -252,8 +248,8 @@ Expected<Pose> CyclicLink::read_frame(const std::string& name) {
 }
 
 Expected<void> CyclicLink::write_frame(const std::string& name, const Pose& base_from_frame) {
-    if (auto ok = no_alarm(); !ok) return ok;
-    if (auto ok = same_robot(); !ok) return ok;
+    SEAM_OK(no_alarm());
+    SEAM_OK(same_robot());
     const auto taught = settings_.taught.find(name);
     if (taught == settings_.taught.end())
         return input_error("no frame of this name is in the settings", name, "add it under \"frames\"");
@@ -311,11 +307,11 @@ Expected<void> CyclicLink::apply() {
     if (!state->packet.running)
         return device_error("the controller does not take corrections: it is not running", settings_.driver,
                             "start its program");
-    if (auto ok = same_robot(); !ok) return ok;
+    SEAM_OK(same_robot());
     const Pose& r = settings_.base_from_reference;
     server_->set_target(b ? Pose(r.inverse() * *b * r) : Pose::Identity());
     while (true) {
-        if (auto ok = no_alarm(); !ok) return ok;
+        SEAM_OK(no_alarm());
         state = fresh_state();
         if (!state) return tl::unexpected(state.error());
         if (state->steady > kAcknowledged) {
@@ -339,7 +335,7 @@ Expected<void> CyclicLink::back_to_zero() {
         const CyclicServer::State state = server_->state();
         // Where nobody asks, nothing is in force; what a robot holds that speaks again is judged then.
         if (state.zero || state.silent) return {};
-        if (auto ok = no_alarm(); !ok) return ok;
+        SEAM_OK(no_alarm());
         if (Clock::now() >= deadline)
             return device_error(ErrorCode::silence,
                                 Text("{}: the correction could not be led back to zero", kNoAnswer),
@@ -367,7 +363,7 @@ Expected<void> CyclicLink::confirm(PartVerdict verdict, const std::string& text)
 }
 
 Expected<void> CyclicLink::move_to(const Pose& base_from_flange) {
-    if (auto ok = no_alarm(); !ok) return ok;
+    SEAM_OK(no_alarm());
     return measuring_ ? measuring_->move_to(base_from_flange) : RobotLink::move_to(base_from_flange);
 }
 

@@ -21,9 +21,8 @@ std::string text(const Endpoint& e) {
 
 Expected<std::unique_ptr<CyclicServer>> CyclicServer::start(const CyclicSettings& settings,
                                                             std::unique_ptr<CyclicProtocol> protocol) {
-    auto socket = UdpSocket::bind(settings.listen, settings.port);
-    if (!socket) return tl::unexpected(socket.error());
-    std::unique_ptr<CyclicServer> server(new CyclicServer(settings, std::move(protocol), std::move(*socket)));
+    SEAM_TRY(auto socket, UdpSocket::bind(settings.listen, settings.port));
+    std::unique_ptr<CyclicServer> server(new CyclicServer(settings, std::move(protocol), std::move(socket)));
     server->thread_ = std::thread([s = server.get()] { s->run(); });
     // Needs a right that a plant's PC grants and a test machine does not; without it the counters tell.
     sched_param priority{};

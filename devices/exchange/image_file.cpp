@@ -114,29 +114,25 @@ std::optional<ImageChannel> image_channel(std::string_view word) {
 Expected<ChannelChoice> choose_channel(const std::filesystem::path& path, int bit_depth) {
     ChannelChoice choice;
     Frame grey, frame;
-    if (auto read = read_image_file(path, grey, bit_depth); !read) return tl::unexpected(read.error());
-    const auto bytes = read_text_file(path, std::size_t{1} << 30);
-    if (!bytes) return tl::unexpected(bytes.error());
+    SEAM_OK(read_image_file(path, grey, bit_depth));
+    SEAM_TRY(const auto bytes, read_text_file(path, std::size_t{1} << 30));
     int channels = 1;
     try {
-        const cv::Mat raw(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data()));
+        const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
         channels = cv::imdecode(raw, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION).channels();
     } catch (const std::exception&) {
         return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
     }
     for (const ImageChannel channel : {ImageChannel::red, ImageChannel::green, ImageChannel::blue}) {
         if (channels == 1) break;
-        if (auto read = read_image_file(path, frame, bit_depth, channel); !read)
-            return tl::unexpected(read.error());
+        SEAM_OK(read_image_file(path, frame, bit_depth, channel));
         choice.colour = choice.colour || frame.pixels != grey.pixels;
     }
     double best = -1;
     for (const auto& [channel, word] : kChannels) {
         const bool is_grey = channel == ImageChannel::grey;
         if (!is_grey && !choice.colour) break;
-        if (!is_grey)
-            if (auto read = read_image_file(path, frame, bit_depth, channel); !read)
-                return tl::unexpected(read.error());
+        if (!is_grey) SEAM_OK(read_image_file(path, frame, bit_depth, channel));
         const LineShown shown = line_shown(is_grey ? grey.image : frame.image);
         // A line that stands four times above the rest stands out; more is no better.
         const double score = shown.share * std::min(shown.height, 4.0);
@@ -169,19 +165,18 @@ Expected<void> read_image_file(const std::filesystem::path& path, Frame& frame, 
         return input_error(Text("a bit depth of {} is not supported", bit_depth), path.string(),
                            "give 8, 10, 12 or 16");
     }
-    const auto bytes = read_text_file(path, std::size_t{1} << 30);
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (bytes->empty()) return file_error("the image file is empty", path.string());
-    if (!is_known_format(*bytes))
+    SEAM_TRY(const auto bytes, read_text_file(path, std::size_t{1} << 30));
+    if (bytes.empty()) return file_error("the image file is empty", path.string());
+    if (!is_known_format(bytes))
         return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");
     // The JPEG decoder fills what is missing with grey, which would be measured; the others refuse by
     // themselves.
-    if (bytes->starts_with("\xFF\xD8") && bytes->rfind("\xFF\xD9") == std::string::npos) {
+    if (bytes.starts_with("\xFF\xD8") && bytes.rfind("\xFF\xD9") == std::string::npos) {
         return file_error("the JPEG image is truncated", path.string());
     }
     cv::Mat image;
     try {
-        const cv::Mat raw(1, static_cast<int>(bytes->size()), CV_8U, const_cast<char*>(bytes->data()));
+        const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
         image = cv::imdecode(raw, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION);
         if (image.empty())
             return file_error("is no readable image", path.string(), "give PNG, BMP, TIFF or PGM");

@@ -112,9 +112,8 @@ std::size_t json_depth(const nlohmann::json& json) {
 }
 
 Expected<nlohmann::json> read_json_file(const std::filesystem::path& path, std::size_t limit_bytes) {
-    auto text = read_text_file(path, limit_bytes);
-    if (!text) return tl::unexpected(text.error());
-    return parse_json(*text, path.string());
+    SEAM_TRY(auto text, read_text_file(path, limit_bytes));
+    return parse_json(text, path.string());
 }
 
 std::string json_path(const std::string& where, const std::string& key) {
@@ -165,19 +164,17 @@ Expected<const nlohmann::json*> json_array(const nlohmann::json& json, const std
 }
 
 Expected<double> json_number(const nlohmann::json& json, const std::string& key, const std::string& where) {
-    const auto field = json_field(json, key, where);
-    if (!field) return tl::unexpected(field.error());
-    return as_number(**field, json_path(where, key));
+    SEAM_TRY(const auto field, json_field(json, key, where));
+    return as_number(*field, json_path(where, key));
 }
 
 Expected<std::string> json_string(const nlohmann::json& json, const std::string& key,
                                   const std::string& where) {
-    const auto field = json_field(json, key, where);
-    if (!field) return tl::unexpected(field.error());
-    if (!(*field)->is_string()) {
-        return input_error(Text("must be a text, not {}", type_name(**field)), json_path(where, key));
+    SEAM_TRY(const auto field, json_field(json, key, where));
+    if (!field->is_string()) {
+        return input_error(Text("must be a text, not {}", type_name(*field)), json_path(where, key));
     }
-    return (*field)->get<std::string>();
+    return field->get<std::string>();
 }
 
 Expected<double> json_number_or(const nlohmann::json& json, const std::string& key, double otherwise,
@@ -189,12 +186,11 @@ Expected<double> json_number_or(const nlohmann::json& json, const std::string& k
 Expected<bool> json_bool_or(const nlohmann::json& json, const std::string& key, bool otherwise,
                             const std::string& where) {
     if (json.is_object() && !json.contains(key)) return otherwise;
-    const auto field = json_field(json, key, where);
-    if (!field) return tl::unexpected(field.error());
-    if (!(*field)->is_boolean()) {
-        return input_error(Text("must be true or false, not {}", type_name(**field)), json_path(where, key));
+    SEAM_TRY(const auto field, json_field(json, key, where));
+    if (!field->is_boolean()) {
+        return input_error(Text("must be true or false, not {}", type_name(*field)), json_path(where, key));
     }
-    return (*field)->get<bool>();
+    return field->get<bool>();
 }
 
 Expected<std::string> json_string_or(const nlohmann::json& json, const std::string& key,
@@ -213,29 +209,24 @@ Expected<std::vector<double>> as_numbers(const nlohmann::json& json, std::size_t
     std::vector<double> numbers;
     numbers.reserve(json.size());
     for (std::size_t i = 0; i < json.size(); ++i) {
-        const auto number = as_number(json[i], json_path(where, i));
-        if (!number) return tl::unexpected(number.error());
-        numbers.push_back(*number);
+        SEAM_TRY(const auto number, as_number(json[i], json_path(where, i)));
+        numbers.push_back(number);
     }
     return numbers;
 }
 
 Expected<Eigen::Vector2d> json_vector2(const nlohmann::json& json, const std::string& key,
                                        const std::string& where) {
-    const auto field = json_field(json, key, where);
-    if (!field) return tl::unexpected(field.error());
-    const auto numbers = as_numbers(**field, 2, json_path(where, key));
-    if (!numbers) return tl::unexpected(numbers.error());
-    return Eigen::Vector2d((*numbers)[0], (*numbers)[1]);
+    SEAM_TRY(const auto field, json_field(json, key, where));
+    SEAM_TRY(const auto numbers, as_numbers(*field, 2, json_path(where, key)));
+    return Eigen::Vector2d(numbers[0], numbers[1]);
 }
 
 Expected<Eigen::Vector3d> json_vector3(const nlohmann::json& json, const std::string& key,
                                        const std::string& where) {
-    const auto field = json_field(json, key, where);
-    if (!field) return tl::unexpected(field.error());
-    const auto numbers = as_numbers(**field, 3, json_path(where, key));
-    if (!numbers) return tl::unexpected(numbers.error());
-    return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    SEAM_TRY(const auto field, json_field(json, key, where));
+    SEAM_TRY(const auto numbers, as_numbers(*field, 3, json_path(where, key)));
+    return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
 }
 
 }  // namespace seamwright

@@ -58,7 +58,7 @@ Expected<void> check(const LookupTable& t, const std::string& where) {
 }  // namespace
 
 Expected<std::string> lookup_table_bytes(const LookupTable& table) {
-    if (auto ok = check(table, "table"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check(table, "table"));
     nlohmann::ordered_json header;
     header["format"] = kFormat;
     header["version"] = 1;
@@ -84,19 +84,16 @@ Expected<LookupTable> parse_lookup_table(std::string_view bytes, const std::stri
     if (end == std::string_view::npos)
         return input_error("this is no look-up table: its first line is missing", where,
                            "give a file that calibrate lut has written");
-    auto header = parse_json(bytes.substr(0, end), where);
-    if (!header) return tl::unexpected(header.error());
-    auto format = json_string(*header, "format", where);
-    if (!format) return tl::unexpected(format.error());
-    if (*format != kFormat)
-        return input_error(Text("this is no look-up table but '{}'", format->substr(0, 60)), where);
-    auto version = json_number(*header, "version", where);
-    if (!version) return tl::unexpected(version.error());
-    if (*version != 1)
-        return input_error(Text("version {} of the look-up table is not known", *version), where,
+    SEAM_TRY(auto header, parse_json(bytes.substr(0, end), where));
+    SEAM_TRY(auto format, json_string(header, "format", where));
+    if (format != kFormat)
+        return input_error(Text("this is no look-up table but '{}'", format.substr(0, 60)), where);
+    SEAM_TRY(auto version, json_number(header, "version", where));
+    if (version != 1)
+        return input_error(Text("version {} of the look-up table is not known", version), where,
                            "version 1 can be read");
     if (auto ok = only_fields(
-            *header, {"format", "version", "u0", "v0", "step_u", "step_v", "columns", "rows"}, where);
+            header, {"format", "version", "u0", "v0", "step_u", "step_v", "columns", "rows"}, where);
         !ok)
         return tl::unexpected(ok.error());
     LookupTable t;
@@ -105,9 +102,8 @@ Expected<LookupTable> parse_lookup_table(std::string_view bytes, const std::stri
                                                       {"step_u", &t.step_u}, {"step_v", &t.step_v},
                                                       {"columns", &columns}, {"rows", &rows}};
     for (const auto& [name, value] : fields) {
-        auto number = json_number(*header, name, where);
-        if (!number) return tl::unexpected(number.error());
-        *value = *number;
+        SEAM_TRY(auto number, json_number(header, name, where));
+        *value = number;
     }
     for (const double n : {columns, rows})
         if (!(n >= 2 && n <= kLookupTableNodes / 2) || n != std::floor(n))
@@ -130,20 +126,18 @@ Expected<LookupTable> parse_lookup_table(std::string_view bytes, const std::stri
             v = std::bit_cast<double>(get(bytes, at, 8));
             at += 8;
         }
-    if (auto ok = check(t, where); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check(t, where));
     return t;
 }
 
 Expected<void> write_lookup_table(const std::filesystem::path& path, const LookupTable& table) {
-    auto bytes = lookup_table_bytes(table);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return write_text_file(path, *bytes);
+    SEAM_TRY(auto bytes, lookup_table_bytes(table));
+    return write_text_file(path, bytes);
 }
 
 Expected<LookupTable> read_lookup_table(const std::filesystem::path& path) {
-    auto bytes = read_text_file(path, std::size_t{16} * kLookupTableNodes + kHeaderLimit + 4);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return parse_lookup_table(*bytes, path.string());
+    SEAM_TRY(auto bytes, read_text_file(path, std::size_t{16} * kLookupTableNodes + kHeaderLimit + 4));
+    return parse_lookup_table(bytes, path.string());
 }
 
 }  // namespace seamwright

@@ -22,32 +22,28 @@ Expected<Eigen::Matrix4d> matrix_numbers(const nlohmann::json& json, const std::
     if (rows) {
         if (json.size() != 4) return input_error(Text("has {} rows instead of 4", json.size()), where);
         for (int r = 0; r < 4; ++r) {
-            const auto numbers = as_numbers(json[static_cast<std::size_t>(r)], 4,
-                                            json_path(where, static_cast<std::size_t>(r)));
-            if (!numbers) return tl::unexpected(numbers.error());
-            for (int c = 0; c < 4; ++c) matrix(r, c) = (*numbers)[static_cast<std::size_t>(c)];
+            SEAM_TRY(const auto numbers, as_numbers(json[static_cast<std::size_t>(r)], 4,
+                                                    json_path(where, static_cast<std::size_t>(r))));
+            for (int c = 0; c < 4; ++c) matrix(r, c) = numbers[static_cast<std::size_t>(c)];
         }
     } else {
-        const auto numbers = as_numbers(json, 16, where);
-        if (!numbers) return tl::unexpected(numbers.error());
-        for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[static_cast<std::size_t>(i)];
+        SEAM_TRY(const auto numbers, as_numbers(json, 16, where));
+        for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
     }
     return matrix;
 }
 
 Expected<Pose> from_matrix(const nlohmann::json& json, const std::string& where) {
-    const auto matrix = matrix_numbers(json, where);
-    if (!matrix) return tl::unexpected(matrix.error());
-    return pose_from_matrix(*matrix, where);
+    SEAM_TRY(const auto matrix, matrix_numbers(json, where));
+    return pose_from_matrix(matrix, where);
 }
 
 Expected<Eigen::Matrix3d> from_abc(const nlohmann::json& json, const std::string& where) {
-    const auto abc = json_vector3(json, "abc", where);
-    if (!abc) return tl::unexpected(abc.error());
-    if (abc->cwiseAbs().maxCoeff() > 720) {
+    SEAM_TRY(const auto abc, json_vector3(json, "abc", where));
+    if (abc.cwiseAbs().maxCoeff() > 720) {
         return input_error("an angle exceeds 720", json_path(where, "abc"), "give degrees");
     }
-    return rotation_from_kuka({abc->x(), abc->y(), abc->z()});
+    return rotation_from_kuka({abc.x(), abc.y(), abc.z()});
 }
 
 Expected<Pose> pose_from_metres(const Eigen::Vector3d& t, const Eigen::Vector4d& q_xyzw,
@@ -57,9 +53,8 @@ Expected<Pose> pose_from_metres(const Eigen::Vector3d& t, const Eigen::Vector4d&
         return input_error(Text("the translation is {} m long, but this format is in metres", t.norm()),
                            where, "convert millimetres to metres or use a .json pose file");
     }
-    const auto rotation = rotation_from_abb({q_xyzw[3], q_xyzw[0], q_xyzw[1], q_xyzw[2]}, where);
-    if (!rotation) return tl::unexpected(rotation.error());
-    return make_pose(*rotation, 1000.0 * t);
+    SEAM_TRY(const auto rotation, rotation_from_abb({q_xyzw[3], q_xyzw[0], q_xyzw[1], q_xyzw[2]}, where));
+    return make_pose(rotation, 1000.0 * t);
 }
 
 // The number at the start of `text`, blanks skipped; text moves behind it.
@@ -80,9 +75,7 @@ struct PoseFields {
     bool xyz, abc, quat, matrix;  // else a rotation vector
 };
 Expected<PoseFields> pose_fields(const nlohmann::json& json, const std::string& where) {
-    if (auto ok = only_fields(json, {"xyz", "abc", "quat_wxyz", "rotvec_rad", "matrix"}, where); !ok) {
-        return tl::unexpected(ok.error());
-    }
+    SEAM_OK(only_fields(json, {"xyz", "abc", "quat_wxyz", "rotvec_rad", "matrix"}, where));
     const bool xyz = json.contains("xyz"), abc = json.contains("abc"), quat = json.contains("quat_wxyz"),
                rotvec = json.contains("rotvec_rad"), matrix = json.contains("matrix");
     if (abc + quat + rotvec > 1 || (matrix && (quat || rotvec)) || (matrix && xyz != abc)) {
@@ -99,14 +92,12 @@ Expected<PoseFields> pose_fields(const nlohmann::json& json, const std::string& 
 }  // namespace
 
 Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) {
-    const auto form = pose_fields(json, where);
-    if (!form) return tl::unexpected(form.error());
-    const auto [xyz, abc, quat, matrix] = *form;
+    SEAM_TRY(const auto form, pose_fields(json, where));
+    const auto [xyz, abc, quat, matrix] = form;
     Eigen::Vector3d t = Eigen::Vector3d::Zero();
     if (xyz) {
-        const auto read = json_vector3(json, "xyz", where);
-        if (!read) return tl::unexpected(read.error());
-        t = *read;
+        SEAM_TRY(const auto read, json_vector3(json, "xyz", where));
+        t = read;
         if (t.cwiseAbs().maxCoeff() > kFarthest_mm) {
             return input_error("the translation exceeds 100 m", json_path(where, "xyz"), "give millimetres");
         }
@@ -114,69 +105,58 @@ Expected<Pose> parse_pose(const nlohmann::json& json, const std::string& where) 
     if (matrix) {
         const auto pose = from_matrix(json.at("matrix"), json_path(where, "matrix"));
         if (!pose || !xyz) return pose;
-        const auto rotation = from_abc(json, where);
-        if (!rotation) return tl::unexpected(rotation.error());
-        const Pose beside = make_pose(*rotation, t);
+        SEAM_TRY(const auto rotation, from_abc(json, where));
+        const Pose beside = make_pose(rotation, t);
         if (distance_mm(*pose, beside) > 1e-4 || deg_from_rad(angle_rad(*pose, beside)) > 1e-4) {
             return input_error("xyz and abc contradict matrix", where, "give one form only");
         }
         return pose;
     }
     if (abc) {
-        const auto rotation = from_abc(json, where);
-        if (!rotation) return tl::unexpected(rotation.error());
-        return make_pose(*rotation, t);
+        SEAM_TRY(const auto rotation, from_abc(json, where));
+        return make_pose(rotation, t);
     }
     if (quat) {
-        const auto q = as_numbers(json.at("quat_wxyz"), 4, json_path(where, "quat_wxyz"));
-        if (!q) return tl::unexpected(q.error());
-        const auto rotation =
-            rotation_from_abb({(*q)[0], (*q)[1], (*q)[2], (*q)[3]}, json_path(where, "quat_wxyz"));
+        SEAM_TRY(const auto q, as_numbers(json.at("quat_wxyz"), 4, json_path(where, "quat_wxyz")));
+        const auto rotation = rotation_from_abb({q[0], q[1], q[2], q[3]}, json_path(where, "quat_wxyz"));
         if (!rotation) return tl::unexpected(rotation.error());
         return make_pose(*rotation, t);
     }
-    const auto w = json_vector3(json, "rotvec_rad", where);
-    if (!w) return tl::unexpected(w.error());
-    if (w->norm() > 2 * kPi + 1e-6) {
+    SEAM_TRY(const auto w, json_vector3(json, "rotvec_rad", where));
+    if (w.norm() > 2 * kPi + 1e-6) {
         return input_error("the rotation vector is longer than one turn", json_path(where, "rotvec_rad"),
                            "give radian");
     }
-    return make_pose(rotation_exp(*w), t);
+    return make_pose(rotation_exp(w), t);
 }
 
 Expected<WrittenPose> written_pose(const nlohmann::json& json, const std::string& where) {
-    const auto form = pose_fields(json, where);
-    if (!form) return tl::unexpected(form.error());
-    const auto [xyz, abc, quat, matrix] = *form;
-    if (matrix && abc)
-        if (auto whole = parse_pose(json, where); !whole) return tl::unexpected(whole.error());
+    SEAM_TRY(const auto form, pose_fields(json, where));
+    const auto [xyz, abc, quat, matrix] = form;
+    if (matrix && abc) SEAM_OK(parse_pose(json, where));
     WrittenPose pose;
     if (matrix && !abc) {
-        const auto m = matrix_numbers(json.at("matrix"), json_path(where, "matrix"));
-        if (!m) return tl::unexpected(m.error());
+        SEAM_TRY(const auto m, matrix_numbers(json.at("matrix"), json_path(where, "matrix")));
         pose.as_given.rotation = RotationReading::matrix;
         pose.numbers.form = RotationForm::matrix;
         pose.numbers.position_in_last_row =
-            m->col(3).head<3>().isZero(1e-9) && !m->row(3).head<3>().isZero(1e-9);
+            m.col(3).head<3>().isZero(1e-9) && !m.row(3).head<3>().isZero(1e-9);
         pose.numbers.position = pose.numbers.position_in_last_row
-                                    ? Eigen::Vector3d(m->row(3).head<3>().transpose())
-                                    : Eigen::Vector3d(m->col(3).head<3>());
-        const bool homogeneous = pose.numbers.position_in_last_row || m->row(3).head<3>().isZero(1e-9);
-        if (!homogeneous || std::abs((*m)(3, 3) - 1) > 1e-9)
+                                    ? Eigen::Vector3d(m.row(3).head<3>().transpose())
+                                    : Eigen::Vector3d(m.col(3).head<3>());
+        const bool homogeneous = pose.numbers.position_in_last_row || m.row(3).head<3>().isZero(1e-9);
+        if (!homogeneous || std::abs(m(3, 3) - 1) > 1e-9)
             return input_error("the matrix has neither 0 0 0 1 as its last row nor as its last column",
                                json_path(where, "matrix"));
         for (std::size_t i = 0; i < 9; ++i)
-            pose.numbers.rotation[i] =
-                (*m)(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3));
+            pose.numbers.rotation[i] = m(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3));
         return pose;
     }
-    const auto t = json_vector3(json, "xyz", where);
-    if (!t) return tl::unexpected(t.error());
-    pose.numbers.position = *t;
+    SEAM_TRY(const auto t, json_vector3(json, "xyz", where));
+    pose.numbers.position = t;
     const char* key = abc ? "abc" : quat ? "quat_wxyz" : "rotvec_rad";
-    const auto rotation = as_numbers(json.at(key), quat ? 4 : 3, json_path(where, key));
-    if (!rotation) return tl::unexpected(rotation.error());
-    std::copy(rotation->begin(), rotation->end(), pose.numbers.rotation.begin());
+    SEAM_TRY(const auto rotation, as_numbers(json.at(key), quat ? 4 : 3, json_path(where, key)));
+    std::copy(rotation.begin(), rotation.end(), pose.numbers.rotation.begin());
     if (quat) {
         pose.numbers.form = RotationForm::quaternion;
         pose.as_given.rotation = RotationReading::quat_wxyz;
@@ -205,11 +185,10 @@ Expected<Pose> parse_tuple_pose(std::string_view text, const std::string& where)
     std::size_t count = 0, at = 0;
     while ((at = text.find_first_not_of(separators, at)) != std::string_view::npos) {
         const auto end = std::min(text.find_first_of(separators, at), text.size());
-        const auto number = leading_number(text.substr(at, end - at), where);
-        if (!number) return tl::unexpected(number.error());
+        SEAM_TRY(const auto number, leading_number(text.substr(at, end - at), where));
         if (count == 7)
             return input_error("holds more than 7 numbers", where, "write ((x, y, z), (qx, qy, qz, qw))");
-        numbers[count++] = *number;
+        numbers[count++] = number;
         at = end;
     }
     if (count != 7) {
@@ -244,9 +223,8 @@ Expected<Pose> parse_yaml_pose(std::string_view text, const std::string& where) 
         if (std::find(std::begin(keys), std::end(keys), key) == std::end(keys)) {
             return input_error("is not one of x, y, z, qx, qy, qz, qw", at);
         }
-        const auto number = leading_number(trim(line.substr(colon + 1)), at);
-        if (!number) return tl::unexpected(number.error());
-        if (!values.emplace(key, *number).second)
+        SEAM_TRY(const auto number, leading_number(trim(line.substr(colon + 1)), at));
+        if (!values.emplace(key, number).second)
             return input_error(Text("{} is given twice", std::string(key)), at);
     }
     for (std::string_view key : keys) {
@@ -258,18 +236,16 @@ Expected<Pose> parse_yaml_pose(std::string_view text, const std::string& where) 
 
 Expected<Pose> read_pose_file(const std::filesystem::path& path) {
     const std::string where = path.string();
-    const auto text = read_text_file(path, std::size_t{1} << 20);
-    if (!text) return tl::unexpected(text.error());
+    SEAM_TRY(const auto text, read_text_file(path, std::size_t{1} << 20));
     const auto extension = path.extension().string();
-    if (extension == ".txt") return parse_tuple_pose(*text, where);
-    if (extension == ".yaml" || extension == ".yml") return parse_yaml_pose(*text, where);
+    if (extension == ".txt") return parse_tuple_pose(text, where);
+    if (extension == ".yaml" || extension == ".yml") return parse_yaml_pose(text, where);
     if (extension == ".json") {
-        const auto json = parse_json(*text, where);
-        if (!json) return tl::unexpected(json.error());
-        if (json->is_object() && json->contains("base_from_flange")) {
-            return parse_pose((*json)["base_from_flange"], where + ": base_from_flange");
+        SEAM_TRY(const auto json, parse_json(text, where));
+        if (json.is_object() && json.contains("base_from_flange")) {
+            return parse_pose(json["base_from_flange"], where + ": base_from_flange");
         }
-        return parse_pose(*json, where);
+        return parse_pose(json, where);
     }
     return input_error("is no known kind of pose file", where, "known are .txt, .yaml and .json");
 }

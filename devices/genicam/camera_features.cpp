@@ -105,10 +105,9 @@ Expected<GPtr<ArvDevice>> open_address(const std::string& address, const Genicam
     GPtr<GInetAddress> there(g_inet_address_new_from_string(address.c_str()));
     if (!there || g_inet_address_get_family(there.get()) != G_SOCKET_FAMILY_IPV4)
         return input_error(Text("\"{}\" is no IPv4 address", address), "settings.address");
-    const auto camera = ask_camera(address, std::min(s.timeout, std::chrono::milliseconds(1000)));
-    if (!camera) return tl::unexpected(camera.error());
-    if (!s.serial.empty() && camera->serial != s.serial) {
-        return device_error(Text("the camera there has serial number {}, not {}", camera->serial, s.serial),
+    SEAM_TRY(const auto camera, ask_camera(address, std::min(s.timeout, std::chrono::milliseconds(1000))));
+    if (!s.serial.empty() && camera.serial != s.serial) {
+        return device_error(Text("the camera there has serial number {}, not {}", camera.serial, s.serial),
                             Text("camera {}", address), "correct the serial number or the address");
     }
     GPtr<GInetAddress> here(g_inet_address_new_from_string(local_address_for(address).c_str()));
@@ -212,12 +211,11 @@ std::vector<DiscoveredCamera> discover_cameras() {
 }
 
 Expected<GPtr<ArvCamera>> open_camera(const GenicamSettings& settings) {
-    auto device = open_device(settings);
-    if (!device) return tl::unexpected(device.error());
+    SEAM_TRY(auto device, open_device(settings));
     GFailure g;
-    GPtr<ArvCamera> camera(arv_camera_new_with_device(device->get(), g.out()));
+    GPtr<ArvCamera> camera(arv_camera_new_with_device(device.get(), g.out()));
     if (!camera) return device_error(Text("it cannot be opened ({})", g.text()), settings.camera_name());
-    if (ARV_IS_GV_DEVICE(device->get()) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device->get()))) {
+    if (ARV_IS_GV_DEVICE(device.get()) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device.get()))) {
         return device_error(ErrorCode::in_use, kInUse, settings.camera_name(),
                             "close the other program, or wait until its heartbeat has run out");
     }
@@ -274,23 +272,18 @@ Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& s) {
     if (s.x || s.y || s.width || s.height) {
         if (s.x || s.width) {
             if (has(camera, "OffsetX")) arv_camera_set_integer(camera, "OffsetX", 0, g.out());
-            if (s.width)
-                if (auto done = set("region_width", *s.width); !done) return done;
-            if (auto done = set("region_x", s.x.value_or(0)); !done) return done;
+            if (s.width) SEAM_OK(set("region_width", *s.width));
+            SEAM_OK(set("region_x", s.x.value_or(0)));
         }
         if (s.y || s.height) {
             if (has(camera, "OffsetY")) arv_camera_set_integer(camera, "OffsetY", 0, g.out());
-            if (s.height)
-                if (auto done = set("region_height", *s.height); !done) return done;
-            if (auto done = set("region_y", s.y.value_or(0)); !done) return done;
+            if (s.height) SEAM_OK(set("region_height", *s.height));
+            SEAM_OK(set("region_y", s.y.value_or(0)));
         }
     }
-    if (s.exposure_us)
-        if (auto done = set("exposure_us", *s.exposure_us); !done) return done;
-    if (s.gain_db)
-        if (auto done = set("gain_db", *s.gain_db); !done) return done;
-    if (s.frame_rate_hz)
-        if (auto done = set("frame_rate_hz", *s.frame_rate_hz); !done) return done;
+    if (s.exposure_us) SEAM_OK(set("exposure_us", *s.exposure_us));
+    if (s.gain_db) SEAM_OK(set("gain_db", *s.gain_db));
+    if (s.frame_rate_hz) SEAM_OK(set("frame_rate_hz", *s.frame_rate_hz));
     if (!s.chunks.empty()) {
         if (!arv_camera_are_chunks_available(camera, g.out()))
             return failure(camera, "it offers no chunks", g);
@@ -299,8 +292,7 @@ Expected<void> apply_settings(ArvCamera* camera, const GenicamSettings& s) {
         arv_camera_set_chunks(camera, list.c_str(), g.out());
         if (g) return failure(camera, Text("the chunks {} cannot be switched on", list), g);
     }
-    for (const auto& [name, value] : s.features.items())
-        if (auto done = set_feature(camera, name, value); !done) return done;
+    for (const auto& [name, value] : s.features.items()) SEAM_OK(set_feature(camera, name, value));
     if (arv_camera_is_gv_device(camera) && s.packet_size > 0) {
         arv_camera_gv_set_packet_size(camera, s.packet_size, g.out());
         if (g) return failure(camera, "the packet size cannot be set", g);
@@ -370,18 +362,16 @@ Expected<ParameterInfo> described(ArvCamera* camera, const std::string& name) {
 }  // namespace
 
 Expected<double> get_parameter(ArvCamera* camera, const std::string& name) {
-    const auto info = described(camera, name);
-    if (!info) return tl::unexpected(info.error());
-    return info->default_value;
+    SEAM_TRY(const auto info, described(camera, name));
+    return info.default_value;
 }
 
 Expected<void> set_parameter(ArvCamera* camera, const std::string& name, double value) {
-    const auto info = described(camera, name);
-    if (!info) return tl::unexpected(info.error());
-    if (auto valid = validate({{name, value}}, {*info}, "camera"); !valid) return valid;
+    SEAM_TRY(const auto info, described(camera, name));
+    SEAM_OK(validate({{name, value}}, {info}, "camera"));
     GFailure g;
     const auto whole = static_cast<gint64>(std::llround(value));
-    if (name == "trigger") return set_trigger(camera, info->choices[static_cast<std::size_t>(whole)]);
+    if (name == "trigger") return set_trigger(camera, info.choices[static_cast<std::size_t>(whole)]);
     if (name == "exposure_us") {
         arv_camera_set_exposure_time(camera, value, g.out());
     } else if (name == "gain_db") {
@@ -400,8 +390,8 @@ Expected<void> set_parameter(ArvCamera* camera, const std::string& name, double 
             if (!g) return set_trigger(camera, trigger);
         }
     } else if (name == "pixel_format") {
-        arv_camera_set_pixel_format_from_string(
-            camera, info->choices[static_cast<std::size_t>(whole)].c_str(), g.out());
+        arv_camera_set_pixel_format_from_string(camera, info.choices[static_cast<std::size_t>(whole)].c_str(),
+                                                g.out());
     } else {
         const char* feature = name == "region_x"       ? "OffsetX"
                               : name == "region_y"     ? "OffsetY"

@@ -236,7 +236,7 @@ void GenicamSource::watch() {
 Expected<void> GenicamSource::open() {
     const std::lock_guard lock(control_);
     trigger_ = settings_.trigger;
-    if (auto done = connect(); !done) return done;
+    SEAM_OK(connect());
     if (settings_.heartbeat.count() > 0) watcher_ = std::thread([this] { watch(); });
     return {};
 }
@@ -260,13 +260,11 @@ Expected<void> GenicamSource::connect() {
     // Where it was before; after some attempts wherever it may be.
     if (where.address.empty() && !address_.empty() && attempts_ < kMisses) where.address = address_;
     if (where.serial.empty()) where.serial = identity_.serial;
-    auto camera = open_camera(where);
-    if (!camera) return tl::unexpected(camera.error());
-    const SensorIdentity identity = identity_of(camera->get());
-    if (auto applied = apply_settings(camera->get(), settings_); !applied) return applied;
-    for (const auto& [name, value] : changed_)
-        if (auto done = set_parameter(camera->get(), name, value); !done) return done;
-    camera_ = std::move(*camera);
+    SEAM_TRY(auto camera, open_camera(where));
+    const SensorIdentity identity = identity_of(camera.get());
+    SEAM_OK(apply_settings(camera.get(), settings_));
+    for (const auto& [name, value] : changed_) SEAM_OK(set_parameter(camera.get(), name, value));
+    camera_ = std::move(camera);
     identity_ = identity;
     address_ = address_of(camera_.get());
     chunks_.reset(settings_.chunks.empty() ? nullptr : arv_camera_create_chunk_parser(camera_.get()));
@@ -349,9 +347,8 @@ Expected<void> GenicamSource::start_stream() {
     if (settings_.range) {
         mapping_ = *settings_.range;
     } else if (range_) {
-        auto mapping = range_mapping(camera_.get());
-        if (!mapping) return tl::unexpected(mapping.error());
-        mapping_ = *mapping;
+        SEAM_TRY(auto mapping, range_mapping(camera_.get()));
+        mapping_ = mapping;
     }
     gint x = 0, y = 0, width = 0, height = 0;
     arv_camera_get_region(camera_.get(), &x, &y, &width, &height, g.out());
@@ -476,7 +473,7 @@ Expected<void> GenicamSource::start() {
         if (!is_in_use(done.error()) || Clock::now() >= until) return done;
         std::this_thread::sleep_for(milliseconds(50));
     }
-    if (auto done = start_stream(); !done) return done;
+    SEAM_OK(start_stream());
     running_ = true;
     return {};
 }
@@ -513,14 +510,14 @@ Expected<void> GenicamSource::trigger(const std::string& spot_id) {
         }
         if (!camera_) {
             arrivals.unlock();
-            if (auto done = reconnect(settings_.timeout); !done) return done;
+            SEAM_OK(reconnect(settings_.timeout));
             continue;
         }
         pairing_.expire(host_now_ns() - std::chrono::nanoseconds(settings_.timeout).count());
         if (pairing_.lost_track()) {
             arrivals.unlock();
             stop_stream();
-            if (auto done = start_stream(); !done) return done;
+            SEAM_OK(start_stream());
             continue;
         }
         if (pairing_.ready()) break;
@@ -758,8 +755,7 @@ Expected<void> GenicamSource::set(const std::string& parameter, double value) {
         bury();
         return tl::unexpected(gone());
     }
-    if (!camera_)
-        if (auto done = reconnect(settings_.timeout); !done) return done;
+    if (!camera_) SEAM_OK(reconnect(settings_.timeout));
     const bool restart = running_ && (changes_stream(parameter) || parameter == "trigger");
     if (restart) stop_stream();
     auto done = set_parameter(camera_.get(), parameter, value);
@@ -771,18 +767,16 @@ Expected<void> GenicamSource::set(const std::string& parameter, double value) {
     if (done && parameter == "trigger")
         for (const ParameterInfo& info : read_parameters(camera_.get()))
             if (info.name == parameter) trigger_ = info.choices[static_cast<std::size_t>(info.default_value)];
-    if (restart)
-        if (auto started = start_stream(); !started) return started;
+    if (restart) SEAM_OK(start_stream());
     return done;
 }
 
 }  // namespace
 
 Expected<std::unique_ptr<ProfileSource>> open_genicam_sensor(const nlohmann::json& settings, DeviceSession&) {
-    auto parsed = parse_genicam_settings(settings);
-    if (!parsed) return tl::unexpected(parsed.error());
-    auto source = std::make_unique<GenicamSource>(std::move(*parsed));
-    if (auto opened = source->open(); !opened) return tl::unexpected(opened.error());
+    SEAM_TRY(auto parsed, parse_genicam_settings(settings));
+    auto source = std::make_unique<GenicamSource>(std::move(parsed));
+    SEAM_OK(source->open());
     return source;
 }
 

@@ -65,10 +65,8 @@ Expected<DiscoveredCamera> ask_camera(const std::string& address, std::chrono::m
     std::uint16_t request = counter++;
     if (request == 0) request = counter++;  // 0 is no request
     const bool loopback = address.starts_with("127.");
-    auto socket = UdpSocket::bind(loopback ? "127.0.0.1" : "0.0.0.0", 0);
-    if (!socket) return tl::unexpected(socket.error());
-    if (auto sent = socket->send_to(discovery_command(request), {address, kGvcpPort}); !sent)
-        return tl::unexpected(sent.error());
+    SEAM_TRY(auto socket, UdpSocket::bind(loopback ? "127.0.0.1" : "0.0.0.0", 0));
+    SEAM_OK(socket.send_to(discovery_command(request), {address, kGvcpPort}));
     const auto until = std::chrono::steady_clock::now() + timeout;
     std::array<std::byte, 1500> datagram;
     for (;;) {
@@ -76,7 +74,7 @@ Expected<DiscoveredCamera> ask_camera(const std::string& address, std::chrono::m
             std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
         if (left.count() <= 0) break;
         Endpoint from;
-        const auto size = socket->receive(datagram, from, left);
+        const auto size = socket.receive(datagram, from, left);
         if (!size) {
             if (is_silence(size.error())) break;
             continue;  // refused by the host: as silent as nobody

@@ -91,18 +91,15 @@ std::string reply_bytes(const Reply& reply) {
 }
 
 Expected<std::optional<Reply>> take_reply(std::string& stream) {
-    auto bytes = take(stream, 10);
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (!*bytes) return std::optional<Reply>();
-    return std::optional(
-        Reply{at<std::uint16_t>(**bytes, 0), at<std::int32_t>(**bytes, 2), (*bytes)->substr(6)});
+    SEAM_TRY(auto bytes, take(stream, 10));
+    if (!bytes) return std::optional<Reply>();
+    return std::optional(Reply{at<std::uint16_t>(*bytes, 0), at<std::int32_t>(*bytes, 2), bytes->substr(6)});
 }
 
 Expected<std::optional<Request>> take_request(std::string& stream) {
-    auto bytes = take(stream, 6);
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (!*bytes) return std::optional<Request>();
-    return std::optional(Request{at<std::uint16_t>(**bytes, 0), (*bytes)->substr(2)});
+    SEAM_TRY(auto bytes, take(stream, 6));
+    if (!bytes) return std::optional<Request>();
+    return std::optional(Request{at<std::uint16_t>(*bytes, 0), bytes->substr(2)});
 }
 
 std::string message_bytes(const Message& message) {
@@ -112,12 +109,11 @@ std::string message_bytes(const Message& message) {
 }
 
 Expected<std::optional<Message>> take_message(std::string& stream) {
-    auto bytes = take(stream, 6);
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (!*bytes) return std::optional<Message>();
-    const auto control = at<std::uint16_t>(**bytes, 0);
+    SEAM_TRY(auto bytes, take(stream, 6));
+    if (!bytes) return std::optional<Message>();
+    const auto control = at<std::uint16_t>(*bytes, 0);
     return std::optional(
-        Message{static_cast<std::uint16_t>(control & 0x7fff), (control & 0x8000) != 0, (*bytes)->substr(2)});
+        Message{static_cast<std::uint16_t>(control & 0x7fff), (control & 0x8000) != 0, bytes->substr(2)});
 }
 
 Expected<std::vector<Stamp>> parse_stamps(std::string_view content) {
@@ -157,8 +153,7 @@ std::string stamps_content(const std::vector<Stamp>& stamps) {
 
 Expected<Profiles> parse_profiles(Type type, std::string_view content) {
     const std::size_t point_bytes = type == Type::points ? 4 : 2;
-    const auto head = head_of(content, 32, point_bytes, "profile");
-    if (!head) return tl::unexpected(head.error());
+    SEAM_TRY(const auto head, head_of(content, 32, point_bytes, "profile"));
     const double x_scale = kMmPerNm * at<std::uint32_t>(content, 10),
                  z_scale = kMmPerNm * at<std::uint32_t>(content, 14),
                  x_offset = kMmPerUm * at<std::int32_t>(content, 18),
@@ -166,12 +161,12 @@ Expected<Profiles> parse_profiles(Type type, std::string_view content) {
     Profiles out;
     out.source = at<std::uint8_t>(content, 26);
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t c = 0; c < head->count; ++c) {
+    for (std::size_t c = 0; c < head.count; ++c) {
         Profile& profile = out.profiles.emplace_back();
-        profile.x_mm.reserve(head->width);
-        profile.z_mm.reserve(head->width);
-        std::size_t next = head->data + c * head->width * point_bytes;
-        for (std::size_t i = 0; i < head->width; ++i, next += point_bytes) {
+        profile.x_mm.reserve(head.width);
+        profile.z_mm.reserve(head.width);
+        std::size_t next = head.data + c * head.width * point_bytes;
+        for (std::size_t i = 0; i < head.width; ++i, next += point_bytes) {
             if (type == Type::points) {
                 const auto x = at<std::int16_t>(content, next), z = at<std::int16_t>(content, next + 2);
                 const bool seen = x != kNoReturn && z != kNoReturn;
@@ -221,14 +216,13 @@ std::string points_content(const Profile& profile) {
 }
 
 Expected<Intensities> parse_intensities(std::string_view content) {
-    const auto head = head_of(content, 24, 1, "intensity");
-    if (!head) return tl::unexpected(head.error());
+    SEAM_TRY(const auto head, head_of(content, 24, 1, "intensity"));
     Intensities out;
     out.source = at<std::uint8_t>(content, 18);
-    for (std::size_t c = 0; c < head->count; ++c) {
-        auto& row = out.rows.emplace_back(head->width);
-        for (std::size_t i = 0; i < head->width; ++i)
-            row[i] = static_cast<float>(at<std::uint8_t>(content, head->data + c * head->width + i)) / 255.0f;
+    for (std::size_t c = 0; c < head.count; ++c) {
+        auto& row = out.rows.emplace_back(head.width);
+        for (std::size_t i = 0; i < head.width; ++i)
+            row[i] = static_cast<float>(at<std::uint8_t>(content, head.data + c * head.width + i)) / 255.0f;
     }
     return out;
 }

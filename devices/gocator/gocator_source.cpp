@@ -77,11 +77,10 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
         return input_error("the address of the sensor is missing", "settings.address",
                            "as in \"192.168.1.10\"");
     if (json.contains("points")) {
-        auto points = points_from(json.at("points"), "settings.points");
-        if (!points) return tl::unexpected(points.error());
-        s.points = std::move(*points);
+        SEAM_TRY(auto points, points_from(json.at("points"), "settings.points"));
+        s.points = std::move(points);
     }
-    if (auto format = gocator::check_format(s.format); !format) return tl::unexpected(format.error());
+    SEAM_OK(gocator::check_format(s.format));
     if (s.data_port == 0) s.data_port = s.ascii() ? gocator::kAsciiPort : gdp::kDataPort;
     s.start_timeout = std::max(s.timeout, s.start_timeout);
     s.reconnect_most = std::max(s.reconnect, s.reconnect_most);
@@ -105,18 +104,17 @@ class GocatorSource final : public ProfileSource {
         if (answer && answer->status != gdp::kDone) answer = ask(command = gdp::Command::system_info_v1);
         if (!answer) return tl::unexpected(answer.error());
         if (answer->status != gdp::kDone) return refused("tell its serial number", answer->status);
-        auto info = gdp::parse_system_info(command, answer->answer);
-        if (!info) return tl::unexpected(info.error());
-        if (info->state < 0)
+        SEAM_TRY(auto info, gdp::parse_system_info(command, answer->answer));
+        if (info.state < 0)
             return device_error("the sensor misses its buddy", where(),
                                 "connect the second sensor, or remove it on the sensor's own page");
         const std::string& wanted = identity_.serial.empty() ? s_.serial : identity_.serial;
-        if (!wanted.empty() && wanted != info->serial)
+        if (!wanted.empty() && wanted != info.serial)
             return device_error(
-                Text("the sensor with the serial number {} answers, not {}", info->serial, wanted), where(),
+                Text("the sensor with the serial number {} answers, not {}", info.serial, wanted), where(),
                 "check address and cabling");
         const std::lock_guard lock(mutex_);
-        identity_ = {"gocator", "LMI Technologies", info->model, info->serial};
+        identity_ = {"gocator", "LMI Technologies", info.model, info.serial};
         return {};
     }
 
@@ -166,8 +164,7 @@ class GocatorSource final : public ProfileSource {
         const std::lock_guard stream(stream_mutex_);
         if (!running_) return device_error("the sensor is not started", where());
         const auto until = Clock::now() + timeout;
-        if (!data_)
-            if (auto again = reconnect(); !again) return tl::unexpected(again.error());
+        if (!data_) SEAM_OK(reconnect());
         for (;;) {
             auto frame = next_in_stream();
             if (!frame) {
@@ -257,14 +254,13 @@ class GocatorSource final : public ProfileSource {
             return of_sensor(sent.error(), s_.control_port);
         const auto until = Clock::now() + timeout;
         for (;;) {
-            auto reply = gdp::take_reply(control_stream_);
-            if (!reply) return tl::unexpected(reply.error());
-            if (*reply) {
-                auto& late = late_answers_[(*reply)->command];
+            SEAM_TRY(auto reply, gdp::take_reply(control_stream_));
+            if (reply) {
+                auto& late = late_answers_[reply->command];
                 if (late > 0)
                     --late;  // to a command given up
-                else if ((*reply)->command == static_cast<std::uint16_t>(command))
-                    return **reply;
+                else if (reply->command == static_cast<std::uint16_t>(command))
+                    return *reply;
                 continue;
             }
             const auto left = std::chrono::duration_cast<Timeout>(until - Clock::now());
@@ -297,7 +293,7 @@ class GocatorSource final : public ProfileSource {
     // Stopped first, so that its frames count from zero, and the data connection made in between, so that
     // nothing of before comes.
     Expected<void> begin() {
-        if (auto stopped = ask_job(gdp::Command::stop); !stopped) return tl::unexpected(stopped.error());
+        SEAM_OK(ask_job(gdp::Command::stop));
         auto data = TcpConnection::connect(s_.address, s_.data_port, s_.timeout);
         if (!data) return of_sensor(data.error(), s_.data_port);
         data_.emplace(std::move(*data));
@@ -306,9 +302,8 @@ class GocatorSource final : public ProfileSource {
         offset_ = next_;
         passed_over_ = false;
         next_ping_ = Clock::now() + kPingPeriod;
-        auto started = ask_job(gdp::Command::start);
-        if (!started) return tl::unexpected(started.error());
-        if (started->status != gdp::kDone) return refused("start its job", started->status);
+        SEAM_TRY(auto started, ask_job(gdp::Command::start));
+        if (started.status != gdp::kDone) return refused("start its job", started.status);
         return {};
     }
 
@@ -358,16 +353,14 @@ class GocatorSource final : public ProfileSource {
                 return frame;
             }
             if (s_.ascii()) {
-                auto line = gocator::take_line(stream_, s_.format);
-                if (!line) return tl::unexpected(line.error());
-                if (!*line) return FramePtr();
-                take_line(**line);
+                SEAM_TRY(auto line, gocator::take_line(stream_, s_.format));
+                if (!line) return FramePtr();
+                take_line(*line);
                 continue;
             }
-            auto message = gdp::take_message(stream_);
-            if (!message) return tl::unexpected(message.error());
-            if (!*message) return FramePtr();
-            take_message(**message);
+            SEAM_TRY(auto message, gdp::take_message(stream_));
+            if (!message) return FramePtr();
+            take_message(*message);
         }
     }
 
@@ -523,10 +516,9 @@ const SettingTable& gocator_settings() {
 }
 
 Expected<std::unique_ptr<ProfileSource>> open_gocator_sensor(const nlohmann::json& settings, DeviceSession&) {
-    auto read = settings_from(settings);
-    if (!read) return tl::unexpected(read.error());
-    auto source = std::make_unique<GocatorSource>(std::move(*read));
-    if (auto connected = source->connect(); !connected) return tl::unexpected(connected.error());
+    SEAM_TRY(auto read, settings_from(settings));
+    auto source = std::make_unique<GocatorSource>(std::move(read));
+    SEAM_OK(source->connect());
     return source;
 }
 

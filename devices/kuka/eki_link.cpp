@@ -38,31 +38,28 @@ class EkiLink final : public RobotLink {
           timeout_(timeout) {}
 
     Expected<RobotIdentity> identity() override {
-        if (auto ready = connected(Clock::now() + timeout_); !ready) return tl::unexpected(ready.error());
+        SEAM_OK(connected(Clock::now() + timeout_));
         return robot_.told(identity_of(hello_));
     }
 
     Expected<RobotMode> mode() override {
-        auto state = ask({.kind = "state"});
-        if (!state) return tl::unexpected(state.error());
-        auto mode = mode_from_eki(state->mode);
+        SEAM_TRY(auto state, ask({.kind = "state"}));
+        auto mode = mode_from_eki(state.mode);
         if (!mode) return fail(mode.error());
         return mode;
     }
 
     Expected<Pose> base_from_flange() override {
-        auto state = ask({.kind = "state"});
-        if (!state) return tl::unexpected(state.error());
-        if (!state->text.empty())
-            return device_error(Text("the controller does not know the flange: {}", state->text), where_,
+        SEAM_TRY(auto state, ask({.kind = "state"}));
+        if (!state.text.empty())
+            return device_error(Text("the controller does not know the flange: {}", state.text), where_,
                                 "select and start a program on the controller");
-        return state->pose;
+        return state.pose;
     }
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
-        auto start = wait_event(starts_, Clock::now() + timeout);
-        if (!start) return tl::unexpected(start.error());
-        return StartSignal{start->telegram.part, start->time_ns, start->not_before_ns};
+        SEAM_TRY(auto start, wait_event(starts_, Clock::now() + timeout));
+        return StartSignal{start.telegram.part, start.time_ns, start.not_before_ns};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
@@ -78,21 +75,19 @@ class EkiLink final : public RobotLink {
         if (!measuring_)
             return device_error("the connection was lost while the part was measured", where_,
                                 "measure the part again");
-        auto event = wait_event(triggers_, Clock::now() + timeout);
-        if (!event) return tl::unexpected(event.error());
-        const EkiTelegram& t = event->telegram;
+        SEAM_TRY(auto event, wait_event(triggers_, Clock::now() + timeout));
+        const EkiTelegram& t = event.telegram;
         if (t.id != last_trigger_ + 1)
             return fail({ErrorKind::device,
                          fmt::format("trigger {} came where trigger {} was due", t.id, last_trigger_ + 1),
                          where_, "measure the part again"});
         ++last_trigger_;
-        return TriggerEvent{t.name, event->time_ns, t.pose};
+        return TriggerEvent{t.name, event.time_ns, t.pose};
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
-        auto answer = ask({.kind = "read", .name = name});
-        if (!answer) return tl::unexpected(answer.error());
-        return answer->pose;
+        SEAM_TRY(auto answer, ask({.kind = "read", .name = name}));
+        return answer.pose;
     }
 
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
@@ -113,21 +108,19 @@ class EkiLink final : public RobotLink {
     }
 
     Expected<Permission> permission() override {
-        auto state = ask({.kind = "state"});
-        if (!state) return tl::unexpected(state.error());
-        if (state->part == "taken") return Permission::taken;
-        if (state->part == "given") return Permission::given;
-        if (state->part == "none") return Permission::none;
+        SEAM_TRY(auto state, ask({.kind = "state"}));
+        if (state.part == "taken") return Permission::taken;
+        if (state.part == "given") return Permission::given;
+        if (state.part == "none") return Permission::none;
         // A module of before this question: what is known is that it acknowledged on this connection.
         return confirmed_ ? Permission::given : Permission::none;
     }
 
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
-        auto from = this->base_from_flange();
-        if (!from) return tl::unexpected(from.error());
+        SEAM_TRY(auto from, this->base_from_flange());
         return only_error(ask({.kind = "move", .pose = base_from_flange},
-                              timeout_ + kuka_move_time(*from, base_from_flange)));
+                              timeout_ + kuka_move_time(from, base_from_flange)));
     }
 
     std::vector<Text> take_notices() override {
@@ -305,7 +298,7 @@ class EkiLink final : public RobotLink {
                 return device_error(Text("the controller reports: {}", telegram->text), where_);
             if (telegram->kind == "done" && &events == &triggers_)
                 return device_error("the measuring program has ended", where_);
-            if (auto kept = keep_event(*telegram); !kept) return tl::unexpected(kept.error());
+            SEAM_OK(keep_event(*telegram));
         }
         Event event = std::move(events.front());
         events.pop_front();
@@ -326,7 +319,7 @@ class EkiLink final : public RobotLink {
     Expected<EkiTelegram> ask(EkiTelegram command) { return ask(std::move(command), timeout_); }
     Expected<EkiTelegram> ask(EkiTelegram command, Timeout timeout) {
         const auto until = Clock::now() + timeout;
-        if (auto ready = connected(until); !ready) return tl::unexpected(ready.error());
+        SEAM_OK(connected(until));
         static const std::set<std::string, std::less<>> kHarmless = {"state", "read"};
         const bool harmless =
             kHarmless.contains(command.kind) ||
@@ -347,9 +340,8 @@ class EkiLink final : public RobotLink {
         for (;;) {
             auto telegram = receive(until);
             if (!telegram) return telegram;
-            auto kept = keep_event(*telegram);
-            if (!kept) return tl::unexpected(kept.error());
-            if (*kept || telegram->id < command.id) continue;  // an answer given too late
+            SEAM_TRY(auto kept, keep_event(*telegram));
+            if (kept || telegram->id < command.id) continue;  // an answer given too late
             if (telegram->kind == "error" && telegram->id == command.id)
                 return device_error(
                     telegram->text.starts_with(kEkiNotReady) ? ErrorCode::not_ready : ErrorCode::none,
@@ -410,11 +402,10 @@ Expected<std::unique_ptr<RobotLink>> open_kuka_eki(const nlohmann::json& setting
     f.whole("port", port);
     f.whole("timeout_ms", timeout_ms);
     if (f.failed()) return tl::unexpected(f.error());
-    if (auto known = check_robot_address(listen, robot_address); !known) return tl::unexpected(known.error());
-    auto listener = TcpListener::listen(listen, static_cast<std::uint16_t>(port));
-    if (!listener) return tl::unexpected(listener.error());
-    const std::string where = fmt::format("{}:{}", listen, listener->port());
-    return std::make_unique<EkiLink>(std::move(*listener), where, robot_address, Timeout(timeout_ms));
+    SEAM_OK(check_robot_address(listen, robot_address));
+    SEAM_TRY(auto listener, TcpListener::listen(listen, static_cast<std::uint16_t>(port)));
+    const std::string where = fmt::format("{}:{}", listen, listener.port());
+    return std::make_unique<EkiLink>(std::move(listener), where, robot_address, Timeout(timeout_ms));
 }
 
 }  // namespace seamwright

@@ -43,18 +43,17 @@ class KvpLink final : public RobotLink {
     }
 
     Expected<RobotMode> mode() override {
-        auto values = read({"$STOPMESS", "$MODE_OP"});
-        if (!values) return tl::unexpected(values.error());
-        auto stopped = bool_from_krl((*values)[0]);
+        SEAM_TRY(auto values, read({"$STOPMESS", "$MODE_OP"}));
+        auto stopped = bool_from_krl(values[0]);
         if (!stopped) return fail(stopped.error());
         static const std::map<std::string, RobotMode> kKvpModes = {{"#T1", RobotMode::manual_reduced},
                                                                    {"#T2", RobotMode::manual_full},
                                                                    {"#AUT", RobotMode::automatic},
                                                                    {"#EX", RobotMode::external}};
-        const auto mode = kKvpModes.find(string_from_krl((*values)[1]));
+        const auto mode = kKvpModes.find(string_from_krl(values[1]));
         if (mode == kKvpModes.end())
-            return fail({ErrorKind::device, "\"" + (*values)[1].substr(0, 20) + "\" is no operating mode",
-                         where_, ""});
+            return fail(
+                {ErrorKind::device, "\"" + values[1].substr(0, 20) + "\" is no operating mode", where_, ""});
         return *stopped ? RobotMode::stopped : mode->second;
     }
 
@@ -65,14 +64,13 @@ class KvpLink final : public RobotLink {
         const std::string suffix = main_run_suffix();
         const std::string base = "$BASE" + suffix, tool = "$TOOL" + suffix, mode = "$IPO_MODE" + suffix;
         for (int i = 0; i < kAttempts; ++i) {
-            auto answers = try_read({mode, base, tool, "$POS_ACT", base, tool});
-            if (!answers) return tl::unexpected(answers.error());
-            if ((*answers)[0].done && string_from_krl((*answers)[0].value) == "#TCP")
+            SEAM_TRY(auto answers, try_read({mode, base, tool, "$POS_ACT", base, tool}));
+            if (answers[0].done && string_from_krl(answers[0].value) == "#TCP")
                 return device_error("the tool is fixed in the cell ($IPO_MODE #TCP): the flange is not told",
                                     where_, "select a program whose tool is on the robot");
             std::vector<Pose> poses;
-            for (std::size_t k = 1; k < answers->size(); ++k) {
-                const KvpAnswer& a = (*answers)[k];
+            for (std::size_t k = 1; k < answers.size(); ++k) {
+                const KvpAnswer& a = answers[k];
                 static const std::array<const char*, 5> names = {"$BASE", "$TOOL", "$POS_ACT", "$BASE",
                                                                  "$TOOL"};
                 if (!a.done)
@@ -90,45 +88,41 @@ class KvpLink final : public RobotLink {
     }
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
-        auto called = poll_until(timeout, [&] { return called_now(); });
-        if (!called) return tl::unexpected(called.error());
-        auto part = read({"SW_PART[]"});
-        if (!part) return tl::unexpected(part.error());
-        if (auto withdrawn = begin_part(); !withdrawn) return tl::unexpected(withdrawn.error());
-        if (auto taken = write({{"SW_CALL", "FALSE"}}); !taken) return tl::unexpected(taken.error());
+        SEAM_OK(poll_until(timeout, [&] { return called_now(); }));
+        SEAM_TRY(auto part, read({"SW_PART[]"}));
+        SEAM_OK(begin_part());
+        SEAM_OK(write({{"SW_CALL", "FALSE"}}));
         // A module of before SW_CALLED refuses that, and a call that is lost with its connection stays lost.
         if (auto noted = try_write({{"SW_CALLED", "TRUE"}}); !noted && !connection_)
             return tl::unexpected(noted.error());
         call_taken_here_ = true;
-        const std::string id = string_from_krl((*part)[0]);
+        const std::string id = string_from_krl(part[0]);
         const std::int64_t now = host_now_ns();
         return StartSignal{id == "-" ? "" : id, now, std::exchange(quiet_ns_, now)};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         told_ = 0;
-        if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return taken;
-        auto state = read({"$STOPMESS"});
-        if (!state) return tl::unexpected(state.error());
-        auto stopped = bool_from_krl((*state)[0]);
+        SEAM_OK(write({{"SW_RELEASED", "FALSE"}}));
+        SEAM_TRY(auto state, read({"$STOPMESS"}));
+        auto stopped = bool_from_krl(state[0]);
         if (!stopped) return fail(stopped.error());
         if (*stopped) return device_error("the robot is stopped", where_, "start it on its controller");
         // The application may be on its way out of the last part: a part without a verdict is given up.
         bool given_up = false;
         auto idle = poll_until(timeout_, [&]() -> Expected<bool> {
-            auto answers = try_read({"SW_WAITS", "SW_BUSY", "SW_TAKEN", "SW_TAKING"});
-            if (!answers) return tl::unexpected(answers.error());
-            if (!(*answers)[0].done) {  // a module of before SW_WAITS
-                auto busy = truth("SW_BUSY", (*answers)[1]);
+            SEAM_TRY(auto answers, try_read({"SW_WAITS", "SW_BUSY", "SW_TAKEN", "SW_TAKING"}));
+            if (!answers[0].done) {  // a module of before SW_WAITS
+                auto busy = truth("SW_BUSY", answers[1]);
                 if (!busy) return busy;
                 return !*busy;
             }
-            auto waits = truth("SW_WAITS", (*answers)[0]), busy = truth("SW_BUSY", (*answers)[1]),
-                 taken = truth("SW_TAKEN", (*answers)[2]), taking = truth("SW_TAKING", (*answers)[3]);
+            auto waits = truth("SW_WAITS", answers[0]), busy = truth("SW_BUSY", answers[1]),
+                 taken = truth("SW_TAKEN", answers[2]), taking = truth("SW_TAKING", answers[3]);
             for (const auto* answer : {&waits, &busy, &taken, &taking})
                 if (!*answer) return *answer;
             if (!*waits && !*busy && !*taken && !*taking && !std::exchange(given_up, true))
-                if (auto up = try_write({{"SW_VERDICT", "4"}}); !up) return tl::unexpected(up.error());
+                SEAM_OK(try_write({{"SW_VERDICT", "4"}}));
             return waits;
         });
         if (!idle && is_silence(idle.error()) && connection_)
@@ -140,149 +134,130 @@ class KvpLink final : public RobotLink {
         if (string_from_krl((*signature)[0]) != program_signature(moves))
             return device_error("another measuring program is loaded than the project's", where_,
                                 "load the one that `seamwright robot-program` writes");
-        if (auto begun = begin_part(); !begun) return begun;
-        if (auto go = write({{"SW_FIRED", "0"}, {"SW_GO", "TRUE"}}); !go) return go;
+        SEAM_OK(begin_part());
+        SEAM_OK(write({{"SW_FIRED", "0"}, {"SW_GO", "TRUE"}}));
         auto gone = poll_until(timeout_, [&]() -> Expected<bool> {
             auto waits_to_go = read_bool("SW_GO");
             if (!waits_to_go) return waits_to_go;
             return !*waits_to_go;
         });
         if (gone || !is_silence(gone.error()) || !connection_) return gone;
-        if (auto back = write({{"SW_GO", "FALSE"}}); !back) return back;
+        SEAM_OK(write({{"SW_GO", "FALSE"}}));
         return device_error("the program that waited did not go on", where_,
                             "start the application on the controller");
     }
 
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
-        auto fired = poll_until(timeout, [&]() -> Expected<bool> {
-            auto count = read_int("SW_FIRED");
-            if (!count) return tl::unexpected(count.error());
-            if (*count < told_ || *count > 64)
+        SEAM_OK(poll_until(timeout, [&]() -> Expected<bool> {
+            SEAM_TRY(auto count, read_int("SW_FIRED"));
+            if (count < told_ || count > 64)
                 return fail({ErrorKind::device,
-                             fmt::format("the controller counts {} triggers after {}", *count, told_), where_,
+                             fmt::format("the controller counts {} triggers after {}", count, told_), where_,
                              "measure the part again"});
-            return *count > told_;
-        });
-        if (!fired) return tl::unexpected(fired.error());
+            return count > told_;
+        }));
         ++told_;  // the module keeps all of a program, so none is lost between two polls
-        auto values = read({fmt::format("SW_SPOT[{},]", told_), fmt::format("SW_SPOT_AT[{}]", told_)});
-        if (!values) return tl::unexpected(values.error());
-        auto pose = frame_from_krl((*values)[1]);
+        SEAM_TRY(auto values,
+                 read({fmt::format("SW_SPOT[{},]", told_), fmt::format("SW_SPOT_AT[{}]", told_)}));
+        auto pose = frame_from_krl(values[1]);
         if (!pose) return fail(pose.error());
-        return TriggerEvent{string_from_krl((*values)[0]), host_now_ns(), *pose};
+        return TriggerEvent{string_from_krl(values[0]), host_now_ns(), *pose};
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
-        auto variable = frame_variable(name);
-        if (!variable) return tl::unexpected(variable.error());
-        return read_pose(*variable);
+        SEAM_TRY(auto variable, frame_variable(name));
+        return read_pose(variable);
     }
 
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
         if (!base_from_frame.matrix().allFinite() ||
             base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
             return input_error("the frame is not finite or beyond 100 m", name);
-        auto variable = frame_variable(name);
-        if (!variable) return tl::unexpected(variable.error());
-        if (auto same = same_robot(); !same) return same;
-        if (auto ready = withdraw(); !ready) return ready;
-        return write({{*variable, krl_from_frame(base_from_frame)}});
+        SEAM_TRY(auto variable, frame_variable(name));
+        SEAM_OK(same_robot());
+        SEAM_OK(withdraw());
+        return write({{variable, krl_from_frame(base_from_frame)}});
     }
 
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
         const bool released = verdict == PartVerdict::corrected;
-        if (released)
-            if (auto same = same_robot(); !same) return same;
+        if (released) SEAM_OK(same_robot());
         if (auto ready = withdraw(); !ready) {
             // Said once more to an application that runs already: nothing changes.
             if (auto now = permission(); released && now && *now == Permission::taken) return {};
             return ready;
         }
         const char* number = released ? "1" : verdict == PartVerdict::refused ? "2" : "3";
-        if (auto told = try_write({{"SW_VERDICT", number}}); !told) return told;
-        if (verdict == PartVerdict::refused)
-            if (auto again = call_again(); !again) return again;
+        SEAM_OK(try_write({{"SW_VERDICT", number}}));
+        if (verdict == PartVerdict::refused) SEAM_OK(call_again());
         if (!released) {
             (void)called_now();  // from here on the next call is as old as it is heard
             return {};
         }
-        if (auto told = write({{"SW_RELEASED", "TRUE"}}); !told) return told;
-        auto back = permission();
-        if (!back) return tl::unexpected(back.error());
-        if (*back == Permission::none) return device_error("the controller did not keep the verdict", where_);
+        SEAM_OK(write({{"SW_RELEASED", "TRUE"}}));
+        SEAM_TRY(auto back, permission());
+        if (back == Permission::none) return device_error("the controller did not keep the verdict", where_);
         (void)called_now();  // from here on the next call is as old as it is heard; its Error is the next
                              // call's
         return {};
     }
 
     Expected<Permission> permission() override {
-        auto answers = try_read({"SW_TAKEN", "SW_RELEASED"});
-        if (!answers) return tl::unexpected(answers.error());
-        if ((*answers)[0].done) {
-            auto taken = truth("SW_TAKEN", (*answers)[0]);
-            if (!taken) return tl::unexpected(taken.error());
-            if (*taken) return Permission::taken;
+        SEAM_TRY(auto answers, try_read({"SW_TAKEN", "SW_RELEASED"}));
+        if (answers[0].done) {
+            SEAM_TRY(auto taken, truth("SW_TAKEN", answers[0]));
+            if (taken) return Permission::taken;
         }
-        auto released = truth("SW_RELEASED", (*answers)[1]);
-        if (!released) return tl::unexpected(released.error());
-        return *released ? Permission::given : Permission::none;
+        SEAM_TRY(auto released, truth("SW_RELEASED", answers[1]));
+        return released ? Permission::given : Permission::none;
     }
 
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
-        if (auto same = same_robot(); !same) return same;
-        auto now = mode();
-        if (!now) return tl::unexpected(now.error());
-        if (*now != RobotMode::manual_reduced)
+        SEAM_OK(same_robot());
+        SEAM_TRY(auto now, mode());
+        if (now != RobotMode::manual_reduced)
             return device_error("moving by command wants T1 with the program SEAMWRIGHT running", where_);
-        auto from = this->base_from_flange();
-        if (!from) return tl::unexpected(from.error());
-        if (auto sent = write({{"SW_MOVE_TO", krl_from_frame(base_from_flange)}, {"SW_MOVE", "TRUE"}}); !sent)
-            return sent;
-        auto there = poll_until(timeout_ + kuka_move_time(*from, base_from_flange), [&]() -> Expected<bool> {
+        SEAM_TRY(auto from, this->base_from_flange());
+        SEAM_OK(write({{"SW_MOVE_TO", krl_from_frame(base_from_flange)}, {"SW_MOVE", "TRUE"}}));
+        SEAM_OK(poll_until(timeout_ + kuka_move_time(from, base_from_flange), [&]() -> Expected<bool> {
             auto moving = read_bool("SW_MOVE");
             if (!moving) return moving;
             return !*moving;
-        });
-        if (!there) return tl::unexpected(there.error());
+        }));
         return {};
     }
 
   private:
     Expected<RobotIdentity> ask_identity() {
-        auto values = read({"$KR_SERIALNO", "$TRAFONAME[]"});
-        if (!values) return tl::unexpected(values.error());
-        return RobotIdentity{"kuka-kvp", "KUKA", string_from_krl((*values)[1]),
-                             string_from_krl((*values)[0])};
+        SEAM_TRY(auto values, read({"$KR_SERIALNO", "$TRAFONAME[]"}));
+        return RobotIdentity{"kuka-kvp", "KUKA", string_from_krl(values[1]), string_from_krl(values[0])};
     }
     Expected<void> same_robot() {
-        if (auto ready = connected(); !ready) return ready;
+        SEAM_OK(connected());
         return robot_.check([this] { return ask_identity(); }, where_);
     }
     // A refused call of a robot that waits for it still is as good as a new one.
     Expected<void> call_again() {
-        auto answers = try_read({"SW_WAITS", "SW_CALLED", "SW_CALLS"});
-        if (!answers) return tl::unexpected(answers.error());
-        for (const KvpAnswer& answer : *answers) {
+        SEAM_TRY(auto answers, try_read({"SW_WAITS", "SW_CALLED", "SW_CALLS"}));
+        for (const KvpAnswer& answer : answers) {
             if (!answer.done) return {};  // a module of before SW_CALLED
-            auto yes = truth("SW_CALLED", answer);
-            if (!yes) return tl::unexpected(yes.error());
-            if (!*yes) return {};
+            SEAM_TRY(auto yes, truth("SW_CALLED", answer));
+            if (!yes) return {};
         }
         return try_write({{"SW_CALL", "TRUE"}});
     }
     Expected<bool> called_now() {
-        auto answers = try_read({"SW_CALL", "SW_WAITS", "SW_CALLED"});
-        if (!answers) return tl::unexpected(answers.error());
-        auto called = truth("SW_CALL", (*answers)[0]);
+        SEAM_TRY(auto answers, try_read({"SW_CALL", "SW_WAITS", "SW_CALLED"}));
+        auto called = truth("SW_CALL", answers[0]);
         // Taken over a connection that is lost, and not measured: the robot waits for it still.
-        if (called && !*called && (*answers)[2].done && !call_taken_here_) {
-            auto before = truth("SW_CALLED", (*answers)[2]);
+        if (called && !*called && answers[2].done && !call_taken_here_) {
+            auto before = truth("SW_CALLED", answers[2]);
             if (before && *before) called = true;
         }
         if (called && !*called) quiet_ns_ = host_now_ns();
-        if (!called || !*called || !(*answers)[1].done) return called;
-        return truth("SW_WAITS", (*answers)[1]);  // the program is there to measure it
+        if (!called || !*called || !answers[1].done) return called;
+        return truth("SW_WAITS", answers[1]);  // the program is there to measure it
     }
 
     static Timeout left(Clock::time_point until) {
@@ -322,7 +297,7 @@ class KvpLink final : public RobotLink {
 
     // All requests in one segment, then their answers in order.
     Expected<std::vector<KvpAnswer>> ask(std::vector<KvpRequest> requests) {
-        if (auto ready = connected(); !ready) return tl::unexpected(ready.error());
+        SEAM_OK(connected());
         const auto until = Clock::now() + timeout_;
         std::string bytes;
         for (KvpRequest& r : requests) {
@@ -356,14 +331,13 @@ class KvpLink final : public RobotLink {
     Expected<std::vector<std::string>> read(const std::vector<std::string>& names) {
         std::vector<KvpRequest> requests;
         for (const std::string& name : names) requests.push_back({0, false, name, {}});
-        auto answers = ask(std::move(requests));
-        if (!answers) return tl::unexpected(answers.error());
+        SEAM_TRY(auto answers, ask(std::move(requests)));
         std::vector<std::string> values;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            if (!(*answers)[i].done)
+            if (!answers[i].done)
                 return device_error(Text("the controller refuses to read {}", names[i]), where_,
                                     "load seamwright.dat on the controller");
-            values.push_back(std::move((*answers)[i].value));
+            values.push_back(std::move(answers[i].value));
         }
         return values;
     }
@@ -377,8 +351,7 @@ class KvpLink final : public RobotLink {
     Expected<void> try_write(const std::vector<std::pair<std::string, std::string>>& values) {
         std::vector<KvpRequest> requests;
         for (const auto& [name, value] : values) requests.push_back({0, true, name, value});
-        auto answers = ask(std::move(requests));
-        if (!answers) return tl::unexpected(answers.error());
+        SEAM_OK(ask(std::move(requests)));
         return {};
     }
     Expected<bool> truth(const char* name, const KvpAnswer& answer) {
@@ -405,12 +378,11 @@ class KvpLink final : public RobotLink {
     // with it, keeps it and its frames (seamwright.src, SW_ACTIVATE).
     Expected<void> withdraw() {
         auto free = poll_until(timeout_, [&]() -> Expected<bool> {
-            if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return tl::unexpected(taken.error());
-            auto answers = try_read({"SW_TAKING", "SW_TAKEN", "SW_WAITS"});
-            if (!answers) return tl::unexpected(answers.error());
-            if (!(*answers)[0].done) return true;  // a module of before SW_TAKING
-            auto taking = truth("SW_TAKING", (*answers)[0]), has = truth("SW_TAKEN", (*answers)[1]),
-                 waits = truth("SW_WAITS", (*answers)[2]);
+            SEAM_OK(write({{"SW_RELEASED", "FALSE"}}));
+            SEAM_TRY(auto answers, try_read({"SW_TAKING", "SW_TAKEN", "SW_WAITS"}));
+            if (!answers[0].done) return true;  // a module of before SW_TAKING
+            auto taking = truth("SW_TAKING", answers[0]), has = truth("SW_TAKEN", answers[1]),
+                 waits = truth("SW_WAITS", answers[2]);
             for (const auto* answer : {&taking, &has, &waits})
                 if (!*answer) return *answer;
             return !*taking && (!*has || *waits);
@@ -420,7 +392,7 @@ class KvpLink final : public RobotLink {
         return free;
     }
     Expected<void> begin_part() {
-        if (auto taken = write({{"SW_RELEASED", "FALSE"}}); !taken) return taken;
+        SEAM_OK(write({{"SW_RELEASED", "FALSE"}}));
         return try_write({{"SW_TAKEN", "FALSE"}, {"SW_VERDICT", "0"}});
     }
 
@@ -428,33 +400,29 @@ class KvpLink final : public RobotLink {
     Expected<void> write(const std::vector<std::pair<std::string, std::string>>& values) {
         std::vector<KvpRequest> requests;
         for (const auto& [name, value] : values) requests.push_back({0, true, name, value});
-        auto answers = ask(std::move(requests));
-        if (!answers) return tl::unexpected(answers.error());
+        SEAM_TRY(auto answers, ask(std::move(requests)));
         for (std::size_t i = 0; i < values.size(); ++i)
-            if (!(*answers)[i].done)
+            if (!answers[i].done)
                 return device_error(Text("the controller refuses to write {}", values[i].first), where_,
                                     "check the operating mode and that the variable is global");
         return {};
     }
 
     Expected<bool> read_bool(const std::string& name) {
-        auto values = read({name});
-        if (!values) return tl::unexpected(values.error());
-        auto value = bool_from_krl((*values)[0]);
+        SEAM_TRY(auto values, read({name}));
+        auto value = bool_from_krl(values[0]);
         if (!value) return fail(value.error());
         return value;
     }
     Expected<std::int64_t> read_int(const std::string& name) {
-        auto values = read({name});
-        if (!values) return tl::unexpected(values.error());
-        auto value = int_from_krl((*values)[0]);
+        SEAM_TRY(auto values, read({name}));
+        auto value = int_from_krl(values[0]);
         if (!value) return fail(value.error());
         return value;
     }
     Expected<Pose> read_pose(const std::string& variable) {
-        auto values = read({variable});
-        if (!values) return tl::unexpected(values.error());
-        auto pose = frame_from_krl((*values)[0]);
+        SEAM_TRY(auto values, read({variable}));
+        auto pose = frame_from_krl(values[0]);
         if (!pose) return fail(pose.error());
         return pose;
     }
@@ -466,11 +434,10 @@ class KvpLink final : public RobotLink {
         // None yet: the application writes them when it begins.
         if (names_ && names_->empty()) names_.reset();
         if (!names_) {
-            auto count = ask({{0, false, "SW_FRAMES", {}}});
-            if (!count) return tl::unexpected(count.error());
+            SEAM_TRY(auto count, ask({{0, false, "SW_FRAMES", {}}}));
             names_.emplace();
-            if ((*count)[0].done) {
-                auto frames = int_from_krl((*count)[0].value);
+            if (count[0].done) {
+                auto frames = int_from_krl(count[0].value);
                 if (!frames || *frames < 0 || *frames > 32)
                     return fail({ErrorKind::device, "SW_FRAMES is no number of frames", where_, ""});
                 std::vector<std::string> wanted;

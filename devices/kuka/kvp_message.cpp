@@ -70,9 +70,8 @@ std::string kvp_bytes(const KvpAnswer& a) {
 
 Expected<std::optional<KvpRequest>> take_kvp_request(std::string& stream) {
     std::size_t length = 0;
-    auto whole = header(stream, length);
-    if (!whole) return tl::unexpected(whole.error());
-    if (!*whole) return std::nullopt;
+    SEAM_TRY(auto whole, header(stream, length));
+    if (!whole) return std::nullopt;
     const std::string_view body = std::string_view(stream).substr(4, length);
     KvpRequest r;
     r.id = static_cast<std::uint16_t>(get16(stream, 0));
@@ -91,8 +90,7 @@ Expected<std::optional<KvpRequest>> take_kvp_request(std::string& stream) {
 
 Expected<std::optional<KvpAnswer>> take_kvp_answer(std::string& stream) {
     std::size_t length = 0;
-    auto whole = header(stream, length);
-    if (!whole) return tl::unexpected(whole.error());
+    SEAM_OK(header(stream, length));
     if (stream.size() < 7) return std::nullopt;
     const std::size_t value = get16(stream, 5);
     if (3 + value != length && 6 + value != length)

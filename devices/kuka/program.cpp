@@ -88,7 +88,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
     int n = 0;
     for (const MeasuringMove& move : request.moves) {
         ++n;
-        if (auto ok = krl_text(move.spot_id, "spot"); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(krl_text(move.spot_id, "spot"));
         const double cp = move.speed_mm_s / 1000;
         if (!(cp > 0 && cp <= kFastestCp))
             return input_error(Text("{} mm/s is no speed for measuring", move.speed_mm_s),
@@ -126,8 +126,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
     int k = 0;
     for (const ApplicationFrame& frame : request.frames) {
         ++k;
-        if (auto ok = krl_text(frame.name, "frame of region " + frame.region_id); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(krl_text(frame.name, "frame of region " + frame.region_id));
         setup += fmt::format(
             "; region {}: SW_ACTIVATE({}) before its path\nSW_NAME[{},]=\"{}\"\nSW_FRAME[{}]={}\n",
             program_comment(frame.region_id), k, k, frame.name, k, krl_frame(frame.base_from_frame));
@@ -160,7 +159,7 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
 }
 
 Expected<std::vector<ProgramFile>> write_kuka_path(const PathProgramRequest& request) {
-    if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_path_program(request));
     std::string text = fmt::format(
         "&ACCESS RVO1\n&COMMENT {}\nDEF {}()\n; poses of the caller's $TOOL; bring the robot before the "
         "first "

@@ -18,9 +18,8 @@ const SettingTable& kuka_rsi_settings() {
 
 Expected<std::unique_ptr<RobotLink>> open_kuka_rsi(const nlohmann::json& settings, DeviceSession& session,
                                                    OpenRobot open_robot) {
-    auto common = parse_cyclic_settings(settings, kuka_rsi_settings(), "kuka-rsi");
-    if (!common) return tl::unexpected(common.error());
-    common->brand = "KUKA";
+    SEAM_TRY(auto common, parse_cyclic_settings(settings, kuka_rsi_settings(), "kuka-rsi"));
+    common.brand = "KUKA";
     RsiOptions options;
     std::string mode, reference;
     SettingsReader f(settings, "", kuka_rsi_settings());
@@ -37,8 +36,7 @@ Expected<std::unique_ptr<RobotLink>> open_kuka_rsi(const nlohmann::json& setting
     if (options.sen_type.empty() || options.sen_type.size() > 64 ||
         options.sen_type.find_first_of("<>&\"'") != std::string::npos)
         return input_error("not a name that XML can hold", "sen_type");
-    return CyclicLink::open(*common, make_rsi_protocol(options, common->server.cycle_ms), open_robot,
-                            session);
+    return CyclicLink::open(common, make_rsi_protocol(options, common.server.cycle_ms), open_robot, session);
 }
 
 }  // namespace seamwright

@@ -138,8 +138,7 @@ std::string program(const Values& v, const std::string& name) {
 }  // namespace
 
 Expected<std::vector<ProgramFile>> write_rsi_program(const ProgramRequest& request) {
-    const auto values = read_values(request.settings);
-    if (!values) return tl::unexpected(values.error());
+    SEAM_TRY(const auto values, read_values(request.settings));
     ProgramRequest measuring = request;
     measuring.driver.clear();
     measuring.settings = nlohmann::json::object();
@@ -147,11 +146,11 @@ Expected<std::vector<ProgramFile>> write_rsi_program(const ProgramRequest& reque
         measuring.settings = request.settings["measuring"].value("settings", nlohmann::json::object());
     auto files = write_kuka_program(measuring);
     if (!files) return files;
-    const std::string name = values->relative() ? "SeamwrightRsiRelative" : "SeamwrightRsi";
-    files->push_back({name + ".rsi", visual(*values, name)});
-    files->push_back({name + ".rsi.xml", context(*values, name)});
-    files->push_back({name + ".xml", ethernet(*values)});
-    files->push_back({"seamwright_rsi.src", program(*values, name)});
+    const std::string name = values.relative() ? "SeamwrightRsiRelative" : "SeamwrightRsi";
+    files->push_back({name + ".rsi", visual(values, name)});
+    files->push_back({name + ".rsi.xml", context(values, name)});
+    files->push_back({name + ".xml", ethernet(values)});
+    files->push_back({"seamwright_rsi.src", program(values, name)});
     return files;
 }
 

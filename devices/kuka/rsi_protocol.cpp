@@ -22,23 +22,22 @@ class RsiProtocol final : public CyclicProtocol {
           unit_(std::pow(10.0, options_.decimals)) {}
 
     Expected<CyclicPacket> parse(std::span<const std::byte> datagram) override {
-        auto rob = parse_rsi_rob(datagram);
-        if (!rob) return tl::unexpected(rob.error());
+        SEAM_TRY(auto rob, parse_rsi_rob(datagram));
         CyclicPacket p;
-        p.number = rob->ipoc;
-        p.number_text = rob->ipoc_text;
+        p.number = rob.ipoc;
+        p.number_text = rob.ipoc_text;
         p.numbers_per_cycle = cycle_ms_;
-        p.late = rob->delay;
-        p.on_path = rob->on_path;
-        p.missing = !rob->rist    ? "RIst (DEF_RIst in the ETHERNET configuration)"
-                    : !rob->rsol  ? "RSol (DEF_RSol in the ETHERNET configuration)"
-                    : !rob->delay ? "Delay (DEF_Delay in the ETHERNET configuration)"
-                                  : nullptr;
-        if ((rob->rist && !rob->rist->usable) || (rob->rsol && !rob->rsol->usable)) {
+        p.late = rob.delay;
+        p.on_path = rob.on_path;
+        p.missing = !rob.rist    ? "RIst (DEF_RIst in the ETHERNET configuration)"
+                    : !rob.rsol  ? "RSol (DEF_RSol in the ETHERNET configuration)"
+                    : !rob.delay ? "Delay (DEF_Delay in the ETHERNET configuration)"
+                                 : nullptr;
+        if ((rob.rist && !rob.rist->usable) || (rob.rsol && !rob.rsol->usable)) {
             p.problem = "the robot tells a position that it cannot have";
         } else {
-            if (rob->rist) p.actual = pose_of(*rob->rist);
-            if (rob->rsol) p.programmed = pose_of(*rob->rsol);
+            if (rob.rist) p.actual = pose_of(*rob.rist);
+            if (rob.rsol) p.programmed = pose_of(*rob.rsol);
         }
         return p;
     }

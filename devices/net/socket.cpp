@@ -108,20 +108,18 @@ Expected<TcpConnection> TcpConnection::connect(const std::string& host, std::uin
     if (e)
         return input_error(Text("\"{}\" is not an IP address", host), "",
                            "give it as four numbers, 192.168.1.10");
-    auto connected = impl->wait(timeout, [&](auto done) {
+    SEAM_OK(impl->wait(timeout, [&](auto done) {
         impl->socket.async_connect({address, port},
                                    [done](const error_code& error) mutable { done(error, 0); });
-    });
-    if (!connected) return tl::unexpected(connected.error());
+    }));
     impl->socket.set_option(tcp::no_delay(true), e);
     return TcpConnection(std::move(impl));
 }
 
 Expected<void> TcpConnection::send(std::span<const std::byte> data, Timeout timeout) {
-    auto sent = impl_->wait(timeout, [&](auto done) {
+    SEAM_OK(impl_->wait(timeout, [&](auto done) {
         asio::async_write(impl_->socket, asio::buffer(data.data(), data.size()), done);
-    });
-    if (!sent) return tl::unexpected(sent.error());
+    }));
     return {};
 }
 
@@ -132,10 +130,9 @@ Expected<std::size_t> TcpConnection::receive_some(std::span<std::byte> buffer, T
 }
 
 Expected<void> TcpConnection::receive_exactly(std::span<std::byte> buffer, Timeout timeout) {
-    auto got = impl_->wait(timeout, [&](auto done) {
+    SEAM_OK(impl_->wait(timeout, [&](auto done) {
         asio::async_read(impl_->socket, asio::buffer(buffer.data(), buffer.size()), done);
-    });
-    if (!got) return tl::unexpected(got.error());
+    }));
     return {};
 }
 

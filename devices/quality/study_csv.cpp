@@ -99,13 +99,11 @@ class StudyReader {
         const auto run = number_from<long>(field(kRun));
         if (!run) return input_error(Text("run = \"{}\" is no whole number", csv::shown(field(kRun))), at_);
         v.run = *run;
-        const auto mm = millimetres(kValue);
-        if (!mm) return tl::unexpected(mm.error());
-        v.value_mm = *mm;
+        SEAM_TRY(const auto mm, millimetres(kValue));
+        v.value_mm = mm;
         if (!field(kReference).empty()) {
-            const auto reference = millimetres(kReference);
-            if (!reference) return tl::unexpected(reference.error());
-            v.reference_mm = *reference;
+            SEAM_TRY(const auto reference, millimetres(kReference));
+            v.reference_mm = reference;
         }
         return v;
     }
@@ -128,51 +126,48 @@ Expected<std::vector<StudyValue>> parse_study_csv(std::string_view text, const s
         if (!csv::blanks_off(line).empty()) break;
     if (csv::blanks_off(line).empty()) return input_error("the file is empty", where, kHeader);
     const auto at = [&] { return fmt::format("{}, line {}", where, lines.number()); };
-    auto table = header_of(line, at());
-    if (!table) return tl::unexpected(table.error());
+    SEAM_TRY(auto table, header_of(line, at()));
 
     // A decimal comma anywhere makes it the decimal sign everywhere.
     csv::Lines ahead = lines;
-    if (table->separator != ',')
-        while (!table->decimal_comma && ahead.next(line)) {
-            const auto fields = text_fields(line, table->separator);
+    if (table.separator != ',')
+        while (!table.decimal_comma && ahead.next(line)) {
+            const auto fields = text_fields(line, table.separator);
             for (const Column c : {kValue, kReference})
-                if (table->columns[c] >= 0 && static_cast<std::size_t>(table->columns[c]) < fields.size() &&
-                    fields[static_cast<std::size_t>(table->columns[c])].find(',') != std::string_view::npos)
-                    table->decimal_comma = true;
+                if (table.columns[c] >= 0 && static_cast<std::size_t>(table.columns[c]) < fields.size() &&
+                    fields[static_cast<std::size_t>(table.columns[c])].find(',') != std::string_view::npos)
+                    table.decimal_comma = true;
         }
     std::vector<StudyValue> values;
     std::map<std::tuple<std::string, std::string, long>, std::size_t> seen;
     while (lines.next(line)) {
         if (csv::blanks_off(line).empty()) continue;
-        const auto fields = text_fields(line, table->separator);
-        if (fields.size() != table->width)
-            return input_error(Text("has {} fields where the header names {}", fields.size(), table->width),
+        const auto fields = text_fields(line, table.separator);
+        if (fields.size() != table.width)
+            return input_error(Text("has {} fields where the header names {}", fields.size(), table.width),
                                at(),
-                               table->separator == ',' && fields.size() > table->width
+                               table.separator == ',' && fields.size() > table.width
                                    ? "write decimal points, or separate the columns by semicolons"
                                    : "");
         if (values.size() >= kStudyValueLimit)
             return input_error(Text("there are more than {} values", kStudyValueLimit), at());
-        auto value = StudyReader(*table, fields, at()).value();
-        if (!value) return tl::unexpected(value.error());
+        SEAM_TRY(auto value, StudyReader(table, fields, at()).value());
         const auto [first, fresh] =
-            seen.emplace(std::tuple(value->part, value->rehang, value->run), lines.number());
+            seen.emplace(std::tuple(value.part, value.rehang, value.run), lines.number());
         if (!fresh)
             return input_error(
-                Text("part {}, rehang {}, run {} stands in line {} already", csv::shown(value->part),
-                     csv::shown(value->rehang), value->run, first->second),
+                Text("part {}, rehang {}, run {} stands in line {} already", csv::shown(value.part),
+                     csv::shown(value.rehang), value.run, first->second),
                 at());
-        values.push_back(std::move(*value));
+        values.push_back(std::move(value));
     }
     if (values.empty()) return input_error("there are no values", where);
     return values;
 }
 
 Expected<std::vector<StudyValue>> read_study_csv(const std::filesystem::path& path) {
-    const auto text = read_text_file(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_study_csv(*text, path.string());
+    SEAM_TRY(const auto text, read_text_file(path));
+    return parse_study_csv(text, path.string());
 }
 
 }  // namespace seamwright

@@ -51,15 +51,14 @@ class CaptureSensor final : public ProfileSource {
         }
         for (;;) {
             if (!running_) return device_error("the sensor is not started", replay_->where());
-            const auto later = replay_->next(source_.id, *frame);
-            if (!later) return tl::unexpected(later.error());
-            if (!*later) break;
+            SEAM_TRY(const auto later, replay_->next(source_.id, *frame));
+            if (!later) break;
             const auto now = Clock::now();
             if (now >= until)
                 return device_error(ErrorCode::silence,
                                     Text("{}: no frame within {} ms", kNoAnswer, timeout.count()),
                                     replay_->where());
-            std::this_thread::sleep_until(std::min({**later, until, now + Clock::duration(kSlice)}));
+            std::this_thread::sleep_until(std::min({*later, until, now + Clock::duration(kSlice)}));
         }
         if (!recorded_host_time_)
             frame->host_time_ns =
@@ -125,14 +124,13 @@ class CaptureRobot final : public RobotLink {
         const auto until = Clock::now() + timeout;
         TriggerEvent trigger;
         for (;;) {
-            const auto later = replay_->next_trigger(trigger);
-            if (!later) return tl::unexpected(later.error());
-            if (!*later) return trigger;
+            SEAM_TRY(const auto later, replay_->next_trigger(trigger));
+            if (!later) return trigger;
             if (Clock::now() >= until)
                 return device_error(ErrorCode::silence,
                                     Text("{}: no trigger within {} ms", kNoAnswer, timeout.count()),
                                     replay_->where());
-            std::this_thread::sleep_until(std::min(**later, until));
+            std::this_thread::sleep_until(std::min(*later, until));
         }
     }
     Expected<Pose> read_frame(const std::string& name) override {
@@ -160,8 +158,7 @@ class CaptureRobot final : public RobotLink {
 // Opens the file for the first device of a session; the others share it.
 Expected<std::shared_ptr<CaptureReplay>> shared_replay(SettingsReader& f, DeviceSession& session) {
     if (f.failed()) return tl::unexpected(f.error());
-    const auto file = json_string(f.json(), "file", "settings");
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(const auto file, json_string(f.json(), "file", "settings"));
     double speed = 1;
     bool loop = false;
     f.number("speed", speed);
@@ -170,13 +167,12 @@ Expected<std::shared_ptr<CaptureReplay>> shared_replay(SettingsReader& f, Device
     if (speed != 0 && speed < 0.001)
         return input_error("must be 0 (as fast as frames are asked for) or 0.001 to 1000", "settings.speed");
     std::error_code problem;
-    const auto path = std::filesystem::weakly_canonical(*file, problem);
-    if (problem || file->empty()) return file_error("is no file", *file);
+    const auto path = std::filesystem::weakly_canonical(file, problem);
+    if (problem || file.empty()) return file_error("is no file", file);
     auto replay = session.shared<CaptureReplay>(
         "capture:" + path.string(), [&]() -> Expected<std::shared_ptr<CaptureReplay>> {
-            auto reader = CaptureReader::open(path);
-            if (!reader) return tl::unexpected(reader.error());
-            return std::make_shared<CaptureReplay>(std::move(*reader), speed, loop);
+            SEAM_TRY(auto reader, CaptureReader::open(path));
+            return std::make_shared<CaptureReplay>(std::move(reader), speed, loop);
         });
     if (!replay) return replay;
     if ((*replay)->speed() != speed || (*replay)->loop() != loop)
@@ -227,12 +223,10 @@ Expected<std::unique_ptr<ProfileSource>> open_capture_sensor(const nlohmann::jso
     f.truth("recorded_host_time", recorded_time);
     f.whole("from", from);
     f.whole("buffers", buffers);
-    auto replay = shared_replay(f, session);
-    if (!replay) return tl::unexpected(replay.error());
-    const auto source = (*replay)->source(name, SourceKind::sensor);
-    if (!source) return tl::unexpected(source.error());
-    if (auto ok = (*replay)->open_sensor(*source, from, step); !ok) return tl::unexpected(ok.error());
-    return std::make_unique<CaptureSensor>(*replay, *source, recorded_time, buffers);
+    SEAM_TRY(auto replay, shared_replay(f, session));
+    SEAM_TRY(const auto source, replay->source(name, SourceKind::sensor));
+    SEAM_OK(replay->open_sensor(source, from, step));
+    return std::make_unique<CaptureSensor>(replay, source, recorded_time, buffers);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_capture_robot(const nlohmann::json& settings,
@@ -244,12 +238,10 @@ Expected<std::unique_ptr<RobotLink>> open_capture_robot(const nlohmann::json& se
     f.text("source", name);
     f.truth("accept_frames", accept);
     f.poses("frames", frames);
-    auto replay = shared_replay(f, session);
-    if (!replay) return tl::unexpected(replay.error());
-    const auto source = (*replay)->source(name, SourceKind::robot);
-    if (!source) return tl::unexpected(source.error());
-    if (auto ok = (*replay)->open_robot(*source); !ok) return tl::unexpected(ok.error());
-    return std::make_unique<CaptureRobot>(*replay, *source, accept, std::move(frames));
+    SEAM_TRY(auto replay, shared_replay(f, session));
+    SEAM_TRY(const auto source, replay->source(name, SourceKind::robot));
+    SEAM_OK(replay->open_robot(source));
+    return std::make_unique<CaptureRobot>(replay, source, accept, std::move(frames));
 }
 
 }  // namespace seamwright

@@ -66,9 +66,8 @@ Expected<void> CaptureReplay::open_sensor(const CaptureSource& source, std::uint
                            "settings.from");
     player.cursor = from;
     player.step = step;
-    const auto spots = reader_.spots(source.id);
-    if (!spots) return tl::unexpected(spots.error());
-    for (const auto& [number, spot] : *spots)
+    SEAM_TRY(const auto spots, reader_.spots(source.id));
+    for (const auto& [number, spot] : spots)
         if (number >= from) player.of_spot[spot].push_back(number);
     players_[source.id] = std::move(player);
     return {};
@@ -87,11 +86,10 @@ void CaptureReplay::close_robot() {
 Expected<void> CaptureReplay::open_robot(const CaptureSource& source) {
     const std::lock_guard lock(mutex_);
     if (robot_open_) return input_error("two robots play one capture", where_);
-    auto events = reader_.events(source.id);
-    if (!events) return tl::unexpected(events.error());
+    SEAM_TRY(auto events, reader_.events(source.id));
     robot_open_ = true;
     if (!triggers_.empty() || !poses_.empty() || !modes_.empty()) return {};  // opened before
-    for (CaptureEvent& e : *events) {
+    for (CaptureEvent& e : events) {
         if (e.base_from_flange) poses_.push_back(e);
         if (e.kind == CaptureEventKind::trigger) triggers_.push_back(e);
         if (e.kind == CaptureEventKind::mode) modes_.push_back(e);
@@ -105,9 +103,8 @@ Expected<void> CaptureReplay::start_clock() {
     bool from_later = false;
     for (auto& [id, player] : players_) {
         if (player.cursor >= player.count) continue;
-        const auto first = reader_.frame(id, player.cursor);
-        if (!first) return tl::unexpected(first.error());
-        first_ns_ = std::min(first_ns_, (*first)->host_time_ns);
+        SEAM_TRY(const auto first, reader_.frame(id, player.cursor));
+        first_ns_ = std::min(first_ns_, first->host_time_ns);
         from_later = from_later || player.cursor > 0;
     }
     if (from_later)
@@ -160,7 +157,7 @@ Expected<std::uint64_t> CaptureReplay::take(Player& player, const std::string& s
 
 Expected<void> CaptureReplay::trigger(std::int64_t source, const std::string& spot_id) {
     const std::lock_guard lock(mutex_);
-    if (auto ok = start_clock(); !ok) return ok;
+    SEAM_OK(start_clock());
     Player& player = players_.at(source);
     if (!spot_id.empty()) {
         // The robot's trigger for the same spot, not yet served, is the same exposure.
@@ -170,17 +167,15 @@ Expected<void> CaptureReplay::trigger(std::int64_t source, const std::string& sp
                 std::binary_search(it->second.begin(), it->second.end(), number))
                 return {};
     }
-    const auto number = take(player, spot_id);
-    if (!number) return tl::unexpected(number.error());
+    SEAM_TRY(const auto number, take(player, spot_id));
     player.driven = true;
-    player.due.push_back(*number);
+    player.due.push_back(number);
     return {};
 }
 
 Expected<void> CaptureReplay::deliver(std::int64_t source, std::uint64_t number, Frame& frame) {
-    const auto recorded = reader_.frame(source, number);
-    if (!recorded) return tl::unexpected(recorded.error());
-    const Capture& c = **recorded;
+    SEAM_TRY(const auto recorded, reader_.frame(source, number));
+    const Capture& c = *recorded;
     frame.status = c.status;
     frame.sequence = c.sequence;
     frame.device_time_ns = c.device_time_ns;
@@ -202,33 +197,32 @@ Expected<void> CaptureReplay::deliver(std::int64_t source, std::uint64_t number,
 Expected<std::optional<CaptureReplay::Clock::time_point>> CaptureReplay::next(std::int64_t source,
                                                                               Frame& frame) {
     const std::lock_guard lock(mutex_);
-    if (auto ok = start_clock(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(start_clock());
     Player& player = players_.at(source);
     if (!player.due.empty()) {
         const std::uint64_t number = player.due.front();
         player.due.pop_front();
-        if (auto ok = deliver(source, number, frame); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(deliver(source, number, frame));
         return std::nullopt;
     }
     if (player.driven || player.step) return Clock::time_point::max();
     const std::uint64_t cursor = player.cursor;
     const int loops = player.loops;
-    const auto number = take(player, "");
-    if (!number) return tl::unexpected(number.error());
-    const auto recorded = reader_.frame(source, *number);
-    if (!recorded) return tl::unexpected(recorded.error());  // passed over: the next call goes on behind it
-    if (const auto due = when((*recorded)->host_time_ns, player.loops); due > Clock::now()) {
+    SEAM_TRY(const auto number, take(player, ""));
+    SEAM_TRY(const auto recorded,
+             reader_.frame(source, number));  // passed over: the next call goes on behind it
+    if (const auto due = when(recorded->host_time_ns, player.loops); due > Clock::now()) {
         player.cursor = cursor;
         player.loops = loops;
         return due;
     }
-    if (auto ok = deliver(source, *number, frame); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(deliver(source, number, frame));
     return std::nullopt;
 }
 
 Expected<void> CaptureReplay::start_moves(const std::vector<std::string>& spot_ids) {
     const std::lock_guard lock(mutex_);
-    if (auto ok = start_clock(); !ok) return ok;
+    SEAM_OK(start_clock());
     std::map<std::string, std::size_t> wanted;
     for (const std::string& id : spot_ids) {
         if (id.empty()) return input_error("a measuring move names no spot");
@@ -256,7 +250,7 @@ Expected<void> CaptureReplay::start_moves(const std::vector<std::string>& spot_i
 
 Expected<std::optional<CaptureReplay::Clock::time_point>> CaptureReplay::next_trigger(TriggerEvent& trigger) {
     const std::lock_guard lock(mutex_);
-    if (auto ok = start_clock(); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(start_clock());
     const auto hand_out = [&](const CaptureEvent& e) {
         trigger = {e.spot_id, to_ns(Clock::now()), e.base_from_flange};
         newest_ns_ = std::max(newest_ns_, e.host_time_ns);
@@ -281,12 +275,10 @@ Expected<std::optional<CaptureReplay::Clock::time_point>> CaptureReplay::next_tr
         if (e.spot_id == spot && seen++ <= skip) event = e;  // the k-th, or the last there is
     for (auto& [source, player] : players_) {
         if (!player.of_spot.contains(spot)) continue;
-        const auto number = take(player, spot);
-        if (!number) return tl::unexpected(number.error());
-        player.due.push_back(*number);
-        const auto recorded = reader_.frame(source, *number);
-        if (!recorded) return tl::unexpected(recorded.error());
-        if ((*recorded)->base_from_flange) event.base_from_flange = (*recorded)->base_from_flange;
+        SEAM_TRY(const auto number, take(player, spot));
+        player.due.push_back(number);
+        SEAM_TRY(const auto recorded, reader_.frame(source, number));
+        if (recorded->base_from_flange) event.base_from_flange = recorded->base_from_flange;
     }
     hand_out(event);
     return std::nullopt;

@@ -76,65 +76,53 @@ Expected<RecordedFrame> manifest_frame(const fs::path& folder, const std::string
                                        const std::string& spot_id, const std::string& pose_file,
                                        const std::string& where) {
     RecordedFrame frame;
-    const auto path = inside(folder, file, json_path(where, "file"));
-    if (!path) return tl::unexpected(path.error());
-    frame.file = *path;
-    if (!is_profile_file(*path) && !is_image_file(*path)) {
+    SEAM_TRY(const auto path, inside(folder, file, json_path(where, "file")));
+    frame.file = path;
+    if (!is_profile_file(path) && !is_image_file(path)) {
         return input_error(Text("\"{}\" is neither a profile (.csv) nor an image", file),
                            json_path(where, "file"));
     }
-    frame.image = is_image_file(*path);
+    frame.image = is_image_file(path);
     if (spot_id.empty()) return input_error("is empty", json_path(where, "spot_id"));
     frame.spot_id = spot_id;
     if (!pose_file.empty()) {
-        const auto pose_path = inside(folder, pose_file, json_path(where, "pose_file"));
-        if (!pose_path) return tl::unexpected(pose_path.error());
-        const auto pose = read_pose_file(*pose_path);
-        if (!pose) return tl::unexpected(pose.error());
-        frame.base_from_flange = *pose;
+        SEAM_TRY(const auto pose_path, inside(folder, pose_file, json_path(where, "pose_file")));
+        SEAM_TRY(const auto pose, read_pose_file(pose_path));
+        frame.base_from_flange = pose;
     }
     return frame;
 }
 
 Expected<std::vector<RecordedFrame>> frames_of_json(const fs::path& folder, const fs::path& manifest) {
-    const auto json = read_json_file(manifest);
-    if (!json) return tl::unexpected(json.error());
+    SEAM_TRY(const auto json, read_json_file(manifest));
     const std::string where = manifest.string();
-    if (auto ok = only_fields(*json, {"frames"}, where); !ok) return tl::unexpected(ok.error());
-    const auto list = json_array(*json, "frames", where);
-    if (!list) return tl::unexpected(list.error());
+    SEAM_OK(only_fields(json, {"frames"}, where));
+    SEAM_TRY(const auto list, json_array(json, "frames", where));
     std::vector<RecordedFrame> frames;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const auto& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const auto& entry = (*list)[i];
         const std::string at = json_path(where + ": frames", i);
-        if (auto ok = only_fields(entry, {"file", "spot_id", "pose_file", "base_from_flange"}, at); !ok) {
-            return tl::unexpected(ok.error());
-        }
-        const auto file = json_string(entry, "file", at);
-        if (!file) return tl::unexpected(file.error());
-        const auto spot = json_string(entry, "spot_id", at);
-        if (!spot) return tl::unexpected(spot.error());
-        const auto pose_file = json_string_or(entry, "pose_file", "", at);
-        if (!pose_file) return tl::unexpected(pose_file.error());
-        auto frame = manifest_frame(folder, *file, *spot, *pose_file, at);
-        if (!frame) return tl::unexpected(frame.error());
+        SEAM_OK(only_fields(entry, {"file", "spot_id", "pose_file", "base_from_flange"}, at));
+        SEAM_TRY(const auto file, json_string(entry, "file", at));
+        SEAM_TRY(const auto spot, json_string(entry, "spot_id", at));
+        SEAM_TRY(const auto pose_file, json_string_or(entry, "pose_file", "", at));
+        SEAM_TRY(auto frame, manifest_frame(folder, file, spot, pose_file, at));
         if (entry.contains("base_from_flange")) {
-            if (!pose_file->empty())
+            if (!pose_file.empty())
                 return input_error("names two poses", at, "give base_from_flange or pose_file");
-            const auto pose = parse_pose(entry["base_from_flange"], json_path(at, "base_from_flange"));
-            if (!pose) return tl::unexpected(pose.error());
-            frame->base_from_flange = *pose;
+            SEAM_TRY(const auto pose,
+                     parse_pose(entry["base_from_flange"], json_path(at, "base_from_flange")));
+            frame.base_from_flange = pose;
         }
-        frames.push_back(std::move(*frame));
+        frames.push_back(std::move(frame));
     }
     return frames;
 }
 
 Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const fs::path& manifest) {
-    const auto text = read_text_file(manifest);
-    if (!text) return tl::unexpected(text.error());
+    SEAM_TRY(const auto text, read_text_file(manifest));
     std::vector<RecordedFrame> frames;
-    std::string_view rest = *text;
+    std::string_view rest = text;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     std::size_t number = 0, width = 0;
     while (!rest.empty()) {
@@ -166,9 +154,8 @@ Expected<std::vector<RecordedFrame>> frames_of_csv(const fs::path& folder, const
         if (fields.size() != width) {
             return input_error(Text("has {} fields where the header names {}", fields.size(), width), at);
         }
-        auto frame = manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at);
-        if (!frame) return tl::unexpected(frame.error());
-        frames.push_back(std::move(*frame));
+        SEAM_TRY(auto frame, manifest_frame(folder, fields[0], fields[1], width == 3 ? fields[2] : "", at));
+        frames.push_back(std::move(frame));
     }
     return frames;
 }
@@ -248,14 +235,13 @@ namespace {
 // The profiles of one file.
 Expected<std::vector<RecordedFrame>> frames_of_file(const fs::path& file, const RecordingLayout& layout,
                                                     std::vector<std::string>* told) {
-    auto read = read_profiles(file, layout.profile);
-    if (!read) return tl::unexpected(read.error());
-    if (told) told->push_back(file.filename().string() + ": " + read->understood);
+    SEAM_TRY(auto read, read_profiles(file, layout.profile));
+    if (told) told->push_back(file.filename().string() + ": " + read.understood);
     std::vector<RecordedFrame> frames;
-    for (ReadProfile& one : read->profiles) {
+    for (ReadProfile& one : read.profiles) {
         RecordedFrame frame;
         frame.file = file;
-        frame.spot_id = read->profiles.size() == 1 ? file.stem().string() : fmt::format("{}", one.number);
+        frame.spot_id = read.profiles.size() == 1 ? file.stem().string() : fmt::format("{}", one.number);
         if (one.y_mm.empty()) frame.profile = std::make_shared<const Profile>(std::move(one.profile));
         frames.push_back(std::move(frame));
     }
@@ -278,18 +264,16 @@ Expected<bool> poses_from_table(const fs::path& folder, const RecordingLayout& l
         if (!found.empty()) path = found.front();
     }
     if (!path) return false;
-    const auto table = read_pose_table(*path, layout.pose);
-    if (!table) return tl::unexpected(table.error());
+    SEAM_TRY(const auto table, read_pose_table(*path, layout.pose));
     // Frames that are profiles of one file have its numbers as names.
     std::vector<std::string> names;
     for (const RecordedFrame& frame : frames)
         names.push_back(frame.profile && frame.file.stem() != frame.spot_id ? frame.spot_id
                                                                             : frame.file.filename().string());
-    const auto poses = poses_of_frames(*table, names, path->string());
-    if (!poses) return tl::unexpected(poses.error());
+    SEAM_TRY(const auto poses, poses_of_frames(table, names, path->string()));
     for (std::size_t i = 0; i < frames.size(); ++i)
-        if (!frames[i].base_from_flange) frames[i].base_from_flange = (*poses)[i];
-    if (told) told->push_back(path->filename().string() + ": " + table->understood);
+        if (!frames[i].base_from_flange) frames[i].base_from_flange = poses[i];
+    if (told) told->push_back(path->filename().string() + ": " + table.understood);
     return true;
 }
 
@@ -316,17 +300,15 @@ Expected<std::vector<RecordedFrame>> list_recording(const fs::path& source, cons
                            "profiles are .csv, images .png, .bmp, .tiff or .pgm");
     }
     if (!json && !csv) {
-        const auto taken = poses_from_table(folder, layout, *frames, told);
-        if (!taken) return tl::unexpected(taken.error());
+        SEAM_OK(poses_from_table(folder, layout, *frames, told));
     }
     std::size_t with_pose = 0;
     const RecordedFrame* missing = nullptr;
     for (RecordedFrame& frame : *frames) {
         if (!frame.base_from_flange && (!one_file || frames->size() == 1)) {
             if (const auto path = pose_beside(frame.file)) {
-                const auto pose = read_frame_pose(*path, layout.pose);
-                if (!pose) return tl::unexpected(pose.error());
-                frame.base_from_flange = *pose;
+                SEAM_TRY(const auto pose, read_frame_pose(*path, layout.pose));
+                frame.base_from_flange = pose;
             }
         }
         if (frame.base_from_flange) {
@@ -399,10 +381,9 @@ Expected<void> Recording::trigger(const std::string& spot_id) {
     for (const std::size_t i : due_) {
         if (frames_[i].spot_id == spot_id) return {};
     }
-    const auto index = take(spot_id);
-    if (!index) return tl::unexpected(index.error());
+    SEAM_TRY(const auto index, take(spot_id));
     driven_ = true;
-    due_.push_back(*index);
+    due_.push_back(index);
     return {};
 }
 

@@ -69,26 +69,23 @@ Expected<RecordingLayout> parse_recording_layout(const nlohmann::json& json, con
                                      {"pose_unit", &layout.pose.unit},
                                      {"pose_angle", &layout.pose.angle},
                                      {"channel", &channel}}) {
-        auto text = json_string_or(json, key, *value, where);
-        if (!text) return tl::unexpected(text.error());
-        *value = *text;
+        SEAM_TRY(auto text, json_string_or(json, key, *value, where));
+        *value = text;
     }
     const auto known = image_channel(channel);
     if (!known) return input_error(Text("\"{}\" is no channel", channel), json_path(where, "channel"));
     layout.channel = *known;
     if (json.contains("invalid")) {
-        auto values = json_array(json, "invalid", where);
-        if (!values) return tl::unexpected(values.error());
-        for (const nlohmann::json& value : **values) {
+        SEAM_TRY(auto values, json_array(json, "invalid", where));
+        for (const nlohmann::json& value : *values) {
             if (!value.is_number())
                 return input_error("is no height", json_path(where, "invalid"), "give numbers");
             layout.profile.invalid.push_back(value.get<double>());
         }
     }
     if (json.contains("flange_from_sensor")) {
-        auto pose = parse_pose(json["flange_from_sensor"], json_path(where, "flange_from_sensor"));
-        if (!pose) return tl::unexpected(pose.error());
-        layout.flange_from_sensor = *pose;
+        SEAM_TRY(auto pose, parse_pose(json["flange_from_sensor"], json_path(where, "flange_from_sensor")));
+        layout.flange_from_sensor = pose;
     }
     return layout;
 }
@@ -105,23 +102,22 @@ Expected<void> read_recorded(const RecordedFrame& recorded, const RecordingLayou
         frame.profile = *recorded.profile;
         return {};
     }
-    auto read = read_profiles(recorded.file, layout.profile);
-    if (!read) return tl::unexpected(read.error());
-    if (read->profiles.size() != 1)
-        return input_error(Text("holds {} profiles, one was expected", read->profiles.size()),
+    SEAM_TRY(auto read, read_profiles(recorded.file, layout.profile));
+    if (read.profiles.size() != 1)
+        return input_error(Text("holds {} profiles, one was expected", read.profiles.size()),
                            recorded.file.string(), "give the file itself to --from");
-    if (!read->profiles.front().y_mm.empty() && layout.flange_from_sensor && recorded.base_from_flange) {
+    if (!read.profiles.front().y_mm.empty() && layout.flange_from_sensor && recorded.base_from_flange) {
         auto profile =
-            into_plane(read->profiles.front(), *recorded.base_from_flange * *layout.flange_from_sensor,
+            into_plane(read.profiles.front(), *recorded.base_from_flange * *layout.flange_from_sensor,
                        recorded.file.string());
         if (!profile) return tl::unexpected(profile.error());
         frame.profile = std::move(*profile);
         return {};
     }
-    if (!read->profiles.front().y_mm.empty())
+    if (!read.profiles.front().y_mm.empty())
         return input_error("its points lie in space and in no one plane", recorded.file.string(),
                            "give x and z of the sensor's plane, or say the columns with --columns-xz X,Z");
-    frame.profile = std::move(read->profiles.front().profile);
+    frame.profile = std::move(read.profiles.front().profile);
     return {};
 }
 

@@ -76,11 +76,10 @@ SettingTable both(const SettingTable& folder, const SettingTable& capture) {
 Expected<ReplaySettings> common_settings(SettingsReader& f) {
     ReplaySettings s;
     if (f.failed()) return tl::unexpected(f.error());
-    const auto folder = json_string(f.json(), "folder", "settings");
-    if (!folder) return tl::unexpected(folder.error());
+    SEAM_TRY(const auto folder, json_string(f.json(), "folder", "settings"));
     std::error_code problem;
-    s.folder = std::filesystem::weakly_canonical(*folder, problem);
-    if (problem || folder->empty()) return file_error("is no folder", *folder);
+    s.folder = std::filesystem::weakly_canonical(folder, problem);
+    if (problem || folder.empty()) return file_error("is no folder", folder);
     f.truth("loop", s.loop);
     f.truth("require_poses", s.require_poses);
     f.text("kind", s.kind);
@@ -88,9 +87,8 @@ Expected<ReplaySettings> common_settings(SettingsReader& f) {
     f.text("serial", s.serial);
     if (f.failed()) return tl::unexpected(f.error());
     if (f.has("layout")) {
-        auto layout = parse_recording_layout(f.json().at("layout"), "settings.layout");
-        if (!layout) return tl::unexpected(layout.error());
-        s.layout = std::move(*layout);
+        SEAM_TRY(auto layout, parse_recording_layout(f.json().at("layout"), "settings.layout"));
+        s.layout = std::move(layout);
     }
     return s;
 }
@@ -98,9 +96,8 @@ Expected<ReplaySettings> common_settings(SettingsReader& f) {
 Expected<std::shared_ptr<Recording>> shared_recording(const ReplaySettings& s, DeviceSession& session) {
     const std::string key = "replay:" + s.folder.string();
     auto recording = session.shared<Recording>(key, [&]() -> Expected<std::shared_ptr<Recording>> {
-        auto frames = list_recording(s.folder, s.kind, s.require_poses, s.layout);
-        if (!frames) return tl::unexpected(frames.error());
-        return std::make_shared<Recording>(s.folder, std::move(*frames), s.loop);
+        SEAM_TRY(auto frames, list_recording(s.folder, s.kind, s.require_poses, s.layout));
+        return std::make_shared<Recording>(s.folder, std::move(frames), s.loop);
     });
     if (!recording) return recording;
     // The second of the two devices finds the recording as the first one opened it.
@@ -195,7 +192,7 @@ class ReplaySensor final : public ProfileSource {
         return rate_hz_.load();
     }
     Expected<void> set(const std::string& parameter, double value) override {
-        if (auto ok = validate({{parameter, value}}, parameters(), "replay"); !ok) return ok;
+        SEAM_OK(validate({{parameter, value}}, parameters(), "replay"));
         rate_hz_ = value;
         return {};
     }
@@ -320,8 +317,7 @@ Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json
                                                             DeviceSession& session) {
     if (settings.is_object() && settings.contains("file")) return open_capture_sensor(settings, session);
     SettingsReader f(settings, "settings", folder_sensor_settings());
-    const auto common = common_settings(f);
-    if (!common) return tl::unexpected(common.error());
+    SEAM_TRY(const auto common, common_settings(f));
     double rate_hz = 0;
     int depth = 0;
     std::size_t buffers = 0;
@@ -334,18 +330,16 @@ Expected<std::unique_ptr<ProfileSource>> open_replay_sensor(const nlohmann::json
     if (f.failed()) return tl::unexpected(f.error());
     if (depth != 0 && depth != 8 && depth != 10 && depth != 12 && depth != 16)
         return input_error("must be 0 (the file's own), 8, 10, 12 or 16", "settings.bit_depth");
-    auto recording = shared_recording(*common, session);
-    if (!recording) return tl::unexpected(recording.error());
-    return std::make_unique<ReplaySensor>(*recording, SensorIdentity{"replay", vendor, model, common->serial},
-                                          rate_hz, depth, buffers, common->layout);
+    SEAM_TRY(auto recording, shared_recording(common, session));
+    return std::make_unique<ReplaySensor>(recording, SensorIdentity{"replay", vendor, model, common.serial},
+                                          rate_hz, depth, buffers, common.layout);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& settings,
                                                        DeviceSession& session) {
     if (settings.is_object() && settings.contains("file")) return open_capture_robot(settings, session);
     SettingsReader f(settings, "settings", folder_robot_settings());
-    const auto common = common_settings(f);
-    if (!common) return tl::unexpected(common.error());
+    SEAM_TRY(const auto common, common_settings(f));
     bool accept = false;
     std::string mode_name, brand, model;
     std::map<std::string, Pose> frames;
@@ -358,9 +352,8 @@ Expected<std::unique_ptr<RobotLink>> open_replay_robot(const nlohmann::json& set
     const auto mode = robot_mode_from_string(mode_name);
     if (!mode)
         return input_error(Text("\"{}\" is no mode", mode_name), "settings.mode", "give e.g. \"automatic\"");
-    auto recording = shared_recording(*common, session);
-    if (!recording) return tl::unexpected(recording.error());
-    return std::make_unique<ReplayRobot>(*recording, RobotIdentity{"replay", brand, model, common->serial},
+    SEAM_TRY(auto recording, shared_recording(common, session));
+    return std::make_unique<ReplayRobot>(recording, RobotIdentity{"replay", brand, model, common.serial},
                                          *mode, accept, std::move(frames));
 }
 

@@ -197,11 +197,9 @@ GigeServer::GigeServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 GigeServer::~GigeServer() = default;
 
 Expected<std::unique_ptr<GigeServer>> GigeServer::open(const std::string& address, GigeMemory& memory) {
-    auto control = UdpSocket::bind(address, kGvcpPort);
-    if (!control) return tl::unexpected(control.error());
-    auto stream = UdpSocket::bind(address, 0);
-    if (!stream) return tl::unexpected(stream.error());
-    auto impl = std::make_unique<Impl>(std::move(*control), std::move(*stream), memory);
+    SEAM_TRY(auto control, UdpSocket::bind(address, kGvcpPort));
+    SEAM_TRY(auto stream, UdpSocket::bind(address, 0));
+    auto impl = std::make_unique<Impl>(std::move(control), std::move(stream), memory);
     auto broadcasts = UdpSocket::bind("255.255.255.255", kGvcpPort, UdpSocket::Shared::yes);
     auto answers = UdpSocket::bind(address, 0);
     Impl* i = impl.get();

@@ -141,30 +141,24 @@ Expected<std::unique_ptr<ServedCamera>> ServedCamera::open(std::shared_ptr<Simul
         !known)
         return tl::unexpected(known.error());
     WireCameraSettings s;
-    const auto address = json_string_or(settings, "address", s.address, where);
-    if (!address) return tl::unexpected(address.error());
-    const auto serial = json_string_or(settings, "serial", cell->settings().serial, where);
-    if (!serial) return tl::unexpected(serial.error());
-    s.address = *address;
-    s.serial = *serial;
+    SEAM_TRY(const auto address, json_string_or(settings, "address", s.address, where));
+    SEAM_TRY(const auto serial, json_string_or(settings, "serial", cell->settings().serial, where));
+    s.address = address;
+    s.serial = serial;
     const auto number = [&](const char* key, double otherwise, double low, double high) -> Expected<double> {
         auto value = json_number_or(settings, key, otherwise, where);
         if (value && !(*value >= low && *value <= high))
             return input_error("is out of range", json_path(where, key));
         return value;
     };
-    const auto packet = number("packet_size", s.packet_size, 576, 16376);
-    if (!packet) return tl::unexpected(packet.error());
-    const auto lost = number("lost_packets_per_mille", 0, 0, 1000);
-    if (!lost) return tl::unexpected(lost.error());
-    const auto seed = number("loss_seed", 1, 0, 4294967295.0);
-    if (!seed) return tl::unexpected(seed.error());
-    const auto first = number("first_frame_id", 1, 1, 65535);
-    if (!first) return tl::unexpected(first.error());
-    s.packet_size = static_cast<int>(*packet) / 4 * 4;
-    s.lost_packets_per_mille = *lost;
-    s.loss_seed = static_cast<std::uint32_t>(*seed);
-    s.first_frame_id = static_cast<std::uint16_t>(*first);
+    SEAM_TRY(const auto packet, number("packet_size", s.packet_size, 576, 16376));
+    SEAM_TRY(const auto lost, number("lost_packets_per_mille", 0, 0, 1000));
+    SEAM_TRY(const auto seed, number("loss_seed", 1, 0, 4294967295.0));
+    SEAM_TRY(const auto first, number("first_frame_id", 1, 1, 65535));
+    s.packet_size = static_cast<int>(packet) / 4 * 4;
+    s.lost_packets_per_mille = lost;
+    s.loss_seed = static_cast<std::uint32_t>(seed);
+    s.first_frame_id = static_cast<std::uint16_t>(first);
     const auto& optics = cell->settings().optics;
     s.width = optics.width;
     s.height = optics.height;
@@ -174,9 +168,8 @@ Expected<std::unique_ptr<ServedCamera>> ServedCamera::open(std::shared_ptr<Simul
     auto impl = std::make_unique<Impl>();
     impl->cell = std::move(cell);
     impl->serial = s.serial;
-    auto wire = WireCamera::open(s, [i = impl.get()] { i->expose(); });
-    if (!wire) return tl::unexpected(wire.error());
-    impl->wire = std::move(*wire);
+    SEAM_TRY(auto wire, WireCamera::open(s, [i = impl.get()] { i->expose(); }));
+    impl->wire = std::move(wire);
     impl->drawing = std::thread([i = impl.get()] { i->draw(); });
     return std::unique_ptr<ServedCamera>(new ServedCamera(std::move(impl)));
 }

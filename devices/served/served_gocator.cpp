@@ -200,22 +200,18 @@ Expected<std::unique_ptr<ServedGocator>> ServedGocator::open(std::shared_ptr<Sim
     read.whole("start_ms", start_ms, 0, 15000);
     read.whole("serial", serial, 1, 4294967295.0);
     if (read.failed()) return tl::unexpected(read.error());
-    if (auto known = gocator::check_format({format}); !known) return tl::unexpected(known.error());
-    auto tool = make_feature_finder({"contour-end", {}, {}, Eigen::Vector2d::Zero()});
-    if (!tool) return tl::unexpected(tool.error());
-    auto control = TcpListener::listen(address, control_port);
-    if (!control) return tl::unexpected(control.error());
-    auto data = TcpListener::listen(address, data_port);
-    if (!data) return tl::unexpected(data.error());
-    auto ascii = TcpListener::listen(address, ascii_port);
-    if (!ascii) return tl::unexpected(ascii.error());
+    SEAM_OK(gocator::check_format({format}));
+    SEAM_TRY(auto tool, make_feature_finder({"contour-end", {}, {}, Eigen::Vector2d::Zero()}));
+    SEAM_TRY(auto control, TcpListener::listen(address, control_port));
+    SEAM_TRY(auto data, TcpListener::listen(address, data_port));
+    SEAM_TRY(auto ascii, TcpListener::listen(address, ascii_port));
     auto impl = std::unique_ptr<Impl>(new Impl{.cell = std::move(cell),
                                                .serial = std::to_string(serial),
                                                .format = format,
-                                               .control = {std::move(*control), {}},
-                                               .data = {std::move(*data), {}},
-                                               .ascii = {std::move(*ascii), {}},
-                                               .tool = std::move(*tool),
+                                               .control = {std::move(control), {}},
+                                               .data = {std::move(data), {}},
+                                               .ascii = {std::move(ascii), {}},
+                                               .tool = std::move(tool),
                                                .start_time = std::chrono::milliseconds(start_ms)});
     impl->thread = std::jthread([i = impl.get()](const std::stop_token& stop) { i->serve(stop); });
     return std::unique_ptr<ServedGocator>(new ServedGocator(std::move(impl)));

@@ -270,8 +270,7 @@ Expected<std::unique_ptr<WireCamera>> WireCamera::open(const WireCameraSettings&
     if (!(settings.lost_packets_per_mille >= 0 && settings.lost_packets_per_mille <= 1000))
         return input_error("must be 0 to 1000", "lost_packets_per_mille");
     if (settings.pixel_formats.empty()) return input_error("one pixel format at least", "pixel_formats");
-    auto description = write_description(settings);
-    if (!description) return tl::unexpected(description.error());
+    SEAM_TRY(auto description, write_description(settings));
     auto impl = std::make_unique<Impl>();
     Impl* i = impl.get();
     i->settings = settings;
@@ -279,9 +278,9 @@ Expected<std::unique_ptr<WireCamera>> WireCamera::open(const WireCameraSettings&
     i->lost_per_mille = settings.lost_packets_per_mille;
     i->loss.seed(settings.loss_seed);
     i->frame_id = static_cast<std::uint16_t>(std::max<int>(settings.first_frame_id, 1) - 1);
-    i->registers.reset(arv_fake_camera_new_full(settings.serial.c_str(), description->c_str()));
+    i->registers.reset(arv_fake_camera_new_full(settings.serial.c_str(), description.c_str()));
     std::error_code ignored;
-    std::filesystem::remove(*description, ignored);
+    std::filesystem::remove(description, ignored);
     i->wake_up();
     for (const std::string& address : addresses_of(settings.address)) {
         auto server = GigeServer::open(address, *i);

@@ -37,17 +37,15 @@ Expected<std::shared_ptr<SimulatedCell>> SimulatedCell::open(const CellSettings&
     if (settings.mesh.empty()) {
         mesh = door_mesh();
     } else {
-        auto loaded = load_mesh(settings.mesh, settings.mesh_unit);
-        if (!loaded) return tl::unexpected(loaded.error());
-        mesh = std::move(*loaded);
+        SEAM_TRY(auto loaded, load_mesh(settings.mesh, settings.mesh_unit));
+        mesh = std::move(loaded);
     }
     return std::shared_ptr<SimulatedCell>(new SimulatedCell(settings, std::move(mesh)));
 }
 
 Expected<std::shared_ptr<SimulatedCell>> SimulatedCell::open(const nlohmann::json& settings) {
-    const auto parsed = parse_cell_settings(settings);
-    if (!parsed) return tl::unexpected(parsed.error());
-    return open(*parsed);
+    SEAM_TRY(const auto parsed, parse_cell_settings(settings));
+    return open(parsed);
 }
 
 PartState SimulatedCell::part() const {

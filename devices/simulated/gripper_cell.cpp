@@ -170,17 +170,15 @@ Expected<GripperCellSettings> parse_gripper_settings(const nlohmann::json& json)
             else
                 common[key] = json.at(key);
         }
-    auto parsed = parse_cell_settings(common);
-    if (!parsed) return tl::unexpected(parsed.error());
-    s.common = std::move(*parsed);
+    SEAM_TRY(auto parsed, parse_cell_settings(common));
+    s.common = std::move(parsed);
     s.base_from_opening = make_pose(rotation_exp({0.2, -0.1, 0.7}), {1400, -300, 900});
     f.pose("base_from_opening", s.base_from_opening);
     f.number("gap_mm", s.gap_mm);
     for (const auto& [key, part] : {std::pair{"panel", &s.panel}, {"body", &s.body}})
         if (json.contains(key)) {
-            auto state = parse_part_state(json.at(key));
-            if (!state) return tl::unexpected(state.error());
-            *part = *state;
+            SEAM_TRY(auto state, parse_part_state(json.at(key)));
+            *part = state;
         }
     if (json.contains("heads")) {
         s.heads.clear();
@@ -208,9 +206,8 @@ GripperCell::GripperCell(const GripperCellSettings& settings)
       mode_(settings.common.robot.mode) {}
 
 Expected<std::shared_ptr<GripperCell>> GripperCell::open(const nlohmann::json& settings) {
-    const auto parsed = parse_gripper_settings(settings);
-    if (!parsed) return tl::unexpected(parsed.error());
-    return std::make_shared<GripperCell>(*parsed);
+    SEAM_TRY(const auto parsed, parse_gripper_settings(settings));
+    return std::make_shared<GripperCell>(parsed);
 }
 
 Pose GripperCell::relation(const Pose& base_from_flange) const {
@@ -313,8 +310,7 @@ Expected<Pose> GripperCell::read_frame(const std::string& name) const {
 Expected<void> GripperCell::write_frame(const std::string& name, const Pose& base_from_frame) {
     if (!base_from_frame.matrix().allFinite())
         return device_error("the frame is not finite", "simulated gripper");
-    auto there = read_frame(name);
-    if (!there) return tl::unexpected(there.error());
+    SEAM_OK(read_frame(name));
     const std::lock_guard lock(mutex_);
     frames_[name] = base_from_frame;
     return {};

@@ -36,11 +36,10 @@ class GripperSensor final : public ProfileSource {
         waiting_.clear();
     }
     Expected<void> trigger(const std::string& spot_id) override {
-        auto exposed = cell_->expose(spot_id);
-        if (!exposed) return tl::unexpected(exposed.error());
+        SEAM_TRY(auto exposed, cell_->expose(spot_id));
         const std::lock_guard lock(mutex_);
         if (!running_) return device_error("the sensor is not started", "simulated gripper");
-        waiting_.push_back(std::move(*exposed));
+        waiting_.push_back(std::move(exposed));
         arrived_.notify_one();
         return {};
     }
@@ -99,7 +98,7 @@ class GripperSensor final : public ProfileSource {
                            "known is exposure_us");
     }
     Expected<void> set(const std::string& parameter, double value) override {
-        if (auto ok = validate({{parameter, value}}, parameters(), "simulated gripper"); !ok) return ok;
+        SEAM_OK(validate({{parameter, value}}, parameters(), "simulated gripper"));
         cell_->set_exposure_us(value);
         return {};
     }
@@ -130,7 +129,7 @@ class GripperRobot final : public RobotLink {
         return *pose;
     }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
-        if (auto ready = check_ready(); !ready) return ready;
+        SEAM_OK(check_ready());
         for (const MeasuringMove& move : moves)
             if (!move.trigger.matrix().allFinite())
                 return input_error("a pose of the move is not finite", move.spot_id);
@@ -147,7 +146,7 @@ class GripperRobot final : public RobotLink {
         return cell_->write_frame(name, base_from_frame);
     }
     Expected<void> move_to(const Pose& base_from_flange) override {
-        if (auto ready = check_ready(); !ready) return ready;
+        SEAM_OK(check_ready());
         if (!base_from_flange.matrix().allFinite())
             return input_error("the pose is not finite", "simulated gripper");
         cell_->move_to(base_from_flange);
@@ -180,14 +179,13 @@ std::unique_ptr<RobotLink> make_gripper_robot(std::shared_ptr<GripperCell> cell)
 
 Expected<std::shared_ptr<GripperCell>> shared_gripper_cell(const nlohmann::json& settings,
                                                            DeviceSession& session) {
-    if (auto known = parse_gripper_settings(settings); !known) return tl::unexpected(known.error());
+    SEAM_OK(parse_gripper_settings(settings));
     nlohmann::json common = settings;
     common.erase("head");
     const auto shared =
         session.shared<SharedGripper>("simulated-gripper", [&]() -> Expected<std::shared_ptr<SharedGripper>> {
-            auto cell = GripperCell::open(common);
-            if (!cell) return tl::unexpected(cell.error());
-            return std::make_shared<SharedGripper>(SharedGripper{*cell, common});
+            SEAM_TRY(auto cell, GripperCell::open(common));
+            return std::make_shared<SharedGripper>(SharedGripper{cell, common});
         });
     if (!shared) return tl::unexpected(shared.error());
     if ((*shared)->settings != common)
@@ -198,19 +196,17 @@ Expected<std::shared_ptr<GripperCell>> shared_gripper_cell(const nlohmann::json&
 
 Expected<std::unique_ptr<ProfileSource>> open_gripper_sensor(const nlohmann::json& settings,
                                                              DeviceSession& session) {
-    auto cell = shared_gripper_cell(settings, session);
-    if (!cell) return tl::unexpected(cell.error());
+    SEAM_TRY(auto cell, shared_gripper_cell(settings, session));
     if (!settings.contains("head"))
         return input_error("it is not said which head this sensor is", "settings.head",
                            "name one of settings.heads");
-    return make_gripper_sensor(*cell, settings.at("head").get<std::string>());
+    return make_gripper_sensor(cell, settings.at("head").get<std::string>());
 }
 
 Expected<std::unique_ptr<RobotLink>> open_gripper_robot(const nlohmann::json& settings,
                                                         DeviceSession& session) {
-    auto cell = shared_gripper_cell(settings, session);
-    if (!cell) return tl::unexpected(cell.error());
-    return make_gripper_robot(*cell);
+    SEAM_TRY(auto cell, shared_gripper_cell(settings, session));
+    return make_gripper_robot(cell);
 }
 
 }  // namespace seamwright

@@ -106,7 +106,7 @@ class SimulatedSensor final : public ProfileSource {
                            "known are exposure_us, gain_db, laser, scene");
     }
     Expected<void> set(const std::string& parameter, double value) override {
-        if (auto ok = validate({{parameter, value}}, parameters(), "simulated sensor"); !ok) return ok;
+        SEAM_OK(validate({{parameter, value}}, parameters(), "simulated sensor"));
         cell_->set_parameter(parameter, value);
         return {};
     }
@@ -191,9 +191,8 @@ std::unique_ptr<RobotLink> make_simulated_robot(std::shared_ptr<SimulatedCell> c
 Expected<std::shared_ptr<SimulatedCell>> shared_cell(const nlohmann::json& settings, DeviceSession& session) {
     const auto shared =
         session.shared<SharedCell>("simulated", [&]() -> Expected<std::shared_ptr<SharedCell>> {
-            auto cell = SimulatedCell::open(settings);
-            if (!cell) return tl::unexpected(cell.error());
-            return std::make_shared<SharedCell>(SharedCell{*cell, settings});
+            SEAM_TRY(auto cell, SimulatedCell::open(settings));
+            return std::make_shared<SharedCell>(SharedCell{cell, settings});
         });
     if (!shared) return tl::unexpected(shared.error());
     if ((*shared)->settings != settings) {
@@ -205,16 +204,14 @@ Expected<std::shared_ptr<SimulatedCell>> shared_cell(const nlohmann::json& setti
 
 Expected<std::unique_ptr<ProfileSource>> open_simulated_sensor(const nlohmann::json& settings,
                                                                DeviceSession& session) {
-    auto cell = shared_cell(settings, session);
-    if (!cell) return tl::unexpected(cell.error());
-    return make_simulated_sensor(*cell);
+    SEAM_TRY(auto cell, shared_cell(settings, session));
+    return make_simulated_sensor(cell);
 }
 
 Expected<std::unique_ptr<RobotLink>> open_simulated_robot(const nlohmann::json& settings,
                                                           DeviceSession& session) {
-    auto cell = shared_cell(settings, session);
-    if (!cell) return tl::unexpected(cell.error());
-    return make_simulated_robot(*cell);
+    SEAM_TRY(auto cell, shared_cell(settings, session));
+    return make_simulated_robot(cell);
 }
 
 }  // namespace seamwright

@@ -57,7 +57,7 @@ Expected<std::string> Dashboard::ask_once(const std::string& question) {
         if (!made) return fail(made.error());
         connection_.emplace(std::move(*made));
         received_.clear();
-        if (auto greeting = line(until); !greeting) return greeting;
+        SEAM_OK(line(until));
     }
     if (auto sent = connection_->send(bytes_of(question + "\n"), timeout_); !sent) return fail(sent.error());
     return line(until);

@@ -77,12 +77,11 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
         if (!(move.speed_mm_s > 0 && move.speed_mm_s <= 1000 * kFastest_m_s))
             return input_error(Text("{} mm/s is no speed for measuring", move.speed_mm_s), where,
                                "give up to 2000 mm/s");
-        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit})
-            if (auto ok = check_pose(*pose, where); !ok) return tl::unexpected(ok.error());
+        for (const Pose* pose : {&move.entry, &move.trigger, &move.exit}) SEAM_OK(check_pose(*pose, where));
         passes += fmt::format("    # spot {}\n", program_comment(move.spot_id));
         for (std::size_t i = 0; i < move.via.size(); ++i) {
             const Pose& at = move.via[i];
-            if (auto ok = check_pose(at, where); !ok) return tl::unexpected(ok.error());
+            SEAM_OK(check_pose(at, where));
             double blend = last ? blend_mm(kMostBlend_mm, *last, at,
                                            i + 1 < move.via.size() ? move.via[i + 1] : move.entry)
                                 : 0;
@@ -103,7 +102,7 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     std::string list;
     for (const ApplicationFrame& frame : request.frames) {
         const Text where("frame of region {}", frame.region_id);
-        if (auto ok = check_pose(frame.base_from_frame, where); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_pose(frame.base_from_frame, where));
         const auto [at, fresh] = names.emplace(ur::frame_number(frame.name), frame.name);
         if (!fresh)
             return input_error(
@@ -137,7 +136,7 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
 }
 
 Expected<std::vector<ProgramFile>> write_ur_path(const PathProgramRequest& request) {
-    if (auto ok = check_path_program(request); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_path_program(request));
     const std::vector<Pose>& points = request.frame_from_tool;
     std::string text = fmt::format(
         "# {}\n# the TCP is the caller's; bring the robot before the first point\n"

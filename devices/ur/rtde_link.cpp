@@ -77,10 +77,9 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<RobotMode> present_mode() {
-        auto state = coming();
-        if (!state) return tl::unexpected(state.error());
+        SEAM_TRY(auto state, coming());
         constexpr int kRobotRunning = 7;
-        switch ((*state)->safety_mode) {
+        switch (state->safety_mode) {
             case 1:  // normal
             case 2:
                 break;  // reduced
@@ -96,13 +95,12 @@ class RtdeLink final : public RobotLink {
             default:
                 return RobotMode::unknown;
         }
-        if ((*state)->robot_mode != kRobotRunning || (*state)->runtime != kPlaying) return RobotMode::stopped;
+        if (state->robot_mode != kRobotRunning || state->runtime != kPlaying) return RobotMode::stopped;
         auto remote = dashboard_.ask("is in remote control");  // CB3 does not know the question
         if (!remote) return tl::unexpected(remote.error());
         if (remote->starts_with("true")) return RobotMode::external;
-        auto operational = dashboard_.ask("get operational mode");
-        if (!operational) return tl::unexpected(operational.error());
-        return operational->starts_with("MANUAL") ? RobotMode::manual_reduced : RobotMode::automatic;
+        SEAM_TRY(auto operational, dashboard_.ask("get operational mode"));
+        return operational.starts_with("MANUAL") ? RobotMode::manual_reduced : RobotMode::automatic;
     }
 
     Expected<Pose> base_from_flange() override {
@@ -111,29 +109,26 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<Pose> flange() {
-        auto state = coming();
-        if (!state) return tl::unexpected(state.error());
-        if ((*state)->bad_pose) return fail(*(*state)->bad_pose);
-        return (*state)->base_from_tcp * (*state)->flange_from_tcp.inverse();
+        SEAM_TRY(auto state, coming());
+        if (state->bad_pose) return fail(*state->bad_pose);
+        return state->base_from_tcp * state->flange_from_tcp.inverse();
     }
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         const std::lock_guard lock(mutex_);
-        auto called = wait_until(timeout, [](const State& s) { return s.numbers[ur::kCall] != 0; });
-        if (!called) return tl::unexpected(called.error());
+        SEAM_OK(wait_until(timeout, [](const State& s) { return s.numbers[ur::kCall] != 0; }));
         const std::int64_t not_before = quiet_ns_;
         const std::int32_t call = state_->numbers[ur::kCall];
         std::array<std::int32_t, 4> part{};
         std::copy_n(state_->numbers.begin() + ur::kPart, 4, part.begin());
-        if (auto taken = ask(Command::taken, call); !taken) return tl::unexpected(taken.error());
+        SEAM_OK(ask(Command::taken, call));
         return StartSignal{ur::part_from_registers(part), host_now_ns(), not_before};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
         const std::lock_guard lock(mutex_);
-        auto now = present_mode();
-        if (!now) return tl::unexpected(now.error());
-        if (*now == RobotMode::stopped || *now == RobotMode::fault)
+        SEAM_TRY(auto now, present_mode());
+        if (now == RobotMode::stopped || now == RobotMode::fault)
             return device_error("the robot is stopped", where_, "start its program on the controller");
         spots_.clear();
         told_ = 0;
@@ -144,17 +139,15 @@ class RtdeLink final : public RobotLink {
             const auto state = ur::state_from(s.numbers[ur::kState]);
             return s.runtime != kPlaying || !state || state->phase != ur::Phase::elsewhere;
         });
-        auto started = ask(Command::measure, 0, high, low);
-        if (!started) return tl::unexpected(started.error());
+        SEAM_OK(ask(Command::measure, 0, high, low));
         return {};
     }
 
     Expected<TriggerEvent> wait_trigger(std::chrono::milliseconds timeout) override {
         const std::lock_guard lock(mutex_);
-        auto fired = wait_until(timeout, [this](const State& s) {
+        SEAM_OK(wait_until(timeout, [this](const State& s) {
             return s.numbers[ur::kFired] != static_cast<std::int32_t>(told_) || measuring_ended(s);
-        });
-        if (!fired) return tl::unexpected(fired.error());
+        }));
         const std::int64_t heard_ns = host_now_ns();
         const std::int32_t count = state_->numbers[ur::kFired];
         if (count == static_cast<std::int32_t>(told_) || measuring_ended(*state_))
@@ -165,9 +158,8 @@ class RtdeLink final : public RobotLink {
                          fmt::format("the controller counts {} triggers after {}", count, told_), where_,
                          "measure the part again"});
         // The module keeps all of a part, so none is lost between two packages.
-        auto answer = ask(Command::trigger, static_cast<std::int32_t>(told_ + 1));
-        if (!answer) return tl::unexpected(answer.error());
-        return TriggerEvent{spots_[told_++], heard_ns, *answer};
+        SEAM_TRY(auto answer, ask(Command::trigger, static_cast<std::int32_t>(told_ + 1)));
+        return TriggerEvent{spots_[told_++], heard_ns, answer};
     }
 
     Expected<Pose> read_frame(const std::string& name) override {
@@ -180,7 +172,7 @@ class RtdeLink final : public RobotLink {
         if (!base_from_frame.matrix().allFinite() ||
             base_from_frame.translation().cwiseAbs().maxCoeff() > 1e5)
             return input_error("the frame is not finite or beyond 100 m", name);
-        if (auto same = same_robot(); !same) return same;
+        SEAM_OK(same_robot());
         auto written =
             named(name, ask(Command::write, ur::frame_number(name), 0, 0, ur::ur_pose(base_from_frame)));
         if (!written) return tl::unexpected(written.error());
@@ -190,10 +182,8 @@ class RtdeLink final : public RobotLink {
     Expected<void> confirm(PartVerdict verdict, const std::string&) override {
         const std::lock_guard lock(mutex_);
         const bool released = verdict == PartVerdict::corrected;
-        if (released)
-            if (auto same = same_robot(); !same) return same;
-        auto told = ask(Command::verdict, released ? 1 : verdict == PartVerdict::refused ? 2 : 3);
-        if (!told) return tl::unexpected(told.error());
+        if (released) SEAM_OK(same_robot());
+        SEAM_OK(ask(Command::verdict, released ? 1 : verdict == PartVerdict::refused ? 2 : 3));
         const auto state = ur::state_from(state_->numbers[ur::kState]);
         if (!state || (state->permitted != ur::Permitted::no) != released)
             return device_error("the controller did not keep the verdict", where_);
@@ -202,9 +192,8 @@ class RtdeLink final : public RobotLink {
 
     Expected<Permission> permission() override {
         const std::lock_guard lock(mutex_);
-        auto now = coming();
-        if (!now) return tl::unexpected(now.error());
-        const State& s = **now;
+        SEAM_TRY(auto now, coming());
+        const State& s = *now;
         if (s.numbers[ur::kModule] != ur::kModuleVersion || s.runtime != kPlaying) return Permission::none;
         const auto state = ur::state_from(s.numbers[ur::kState]);
         if (!state)
@@ -227,29 +216,25 @@ class RtdeLink final : public RobotLink {
     Expected<void> move_to(const Pose& base_from_flange) override {
         const std::lock_guard lock(mutex_);
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
-        if (auto same = same_robot(); !same) return same;
-        auto at = flange();
-        if (!at) return tl::unexpected(at.error());
+        SEAM_OK(same_robot());
+        SEAM_TRY(auto at, flange());
         // Twice what the way takes at the programmed speed; a slider may have slowed the robot down.
-        const double way_s = distance_mm(*at, base_from_flange) / kTeach_mm_s +
-                             deg_from_rad(angle_rad(*at, base_from_flange)) / kTeach_deg_s;
+        const double way_s = distance_mm(at, base_from_flange) / kTeach_mm_s +
+                             deg_from_rad(angle_rad(at, base_from_flange)) / kTeach_deg_s;
         Timeout timeout = timeout_ + Timeout(3000 + static_cast<std::int64_t>(2000 * way_s));
         if (settings_.move_timeout_ms > 0) timeout = Timeout(settings_.move_timeout_ms);
-        auto there = ask(Command::move, 0, 0, 0, ur::ur_pose(base_from_flange), timeout);
-        if (!there) return tl::unexpected(there.error());
+        SEAM_OK(ask(Command::move, 0, 0, 0, ur::ur_pose(base_from_flange), timeout));
         return {};
     }
 
   private:
     Expected<RobotIdentity> ask_identity() {
-        auto model = dashboard_.ask("get robot model");
-        if (!model) return tl::unexpected(model.error());
-        auto serial = dashboard_.ask("get serial number");
-        if (!serial) return tl::unexpected(serial.error());
-        return RobotIdentity{"ur-rtde", "Universal Robots", *model, *serial};
+        SEAM_TRY(auto model, dashboard_.ask("get robot model"));
+        SEAM_TRY(auto serial, dashboard_.ask("get serial number"));
+        return RobotIdentity{"ur-rtde", "Universal Robots", model, serial};
     }
     Expected<void> same_robot() {
-        if (auto ready = connected(); !ready) return ready;
+        SEAM_OK(connected());
         return robot_.check([this] { return ask_identity(); }, where_);
     }
 
@@ -347,18 +332,16 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<bool> accepted(const Package& question, Clock::time_point until) {
-        auto answer = request(question, until);
-        if (!answer) return tl::unexpected(answer.error());
-        auto yes = rtde::accepted_of(answer->payload);
+        SEAM_TRY(auto answer, request(question, until));
+        auto yes = rtde::accepted_of(answer.payload);
         if (!yes) return fail(yes.error());
         return yes;
     }
 
     Expected<Recipe> recipe(const Package& question, const std::vector<std::string>& names, bool numbered,
                             Clock::time_point until) {
-        auto answer = request(question, until);
-        if (!answer) return tl::unexpected(answer.error());
-        return rtde::recipe_of(answer->payload, names, numbered);
+        SEAM_TRY(auto answer, request(question, until));
+        return rtde::recipe_of(answer.payload, names, numbered);
     }
 
     std::vector<std::string> output_names(bool with_offset) const {
@@ -382,13 +365,11 @@ class RtdeLink final : public RobotLink {
 
     Expected<void> negotiate(Clock::time_point until) {
         version_ = 2;
-        auto second = accepted({rtde::Type::protocol_version, rtde::version_payload(2)}, until);
-        if (!second) return tl::unexpected(second.error());
-        if (!*second) {
+        SEAM_TRY(auto second, accepted({rtde::Type::protocol_version, rtde::version_payload(2)}, until));
+        if (!second) {
             version_ = 1;
-            auto first = accepted({rtde::Type::protocol_version, rtde::version_payload(1)}, until);
-            if (!first) return tl::unexpected(first.error());
-            if (!*first)
+            SEAM_TRY(auto first, accepted({rtde::Type::protocol_version, rtde::version_payload(1)}, until));
+            if (!first)
                 return fail({ErrorKind::device, "the controller accepts neither RTDE 2 nor 1", {}, {}});
         }
         const bool numbered = version_ == 2;
@@ -417,9 +398,8 @@ class RtdeLink final : public RobotLink {
                          "the answer gives the variables other types than the RTDE guide",
                          {},
                          {}});
-        auto started = accepted({rtde::Type::start, {}}, until);
-        if (!started) return tl::unexpected(started.error());
-        if (!*started)
+        SEAM_TRY(auto started, accepted({rtde::Type::start, {}}, until));
+        if (!started)
             return fail({ErrorKind::device, Text("the controller refuses to start RTDE{}", heard()), {}, {}});
         return {};
     }
@@ -492,9 +472,8 @@ class RtdeLink final : public RobotLink {
     }
 
     Expected<void> next_state(Clock::time_point until) {
-        auto package = receive(until);
-        if (!package) return tl::unexpected(package.error());
-        if (auto taken = take(*package); !taken) return taken;
+        SEAM_TRY(auto package, receive(until));
+        SEAM_OK(take(package));
         return beat();
     }
 
@@ -520,11 +499,9 @@ class RtdeLink final : public RobotLink {
 
     // What has come already, and the next package where that is too old.
     Expected<const State*> newest() {
-        if (auto ready = connected(); !ready) return tl::unexpected(ready.error());
-        if (auto taken = take_all(); !taken) return tl::unexpected(taken.error());
-        if (!state_ || Clock::now() - state_->at > kStale)
-            if (auto fresh = next_state(Clock::now() + timeout_); !fresh)
-                return tl::unexpected(fresh.error());
+        SEAM_OK(connected());
+        SEAM_OK(take_all());
+        if (!state_ || Clock::now() - state_->at > kStale) SEAM_OK(next_state(Clock::now() + timeout_));
         return &*state_;
     }
 
@@ -532,7 +509,7 @@ class RtdeLink final : public RobotLink {
     Expected<const State*> coming() {
         auto state = newest();
         if (!state) return state;
-        if (auto next = next_state(Clock::now() + timeout_); !next) return tl::unexpected(next.error());
+        SEAM_OK(next_state(Clock::now() + timeout_));
         return &*state_;
     }
 
@@ -554,21 +531,19 @@ class RtdeLink final : public RobotLink {
     Expected<Pose> ask(Command command, std::int32_t argument = 0, std::int32_t high = 0,
                        std::int32_t low = 0, const std::array<double, 6>& pose = {},
                        std::optional<Timeout> timeout = {}) {
-        auto state = newest();
-        if (!state) return tl::unexpected(state.error());
-        if ((*state)->numbers[ur::kModule] != ur::kModuleVersion)
+        SEAM_TRY(auto state, newest());
+        if (state->numbers[ur::kModule] != ur::kModuleVersion)
             return device_error(
                 "the module seamwright.script does not run", where_,
                 "load what `seamwright robot-program --brand ur` writes and start the program");
-        const std::int32_t before = (*state)->numbers[ur::kAnswered];
+        const std::int32_t before = state->numbers[ur::kAnswered];
         number_ = number_ >= 2'000'000'000 ? 1 : number_ + 1;
         last_request_ = {number_, static_cast<std::int32_t>(command), argument, high, low, 0, 0};
         for (const double v : pose) last_request_.emplace_back(v);
         const auto until = Clock::now() + timeout.value_or(timeout_);
-        if (auto sent = send_request(); !sent) return tl::unexpected(sent.error());
+        SEAM_OK(send_request());
         for (;;) {
-            if (auto next = next_state(std::min(until, Clock::now() + timeout_)); !next)
-                return tl::unexpected(next.error());
+            SEAM_OK(next_state(std::min(until, Clock::now() + timeout_)));
             const std::int32_t answered = state_->numbers[ur::kAnswered];
             if (answered == number_) break;
             if (answered != before)

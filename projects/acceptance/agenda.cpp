@@ -18,9 +18,8 @@ Expected<std::optional<StudyProgress>> newest_progress(const ProjectFile& file, 
     for (auto e = evidence.rbegin(); e != evidence.rend(); ++e) {
         const auto* plan = std::get_if<StudyPlan>(&e->what);
         if (!plan || plan->study != to_string(study) || plan->region_id != region_id) continue;
-        auto then = file.load_setup(e->setup);
-        if (!then) return tl::unexpected(then.error());
-        if (!changed_since(*then, project).empty()) return std::nullopt;
+        SEAM_TRY(auto then, file.load_setup(e->setup));
+        if (!changed_since(then, project).empty()) return std::nullopt;
         LiveStudyOptions options;
         options.study = study;
         options.region = region_id;
@@ -144,8 +143,7 @@ std::optional<Study> live_study_of(AgendaStudy study) {
 
 Expected<Agenda> acceptance_agenda(const ProjectFile& file, const Project& project,
                                    const StoredAcceptance& stored) {
-    auto evidence = file.evidence();
-    if (!evidence) return tl::unexpected(evidence.error());
+    SEAM_TRY(auto evidence, file.evidence());
     Agenda agenda;
     for (const AgendaStudy study : kAgenda) {
         AgendaItem& item = agenda.of(study);
@@ -154,9 +152,8 @@ Expected<Agenda> acceptance_agenda(const ProjectFile& file, const Project& proje
         of_studies(item, stored);
         of_devices(item, stored);
         if (const auto live = live_study_of(study)) {
-            auto progress = newest_progress(file, project, *evidence, *live, stored.region_id);
-            if (!progress) return tl::unexpected(progress.error());
-            item.progress = std::move(*progress);
+            SEAM_TRY(auto progress, newest_progress(file, project, evidence, *live, stored.region_id));
+            item.progress = std::move(progress);
             if (item.progress && !item.progress->complete()) {
                 item.state = State::begun;
                 item.finding = item.progress->refused() > 0

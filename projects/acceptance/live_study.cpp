@@ -58,10 +58,8 @@ Expected<StudyPlan> plan_of(const Project& project, const LiveStudyOptions& o) {
     if (o.study == Study::vda5)
         return usage_error("this study is made of others' values", "--runs",
                            "measure type1 and type3, then leave --runs out");
-    if (auto good = check_number(o.runs, 1, kMostStudyRuns, "--runs"); !good)
-        return tl::unexpected(good.error());
-    if (auto good = check_number(o.rehangs, 1, kMostRehangs, "--rehangs"); !good)
-        return tl::unexpected(good.error());
+    SEAM_OK(check_number(o.runs, 1, kMostStudyRuns, "--runs"));
+    SEAM_OK(check_number(o.rehangs, 1, kMostRehangs, "--rehangs"));
     if (of_parts(o.study)) {
         if (o.parts.size() < 2 || o.parts.size() > kMostStudyParts)
             return usage_error(Text("{} parts are named", o.parts.size()), "--parts",
@@ -70,7 +68,7 @@ Expected<StudyPlan> plan_of(const Project& project, const LiveStudyOptions& o) {
         return usage_error("this study is of one part that is not touched", "--parts",
                            "name one with --part, or none for the part as taught");
     }
-    if (auto good = check_parts(o); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_parts(o));
     plan.parts = o.parts;
     plan.rehangs = o.rehangs;
     plan.runs = o.runs;
@@ -109,10 +107,9 @@ std::optional<bool> outcome(const RunRecord& run, const std::string& region_id) 
 
 // The runs of the plan made with `setup` are counted; those of another one are returned.
 Expected<int> count_runs(const ProjectFile& file, std::int64_t setup, StudyProgress& progress) {
-    auto runs = file.runs();
-    if (!runs) return tl::unexpected(runs.error());
+    SEAM_TRY(auto runs, file.runs());
     int others = 0;
-    for (const RunSummary& summary : *runs) {
+    for (const RunSummary& summary : runs) {
         if (summary.number <= progress.plan.after_run) continue;
         if (summary.status != RunStatus::ok && summary.status != RunStatus::refused) continue;
         for (StudyStep& step : progress.steps) {
@@ -123,9 +120,8 @@ Expected<int> count_runs(const ProjectFile& file, std::int64_t setup, StudyProgr
                 ++others;
                 break;
             }
-            auto run = file.load_run(summary.number, false);
-            if (!run) return tl::unexpected(run.error());
-            if (const auto passed = outcome(*run, progress.plan.region_id))
+            SEAM_TRY(auto run, file.load_run(summary.number, false));
+            if (const auto passed = outcome(run, progress.plan.region_id))
                 ++(*passed ? step.made : step.refused);
             break;
         }
@@ -135,10 +131,9 @@ Expected<int> count_runs(const ProjectFile& file, std::int64_t setup, StudyProgr
 
 // The newest plan of the same question, with the setup it is of.
 Expected<std::optional<Evidence>> newest_plan(const ProjectFile& file, const StudyPlan& asked) {
-    auto evidence = file.evidence();
-    if (!evidence) return tl::unexpected(evidence.error());
+    SEAM_TRY(auto evidence, file.evidence());
     std::optional<Evidence> newest;
-    for (Evidence& e : *evidence)
+    for (Evidence& e : evidence)
         if (const auto* plan = std::get_if<StudyPlan>(&e.what); plan && same_question(*plan, asked))
             newest = std::move(e);
     return newest;
@@ -149,8 +144,7 @@ Expected<StudyProgress> progress_of(const ProjectFile& file, const Evidence& at)
     progress.plan = std::get<StudyPlan>(at.what);
     progress.setup = at.setup;
     progress.steps = steps_of(progress.plan);
-    auto others = count_runs(file, at.setup, progress);
-    if (!others) return tl::unexpected(others.error());
+    SEAM_OK(count_runs(file, at.setup, progress));
     progress.resumed = progress.made() + progress.refused() > 0;
     return progress;
 }
@@ -161,28 +155,23 @@ Text what_is_missing(const StudyProgress& progress) {
 
 // Goes on with what was begun, or begins: then the plan is in the file before the first run.
 Expected<StudyProgress> begin(Station& station, const LiveStudyOptions& options) {
-    auto asked = plan_of(station.project(), options);
-    if (!asked) return tl::unexpected(asked.error());
-    auto setup = station.file().setup_of(station.project());
-    if (!setup) return tl::unexpected(setup.error());
+    SEAM_TRY(auto asked, plan_of(station.project(), options));
+    SEAM_TRY(auto setup, station.file().setup_of(station.project()));
     int other_setup = 0;
     if (!options.anew) {
-        auto newest = newest_plan(station.file(), *asked);
-        if (!newest) return tl::unexpected(newest.error());
-        if (*newest) {
-            auto progress = progress_of(station.file(), **newest);
-            if (!progress || (*newest)->setup == *setup) return progress;
+        SEAM_TRY(auto newest, newest_plan(station.file(), asked));
+        if (newest) {
+            auto progress = progress_of(station.file(), *newest);
+            if (!progress || newest->setup == setup) return progress;
             if (!progress->complete()) other_setup = progress->made();
         }
     }
-    auto runs = station.file().runs();
-    if (!runs) return tl::unexpected(runs.error());
-    if (!runs->empty()) asked->after_run = runs->back().number;
-    if (auto kept = station.file().append_evidence({0, {}, 0, *asked}, station.project()); !kept)
-        return tl::unexpected(kept.error());
+    SEAM_TRY(auto runs, station.file().runs());
+    if (!runs.empty()) asked.after_run = runs.back().number;
+    SEAM_OK(station.file().append_evidence({0, {}, 0, asked}, station.project()));
     StudyProgress progress;
-    progress.plan = std::move(*asked);
-    progress.setup = *setup;
+    progress.plan = std::move(asked);
+    progress.setup = setup;
     progress.steps = steps_of(progress.plan);
     progress.other_setup = other_setup;
     return progress;
@@ -213,15 +202,12 @@ const StudyStep* StudyProgress::next() const {
 
 Expected<std::optional<StudyProgress>> study_progress(const ProjectFile& file, const Project& project,
                                                       const LiveStudyOptions& options) {
-    auto asked = plan_of(project, options);
-    if (!asked) return tl::unexpected(asked.error());
-    auto newest = newest_plan(file, *asked);
-    if (!newest) return tl::unexpected(newest.error());
-    if (!*newest) return std::optional<StudyProgress>();
-    auto progress = progress_of(file, **newest);
-    if (!progress) return tl::unexpected(progress.error());
-    if (!progress->complete()) progress->stopped = what_is_missing(*progress);
-    return std::optional(std::move(*progress));
+    SEAM_TRY(auto asked, plan_of(project, options));
+    SEAM_TRY(auto newest, newest_plan(file, asked));
+    if (!newest) return std::optional<StudyProgress>();
+    SEAM_TRY(auto progress, progress_of(file, *newest));
+    if (!progress.complete()) progress.stopped = what_is_missing(progress);
+    return std::optional(std::move(progress));
 }
 
 Expected<StudyProgress> measure_study(Station& station, const LiveStudyOptions& options) {
@@ -250,21 +236,20 @@ Expected<StudyProgress> measure_study(Station& station, const LiveStudyOptions& 
                 progress->stopped = Text("cancelled, {}", what_is_missing(*progress));
                 return progress;
             }
-            auto run = station.run(run_options);
-            if (!run) return tl::unexpected(run.error());
-            const auto passed = outcome(*run, progress->plan.region_id);
+            SEAM_TRY(auto run, station.run(run_options));
+            const auto passed = outcome(run, progress->plan.region_id);
             if (passed) ++(*passed ? step.made : step.refused);
-            if (options.measured) options.measured(*run);
-            if (run->status == RunStatus::cancelled) {
+            if (options.measured) options.measured(run);
+            if (run.status == RunStatus::cancelled) {
                 progress->stopped = Text("cancelled, {}", what_is_missing(*progress));
                 return progress;
             }
-            if (run->status == RunStatus::device || !passed)
-                return device_error(run->message, Text("run {}", run->number));
+            if (run.status == RunStatus::device || !passed)
+                return device_error(run.message, Text("run {}", run.number));
             refused_in_a_row = *passed ? 0 : refused_in_a_row + 1;
             if (refused_in_a_row >= kRefusedInARow) {
                 progress->stopped = Text("the gate refused {} runs one after the other: {}; {}",
-                                         refused_in_a_row, run->message, what_is_missing(*progress));
+                                         refused_in_a_row, run.message, what_is_missing(*progress));
                 return progress;
             }
         }

@@ -218,10 +218,9 @@ std::vector<Text> remarks_of(const MeasuredRobot& m, const Project& setup) {
 
 Expected<MeasuredRobot> judged(RobotReturns returns, const Project& setup, const std::string& file) {
     MeasuredRobot m;
-    auto study = robot_study(returns.spots);
-    if (!study) return tl::unexpected(study.error());
+    SEAM_TRY(auto study, robot_study(returns.spots));
     m.returns = std::move(returns);
-    m.study = std::move(*study);
+    m.study = std::move(study);
     m.arrival_covariance = arrival_covariance_of(m.study);
     m.source.file = file;
     m.source.part_name = setup.part.name;
@@ -263,26 +262,24 @@ Expected<MeasuredRobot> measure_robot(Station& station, const MeasureRobotOption
     if (options.profiles < 2 || options.profiles > 100)
         return usage_error(Text("{} profiles a return", options.profiles), "robot study", "give 2 to 100");
     const Project setup = station.project();
-    auto spots = spots_of(setup, options.spot_ids);
-    if (!spots) return tl::unexpected(spots.error());
-    if (auto safe = none_of_motion(motion_findings(setup, false)); !safe) return tl::unexpected(safe.error());
+    SEAM_TRY(auto spots, spots_of(setup, options.spot_ids));
+    SEAM_OK(none_of_motion(motion_findings(setup, false)));
     RobotReturns returns;
-    returns.robot_id = spots->front()->robot_id;
+    returns.robot_id = spots.front()->robot_id;
     returns.replaced_covariance = find_robot(setup, returns.robot_id)->arrival_covariance;
-    for (std::size_t i = 0; i < spots->size(); ++i) {
-        auto of_spot = returns_to(station, *(*spots)[i], i > 0 ? (*spots)[i - 1] : nullptr, options,
-                                  static_cast<int>(i), static_cast<int>(spots->size()), returns.not_found);
-        if (!of_spot) return tl::unexpected(of_spot.error());
-        returns.spots.push_back(std::move(*of_spot));
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+        SEAM_TRY(auto of_spot,
+                 returns_to(station, *spots[i], i > 0 ? spots[i - 1] : nullptr, options, static_cast<int>(i),
+                            static_cast<int>(spots.size()), returns.not_found));
+        returns.spots.push_back(std::move(of_spot));
     }
     auto measured = judged(std::move(returns), setup, station.file().path().filename().string());
     if (!measured || !options.keep) return measured;
-    if (auto kept = station.file().append_evidence({0, {}, 0, measured->returns}, setup); !kept)
-        return tl::unexpected(kept.error());
+    SEAM_OK(station.file().append_evidence({0, {}, 0, measured->returns}, setup));
     measured->utc = utc_now();
     Project project = station.project();
     apply(*measured, project);
-    if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
+    SEAM_OK(station.edit(project));
     return measured;
 }
 
@@ -293,35 +290,30 @@ void apply(const MeasuredRobot& measured, Project& project) {
 
 Expected<std::optional<MeasuredRobot>> stored_robot_study(const ProjectFile& file,
                                                           const std::string& robot_id, const Project* now) {
-    auto evidence = file.evidence();
-    if (!evidence) return tl::unexpected(evidence.error());
-    for (auto e = evidence->rbegin(); e != evidence->rend(); ++e) {
+    SEAM_TRY(auto evidence, file.evidence());
+    for (auto e = evidence.rbegin(); e != evidence.rend(); ++e) {
         const auto* returns = std::get_if<RobotReturns>(&e->what);
         if (!returns || (!robot_id.empty() && returns->robot_id != robot_id)) continue;
-        auto setup = file.load_setup(e->setup);
-        if (!setup) return tl::unexpected(setup.error());
-        auto measured = judged(*returns, *setup, file.path().filename().string());
-        if (!measured) return tl::unexpected(measured.error());
-        measured->utc = e->utc;
-        auto project = now ? Expected<Project>(*now) : file.load();
-        if (!project) return tl::unexpected(project.error());
-        const RobotSetup* robot = find_robot(*project, returns->robot_id);
-        if (!robot || robot->identity.serial != measured->source.robot_serial)
-            measured->source.remarks.emplace_back("The robot is another one by now: measure it again.");
-        else if (robot->arrival_covariance != measured->arrival_covariance)
-            measured->source.remarks.emplace_back("The project holds another covariance by now.");
-        return std::optional(std::move(*measured));
+        SEAM_TRY(auto setup, file.load_setup(e->setup));
+        SEAM_TRY(auto measured, judged(*returns, setup, file.path().filename().string()));
+        measured.utc = e->utc;
+        SEAM_TRY(auto project, now ? Expected<Project>(*now) : file.load());
+        const RobotSetup* robot = find_robot(project, returns->robot_id);
+        if (!robot || robot->identity.serial != measured.source.robot_serial)
+            measured.source.remarks.emplace_back("The robot is another one by now: measure it again.");
+        else if (robot->arrival_covariance != measured.arrival_covariance)
+            measured.source.remarks.emplace_back("The project holds another covariance by now.");
+        return std::optional(std::move(measured));
     }
     return std::nullopt;
 }
 
 Expected<void> undo_robot_study(Station& station, const std::string& robot_id) {
-    auto stored = stored_robot_study(station.file(), robot_id);
-    if (!stored) return tl::unexpected(stored.error());
+    SEAM_TRY(auto stored, stored_robot_study(station.file(), robot_id));
     Project project = station.project();
-    RobotSetup* robot = *stored ? setup_of(project, (*stored)->returns.robot_id) : nullptr;
+    RobotSetup* robot = stored ? setup_of(project, stored->returns.robot_id) : nullptr;
     if (!robot) return input_error("no study of the robot is stored", station.file().path().string());
-    robot->arrival_covariance = (*stored)->returns.replaced_covariance;
+    robot->arrival_covariance = stored->returns.replaced_covariance;
     return station.edit(project);
 }
 

@@ -71,8 +71,7 @@ Expected<TriggerTask> task_of(const Project& project, const MeasureTriggerOption
     for (const double speed : {task.speeds_mm_s.front(), task.speeds_mm_s.back()}) {
         for (Spot& s : fastest.spots)
             if (s.id == spot->id) s.speed_mm_s = speed;
-        if (auto safe = none_of_motion(motion_findings(fastest, false)); !safe)
-            return tl::unexpected(safe.error());
+        SEAM_OK(none_of_motion(motion_findings(fastest, false)));
     }
     return task;
 }
@@ -110,9 +109,8 @@ Expected<void> judge_passes(MeasuredTrigger& m, const Project& setup, const std:
         m.speed_mm_s = spot->speed_mm_s;
     }
     if (!m.unseen.empty()) return {};
-    auto study = trigger_study(m.passes.passes, m.passes.slope_sigma / m.passes.slope.norm());
-    if (!study) return tl::unexpected(study.error());
-    m.study = std::move(*study);
+    SEAM_TRY(auto study, trigger_study(m.passes.passes, m.passes.slope_sigma / m.passes.slope.norm()));
+    m.study = std::move(study);
     if (spot) m.jitter_mm = jitter_by_spot(setup, *spot, *m.study);
     const double cut_mm = 1e-3 * m.study->latency_ms * m.speed_mm_s;
     m.source.remarks.push_back(
@@ -143,14 +141,13 @@ class TriggerRounds {
         : station_(station), task_(task), sight_(sight), options_(options) {}
 
     Expected<void> drive(TriggerPasses& out) {
-        auto measurer = SpotMeasurer::make(station_.project(), task_.spot.id);
-        if (!measurer) return tl::unexpected(measurer.error());
+        SEAM_TRY(auto measurer, SpotMeasurer::make(station_.project(), task_.spot.id));
         ProfileSource& sensor = *station_.sensor(task_.spot.sensor_id);
         RobotLink& robot = *station_.robot(task_.spot.robot_id);
         std::vector<MeasuringMove> moves =
             trigger_moves(task_.spot, task_.flange_from_sensor, options_.travel_deg, task_.speeds_mm_s);
         StartedSensors started;
-        if (auto on = started.start(sensor, options_.cancel); !on) return on;
+        SEAM_OK(started.start(sensor, options_.cancel));
         TriggeredFrames frames(sensor, *find_sensor(station_.project(), task_.spot.sensor_id));
         const int total = options_.passes * static_cast<int>(moves.size());
         int done = 0;
@@ -162,14 +159,14 @@ class TriggerRounds {
                 return tl::unexpected(std::move(error));
             }
             for (const MeasuringMove& move : moves) {
-                if (auto passed = pass(robot, frames, move, *measurer, out); !passed) {
+                if (auto passed = pass(robot, frames, move, measurer, out); !passed) {
                     (void)robot.confirm(PartVerdict::failed, "trigger study");  // the pass's own Error counts
                     return passed;
                 }
                 if (options_.progress)
                     options_.progress({++done, total, Text("{}: {} of {}", task_.spot.id, done, total)});
             }
-            if (auto told = robot.confirm(PartVerdict::refused, "trigger study"); !told) return told;
+            SEAM_OK(robot.confirm(PartVerdict::refused, "trigger study"));
         }
         return frames.finish();
     }
@@ -179,16 +176,14 @@ class TriggerRounds {
                         SpotMeasurer& measurer, TriggerPasses& out) {
         if (options_.cancel.stop_requested())
             return device_error(ErrorCode::cancelled, "cancelled", Text("spot {}", task_.spot.id));
-        auto trigger = next_trigger(robot, options_.limits.trigger_timeout, options_.cancel);
-        if (!trigger) return tl::unexpected(trigger.error());
-        if (trigger->spot_id != move.spot_id)
+        SEAM_TRY(auto trigger, next_trigger(robot, options_.limits.trigger_timeout, options_.cancel));
+        if (trigger.spot_id != move.spot_id)
             return device_error(
-                Text("the robot fired for \"{}\" where \"{}\" was due", trigger->spot_id, move.spot_id),
+                Text("the robot fired for \"{}\" where \"{}\" was due", trigger.spot_id, move.spot_id),
                 Text("robot {}", task_.spot.robot_id),
                 "load the program of the passes: seamwright measure-trigger --program DIR");
-        auto frame = frames.at(*trigger, options_.limits.frame_timeout, options_.cancel, {});
-        if (!frame) return tl::unexpected(frame.error());
-        const SpotMeasurement& m = measurer.measure(**frame, trigger->base_from_flange);
+        SEAM_TRY(auto frame, frames.at(trigger, options_.limits.frame_timeout, options_.cancel, {}));
+        const SpotMeasurement& m = measurer.measure(*frame, trigger.base_from_flange);
         double travel = sight_.travel_of(m.feature.point_mm);
         if (const auto& told = measurer.capture().base_from_flange) {
             const double a = rad_from_deg(options_.travel_deg);
@@ -264,21 +259,18 @@ std::vector<MeasuringMove> trigger_moves(const Spot& spot, const Pose& flange_fr
 }
 
 Expected<ProgramRequest> trigger_program(const Project& project, const MeasureTriggerOptions& options) {
-    auto task = task_of(project, options);
-    if (!task) return tl::unexpected(task.error());
-    auto request = program_request(project, task->spot.robot_id);
+    SEAM_TRY(auto task, task_of(project, options));
+    auto request = program_request(project, task.spot.robot_id);
     if (!request) return request;
     request->frames.clear();
-    request->moves =
-        trigger_moves(task->spot, task->flange_from_sensor, options.travel_deg, task->speeds_mm_s);
+    request->moves = trigger_moves(task.spot, task.flange_from_sensor, options.travel_deg, task.speeds_mm_s);
     return request;
 }
 
 Expected<MeasuredTrigger> measure_trigger(Station& station, const MeasureTriggerOptions& options) {
     const Project setup = station.project();
-    auto task = task_of(setup, options);
-    if (!task) return tl::unexpected(task.error());
-    const Spot& spot = task->spot;
+    SEAM_TRY(auto task, task_of(setup, options));
+    const Spot& spot = task.spot;
     MeasuredTrigger measured;
     PassOptions slowly;
     slowly.step_mm = kSlopeStep_mm;
@@ -303,8 +295,7 @@ Expected<MeasuredTrigger> measure_trigger(Station& station, const MeasureTrigger
     if (!sight->sees()) {
         measured.unseen = pass_that_would_see(*sight);
     } else {
-        if (auto driven = TriggerRounds(station, *task, *sight, options).drive(passes); !driven)
-            return tl::unexpected(driven.error());
+        SEAM_OK(TriggerRounds(station, task, *sight, options).drive(passes));
         if (passes.not_found > static_cast<int>(passes.passes.size()))
             return input_error(
                 Text("the feature was found in {} of {} measurements ({})", passes.passes.size(),
@@ -312,14 +303,11 @@ Expected<MeasuredTrigger> measure_trigger(Station& station, const MeasureTrigger
                      to_string(SpotStatus::no_feature)),
                 Text("spot {}", spot.id), "choose another feature or move the sensor");
     }
-    if (auto judged = judge_passes(measured, setup, station.file().path().filename().string()); !judged)
-        return tl::unexpected(judged.error());
+    SEAM_OK(judge_passes(measured, setup, station.file().path().filename().string()));
     if (!measured.study || !options.keep) return measured;
-    if (auto kept = station.file().append_evidence({0, {}, 0, passes}, setup); !kept)
-        return tl::unexpected(kept.error());
+    SEAM_OK(station.file().append_evidence({0, {}, 0, passes}, setup));
     measured.utc = utc_now();
-    if (auto set = set_trigger(station, spot.robot_id, measured.study->latency_ms, measured.jitter_mm); !set)
-        return tl::unexpected(set.error());
+    SEAM_OK(set_trigger(station, spot.robot_id, measured.study->latency_ms, measured.jitter_mm));
     return measured;
 }
 
@@ -332,22 +320,18 @@ void apply(const MeasuredTrigger& measured, Project& project) {
 
 Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile& file,
                                                               const Project* project_now) {
-    auto evidence = file.evidence();
-    if (!evidence) return tl::unexpected(evidence.error());
-    for (auto e = evidence->rbegin(); e != evidence->rend(); ++e) {
+    SEAM_TRY(auto evidence, file.evidence());
+    for (auto e = evidence.rbegin(); e != evidence.rend(); ++e) {
         const auto* passes = std::get_if<TriggerPasses>(&e->what);
         if (!passes) continue;
-        auto setup = file.load_setup(e->setup);
-        if (!setup) return tl::unexpected(setup.error());
+        SEAM_TRY(auto setup, file.load_setup(e->setup));
         MeasuredTrigger measured;
         measured.passes = *passes;
         measured.utc = e->utc;
-        if (auto judged = judge_passes(measured, *setup, file.path().filename().string()); !judged)
-            return tl::unexpected(judged.error());
-        auto project = project_now ? Expected<Project>(*project_now) : file.load();
-        if (!project) return tl::unexpected(project.error());
+        SEAM_OK(judge_passes(measured, setup, file.path().filename().string()));
+        SEAM_TRY(auto project, project_now ? Expected<Project>(*project_now) : file.load());
         StudySource now;
-        if (const Spot* spot = find_spot(*project, passes->spot_id)) name_devices(now, *project, *spot);
+        if (const Spot* spot = find_spot(project, passes->spot_id)) name_devices(now, project, *spot);
         if (now.robot_serial != measured.source.robot_serial ||
             now.sensor_serial != measured.source.sensor_serial)
             measured.source.remarks.emplace_back("Robot or sensor is another one by now: measure again.");
@@ -357,16 +341,15 @@ Expected<std::optional<MeasuredTrigger>> stored_trigger_study(const ProjectFile&
 }
 
 Expected<void> undo_trigger_study(Station& station) {
-    auto stored = stored_trigger_study(station.file());
-    if (!stored) return tl::unexpected(stored.error());
-    const Spot* spot = *stored ? find_spot(station.project(), (*stored)->passes.spot_id) : nullptr;
+    SEAM_TRY(auto stored, stored_trigger_study(station.file()));
+    const Spot* spot = stored ? find_spot(station.project(), stored->passes.spot_id) : nullptr;
     if (!spot) return input_error("no study of the trigger is stored", station.file().path().string());
     std::map<std::string, double> before;
-    for (const auto& [id, jitter] : (*stored)->jitter_mm)
-        if (const auto at = (*stored)->passes.replaced_jitter_mm.find(id);
-            at != (*stored)->passes.replaced_jitter_mm.end())
+    for (const auto& [id, jitter] : stored->jitter_mm)
+        if (const auto at = stored->passes.replaced_jitter_mm.find(id);
+            at != stored->passes.replaced_jitter_mm.end())
             before.insert(*at);
-    return set_trigger(station, spot->robot_id, (*stored)->passes.replaced_latency_ms, before);
+    return set_trigger(station, spot->robot_id, stored->passes.replaced_latency_ms, before);
 }
 
 }  // namespace seamwright

@@ -21,13 +21,12 @@ using report::Rows;
 enum class Artefact { sphere, plane };
 
 Expected<Profile> profile_of(const json& entry, const std::string& where) {
-    auto list = json_array(entry, "profile", where);
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(entry, "profile", where));
     const std::string path = json_path(where, "profile");
     const double none = std::numeric_limits<double>::quiet_NaN();
     Profile profile;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& point = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& point = (*list)[i];
         double x = none, z = none;
         const bool given = !point.is_null();
         if (given && !(point.is_array() && point.size() == 2 && point[0].is_number() &&
@@ -49,27 +48,24 @@ Expected<std::vector<Eigen::Vector3d>> points_of(const json& observations, const
     for (std::size_t i = 0; i < observations.size(); ++i) {
         const std::string path = json_path(where, i);
         const json& entry = observations[i];
-        auto field = json_field(entry, "base_from_flange", path);
-        if (!field) return tl::unexpected(field.error());
+        SEAM_TRY(auto field, json_field(entry, "base_from_flange", path));
         if (entry.contains("id") && entry["id"].is_string() &&
             exclude.contains(entry["id"].get<std::string>()))
             continue;
-        auto pose = parse_pose(**field, json_path(path, "base_from_flange"));
-        if (!pose) return tl::unexpected(pose.error());
-        auto profile = profile_of(entry, path);
-        if (!profile) return tl::unexpected(profile.error());
+        SEAM_TRY(auto pose, parse_pose(*field, json_path(path, "base_from_flange")));
+        SEAM_TRY(auto profile, profile_of(entry, path));
         std::vector<int> its;
         if (artefact == Artefact::sphere) {
-            if (const auto section = find_circle_section(*profile, {})) its = section->inliers;
+            if (const auto section = find_circle_section(profile, {})) its = section->inliers;
             without += its.empty();
         } else {
-            for (std::size_t k = 0; k < profile->size(); ++k)
-                if (std::isfinite(profile->z_mm[k])) its.push_back(static_cast<int>(k));
+            for (std::size_t k = 0; k < profile.size(); ++k)
+                if (std::isfinite(profile.z_mm[k])) its.push_back(static_cast<int>(k));
         }
         for (const int k : its) {
             const auto at = static_cast<std::size_t>(k);
-            points.push_back(*pose * flange_from_sensor *
-                             Eigen::Vector3d(profile->x_mm[at], 0, profile->z_mm[at]));
+            points.push_back(pose * flange_from_sensor *
+                             Eigen::Vector3d(profile.x_mm[at], 0, profile.z_mm[at]));
         }
     }
     return points;
@@ -85,7 +81,7 @@ class SensorData {
                 data_, {"sensor", "flange_from_sensor", "limits_mm", "spheres", "distances", "planes"}, "");
             !known)
             return tl::unexpected(known.error());
-        if (auto done = sensor(); !done) return tl::unexpected(done.error());
+        SEAM_OK(sensor());
         if (data_.contains("limits_mm")) {
             const json& limits = data_["limits_mm"];
             if (auto known = only_fields(limits, {"form", "size", "distance", "flatness"}, "limits_mm");
@@ -95,40 +91,35 @@ class SensorData {
                                              {"size", &study_.limits.size_mm},
                                              {"distance", &study_.limits.distance_mm},
                                              {"flatness", &study_.limits.flatness_mm}}) {
-                auto number = json_number_or(limits, key, 0, "limits_mm");
-                if (!number) return tl::unexpected(number.error());
-                *value = *number;
+                SEAM_TRY(auto number, json_number_or(limits, key, 0, "limits_mm"));
+                *value = number;
             }
         }
         for (const auto& [list, kind] :
              {std::pair{"spheres", Artefact::sphere}, {"planes", Artefact::plane}}) {
             if (!data_.contains(list)) continue;
-            auto entries = json_array(data_, list, "");
-            if (!entries) return tl::unexpected(entries.error());
-            for (std::size_t i = 0; i < (*entries)->size(); ++i)
-                if (auto done = artefact((**entries)[i], json_path(list, i), kind, (*entries)->size()); !done)
-                    return tl::unexpected(done.error());
+            SEAM_TRY(auto entries, json_array(data_, list, ""));
+            for (std::size_t i = 0; i < entries->size(); ++i)
+                SEAM_OK(artefact((*entries)[i], json_path(list, i), kind, entries->size()));
         }
-        if (auto done = distances(); !done) return tl::unexpected(done.error());
+        SEAM_OK(distances());
         return std::move(study_);
     }
 
   private:
     Expected<void> sensor() {
-        auto id = json_string_or(data_, "sensor", "", "");
-        if (!id) return tl::unexpected(id.error());
-        check_.source.sensor = *id;
+        SEAM_TRY(auto id, json_string_or(data_, "sensor", "", ""));
+        check_.source.sensor = id;
         if (data_.contains("flange_from_sensor")) {
-            auto pose = parse_pose(data_["flange_from_sensor"], "flange_from_sensor");
-            if (!pose) return tl::unexpected(pose.error());
-            flange_from_sensor_ = *pose;
+            SEAM_TRY(auto pose, parse_pose(data_["flange_from_sensor"], "flange_from_sensor"));
+            flange_from_sensor_ = pose;
         }
         if (!project_) return {};
-        const SensorSetup* setup = id->empty() && project_->sensors.size() == 1 ? &project_->sensors.front()
-                                                                                : find_sensor(*project_, *id);
+        const SensorSetup* setup = id.empty() && project_->sensors.size() == 1 ? &project_->sensors.front()
+                                                                               : find_sensor(*project_, id);
         if (!setup)
-            return input_error(id->empty() ? Text("the project has {} sensors", project_->sensors.size())
-                                           : Text("there is no sensor \"{}\"", *id),
+            return input_error(id.empty() ? Text("the project has {} sensors", project_->sensors.size())
+                                          : Text("there is no sensor \"{}\"", id),
                                "sensor", "name one of the project's");
         Spot spot;
         spot.sensor_id = setup->id;
@@ -171,71 +162,61 @@ class SensorData {
                               where)
                 : only_fields(entry, {"id", "flatness_mm", "certificate", "points", "observations"}, where);
         if (!known) return known;
-        auto id = json_string(entry, "id", where);
-        if (!id) return tl::unexpected(id.error());
-        auto certificate = json_string_or(entry, "certificate", "", where);
-        if (!certificate) return tl::unexpected(certificate.error());
-        check_.certificates.emplace_back(*id, *certificate);
+        SEAM_TRY(auto id, json_string(entry, "id", where));
+        SEAM_TRY(auto certificate, json_string_or(entry, "certificate", "", where));
+        check_.certificates.emplace_back(id, certificate);
 
         std::vector<Eigen::Vector3d> points;
         int without = 0;
         std::set<std::string> exclude;
         const json* observations = nullptr;
         if (entry.contains("points")) {
-            auto list = json_array(entry, "points", where);
-            if (!list) return tl::unexpected(list.error());
-            for (std::size_t i = 0; i < (*list)->size(); ++i) {
-                auto xyz = as_numbers((**list)[i], 3, json_path(json_path(where, "points"), i));
-                if (!xyz) return tl::unexpected(xyz.error());
-                points.emplace_back((*xyz)[0], (*xyz)[1], (*xyz)[2]);
+            SEAM_TRY(auto list, json_array(entry, "points", where));
+            for (std::size_t i = 0; i < list->size(); ++i) {
+                SEAM_TRY(auto xyz, as_numbers((*list)[i], 3, json_path(json_path(where, "points"), i)));
+                points.emplace_back(xyz[0], xyz[1], xyz[2]);
             }
         } else if (entry.contains("observations")) {
-            auto list = json_array(entry, "observations", where);
-            if (!list) return tl::unexpected(list.error());
-            observations = *list;
+            SEAM_TRY(auto list, json_array(entry, "observations", where));
+            observations = list;
         } else {
-            observations = sphere ? stored(*id, of == 1, exclude) : nullptr;
+            observations = sphere ? stored(id, of == 1, exclude) : nullptr;
             if (!observations || !observations->is_array())
                 return input_error(
-                    Text("there are no data of \"{}\"", *id), where,
+                    Text("there are no data of \"{}\"", id), where,
                     "give points or observations, or the project whose calibration keeps them");
         }
         if (observations) {
             if (!flange_from_sensor_)
                 return input_error("where the sensor sits on the flange is not known", where,
                                    "give flange_from_sensor");
-            auto found = points_of(*observations, *flange_from_sensor_, exclude, kind,
-                                   json_path(where, "observations"), without);
-            if (!found) return tl::unexpected(found.error());
-            points = std::move(*found);
+            SEAM_TRY(auto found, points_of(*observations, *flange_from_sensor_, exclude, kind,
+                                           json_path(where, "observations"), without));
+            points = std::move(found);
         }
-        if (without > 0)
-            check_.remarks.push_back(Text("{}: profiles that show no sphere: {}.", *id, without));
+        if (without > 0) check_.remarks.push_back(Text("{}: profiles that show no sphere: {}.", id, without));
 
         const auto number = [&](const char* key) { return json_number_or(entry, key, 0, where); };
         if (!sphere) {
-            auto flatness = number("flatness_mm");
-            if (!flatness) return tl::unexpected(flatness.error());
-            study_.planes.push_back({*id, std::move(points), *flatness});
+            SEAM_TRY(auto flatness, number("flatness_mm"));
+            study_.planes.push_back({id, std::move(points), flatness});
             return {};
         }
         auto u = number("diameter_u_mm"), form = number("form_mm"), diameter = number("diameter_mm");
         for (const auto* given : {&u, &form, &diameter})
             if (!*given) return tl::unexpected(given->error());
-        study_.spheres.push_back({*id, std::move(points), {}, *u, *form});
+        study_.spheres.push_back({id, std::move(points), {}, *u, *form});
         if (entry.contains("diameter_mm")) study_.spheres.back().diameter_mm = *diameter;
         return {};
     }
 
     Expected<void> distances() {
         if (!data_.contains("distances")) return {};
-        auto entries = json_array(data_, "distances", "");
-        if (!entries) return tl::unexpected(entries.error());
-        for (std::size_t i = 0; i < (*entries)->size(); ++i) {
+        SEAM_TRY(auto entries, json_array(data_, "distances", ""));
+        for (std::size_t i = 0; i < entries->size(); ++i) {
             const std::string where = json_path("distances", i);
-            const json& entry = (**entries)[i];
-            if (auto known = only_fields(entry, {"from", "to", "length_mm", "u_mm"}, where); !known)
-                return known;
+            const json& entry = (*entries)[i];
+            SEAM_OK(only_fields(entry, {"from", "to", "length_mm", "u_mm"}, where));
             auto from = json_string(entry, "from", where), to = json_string(entry, "to", where);
             auto length = json_number(entry, "length_mm", where), u = json_number_or(entry, "u_mm", 0, where);
             if (!from) return tl::unexpected(from.error());

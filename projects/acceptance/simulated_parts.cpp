@@ -55,9 +55,8 @@ bool SimulatedParts::possible(const Project& project) {
 
 Expected<void> SimulatedParts::put(const std::string& part, int rehang) {
     const Project project = station_.project();
-    auto runs = station_.file().runs();
-    if (!runs) return tl::unexpected(runs.error());
-    const std::uint64_t made = runs->empty() ? 0 : static_cast<std::uint64_t>(runs->back().number);
+    SEAM_TRY(auto runs, station_.file().runs());
+    const std::uint64_t made = runs.empty() ? 0 : static_cast<std::uint64_t>(runs.back().number);
     const std::uint64_t noise = fnv(part + " " + std::to_string(rehang) + " " + std::to_string(made)) >> 16;
     Project placed = project;
     const auto place = [&](auto& all) {

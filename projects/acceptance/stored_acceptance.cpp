@@ -23,21 +23,19 @@ Expected<Acceptance> studies_of(const ProjectFile& file, const Project& project,
                                 const AcceptanceExtras& extras) {
     if (stored.settings.tolerance_mm == 0)
         return input_error("the tolerance is not stated", {}, "state the customer's T = USL - LSL");
-    auto values = stored_values(file, project, stored.region_id);
-    if (!values) return tl::unexpected(values.error());
-    if (!extras.references.empty()) add_references(values->values, extras.references);
-    stored.settings.part = values->reference_part;
-    return judge_acceptance(std::move(values->values), std::move(values->source), stored.settings, kStudies);
+    SEAM_TRY(auto values, stored_values(file, project, stored.region_id));
+    if (!extras.references.empty()) add_references(values.values, extras.references);
+    stored.settings.part = values.reference_part;
+    return judge_acceptance(std::move(values.values), std::move(values.source), stored.settings, kStudies);
 }
 
 }  // namespace
 
 Expected<StoredAcceptance> stored_acceptance(const ProjectFile& file, const Project& project,
                                              const std::string& region_id, const AcceptanceExtras& extras) {
-    auto region = region_in(project, region_id);
-    if (!region) return tl::unexpected(region.error());
+    SEAM_TRY(auto region, region_in(project, region_id));
     StoredAcceptance stored;
-    stored.region_id = (*region)->id;
+    stored.region_id = region->id;
     require(stored.settings, project.requirements.acceptance);
     if (auto studies = studies_of(file, project, stored, extras); studies)
         stored.studies = std::move(*studies);
@@ -47,14 +45,12 @@ Expected<StoredAcceptance> stored_acceptance(const ProjectFile& file, const Proj
         stored.lacking = studies.error();
     if (stored.studies && stored.studies->source.forecast)
         stored.forecast = stored.studies->source.forecast;
-    else if (auto forecast = forecast_studies(project, **region))
+    else if (auto forecast = forecast_studies(project, *region))
         stored.forecast = *forecast;
-    auto robot = stored_robot_study(file, {}, &project);
-    if (!robot) return tl::unexpected(robot.error());
-    stored.robot = std::move(*robot);
-    auto trigger = stored_trigger_study(file, &project);
-    if (!trigger) return tl::unexpected(trigger.error());
-    stored.trigger = std::move(*trigger);
+    SEAM_TRY(auto robot, stored_robot_study(file, {}, &project));
+    stored.robot = std::move(robot);
+    SEAM_TRY(auto trigger, stored_trigger_study(file, &project));
+    stored.trigger = std::move(trigger);
     if (!extras.sensor_data.is_null()) {
         if (auto sensor = sensor_check(extras.sensor_data, extras.sensor_data_from, &project))
             stored.sensor = std::move(*sensor);

@@ -117,9 +117,8 @@ Expected<StudyForecast> forecast_studies(const Project& project, const Region& r
     std::optional<StudyForecast> worst;
     for (const PathDirection& at : path_directions(project, region)) {
         const Displacement as_taught[] = {Displacement{}};
-        const auto taught = stated_scatter(project, region, at, as_taught);
-        if (!taught) return tl::unexpected(taught.error());
-        const StatedScatter& s = taught->front();
+        SEAM_TRY(const auto taught, stated_scatter(project, region, at, as_taught));
+        const StatedScatter& s = taught.front();
         if (!worst || s.random_mm > worst->type1_s_mm)
             worst = StudyForecast{s.random_mm, s.systematic_mm, s.random_mm};
     }
@@ -141,9 +140,8 @@ void name_devices(StudySource& source, const Project& setup, const Spot& spot) {
 }
 
 Expected<StoredStudy> stored_values(const ProjectFile& file, const std::string& region_id) {
-    const auto project = file.load();
-    if (!project) return tl::unexpected(project.error());
-    return stored_values(file, *project, region_id);
+    SEAM_TRY(const auto project, file.load());
+    return stored_values(file, project, region_id);
 }
 
 Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& project,
@@ -155,23 +153,21 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
         return usage_error(Text("the project has {} regions", project.regions.size()), file.path().string(),
                            Text("name one with --region: {}", ids));
     const std::string id = region_id.empty() ? project.regions.front().id : region_id;
-    auto summaries = file.runs();
-    if (!summaries) return tl::unexpected(summaries.error());
-    auto evidence = file.evidence();
-    if (!evidence) return tl::unexpected(evidence.error());
+    SEAM_TRY(auto summaries, file.runs());
+    SEAM_TRY(auto evidence, file.evidence());
     std::map<std::int64_t, Pose> known;
-    for (const Evidence& e : *evidence)
+    for (const Evidence& e : evidence)
         if (const auto* proof = std::get_if<KnownShift>(&e.what)) {
             known.clear();
             for (const ShiftTest& test : proof->tests) known[test.run] = test.workobject_from_movedworkobject;
         }
 
-    const std::map<std::string, RehungPart> rehung = rehung_parts(*evidence);
+    const std::map<std::string, RehungPart> rehung = rehung_parts(evidence);
     StoredStudy study;
     StudySource& source = study.source;
     std::vector<UsedRun> used;
     int refused = 0, of_older_proofs = 0;
-    for (const RunSummary& summary : *summaries) {
+    for (const RunSummary& summary : summaries) {
         UsedRun r;
         r.part = summary.part_id;
         r.number = static_cast<long>(summary.number);
@@ -193,11 +189,10 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
             r.part = at->second.part;
             r.rehang = at->second.rehang;
         }
-        auto run = file.load_run(summary.number, false);
-        if (!run) return tl::unexpected(run.error());
-        const auto record = std::find_if(run->regions.begin(), run->regions.end(),
+        SEAM_TRY(auto run, file.load_run(summary.number, false));
+        const auto record = std::find_if(run.regions.begin(), run.regions.end(),
                                          [&](const RegionRecord& region) { return region.region_id == id; });
-        if (record == run->regions.end()) continue;  // another region's, or a panel's
+        if (record == run.regions.end()) continue;  // another region's, or a panel's
         if (!record->gate_passed || !record->correction ||
             record->correction->status != CorrectionStatus::ok) {
             ++refused;
@@ -223,12 +218,11 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
         other_setup += static_cast<int>(
             std::erase_if(used, [&](const UsedRun& r) { return r.kind == kind && r.setup != newest; }));
     }
-    auto setup = file.load_run_setup(used.back().number);
-    if (!setup) return tl::unexpected(setup.error());
-    const auto region = std::find_if(setup->regions.begin(), setup->regions.end(),
-                                     [&](const Region& r) { return r.id == id; });
+    SEAM_TRY(auto setup, file.load_run_setup(used.back().number));
+    const auto region =
+        std::find_if(setup.regions.begin(), setup.regions.end(), [&](const Region& r) { return r.id == id; });
     std::vector<PathDirection> directions;
-    if (region != setup->regions.end()) directions = path_directions(*setup, *region);
+    if (region != setup.regions.end()) directions = path_directions(setup, *region);
     if (directions.empty())
         return input_error(Text("region \"{}\" has no calibrated spot", id), file.path().string());
     const PathDirection* worst = &directions.front();
@@ -256,7 +250,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
         if (r.kind == RunKind::part) parts[r.part].workobject_from_movedworkobject = r.found;
     std::vector<Displacement> places;
     for (const auto& [part, place] : parts) places.push_back(place);
-    source.forecast = forecast_at(*setup, *region, *worst, places);
+    source.forecast = forecast_at(setup, *region, *worst, places);
     source.unmoved_part = study.reference_part;
     source.offset.emplace(OffsetOfStudy{id, worst->direction, {}});
     if (const KeptOffset* kept = acting_offset(*region)) {
@@ -269,7 +263,7 @@ Expected<StoredStudy> stored_values(const ProjectFile& file, const Project& proj
         Text("region {}, spot {}, {}", id, worst->spot_id, worst->normal ? Text("normal") : Text("binormal"));
     source.part_name = project.part.name;
     source.runs = static_cast<int>(used.size());
-    if (const Spot* spot = find_spot(*setup, worst->spot_id)) name_devices(source, *setup, *spot);
+    if (const Spot* spot = find_spot(setup, worst->spot_id)) name_devices(source, setup, *spot);
     if (refused > 0)
         source.remarks.push_back(Text("Runs left out because the gate refused them: {}.", refused));
     if (of_older_proofs > 0)

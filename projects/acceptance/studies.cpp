@@ -51,9 +51,8 @@ class Judge {
     explicit Judge(Acceptance& answer) : a_(answer) {}
 
     Expected<void> type1() {
-        auto part = reference_part(a_.values.type1, a_.settings.part);
-        if (!part) return tl::unexpected(part.error());
-        a_.type1_values = only(a_.values.type1, *part);
+        SEAM_TRY(auto part, reference_part(a_.values.type1, a_.settings.part));
+        a_.type1_values = only(a_.values.type1, part);
         std::optional<double> reference = a_.settings.reference_mm;
         std::vector<double> mm;
         for (const StudyValue& v : a_.type1_values) {
@@ -61,22 +60,22 @@ class Judge {
             if (a_.settings.reference_mm || !v.reference_mm) continue;
             if (reference && *reference != *v.reference_mm)
                 return input_error(
-                    Text("part {} has the references {} and {}", *part, *reference, *v.reference_mm),
-                    "type 1", "one part has one reference; give it with --reference");
+                    Text("part {} has the references {} and {}", part, *reference, *v.reference_mm), "type 1",
+                    "one part has one reference; give it with --reference");
             reference = v.reference_mm;
         }
         if (!reference)
-            return input_error(Text("the reference of part {} is not known", *part), "type 1",
+            return input_error(Text("the reference of part {} is not known", part), "type 1",
                                "give it with --reference, or in a column reference");
         const AcceptanceSettings& s = a_.settings;
         auto made =
             type1_study(mm, *reference, {s.tolerance_mm, s.share, s.width, s.required, s.required_cgk});
         if (!made) return tl::unexpected(made.error());
-        a_.type1_part = *part;
+        a_.type1_part = part;
         a_.type1 = std::move(*made);
         const std::optional<StudyForecast>& forecast = a_.source.forecast;
         // Of another part than the unmoved one neither the place nor the reference is the forecast's.
-        if (!forecast || !(forecast->type1_s_mm > 0) || !a_.source.unmoved_part_is(*part)) return {};
+        if (!forecast || !(forecast->type1_s_mm > 0) || !a_.source.unmoved_part_is(part)) return {};
         const Type1& r = *a_.type1;
         a_.type1_check = check_scatter(forecast->type1_s_mm, r.s_mm, r.n - 1);
         a_.bias_check =
@@ -96,10 +95,9 @@ class Judge {
         if (a_.type1_part_left_out)
             std::erase_if(a_.type3_values, [&](const StudyValue& v) { return v.part == *part; });
         const AcceptanceSettings& s = a_.settings;
-        auto made = type3_study(a_.type3_values,
-                                {s.tolerance_mm, 6, s.grr_accepted_percent, s.grr_refused_percent, s.ndc});
-        if (!made) return tl::unexpected(made.error());
-        a_.type3 = std::move(*made);
+        SEAM_TRY(auto made, type3_study(a_.type3_values, {s.tolerance_mm, 6, s.grr_accepted_percent,
+                                                          s.grr_refused_percent, s.ndc}));
+        a_.type3 = std::move(made);
         // Where repeat and rehang cannot be told apart the forecast, which knows no rehang, is of neither.
         if (const auto& forecast = a_.source.forecast;
             forecast && forecast->ev_mm > 0 && !a_.type3->rehang_in_repeat)
@@ -110,38 +108,32 @@ class Judge {
     }
 
     Expected<void> linearity() {
-        auto made = linearity_study(a_.values.linearity);
-        if (!made) return tl::unexpected(made.error());
-        a_.linearity = std::move(*made);
+        SEAM_TRY(auto made, linearity_study(a_.values.linearity));
+        a_.linearity = std::move(made);
         return {};
     }
 
     Expected<void> stability() {
-        auto part = reference_part(a_.values.stability, a_.settings.part);
-        if (!part) return tl::unexpected(part.error());
-        const std::vector<StudyValue> values = only(a_.values.stability, *part);
-        auto groups = subgroups_of(values, a_.settings.subgroup);
-        if (!groups) return tl::unexpected(groups.error());
-        auto made = stability_study(groups->groups);
-        if (!made) return tl::unexpected(made.error());
-        a_.stability_left_out = groups->left_out;
-        a_.stability = std::move(*made);
+        SEAM_TRY(auto part, reference_part(a_.values.stability, a_.settings.part));
+        const std::vector<StudyValue> values = only(a_.values.stability, part);
+        SEAM_TRY(auto groups, subgroups_of(values, a_.settings.subgroup));
+        SEAM_TRY(auto made, stability_study(groups.groups));
+        a_.stability_left_out = groups.left_out;
+        a_.stability = std::move(made);
         return {};
     }
 
     Expected<void> correlation() {
-        auto made = correlation_study(a_.values.correlation);
-        if (!made) return tl::unexpected(made.error());
-        a_.correlation = std::move(*made);
+        SEAM_TRY(auto made, correlation_study(a_.values.correlation));
+        a_.correlation = std::move(made);
         return {};
     }
 
     Expected<void> vda5() {
         std::vector<StudyValue> references = a_.values.type1;
         if (!a_.settings.part.empty() || a_.settings.reference_mm) {
-            auto part = reference_part(references, a_.settings.part);
-            if (!part) return tl::unexpected(part.error());
-            references = only(references, *part);
+            SEAM_TRY(auto part, reference_part(references, a_.settings.part));
+            references = only(references, part);
             if (a_.settings.reference_mm)
                 for (StudyValue& v : references) v.reference_mm = a_.settings.reference_mm;
         }
@@ -161,9 +153,8 @@ class Judge {
         settings.resolution_mm = s.resolution_mm;
         settings.system_percent = s.system_percent;
         settings.process_percent = s.process_percent;
-        auto made = process_uncertainty(references, production_, settings);
-        if (!made) return tl::unexpected(made.error());
-        a_.vda5 = std::move(*made);
+        SEAM_TRY(auto made, process_uncertainty(references, production_, settings));
+        a_.vda5 = std::move(made);
         return {};
     }
 
@@ -291,7 +282,7 @@ Text what_lacks(const Acceptance& a, Study study) {
 }
 
 Expected<void> check_settings(const AcceptanceSettings& settings) {
-    if (auto ok = check_positive(settings.tolerance_mm, "tolerance"); !ok) return ok;
+    SEAM_OK(check_positive(settings.tolerance_mm, "tolerance"));
     if (!std::isfinite(settings.nominal_mm) || std::abs(settings.nominal_mm) > 1e6 ||
         (settings.reference_mm && !(std::abs(*settings.reference_mm) <= 1e6)))
         return input_error("nominal and reference must be finite and within 1 km", "acceptance");
@@ -300,7 +291,7 @@ Expected<void> check_settings(const AcceptanceSettings& settings) {
 
 Expected<Acceptance> judge_acceptance(StudyValues values, StudySource source,
                                       const AcceptanceSettings& settings, std::span<const Study> studies) {
-    if (auto ok = check_settings(settings); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_settings(settings));
     Acceptance answer;
     answer.settings = settings;
     answer.source = std::move(source);

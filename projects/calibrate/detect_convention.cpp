@@ -27,21 +27,19 @@ Expected<ConventionAnswer> detect_pose_convention(const CalibrationMethod& metho
     if (!method.convention_fits)
         return usage_error("its data leave no residual that a convention of poses shows in", where,
                            "ask of tcp-sphere, hand-eye or stripe-camera data of the same robot");
-    const auto lists = written_poses(method.poses, data);
-    if (!lists) return tl::unexpected(lists.error());
-    if (lists->empty()) return input_error("there are no poses", where, "leave --detect-convention out");
-    const auto fits = method.convention_fits(data, exclude);
-    if (!fits) return tl::unexpected(fits.error());
+    SEAM_TRY(const auto lists, written_poses(method.poses, data));
+    if (lists.empty()) return input_error("there are no poses", where, "leave --detect-convention out");
+    SEAM_TRY(const auto fits, method.convention_fits(data, exclude));
     ConventionAnswer answer;
-    answer.found = detect_convention(*lists, fits->fit, fits->screen);
+    answer.found = detect_convention(lists, fits.fit, fits.screen);
     const DetectedConvention& found = answer.found;
     const auto optional = [&](const std::optional<PoseReading>& reading) {
-        return reading ? reading_json(*reading, *lists) : json(nullptr);
+        return reading ? reading_json(*reading, lists) : json(nullptr);
     };
     json& r = answer.result;
     r = {{"verdict", std::string(name_of(found.finding))},
          {"tried", found.tried},
-         {"as_given", reading_json(found.as_given, *lists)},
+         {"as_given", reading_json(found.as_given, lists)},
          {"best", optional(found.best)},
          {"second", optional(found.second)},
          {"equal_poses", found.equal_poses},
@@ -53,11 +51,11 @@ Expected<ConventionAnswer> detect_pose_convention(const CalibrationMethod& metho
         answer.offer = json::object();
         if (const auto said = data.find("pose_convention"); said != data.end() && said->is_object())
             answer.offer = *said;
-        for (std::size_t l = 0; l < lists->size(); ++l) {
-            if (found.best->conventions[l] == (*lists)[l].as_given) continue;
+        for (std::size_t l = 0; l < lists.size(); ++l) {
+            if (found.best->conventions[l] == lists[l].as_given) continue;
             const std::string code = code_of(found.best->conventions[l]);
-            answer.offer[(*lists)[l].name] = code;
-            answer.codes.push_back((*lists)[l].name + "=" + code);
+            answer.offer[lists[l].name] = code;
+            answer.codes.push_back(lists[l].name + "=" + code);
         }
         r["offer"] = answer.offer;
     }

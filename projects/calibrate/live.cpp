@@ -60,10 +60,9 @@ class Live {
         for (;;) {
             const bool verification = session_.solving_captures() >= wanted_;
             if (verification && session_.verification_captures() >= kept_back_) return {};
-            auto there = moves_ ? go() : wait();
-            if (!there) return tl::unexpected(there.error());
-            if (!*there) return keep_back();
-            if (auto ok = capture(verification); !ok) return ok;
+            SEAM_TRY(auto there, moves_ ? go() : wait());
+            if (!there) return keep_back();
+            SEAM_OK(capture(verification));
         }
     }
 
@@ -86,7 +85,7 @@ class Live {
     Expected<bool> go() const {
         const auto to = target();
         if (!to) return false;
-        if (auto moved = robot_.move_to(*to); !moved) return tl::unexpected(moved.error());
+        SEAM_OK(robot_.move_to(*to));
         return true;
     }
 
@@ -123,12 +122,11 @@ class Live {
         auto still_since = Clock::now();
         while (Clock::now() < end) {
             if (options_.cancel.stop_requested()) return device_error(kCancelled, session_.method().id);
-            auto at = robot_.base_from_flange();
-            if (!at) return tl::unexpected(at.error());
-            if (!last || apart(*last, *at, kStillMm, kStillDeg)) still_since = Clock::now();
-            last = *at;
-            const bool refused_here = refused_at_ && !apart(*refused_at_, *at, kNewMm, kNewDeg);
-            if (Clock::now() - still_since >= kStill && !taken_at(*at) && !refused_here) return true;
+            SEAM_TRY(auto at, robot_.base_from_flange());
+            if (!last || apart(*last, at, kStillMm, kStillDeg)) still_since = Clock::now();
+            last = at;
+            const bool refused_here = refused_at_ && !apart(*refused_at_, at, kNewMm, kNewDeg);
+            if (Clock::now() - still_since >= kStill && !taken_at(at) && !refused_here) return true;
             std::this_thread::sleep_for(kLook);
         }
         return device_error("the robot has not come to rest at a new place in time",
@@ -142,8 +140,7 @@ class Live {
         for (const SensorSetup& s : station_.project().sensors)
             if (station_.sensor(s.id)) connected.push_back(s.id);
         const auto sensors = shot_sensors(session_, station_.project(), connected);
-        auto settings = capture_settings(session_, station_.project(), sensors);
-        if (!settings) return tl::unexpected(settings.error());
+        SEAM_TRY(auto settings, capture_settings(session_, station_.project(), sensors));
         CalibrationShots shots;
         for (const std::string& id : sensors)
             shots.push_back(take_shot(station_, id, session_.robot_id(),
@@ -151,15 +148,14 @@ class Live {
         if (!shots.front() && shots.front().error().kind == ErrorKind::device)
             return tl::unexpected(shots.front().error());
         auto taken =
-            captures_of_shots(session_, station_.project(), std::move(*settings), shots, options_.cancel);
+            captures_of_shots(session_, station_.project(), std::move(settings), shots, options_.cancel);
         for (const Error& refusal : taken.refusals) say(refusal.text());
         if (taken.captures.empty()) {
             if (taken.refusals.empty()) return device_error(kCancelled, session_.method().id);
             // A person brings the target into view; a simulated robot would come here again.
             if (moves_) return tl::unexpected(taken.refusals.front());
-            auto at = robot_.base_from_flange();
-            if (!at) return tl::unexpected(at.error());
-            refused_at_ = *at;
+            SEAM_TRY(auto at, robot_.base_from_flange());
+            refused_at_ = at;
             return {};
         }
         if (auto ok =
@@ -180,7 +176,7 @@ class Live {
                 session_.solving_captures() <= session_.method().fewest)
                 break;
             if (it->verification || it->left_out) continue;
-            if (auto ok = session_.set_verification(it->taken->id, true); !ok) return ok;
+            SEAM_OK(session_.set_verification(it->taken->id, true));
         }
         return {};
     }
@@ -209,18 +205,17 @@ Expected<std::string> robot_of(const Project& project, const CalibrationMethod& 
 
 // The answer into the project, all of it or nothing.
 Expected<std::vector<std::string>> store(Station& station, CalibrationSession& session, bool use) {
-    auto made = calibrations_of_session(session, station.project());
-    if (!made) return tl::unexpected(made.error());
+    SEAM_TRY(auto made, calibrations_of_session(session, station.project()));
     Project project = station.project();
     std::vector<std::string> ids;
-    for (Calibration& c : *made) {
+    for (Calibration& c : made) {
         ids.push_back(c.id);
         for (SensorSetup& s : project.sensors)
             if (use && s.id == c.sensor_id) s.calibration_id = c.id;
         project.calibrations.push_back(std::move(c));
     }
-    if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
-    if (auto noted = session.set_used_as(ids); !noted) return tl::unexpected(noted.error());
+    SEAM_OK(station.edit(project));
+    SEAM_OK(session.set_used_as(ids));
     return ids;
 }
 
@@ -236,32 +231,27 @@ Expected<LiveCalibration> calibrate_live(Station& station, const CalibrationMeth
     if (!sensor)
         return device_error("the sensor is not connected", Text("sensor {}", options.sensor_id),
                             "connect it");
-    const auto robot = robot_of(station.project(), method, options.robot_id);
-    if (!robot) return tl::unexpected(robot.error());
-    RobotLink* link = station.robot(*robot);
-    if (!link) return device_error("the robot is not connected", Text("robot {}", *robot), "connect it");
-    auto session = CalibrationSession::open(station.file().path(), method.id, options.sensor_id, *robot);
-    if (!session) return tl::unexpected(session.error());
-    if (options.anew || session->stage() == SessionStage::used)
-        if (auto begun = session->begin_anew(); !begun) return tl::unexpected(begun.error());
-    for (const auto& [name, value] : options.settings)
-        if (auto ok = session->set(name, value); !ok) return tl::unexpected(ok.error());
+    SEAM_TRY(const auto robot, robot_of(station.project(), method, options.robot_id));
+    RobotLink* link = station.robot(robot);
+    if (!link) return device_error("the robot is not connected", Text("robot {}", robot), "connect it");
+    SEAM_TRY(auto session,
+             CalibrationSession::open(station.file().path(), method.id, options.sensor_id, robot));
+    if (options.anew || session.stage() == SessionStage::used) SEAM_OK(session.begin_anew());
+    for (const auto& [name, value] : options.settings) SEAM_OK(session.set(name, value));
     std::optional<ShownTarget> shown;
     if (is_simulated_cell(setup->driver))
         if (const auto start = simulated_start(method, setup->settings)) shown.emplace(*sensor, start->scene);
-    Live live(station, options, *session, *link);
-    if (auto captured = live.capture_all(); !captured) return tl::unexpected(captured.error());
+    Live live(station, options, session, *link);
+    SEAM_OK(live.capture_all());
 
-    auto solution = session->solve();
-    if (!solution) return tl::unexpected(solution.error());
-    if (auto ok = session->take(*solution, session->state()); !ok) return tl::unexpected(ok.error());
+    SEAM_TRY(auto solution, session.solve());
+    SEAM_OK(session.take(solution, session.state()));
     LiveCalibration answer{
-        std::move(*solution), session->verification(), session->solving_captures(), {}, false};
-    if (session->stage() != SessionStage::use || method.use == AnswerUse::check) return answer;
+        std::move(solution), session.verification(), session.solving_captures(), {}, false};
+    if (session.stage() != SessionStage::use || method.use == AnswerUse::check) return answer;
     answer.used = options.use && method.use == AnswerUse::sensor;
-    auto stored = store(station, *session, answer.used);
-    if (!stored) return tl::unexpected(stored.error());
-    answer.stored = std::move(*stored);
+    SEAM_TRY(auto stored, store(station, session, answer.used));
+    answer.stored = std::move(stored);
     return answer;
 }
 

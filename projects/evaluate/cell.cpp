@@ -106,13 +106,12 @@ FeatureRecipe contour_end() {
 }
 
 Expected<FeatureRecipe> template_recipe(const Cell& cell, const Pose& pose, std::size_t n, Random& random) {
-    auto end = make_feature_finder(contour_end());
-    if (!end) return tl::unexpected(end.error());
+    SEAM_TRY(auto end, make_feature_finder(contour_end()));
     std::vector<Profile> profiles(kTemplateProfiles);
     for (Profile& p : profiles)
         take_profile(cell, *cell.taught, arrived(cell, pose, n, false, random), true, random, p);
     const Profile profile = averaged(profiles);
-    const Feature edge = (*end)->find(profile);
+    const Feature edge = end->find(profile);
     if (edge.status != FeatureStatus::ok)
         return input_error(Text("the contour's end is not found when teaching: {}", edge.message),
                            Text("spot {}", cell.spots[n].id), "evaluate with less noise");
@@ -141,19 +140,17 @@ Expected<TaughtSpot> teach(const Cell& cell, const Method& method, std::size_t n
     cut_profile(*cell.taught, pose * cell.sensor_from_believed[n].inverse(), cell.optics, spot.clean);
     spot.recipe = contour_end();
     if (method.matched) {
-        auto recipe = template_recipe(cell, pose, n, random);
-        if (!recipe) return tl::unexpected(recipe.error());
-        spot.recipe = std::move(*recipe);
+        SEAM_TRY(auto recipe, template_recipe(cell, pose, n, random));
+        spot.recipe = std::move(recipe);
     }
-    auto finder = make_feature_finder(spot.recipe);
-    if (!finder) return tl::unexpected(finder.error());
+    SEAM_TRY(auto finder, make_feature_finder(spot.recipe));
     std::vector<double> x, z;
     Eigen::Matrix2d stated = Eigen::Matrix2d::Zero();
     Profile profile;
     for (int k = 0; k < kRepeats; ++k) {
         take_profile(cell, *cell.taught, arrived(cell, pose, n, false, random), method.matched, random,
                      profile);
-        const Feature f = (*finder)->find(profile);
+        const Feature f = finder->find(profile);
         if (f.status != FeatureStatus::ok) continue;
         x.push_back(f.point_mm.x());
         z.push_back(f.point_mm.y());
@@ -179,21 +176,19 @@ Expected<TaughtSpot> teach(const Cell& cell, const Method& method, std::size_t n
         at.translation() += y * pose.linear().col(1);
         take_profile(cell, *cell.taught, arrived(cell, at, n, false, random), method.matched, random,
                      profile);
-        const Feature f = (*finder)->find(profile);
+        const Feature f = finder->find(profile);
         if (f.status == FeatureStatus::ok) points.push_back({y, f.point_mm.x(), f.point_mm.y()});
         if (!method.matched) make_ready(profile, true);
         pass.push_back({y, profile});
     }
     AlignmentOptions alignment;
     alignment.jitter_mm = std::max(0.1, cell.settings.jitter_mm);
-    auto frozen = check_alignment(pass, alignment);
-    if (!frozen) return tl::unexpected(frozen.error());
-    spot.flagged = frozen->status == AlignmentStatus::drifting;
-    spot.yaw_deg = frozen->yaw_deg;
+    SEAM_TRY(auto frozen, check_alignment(pass, alignment));
+    spot.flagged = frozen.status == AlignmentStatus::drifting;
+    spot.yaw_deg = frozen.yaw_deg;
     if (method.matched) {
-        auto curve = fit_contour_curve(points);
-        if (!curve) return tl::unexpected(curve.error());
-        spot.observation.curve = *curve;
+        SEAM_TRY(auto curve, fit_contour_curve(points));
+        spot.observation.curve = curve;
     }
     return spot;
 }

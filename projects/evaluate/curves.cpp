@@ -34,9 +34,8 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
                                        std::atomic<std::size_t>& profiles) {
     const Cell cell = curved_cell(settings, radius_mm, profiles);
     const Method method{3, "curved contour", true, false, false};
-    auto taught = teach_all(cell, method);
-    if (!taught) return tl::unexpected(taught.error());
-    const std::vector<TaughtSpot>& spots = *taught;
+    SEAM_TRY(auto taught, teach_all(cell, method));
+    const std::vector<TaughtSpot>& spots = taught;
 
     CurvedContour out;
     out.radius_mm = radius_mm;

@@ -150,9 +150,8 @@ Expected<ExperimentResult> run_experiment(const Cell& cell, const Method& method
                                           std::vector<TaughtSpot>& spots) {
     ExperimentResult result;
     result.method = method;
-    auto taught = teach_all(cell, method);
-    if (!taught) return tl::unexpected(taught.error());
-    spots = std::move(*taught);
+    SEAM_TRY(auto taught, teach_all(cell, method));
+    spots = std::move(taught);
     double variance = 0;
     for (const TaughtSpot& s : spots) {
         result.flagged += s.flagged;
@@ -318,9 +317,8 @@ Expected<std::vector<BudgetLine>> error_budget(const EvaluationSettings& s, cons
             EvaluationSettings teaching = s;
             teaching.calibration_mm = alone.calibration_mm;
             teaching.calibration_deg = alone.calibration_deg;
-            auto taught = teach_all(door_cell(teaching, profiles), method);
-            if (!taught) return tl::unexpected(taught.error());
-            run_column(cell, method, *taught, 2, trials);
+            SEAM_TRY(auto taught, teach_all(door_cell(teaching, profiles), method));
+            run_column(cell, method, taught, 2, trials);
         } else {
             run_column(cell, method, spots, 2, trials);
         }
@@ -379,30 +377,25 @@ Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
         if (settings.experiment != 0 && settings.experiment != method.number) continue;
         progress(fmt::format("experiment {}: {}", method.number, method.name));
         std::vector<TaughtSpot> spots;
-        auto result = run_experiment(door, method, spots);
-        if (!result) return tl::unexpected(result.error());
-        out.experiments.push_back(std::move(*result));
+        SEAM_TRY(auto result, run_experiment(door, method, spots));
+        out.experiments.push_back(std::move(result));
         if (!method.matched) continue;
         progress("error budget");
-        auto budget = error_budget(out.settings, method, spots, profiles);
-        if (!budget) return tl::unexpected(budget.error());
-        out.budget = std::move(*budget);
+        SEAM_TRY(auto budget, error_budget(out.settings, method, spots, profiles));
+        out.budget = std::move(budget);
         progress("straight contours: Cramer-Rao bound and NEES");
-        auto straight = straight_trials(out.settings, profiles);
-        if (!straight) return tl::unexpected(straight.error());
-        out.straight = *straight;
+        SEAM_TRY(auto straight, straight_trials(out.settings, profiles));
+        out.straight = straight;
         progress("curved contours");
         for (const double radius : kCurveRadiiMm) {
-            auto curved = curved_contour(out.settings, radius, profiles);
-            if (!curved) return tl::unexpected(curved.error());
-            out.curved.push_back(std::move(*curved));
+            SEAM_TRY(auto curved, curved_contour(out.settings, radius, profiles));
+            out.curved.push_back(std::move(curved));
         }
     }
     if (settings.experiment == 0 || settings.experiment == kOnline) {
         progress("online correction against the offline method");
-        auto online = online_experiment(out.settings, profiles);
-        if (!online) return tl::unexpected(online.error());
-        out.online = std::move(*online);
+        SEAM_TRY(auto online, online_experiment(out.settings, profiles));
+        out.online = std::move(online);
     }
     out.profiles = profiles;
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -345,13 +345,12 @@ Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
                                              std::atomic<std::size_t>& profiles) {
     World w;
     w.cell = door_cell(settings, profiles);
-    auto spots = teach_all(w.cell, w.method);
-    if (!spots) return tl::unexpected(spots.error());
-    w.spots = std::move(*spots);
+    SEAM_TRY(auto spots, teach_all(w.cell, w.method));
+    w.spots = std::move(spots);
     w.recipe = w.spots.front().recipe;  // the rim's section is the same all along
     TriangleMesh mesh = door_mesh();
     w.box = mesh.box();
-    if (auto taught = teach_pass(w); !taught) return tl::unexpected(taught.error());
+    SEAM_OK(teach_pass(w));
 
     OnlineExperiment out;
     out.contour_mm = door_edge_length_mm();

@@ -110,18 +110,15 @@ Expected<void> prepare_replacing(const fs::path& path) {
     if (!fs::is_regular_file(path, code))
         return file_error("this is no file", path.string(), "choose a .seam file");
     if (fs::file_size(path, code) == 0) return {};
-    auto old = Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile);
-    if (!old) return tl::unexpected(old.error());
-    auto id = old->integer("PRAGMA application_id");
-    if (!id) return tl::unexpected(id.error());
-    if (*id != kApplicationId)
+    SEAM_TRY(auto old, Database::open(path.string(), SQLITE_OPEN_READWRITE, kProjectFile));
+    SEAM_TRY(auto id, old.integer("PRAGMA application_id"));
+    if (id != kApplicationId)
         return file_error("the file exists and is no project file", path.string(), "choose another name");
-    auto alone = old->set_write_ahead(false);
-    if (!alone) return tl::unexpected(alone.error());
-    if (!*alone)
+    SEAM_TRY(auto alone, old.set_write_ahead(false));
+    if (!alone)
         return file_error("another program works with the file", path.string(),
                           "close it there or choose another name");
-    return old->execute("BEGIN EXCLUSIVE; ROLLBACK");
+    return old.execute("BEGIN EXCLUSIVE; ROLLBACK");
 }
 
 // Gives a finished new file its name, or clears it away when the work failed.
@@ -144,15 +141,14 @@ Expected<void> migrate_file(Database& original, const fs::path& name) {
     const fs::path path = behind_links(name);
     const fs::path made = beside(path, "migrating");
     // Holds off other writers; the copy is read through a second connection, which this lock lets pass.
-    if (auto locked = original.execute("BEGIN IMMEDIATE"); !locked) return locked;
+    SEAM_OK(original.execute("BEGIN IMMEDIATE"));
     const auto work = [&]() -> Expected<void> {
-        auto source = Database::open(path.string(), SQLITE_OPEN_READONLY, kProjectFile);
-        if (!source) return tl::unexpected(source.error());
-        auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
-        if (!copy) return tl::unexpected(copy.error());
-        if (auto done = source->copy_to(*copy); !done) return done;
-        if (auto done = migrate(*copy); !done) return done;
-        return check_structure(*copy, current_version());
+        SEAM_TRY(auto source, Database::open(path.string(), SQLITE_OPEN_READONLY, kProjectFile));
+        SEAM_TRY(auto copy,
+                 Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile));
+        SEAM_OK(source.copy_to(copy));
+        SEAM_OK(migrate(copy));
+        return check_structure(copy, current_version());
     };
     auto done = work();
     if (done) done = put_in_place(made, path, true);
@@ -195,15 +191,14 @@ Expected<ProjectFile> ProjectFile::create(const fs::path& name, const Project& p
         return file_error("the folder does not exist", folder.string(), "make it first");
     const fs::path made = beside(path, "new");
     const auto work = [&]() -> Expected<void> {
-        auto db = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
-        if (!db) return tl::unexpected(db.error());
-        if (auto done = migrate(*db); !done) return done;
-        auto transaction = Transaction::begin(*db);
-        if (!transaction) return tl::unexpected(transaction.error());
-        if (auto done = save_rows_of(*db, project); !done) return done;
-        return transaction->commit();
+        SEAM_TRY(auto db,
+                 Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile));
+        SEAM_OK(migrate(db));
+        SEAM_TRY(auto transaction, Transaction::begin(db));
+        SEAM_OK(save_rows_of(db, project));
+        return transaction.commit();
     };
-    if (auto done = finish_new(work(), made, path, replace); !done) return tl::unexpected(done.error());
+    SEAM_OK(finish_new(work(), made, path, replace));
     return open(name);
 }
 
@@ -211,10 +206,10 @@ Expected<void> ProjectFile::copy_to(const fs::path& name) const {
     const fs::path path = behind_links(name);
     const fs::path made = beside(path, "new");
     const auto work = [&]() -> Expected<void> {
-        auto copy = Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
-        if (!copy) return tl::unexpected(copy.error());
-        if (auto done = impl_->db.copy_to(*copy); !done) return done;
-        auto plain = copy->set_write_ahead(false);
+        SEAM_TRY(auto copy,
+                 Database::open(made.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile));
+        SEAM_OK(impl_->db.copy_to(copy));
+        auto plain = copy.set_write_ahead(false);
         return plain ? Expected<void>() : tl::unexpected(plain.error());
     };
     return finish_new(work(), made, path, true);
@@ -234,54 +229,50 @@ Expected<ProjectFile> ProjectFile::open(const fs::path& path, FileAccess access)
             if (check_identity(*healing)) (void)healing->set_write_ahead(false);
     }
     for (int round = 0;; ++round) {
-        auto db = Database::open(path.string(), writing ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY,
-                                 kProjectFile);
-        if (!db) return tl::unexpected(db.error());
-        auto version = check_identity(*db);
-        if (!version) return tl::unexpected(version.error());
-        auto write_ahead = db->write_ahead();
+        SEAM_TRY(auto db,
+                 Database::open(path.string(), writing ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY,
+                                kProjectFile));
+        SEAM_TRY(auto version, check_identity(db));
+        auto write_ahead = db.write_ahead();
         if (write_ahead && *write_ahead && writing) {
-            auto ended = db->set_write_ahead(false);
-            if (!ended) return tl::unexpected(ended.error());
-            write_ahead = !*ended;
+            SEAM_TRY(auto ended, db.set_write_ahead(false));
+            write_ahead = !ended;
         }
         if (!write_ahead) return tl::unexpected(write_ahead.error());
         if (!*write_ahead)  // else whoever keeps the log has found the file whole
-            if (auto whole = db->check_length(); !whole) return tl::unexpected(whole.error());
-        if (auto sound = check_structure(*db, *version); !sound) return tl::unexpected(sound.error());
-        if (*version < current_version()) {
+            SEAM_OK(db.check_length());
+        SEAM_OK(check_structure(db, version));
+        if (version < current_version()) {
             if (!writing) {
                 auto memory =
                     Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
                 if (!memory) return tl::unexpected(memory.error());
-                if (auto done = db->copy_to(*memory); !done) return tl::unexpected(done.error());
-                if (auto done = migrate(*memory); !done) return tl::unexpected(done.error());
+                SEAM_OK(db.copy_to(*memory));
+                SEAM_OK(migrate(*memory));
                 return ProjectFile(std::make_unique<Impl>(path, std::move(*memory)));
             }
-            if (auto done = migrate_file(*db, path); !done) return tl::unexpected(done.error());
+            SEAM_OK(migrate_file(db, path));
             if (round == 0) continue;
             return file_error("the project file could not be brought up to date", path.string());
         }
         // A backstop: checkpoint() comes long before.
-        if (auto rare = db->execute("PRAGMA wal_autocheckpoint = 16384"); !rare)
-            return tl::unexpected(rare.error());
-        return ProjectFile(std::make_unique<Impl>(path, std::move(*db)));
+        SEAM_OK(db.execute("PRAGMA wal_autocheckpoint = 16384"));
+        return ProjectFile(std::make_unique<Impl>(path, std::move(db)));
     }
 }
 
 Expected<Project> ProjectFile::load() const {
     // One read transaction: another process's save is seen whole or not at all.
-    if (auto begun = impl_->db.execute("BEGIN"); !begun) return tl::unexpected(begun.error());
+    SEAM_OK(impl_->db.execute("BEGIN"));
     auto project = load_rows_of(impl_->db);
     (void)impl_->db.execute("ROLLBACK");
     return project;
 }
 
 Expected<void> ProjectFile::save(const Project& project) {
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    if (auto done = save_rows_of(impl_->db, project); !done) return done;
-    if (auto done = transaction->commit(); !done) return done;
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    SEAM_OK(save_rows_of(impl_->db, project));
+    SEAM_OK(transaction.commit());
     checkpoint();
     return {};
 }

@@ -41,8 +41,7 @@ inline std::uint32_t crc_of(std::string_view text) {
 template <class T>
 Expected<std::string> row_text(const T& value, const std::string& where, const RowForm& form) {
     const nlohmann::json document = to_json_document(value, form.archive);
-    if (auto again = from_json_document<T>(document, where, form.archive); !again)
-        return tl::unexpected(again.error());
+    SEAM_OK(from_json_document<T>(document, where, form.archive));
     // A row also stands a few steps down in the setup of a run and in an export, which are read with the same
     // limit.
     constexpr std::size_t kAroundRow = 4;
@@ -75,9 +74,8 @@ Expected<T> row_value(const std::string& text, const Text& where, const std::str
 template <class Read>
 Expected<void> for_each_row(Statement& s, Read read) {
     for (;;) {
-        auto row = s.step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) return {};
+        SEAM_TRY(auto row, s.step());
+        if (!row) return {};
         Expected<void> done = read(s);
         if (done) done = s.row_ok();
         if (!done) {

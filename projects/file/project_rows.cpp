@@ -15,13 +15,11 @@ Expected<void> check_ids(Database& db, const char* table, const std::vector<std:
     std::set<std::string> seen;
     for (const std::string& id : ids) {
         if (id.size() > kLongestId) {
-            auto known = db.prepare(fmt::format("SELECT 1 FROM {} WHERE id = ?", table));
-            if (!known) return tl::unexpected(known.error());
-            known->bind(1, id);
-            auto there = known->step();
-            if (!there) return tl::unexpected(there.error());
-            known->reset();
-            if (!*there)
+            SEAM_TRY(auto known, db.prepare(fmt::format("SELECT 1 FROM {} WHERE id = ?", table)));
+            known.bind(1, id);
+            SEAM_TRY(auto there, known.step());
+            known.reset();
+            if (!there)
                 return input_error(Text("the id of a {} is longer than {} bytes", kind, kLongestId),
                                    Text("{}...", utf8_text(id.substr(0, 32))), "give a shorter name");
         }
@@ -41,21 +39,18 @@ std::vector<std::string> ids_of(const std::vector<T>& items) {
 
 // Rows that are not in `ids` go.
 Expected<void> delete_others(Database& db, const char* table, const std::vector<std::string>& ids) {
-    auto list = db.prepare(fmt::format("SELECT id FROM {}", table));
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, db.prepare(fmt::format("SELECT id FROM {}", table)));
     const std::set<std::string> keep(ids.begin(), ids.end());
     std::vector<std::string> gone;
     for (;;) {
-        auto row = list->step();
-        if (!row) return tl::unexpected(row.error());
-        if (!*row) break;
-        if (std::string id = list->text(0); !keep.count(id)) gone.push_back(std::move(id));
+        SEAM_TRY(auto row, list.step());
+        if (!row) break;
+        if (std::string id = list.text(0); !keep.count(id)) gone.push_back(std::move(id));
     }
-    auto remove = db.prepare(fmt::format("DELETE FROM {} WHERE id = ?", table));
-    if (!remove) return tl::unexpected(remove.error());
+    SEAM_TRY(auto remove, db.prepare(fmt::format("DELETE FROM {} WHERE id = ?", table)));
     for (const std::string& id : gone) {
-        remove->bind(1, id);
-        if (auto done = remove->run(); !done) return done;
+        remove.bind(1, id);
+        SEAM_OK(remove.run());
     }
     return {};
 }
@@ -64,7 +59,7 @@ Expected<void> delete_others(Database& db, const char* table, const std::vector<
 template <class T, class Bind>
 Expected<void> save_rows(Database& db, const char* table, const std::vector<std::string>& columns,
                          const std::vector<T>& items, Bind bind) {
-    if (auto done = delete_others(db, table, ids_of(items)); !done) return done;
+    SEAM_OK(delete_others(db, table, ids_of(items)));
     std::string names = "id, position", values = "?1, ?2", sets = "position = excluded.position",
                 differs = "position IS NOT excluded.position";
     int number = 2;
@@ -74,16 +69,16 @@ Expected<void> save_rows(Database& db, const char* table, const std::vector<std:
         sets += fmt::format(", {0} = excluded.{0}", c);
         differs += fmt::format(" OR {0} IS NOT excluded.{0}", c);
     }
-    auto s = db.prepare(fmt::format(
-        "INSERT INTO {0} ({1}, checksum) VALUES ({2}, row_checksum({2})) ON CONFLICT (id) DO UPDATE "
-        "SET {3}, checksum = excluded.checksum WHERE {4}",
-        table, names, values, sets, differs));
-    if (!s) return tl::unexpected(s.error());
+    SEAM_TRY(auto s,
+             db.prepare(fmt::format(
+                 "INSERT INTO {0} ({1}, checksum) VALUES ({2}, row_checksum({2})) ON CONFLICT (id) DO UPDATE "
+                 "SET {3}, checksum = excluded.checksum WHERE {4}",
+                 table, names, values, sets, differs)));
     std::int64_t position = 0;
     for (const T& item : items) {
-        s->bind(1, item.id);
-        s->bind(2, position++);
-        if (auto done = bind(*s, item); !done) return done;
+        s.bind(1, item.id);
+        s.bind(2, position++);
+        SEAM_OK(bind(s, item));
     }
     return {};
 }
@@ -100,12 +95,10 @@ Expected<void> load_rows(Database& db, const char* sql, const char* kind, std::v
         if (value->id != id)
             return file_error("an entry stands under another's id", db.path() + ": " + where);
         if constexpr (std::is_same_v<T, Spot>) {
-            auto reference = unpack_profile(row.blob(2), db.path() + ": " + where);
-            if (!reference) return tl::unexpected(reference.error());
-            auto model = unpack_profile(row.blob(3), db.path() + ": " + where);
-            if (!model) return tl::unexpected(model.error());
-            value->reference_profile = std::move(*reference);
-            value->feature.template_profile = std::move(*model);
+            SEAM_TRY(auto reference, unpack_profile(row.blob(2), db.path() + ": " + where));
+            SEAM_TRY(auto model, unpack_profile(row.blob(3), db.path() + ": " + where));
+            value->reference_profile = std::move(reference);
+            value->feature.template_profile = std::move(model);
         }
         items.push_back(std::move(*value));
         return {};
@@ -123,70 +116,61 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                               check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job")})
         if (!sound) return sound;
 
-    auto name = db.prepare(
-        "INSERT INTO project (id, name, created_utc, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2)) "
-        "ON CONFLICT (id) DO UPDATE SET name = excluded.name, checksum = row_checksum(id, excluded.name, "
-        "created_utc) WHERE name IS NOT excluded.name");
-    if (!name) return tl::unexpected(name.error());
-    if (auto text = dump_document(project.name, "project name"); !text) return tl::unexpected(text.error());
-    name->bind(1, project.name);
-    name->bind(2, utc_now());
-    if (auto done = name->run(); !done) return done;
+    const char* name_row = R"(
+        INSERT INTO project (id, name, created_utc, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2))
+        ON CONFLICT (id) DO UPDATE SET name = excluded.name, checksum = row_checksum(id, excluded.name, created_utc)
+        WHERE name IS NOT excluded.name)";
+    SEAM_TRY(auto name, db.prepare(name_row));
+    SEAM_OK(dump_document(project.name, "project name"));
+    name.bind(1, project.name);
+    name.bind(2, utc_now());
+    SEAM_OK(name.run());
 
-    auto required = db.prepare(
-        "INSERT INTO requirements (id, body, checksum) VALUES (1, ?1, row_checksum(1, ?1)) ON CONFLICT (id) "
-        "DO "
-        "UPDATE SET body = excluded.body, checksum = excluded.checksum WHERE body IS NOT excluded.body");
-    if (!required) return tl::unexpected(required.error());
-    auto required_text = row_text(project.requirements, "requirements", kRow);
-    if (!required_text) return tl::unexpected(required_text.error());
-    required->bind(1, *required_text);
-    if (auto done = required->run(); !done) return done;
+    const char* required_row = R"(
+        INSERT INTO requirements (id, body, checksum) VALUES (1, ?1, row_checksum(1, ?1))
+        ON CONFLICT (id) DO UPDATE SET body = excluded.body, checksum = excluded.checksum
+        WHERE body IS NOT excluded.body)";
+    SEAM_TRY(auto required, db.prepare(required_row));
+    SEAM_TRY(auto required_text, row_text(project.requirements, "requirements", kRow));
+    required.bind(1, required_text);
+    SEAM_OK(required.run());
 
-    auto part = db.prepare(
-        "INSERT INTO part (id, body, mesh, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2)) ON CONFLICT "
-        "(id) "
-        "DO UPDATE SET body = excluded.body, mesh = excluded.mesh, checksum = excluded.checksum WHERE body "
-        "IS NOT "
-        "excluded.body OR mesh IS NOT excluded.mesh");
-    if (!part) return tl::unexpected(part.error());
-    auto part_text = row_text(project.part, "part", kRow);
-    if (!part_text) return tl::unexpected(part_text.error());
-    part->bind(1, *part_text);
-    part->bind(2, std::span<const std::byte>(project.part.mesh_ply));
-    if (auto done = part->run(); !done) return done;
+    const char* part_row = R"(
+        INSERT INTO part (id, body, mesh, checksum) VALUES (1, ?1, ?2, row_checksum(1, ?1, ?2))
+        ON CONFLICT (id) DO UPDATE SET body = excluded.body, mesh = excluded.mesh, checksum = excluded.checksum
+        WHERE body IS NOT excluded.body OR mesh IS NOT excluded.mesh)";
+    SEAM_TRY(auto part, db.prepare(part_row));
+    SEAM_TRY(auto part_text, row_text(project.part, "part", kRow));
+    part.bind(1, part_text);
+    part.bind(2, std::span<const std::byte>(project.part.mesh_ply));
+    SEAM_OK(part.run());
 
     const auto device = [](const char* kind) {
         return [kind](Statement& s, const auto& item) -> Expected<void> {
-            auto text = row_text(item, fmt::format("{} {}", kind, item.id), kRow);
-            if (!text) return tl::unexpected(text.error());
+            SEAM_TRY(auto text, row_text(item, fmt::format("{} {}", kind, item.id), kRow));
             s.bind(3, item.driver);
-            s.bind(4, *text);
+            s.bind(4, text);
             return s.run();
         };
     };
-    if (auto done = save_rows(db, "sensors", {"driver", "body"}, project.sensors, device("sensor")); !done)
-        return done;
-    if (auto done = save_rows(db, "robots", {"driver", "body"}, project.robots, device("robot")); !done)
-        return done;
+    SEAM_OK(save_rows(db, "sensors", {"driver", "body"}, project.sensors, device("sensor")));
+    SEAM_OK(save_rows(db, "robots", {"driver", "body"}, project.robots, device("robot")));
     auto calibrations =
         save_rows(db, "calibrations", {"sensor_id", "robot_id", "created_utc", "verdict", "body"},
                   project.calibrations, [](Statement& s, const Calibration& c) -> Expected<void> {
-                      auto text = row_text(c, "calibration " + c.id, kRow);
-                      if (!text) return tl::unexpected(text.error());
+                      SEAM_TRY(auto text, row_text(c, "calibration " + c.id, kRow));
                       s.bind(3, c.sensor_id);
                       s.bind(4, c.robot_id);
                       s.bind(5, c.created_utc);
                       s.bind(6, std::string(name_of(c.verdict)));
-                      s.bind(7, *text);
+                      s.bind(7, text);
                       return s.run();
                   });
     if (!calibrations) return calibrations;
     auto spots =
         save_rows(db, "spots", {"sensor_id", "robot_id", "body", "reference_profile", "template_profile"},
                   project.spots, [](Statement& s, const Spot& spot) -> Expected<void> {
-                      auto text = row_text(spot, "spot " + spot.id, kRow);
-                      if (!text) return tl::unexpected(text.error());
+                      SEAM_TRY(auto text, row_text(spot, "spot " + spot.id, kRow));
                       auto reference = pack_profile(spot.reference_profile);
                       auto model = pack_profile(spot.feature.template_profile);
                       for (const auto* blob : {&reference, &model})
@@ -197,7 +181,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                           }
                       s.bind(3, spot.sensor_id);
                       s.bind(4, spot.robot_id);
-                      s.bind(5, *text);
+                      s.bind(5, text);
                       s.bind(6, std::span<const std::byte>(*reference));
                       s.bind(7, std::span<const std::byte>(*model));
                       return s.run();
@@ -205,19 +189,17 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
     if (!spots) return spots;
     auto regions = save_rows(db, "regions", {"frame_name", "body"}, project.regions,
                              [](Statement& s, const Region& region) -> Expected<void> {
-                                 auto text = row_text(region, "region " + region.id, kRow);
-                                 if (!text) return tl::unexpected(text.error());
+                                 SEAM_TRY(auto text, row_text(region, "region " + region.id, kRow));
                                  s.bind(3, region.frame_name);
-                                 s.bind(4, *text);
+                                 s.bind(4, text);
                                  return s.run();
                              });
     if (!regions) return regions;
     return save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs,
                      [](Statement& s, const PanelJob& job) -> Expected<void> {
-                         auto text = row_text(job, "panel job " + job.id, kPanelRow);
-                         if (!text) return tl::unexpected(text.error());
+                         SEAM_TRY(auto text, row_text(job, "panel job " + job.id, kPanelRow));
                          s.bind(3, job.frame_name);
-                         s.bind(4, *text);
+                         s.bind(4, text);
                          return s.run();
                      });
 }
@@ -225,35 +207,28 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
 Expected<Project> load_rows_of(Database& db) {
     for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
                               "regions", "panel_jobs"})
-        if (auto sound = check_rows(db, table); !sound) return tl::unexpected(sound.error());
+        SEAM_OK(check_rows(db, table));
     Project project;
-    auto name = db.prepare("SELECT name FROM project");
-    if (!name) return tl::unexpected(name.error());
-    auto named = for_each_row(*name, [&](Statement& row) -> Expected<void> {
+    SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
+    SEAM_OK(for_each_row(name, [&](Statement& row) -> Expected<void> {
         project.name = row.text(0);
         return {};
-    });
-    if (!named) return tl::unexpected(named.error());
+    }));
     auto required = db.prepare("SELECT body FROM requirements");  // none in a file of an older version
     if (!required) return tl::unexpected(required.error());
-    auto requiring = for_each_row(*required, [&](Statement& row) -> Expected<void> {
-        auto value = row_value<Requirements>(row.text(0), "requirements", db.path(), kRow);
-        if (!value) return tl::unexpected(value.error());
-        project.requirements = *value;
+    SEAM_OK(for_each_row(*required, [&](Statement& row) -> Expected<void> {
+        SEAM_TRY(auto value, row_value<Requirements>(row.text(0), "requirements", db.path(), kRow));
+        project.requirements = value;
         return {};
-    });
-    if (!requiring) return tl::unexpected(requiring.error());
-    auto part = db.prepare("SELECT body, mesh FROM part");
-    if (!part) return tl::unexpected(part.error());
-    auto parted = for_each_row(*part, [&](Statement& row) -> Expected<void> {
-        auto value = row_value<PartSetup>(row.text(0), "part", db.path(), kRow);
-        if (!value) return tl::unexpected(value.error());
-        project.part = std::move(*value);
+    }));
+    SEAM_TRY(auto part, db.prepare("SELECT body, mesh FROM part"));
+    SEAM_OK(for_each_row(part, [&](Statement& row) -> Expected<void> {
+        SEAM_TRY(auto value, row_value<PartSetup>(row.text(0), "part", db.path(), kRow));
+        project.part = std::move(value);
         const auto mesh = row.blob(1);
         project.part.mesh_ply.assign(mesh.begin(), mesh.end());
         return {};
-    });
-    if (!parted) return tl::unexpected(parted.error());
+    }));
     for (const auto& done :
          {load_rows(db, "SELECT id, body FROM sensors ORDER BY position", "sensor", project.sensors),
           load_rows(db, "SELECT id, body FROM robots ORDER BY position", "robot", project.robots),

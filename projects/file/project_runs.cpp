@@ -11,75 +11,67 @@ namespace seamwright {
 namespace {
 
 Expected<void> insert_event(Database& db, const EventRecord& event, std::int64_t run) {
-    auto s = db.prepare("INSERT INTO events (utc, run, kind, subject, text) VALUES (?, ?, ?, ?, ?)");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, event.utc.empty() ? utc_now() : utf8_text(event.utc));
-    s->bind(2, run);
-    s->bind(3, to_string(event.kind));
-    s->bind(4, utf8_text(event.subject));
-    s->bind(5, stored_text(event.text));
-    if (auto done = s->run(); !done) return done;
+    SEAM_TRY(auto s, db.prepare("INSERT INTO events (utc, run, kind, subject, text) VALUES (?, ?, ?, ?, ?)"));
+    s.bind(1, event.utc.empty() ? utc_now() : utf8_text(event.utc));
+    s.bind(2, run);
+    s.bind(3, to_string(event.kind));
+    s.bind(4, utf8_text(event.subject));
+    s.bind(5, stored_text(event.text));
+    SEAM_OK(s.run());
     return seal_row(db, "events", "id", db.last_rowid());
 }
 
 Expected<void> insert_regions(Database& db, const RunRecord& run, std::int64_t number) {
-    auto s = db.prepare(
-        "INSERT INTO run_regions (run, position, region_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, "
-        "?4, ?5, row_checksum(?1, ?2, ?3, ?4, ?5))");
-    if (!s) return tl::unexpected(s.error());
+    SEAM_TRY(auto s, db.prepare("INSERT INTO run_regions (run, position, region_id, gate_passed, body, "
+                                "checksum) VALUES (?1, ?2, ?3, "
+                                "?4, ?5, row_checksum(?1, ?2, ?3, ?4, ?5))"));
     for (std::size_t i = 0; i < run.regions.size(); ++i) {
         const RegionRecord& region = run.regions[i];
-        auto text = row_text(region, "region " + region.region_id, kResult);
-        if (!text) return tl::unexpected(text.error());
-        s->bind(1, number);
-        s->bind(2, static_cast<std::int64_t>(i));
-        s->bind(3, region.region_id);
-        s->bind(4, std::int64_t{region.gate_passed});
-        s->bind(5, *text);
-        if (auto done = s->run(); !done) return done;
+        SEAM_TRY(auto text, row_text(region, "region " + region.region_id, kResult));
+        s.bind(1, number);
+        s.bind(2, static_cast<std::int64_t>(i));
+        s.bind(3, region.region_id);
+        s.bind(4, std::int64_t{region.gate_passed});
+        s.bind(5, text);
+        SEAM_OK(s.run());
     }
     return {};
 }
 
 Expected<void> insert_panel(Database& db, const RunRecord& run, std::int64_t number) {
     if (!run.panel) return {};
-    auto text = row_text(*run.panel, "panel job " + run.panel->job_id, kResult);
-    if (!text) return tl::unexpected(text.error());
-    auto s = db.prepare(
-        "INSERT INTO run_panels (run, job_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, ?4, "
-        "row_checksum(?1, ?2, ?3, ?4))");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, number);
-    s->bind(2, run.panel->job_id);
-    s->bind(3, std::int64_t{run.panel->gate_passed});
-    s->bind(4, *text);
-    return s->run();
+    SEAM_TRY(auto text, row_text(*run.panel, "panel job " + run.panel->job_id, kResult));
+    SEAM_TRY(auto s,
+             db.prepare(
+                 "INSERT INTO run_panels (run, job_id, gate_passed, body, checksum) VALUES (?1, ?2, ?3, ?4, "
+                 "row_checksum(?1, ?2, ?3, ?4))"));
+    s.bind(1, number);
+    s.bind(2, run.panel->job_id);
+    s.bind(3, std::int64_t{run.panel->gate_passed});
+    s.bind(4, text);
+    return s.run();
 }
 
 // Behind the `stored` captures that the run has already.
 Expected<void> insert_captures(Database& db, std::span<const Capture> captures, std::size_t stored,
                                std::int64_t number) {
-    auto blobs = pack_captures(captures);
-    if (!blobs) return tl::unexpected(blobs.error());
-    auto chunks = db.prepare("SELECT ifnull(max(chunk) + 1, 0) FROM captures WHERE run = ?");
-    if (!chunks) return tl::unexpected(chunks.error());
-    chunks->bind(1, number);
-    if (auto row = chunks->step(); !row) return tl::unexpected(row.error());
-    const std::int64_t first_chunk = chunks->integer(0);
-    chunks->reset();
-    auto s = db.prepare("INSERT INTO captures (run, chunk, captures, data) VALUES (?, ?, ?, ?)");
-    if (!s) return tl::unexpected(s.error());
-    for (std::size_t i = 0; i < blobs->size(); ++i) {
-        s->bind(1, number);
-        s->bind(2, first_chunk + static_cast<std::int64_t>(i));
-        s->bind(3, std::int64_t{(*blobs)[i].captures});
-        s->bind(4, std::span<const std::byte>((*blobs)[i].bytes));
-        if (auto done = s->run(); !done) return done;
+    SEAM_TRY(auto blobs, pack_captures(captures));
+    SEAM_TRY(auto chunks, db.prepare("SELECT ifnull(max(chunk) + 1, 0) FROM captures WHERE run = ?"));
+    chunks.bind(1, number);
+    SEAM_OK(chunks.step());
+    const std::int64_t first_chunk = chunks.integer(0);
+    chunks.reset();
+    SEAM_TRY(auto s, db.prepare("INSERT INTO captures (run, chunk, captures, data) VALUES (?, ?, ?, ?)"));
+    for (std::size_t i = 0; i < blobs.size(); ++i) {
+        s.bind(1, number);
+        s.bind(2, first_chunk + static_cast<std::int64_t>(i));
+        s.bind(3, std::int64_t{blobs[i].captures});
+        s.bind(4, std::span<const std::byte>(blobs[i].bytes));
+        SEAM_OK(s.run());
     }
-    auto image = db.prepare(
-        "INSERT INTO images (run, capture, width, height, bit_depth, crc, data) VALUES (?, ?, ?, ?, ?, ?, "
-        "?)");
-    if (!image) return tl::unexpected(image.error());
+    SEAM_TRY(auto image, db.prepare("INSERT INTO images (run, capture, width, height, bit_depth, crc, data) "
+                                    "VALUES (?, ?, ?, ?, ?, ?, "
+                                    "?)"));
     for (std::size_t i = 0; i < captures.size(); ++i) {
         if (!captures[i].image) continue;
         const StoredImage& raw = *captures[i].image;
@@ -87,14 +79,14 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
         if (view.empty() || raw.pixels.size() != view.row_bytes * static_cast<std::size_t>(view.height))
             return input_error("the image's pixels do not fill its size",
                                Text("capture of spot {}", captures[i].spot_id));
-        image->bind(1, number);
-        image->bind(2, static_cast<std::int64_t>(stored + i));
-        image->bind(3, std::int64_t{raw.width});
-        image->bind(4, std::int64_t{raw.height});
-        image->bind(5, std::int64_t{raw.bit_depth});
-        image->bind(6, std::int64_t{crc_of(std::span<const std::byte>(raw.pixels))});
-        image->bind(7, std::span<const std::byte>(raw.pixels));
-        if (auto done = image->run(); !done) return done;
+        image.bind(1, number);
+        image.bind(2, static_cast<std::int64_t>(stored + i));
+        image.bind(3, std::int64_t{raw.width});
+        image.bind(4, std::int64_t{raw.height});
+        image.bind(5, std::int64_t{raw.bit_depth});
+        image.bind(6, std::int64_t{crc_of(std::span<const std::byte>(raw.pixels))});
+        image.bind(7, std::span<const std::byte>(raw.pixels));
+        SEAM_OK(image.run());
     }
     return {};
 }
@@ -102,20 +94,18 @@ Expected<void> insert_captures(Database& db, std::span<const Capture> captures, 
 // Those spots that `wanted` says by their position.
 template <class Wanted>
 Expected<void> insert_spots(Database& db, const RunRecord& run, std::int64_t number, const Wanted& wanted) {
-    auto spot = db.prepare(
-        "INSERT INTO run_spots (run, position, spot_id, status, body, checksum) VALUES (?1, ?2, ?3, ?4, ?5, "
-        "row_checksum(?1, ?2, ?3, ?4, ?5))");
-    if (!spot) return tl::unexpected(spot.error());
+    SEAM_TRY(auto spot, db.prepare("INSERT INTO run_spots (run, position, spot_id, status, body, checksum) "
+                                   "VALUES (?1, ?2, ?3, ?4, ?5, "
+                                   "row_checksum(?1, ?2, ?3, ?4, ?5))"));
     for (std::size_t i = 0; i < run.spots.size(); ++i) {
         if (!wanted(i)) continue;
-        auto text = row_text(run.spots[i], "spot " + run.spots[i].spot_id, kResult);
-        if (!text) return tl::unexpected(text.error());
-        spot->bind(1, number);
-        spot->bind(2, static_cast<std::int64_t>(i));
-        spot->bind(3, run.spots[i].spot_id);
-        spot->bind(4, to_string(run.spots[i].status));
-        spot->bind(5, *text);
-        if (auto done = spot->run(); !done) return done;
+        SEAM_TRY(auto text, row_text(run.spots[i], "spot " + run.spots[i].spot_id, kResult));
+        spot.bind(1, number);
+        spot.bind(2, static_cast<std::int64_t>(i));
+        spot.bind(3, run.spots[i].spot_id);
+        spot.bind(4, to_string(run.spots[i].status));
+        spot.bind(5, text);
+        SEAM_OK(spot.run());
     }
     return {};
 }
@@ -124,35 +114,33 @@ Expected<void> insert_spots(Database& db, const RunRecord& run, std::int64_t num
 Expected<void> insert_rest(Database& db, const RunRecord& run, std::int64_t number,
                            const StoredMeasurements& stored) {
     const auto open = [&](std::size_t i) { return stored.spots.count(i) == 0; };
-    if (auto done = insert_spots(db, run, number, open); !done) return done;
-    if (auto done = insert_regions(db, run, number); !done) return done;
-    if (auto done = insert_panel(db, run, number); !done) return done;
+    SEAM_OK(insert_spots(db, run, number, open));
+    SEAM_OK(insert_regions(db, run, number));
+    SEAM_OK(insert_panel(db, run, number));
     if (auto done =
             insert_captures(db, std::span(run.captures).subspan(stored.captures), stored.captures, number);
         !done)
         return done;
-    for (const EventRecord& event : run.events)
-        if (auto done = insert_event(db, event, number); !done) return done;
+    for (const EventRecord& event : run.events) SEAM_OK(insert_event(db, event, number));
     return {};
 }
 
 Expected<void> load_captures(Database& db, RunRecord& run) {
     const std::string where = fmt::format("{}: run {}", db.path(), run.number);
-    auto s = db.prepare("SELECT captures, data FROM captures WHERE run = ? ORDER BY chunk");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, run.number);
-    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+    SEAM_TRY(auto s, db.prepare("SELECT captures, data FROM captures WHERE run = ? ORDER BY chunk"));
+    s.bind(1, run.number);
+    auto read = for_each_row(s, [&](Statement& row) -> Expected<void> {
         const std::size_t before = run.captures.size();
-        if (auto done = unpack_captures(row.blob(1), where, run.captures); !done) return done;
+        SEAM_OK(unpack_captures(row.blob(1), where, run.captures));
         if (static_cast<std::int64_t>(run.captures.size() - before) != row.integer(0))
             return file_error("a block holds another number of profiles than it says", where);
         return {};
     });
     if (!read) return read;
-    auto image = db.prepare("SELECT capture, width, height, bit_depth, crc, data FROM images WHERE run = ?");
-    if (!image) return tl::unexpected(image.error());
-    image->bind(1, run.number);
-    return for_each_row(*image, [&](Statement& row) -> Expected<void> {
+    SEAM_TRY(auto image,
+             db.prepare("SELECT capture, width, height, bit_depth, crc, data FROM images WHERE run = ?"));
+    image.bind(1, run.number);
+    return for_each_row(image, [&](Statement& row) -> Expected<void> {
         const std::int64_t capture = row.integer(0), width = row.integer(1), height = row.integer(2),
                            depth = row.integer(3);
         const auto data = row.blob(5);
@@ -172,13 +160,12 @@ Expected<void> load_captures(Database& db, RunRecord& run) {
 
 template <class T>
 Expected<void> load_results(Database& db, const char* sql, std::int64_t number, std::vector<T>& items) {
-    auto s = db.prepare(sql);
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, number);
-    return for_each_row(*s, [&](Statement& row) -> Expected<void> {
-        auto value = row_value<T>(row.text(1), Text("run {}: {}", number, row.text(0)), db.path(), kResult);
-        if (!value) return tl::unexpected(value.error());
-        items.push_back(std::move(*value));
+    SEAM_TRY(auto s, db.prepare(sql));
+    s.bind(1, number);
+    return for_each_row(s, [&](Statement& row) -> Expected<void> {
+        SEAM_TRY(auto value,
+                 row_value<T>(row.text(1), Text("run {}: {}", number, row.text(0)), db.path(), kResult));
+        items.push_back(std::move(value));
         return {};
     });
 }
@@ -193,46 +180,40 @@ Expected<RunSetup> RunSetup::of(const Project& project) {
         c.raw = nlohmann::json::object();
         c.result = nlohmann::json::object();
     }
-    auto text = row_text(slim, "setup of the run", kSetup);
-    if (!text) return tl::unexpected(text.error());
+    SEAM_TRY(auto text, row_text(slim, "setup of the run", kSetup));
     RunSetup setup;
-    setup.crc_ = crc_of(*text);
-    setup.text_ = std::move(*text);
+    setup.crc_ = crc_of(text);
+    setup.text_ = std::move(text);
     return setup;
 }
 
 // The row of this setup, made when there is none yet.
 Expected<std::int64_t> ProjectFile::setup_id(const RunSetup& setup) {
     Database& db = impl_->db;
-    auto find = db.prepare("SELECT id FROM setups WHERE crc = ? AND body = ?");
-    if (!find) return tl::unexpected(find.error());
-    find->bind(1, setup.crc_);
-    find->bind(2, setup.text_);
-    auto row = find->step();
-    if (!row) return tl::unexpected(row.error());
-    if (*row) {
-        const std::int64_t id = find->integer(0);
-        find->reset();
+    SEAM_TRY(auto find, db.prepare("SELECT id FROM setups WHERE crc = ? AND body = ?"));
+    find.bind(1, setup.crc_);
+    find.bind(2, setup.text_);
+    SEAM_TRY(auto row, find.step());
+    if (row) {
+        const std::int64_t id = find.integer(0);
+        find.reset();
         return id;
     }
-    auto insert = db.prepare("INSERT INTO setups (crc, body) VALUES (?, ?)");
-    if (!insert) return tl::unexpected(insert.error());
-    insert->bind(1, setup.crc_);
-    insert->bind(2, setup.text_);
-    if (auto done = insert->run(); !done) return tl::unexpected(done.error());
+    SEAM_TRY(auto insert, db.prepare("INSERT INTO setups (crc, body) VALUES (?, ?)"));
+    insert.bind(1, setup.crc_);
+    insert.bind(2, setup.text_);
+    SEAM_OK(insert.run());
     const std::int64_t id = db.last_rowid();
-    if (auto done = seal_row(db, "setups", "id", id); !done) return tl::unexpected(done.error());
+    SEAM_OK(seal_row(db, "setups", "id", id));
     return id;
 }
 
 Expected<std::int64_t> ProjectFile::setup_of(const Project& project) {
-    const auto setup = RunSetup::of(project);
-    if (!setup) return tl::unexpected(setup.error());
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto id = setup_id(*setup);
+    SEAM_TRY(const auto setup, RunSetup::of(project));
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    auto id = setup_id(setup);
     if (!id) return id;
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    SEAM_OK(transaction.commit());
     return id;
 }
 
@@ -240,41 +221,37 @@ Expected<std::int64_t> ProjectFile::setup_of(const Project& project) {
 Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSetup& setup) {
     auto setup_number = setup_id(setup);
     if (!setup_number) return setup_number;
-    auto s = impl_->db.prepare(
-        "INSERT INTO runs (part_id, started_utc, finished_utc, push, status, message, setup) VALUES (?, ?, "
-        "?, ?, ?, ?, ?)");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, utf8_text(run.part_id));
-    s->bind(2, utf8_text(run.started_utc));
-    s->bind(3, utf8_text(run.finished_utc));
-    s->bind(4, std::int64_t{run.push});
-    s->bind(5, to_string(run.status));
-    s->bind(6, stored_text(run.message));
-    s->bind(7, *setup_number);
-    if (auto done = s->run(); !done) return tl::unexpected(done.error());
+    SEAM_TRY(auto s, impl_->db.prepare("INSERT INTO runs (part_id, started_utc, finished_utc, push, status, "
+                                       "message, setup) VALUES (?, ?, "
+                                       "?, ?, ?, ?, ?)"));
+    s.bind(1, utf8_text(run.part_id));
+    s.bind(2, utf8_text(run.started_utc));
+    s.bind(3, utf8_text(run.finished_utc));
+    s.bind(4, std::int64_t{run.push});
+    s.bind(5, to_string(run.status));
+    s.bind(6, stored_text(run.message));
+    s.bind(7, *setup_number);
+    SEAM_OK(s.run());
     const std::int64_t number = impl_->db.last_rowid();
-    if (auto done = seal_row(impl_->db, "runs", "number", number); !done) return tl::unexpected(done.error());
+    SEAM_OK(seal_row(impl_->db, "runs", "number", number));
     return number;
 }
 
 Expected<std::int64_t> ProjectFile::append_run(const RunRecord& run, const Project& setup) {
-    const auto text = RunSetup::of(setup);
-    if (!text) return tl::unexpected(text.error());
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto number = insert_run(run, *text);
+    SEAM_TRY(const auto text, RunSetup::of(setup));
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    auto number = insert_run(run, text);
     if (!number) return number;
-    if (auto done = insert_rest(impl_->db, run, *number, {}); !done) return tl::unexpected(done.error());
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    SEAM_OK(insert_rest(impl_->db, run, *number, {}));
+    SEAM_OK(transaction.commit());
     return number;
 }
 
 Expected<std::int64_t> ProjectFile::begin_run(const RunRecord& run, const RunSetup& setup) {
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
     auto number = insert_run(run, setup);
     if (!number) return number;
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    SEAM_OK(transaction.commit());
     return number;
 }
 
@@ -283,118 +260,109 @@ Expected<void> ProjectFile::append_measured(const RunRecord& run, StoredMeasurem
     const auto measured = [&](std::size_t i) {
         return run.spots[i].capture >= 0 && then.spots.insert(i).second;
     };
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
     if (auto done = insert_captures(impl_->db, std::span(run.captures).subspan(stored.captures),
                                     stored.captures, run.number);
         !done)
         return done;
-    if (auto done = insert_spots(impl_->db, run, run.number, measured); !done) return done;
-    if (auto done = transaction->commit(); !done) return done;
+    SEAM_OK(insert_spots(impl_->db, run, run.number, measured));
+    SEAM_OK(transaction.commit());
     then.captures = run.captures.size();
     stored = std::move(then);
     return {};
 }
 
 Expected<void> ProjectFile::finish_run(const RunRecord& run, const StoredMeasurements& stored) {
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto s = impl_->db.prepare(
-        "UPDATE runs SET part_id = ?, finished_utc = ?, status = ?, message = ? WHERE number = ? RETURNING "
-        "number");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, utf8_text(run.part_id));
-    s->bind(2, utf8_text(run.finished_utc));
-    s->bind(3, to_string(run.status));
-    s->bind(4, stored_text(run.message));
-    s->bind(5, run.number);
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
-    if (auto done = s->run(); !done) return done;
-    if (auto done = seal_row(impl_->db, "runs", "number", run.number); !done) return done;
-    if (auto done = insert_rest(impl_->db, run, run.number, stored); !done) return done;
-    return transaction->commit();
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    SEAM_TRY(auto s, impl_->db.prepare("UPDATE runs SET part_id = ?, finished_utc = ?, status = ?, message = "
+                                       "? WHERE number = ? RETURNING "
+                                       "number"));
+    s.bind(1, utf8_text(run.part_id));
+    s.bind(2, utf8_text(run.finished_utc));
+    s.bind(3, to_string(run.status));
+    s.bind(4, stored_text(run.message));
+    s.bind(5, run.number);
+    SEAM_TRY(auto row, s.step());
+    if (!row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
+    SEAM_OK(s.run());
+    SEAM_OK(seal_row(impl_->db, "runs", "number", run.number));
+    SEAM_OK(insert_rest(impl_->db, run, run.number, stored));
+    return transaction.commit();
 }
 
 Expected<void> ProjectFile::update_run(const RunRecord& run) {
     Database& db = impl_->db;
-    auto transaction = Transaction::begin(db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto s = db.prepare(
-        "UPDATE runs SET finished_utc = ?, status = ?, message = ? WHERE number = ? RETURNING number");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, utf8_text(run.finished_utc));
-    s->bind(2, to_string(run.status));
-    s->bind(3, stored_text(run.message));
-    s->bind(4, run.number);
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
-    if (auto done = s->run(); !done) return done;
-    if (auto done = seal_row(db, "runs", "number", run.number); !done) return done;
+    SEAM_TRY(auto transaction, Transaction::begin(db));
+    SEAM_TRY(
+        auto s,
+        db.prepare(
+            "UPDATE runs SET finished_utc = ?, status = ?, message = ? WHERE number = ? RETURNING number"));
+    s.bind(1, utf8_text(run.finished_utc));
+    s.bind(2, to_string(run.status));
+    s.bind(3, stored_text(run.message));
+    s.bind(4, run.number);
+    SEAM_TRY(auto row, s.step());
+    if (!row) return input_error(Text("there is no run {}", run.number), impl_->path.string());
+    SEAM_OK(s.run());
+    SEAM_OK(seal_row(db, "runs", "number", run.number));
     for (const char* outcome :
          {"DELETE FROM run_regions WHERE run = ?", "DELETE FROM run_panels WHERE run = ?"}) {
-        auto remove = db.prepare(outcome);
-        if (!remove) return tl::unexpected(remove.error());
-        remove->bind(1, run.number);
-        if (auto done = remove->run(); !done) return done;
+        SEAM_TRY(auto remove, db.prepare(outcome));
+        remove.bind(1, run.number);
+        SEAM_OK(remove.run());
     }
-    if (auto done = insert_regions(db, run, run.number); !done) return done;
-    if (auto done = insert_panel(db, run, run.number); !done) return done;
-    return transaction->commit();
+    SEAM_OK(insert_regions(db, run, run.number));
+    SEAM_OK(insert_panel(db, run, run.number));
+    return transaction.commit();
 }
 
 Expected<std::int64_t> ProjectFile::append_event(const EventRecord& event) {
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    if (auto done = insert_event(impl_->db, event, event.run); !done) return tl::unexpected(done.error());
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    SEAM_OK(insert_event(impl_->db, event, event.run));
     const std::int64_t id = impl_->db.last_rowid();
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    SEAM_OK(transaction.commit());
     return id;
 }
 
 Expected<std::int64_t> ProjectFile::append_evidence(const Evidence& evidence, const Project& setup) {
-    auto with = RunSetup::of(setup);
-    if (!with) return tl::unexpected(with.error());
+    SEAM_TRY(auto with, RunSetup::of(setup));
     Database& db = impl_->db;
-    auto transaction = Transaction::begin(db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto setup_number = setup_id(*with);
+    SEAM_TRY(auto transaction, Transaction::begin(db));
+    auto setup_number = setup_id(with);
     if (!setup_number) return setup_number;
     const std::string kind(kind_of(evidence));
-    auto text = std::visit([&](const auto& what) { return row_text(what, "evidence: " + kind, kResult); },
-                           evidence.what);
-    if (!text) return tl::unexpected(text.error());
-    auto s = db.prepare("INSERT INTO evidence (utc, kind, subject, setup, body) VALUES (?, ?, ?, ?, ?)");
-    if (!s) return tl::unexpected(s.error());
+    SEAM_TRY(auto text,
+             std::visit([&](const auto& what) { return row_text(what, "evidence: " + kind, kResult); },
+                        evidence.what));
+    SEAM_TRY(auto s,
+             db.prepare("INSERT INTO evidence (utc, kind, subject, setup, body) VALUES (?, ?, ?, ?, ?)"));
     const auto* frozen = std::get_if<FrozenContour>(&evidence.what);
     const auto* passes = std::get_if<TriggerPasses>(&evidence.what);
     const auto* returns = std::get_if<RobotReturns>(&evidence.what);
     const auto* plan = std::get_if<StudyPlan>(&evidence.what);
-    s->bind(1, evidence.utc.empty() ? utc_now() : utf8_text(evidence.utc));
-    s->bind(2, kind);
-    s->bind(3, frozen    ? utf8_text(frozen->spot_id)
-               : passes  ? utf8_text(passes->spot_id)
-               : returns ? utf8_text(returns->robot_id)
-               : plan    ? utf8_text(plan->region_id)
-                         : std::string());
-    s->bind(4, *setup_number);
-    s->bind(5, *text);
-    if (auto done = s->run(); !done) return tl::unexpected(done.error());
+    s.bind(1, evidence.utc.empty() ? utc_now() : utf8_text(evidence.utc));
+    s.bind(2, kind);
+    s.bind(3, frozen    ? utf8_text(frozen->spot_id)
+              : passes  ? utf8_text(passes->spot_id)
+              : returns ? utf8_text(returns->robot_id)
+              : plan    ? utf8_text(plan->region_id)
+                        : std::string());
+    s.bind(4, *setup_number);
+    s.bind(5, text);
+    SEAM_OK(s.run());
     const std::int64_t id = db.last_rowid();
-    if (auto done = seal_row(db, "evidence", "id", id); !done) return tl::unexpected(done.error());
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    SEAM_OK(seal_row(db, "evidence", "id", id));
+    SEAM_OK(transaction.commit());
     return id;
 }
 
 Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const {
-    if (auto sound = check_rows(impl_->db, "evidence"); !sound) return tl::unexpected(sound.error());
-    auto s = impl_->db.prepare("SELECT id, utc, kind, setup, body FROM evidence WHERE id > ? ORDER BY id");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, after);
+    SEAM_OK(check_rows(impl_->db, "evidence"));
+    SEAM_TRY(auto s,
+             impl_->db.prepare("SELECT id, utc, kind, setup, body FROM evidence WHERE id > ? ORDER BY id"));
+    s.bind(1, after);
     std::vector<Evidence> list;
-    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
         Evidence e;
         e.id = row.integer(0);
         e.utc = row.text(1);
@@ -402,9 +370,8 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
         const std::string kind = row.text(2), body = row.text(4);
         const Text where("evidence {}", e.id);
         const auto read_as = [&]<class T>(T*) -> Expected<void> {
-            auto value = row_value<T>(body, where, impl_->path.string(), kResult);
-            if (!value) return tl::unexpected(value.error());
-            e.what = std::move(*value);
+            SEAM_TRY(auto value, row_value<T>(body, where, impl_->path.string(), kResult));
+            e.what = std::move(value);
             return {};
         };
         Expected<void> done = kind == kFrozenContour   ? read_as(static_cast<FrozenContour*>(nullptr))
@@ -418,20 +385,18 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
                                                                     joined(impl_->path.string(), ": ", where));
         if (done) list.push_back(std::move(e));
         return done;
-    });
-    if (!read) return tl::unexpected(read.error());
+    }));
     return list;
 }
 
 Expected<std::vector<RunSummary>> ProjectFile::runs() const {
-    if (auto sound = check_rows(impl_->db, "runs"); !sound) return tl::unexpected(sound.error());
-    auto s = impl_->db.prepare(
-        "SELECT number, part_id, started_utc, finished_utc, push, status, message, setup, "
-        "(SELECT count(*) FROM run_spots WHERE run = number), "
-        "(SELECT ifnull(sum(captures), 0) FROM captures WHERE run = number) FROM runs ORDER BY number");
-    if (!s) return tl::unexpected(s.error());
+    SEAM_OK(check_rows(impl_->db, "runs"));
+    SEAM_TRY(auto s, impl_->db.prepare(
+                         "SELECT number, part_id, started_utc, finished_utc, push, status, message, setup, "
+                         "(SELECT count(*) FROM run_spots WHERE run = number), (SELECT ifnull(sum(captures), "
+                         "0) FROM captures WHERE run = number) FROM runs ORDER BY number"));
     std::vector<RunSummary> runs;
-    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
         RunSummary run;
         run.number = row.integer(0);
         run.part_id = row.text(1);
@@ -449,22 +414,22 @@ Expected<std::vector<RunSummary>> ProjectFile::runs() const {
         run.captures = static_cast<int>(row.integer(9));
         runs.push_back(std::move(run));
         return {};
-    });
-    if (!read) return tl::unexpected(read.error());
+    }));
     return runs;
 }
 
 Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_captures) const {
     Database& db = impl_->db;
-    if (auto sound = check_rows(db, "runs", "number", number); !sound) return tl::unexpected(sound.error());
+    SEAM_OK(check_rows(db, "runs", "number", number));
     for (const char* table : {"run_spots", "run_regions", "run_panels"})
-        if (auto sound = check_rows(db, table, "run", number); !sound) return tl::unexpected(sound.error());
-    auto s = db.prepare(
-        "SELECT part_id, started_utc, finished_utc, push, status, message FROM runs WHERE number = ?");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, number);
+        SEAM_OK(check_rows(db, table, "run", number));
+    SEAM_TRY(
+        auto s,
+        db.prepare(
+            "SELECT part_id, started_utc, finished_utc, push, status, message FROM runs WHERE number = ?"));
+    s.bind(1, number);
     RunRecord run;
-    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
         run.number = number;
         run.part_id = row.text(0);
         run.started_utc = row.text(1);
@@ -477,8 +442,7 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
         run.status = *status;
         run.message = text_from_stored(row.text(5));
         return {};
-    });
-    if (!read) return tl::unexpected(read.error());
+    }));
     if (run.number != number || number < 1)
         return input_error(Text("there is no run {}", number), impl_->path.string());
     if (auto done = load_results(db, "SELECT spot_id, body FROM run_spots WHERE run = ? ORDER BY position",
@@ -495,52 +459,43 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
         !done)
         return tl::unexpected(done.error());
     if (!panels.empty()) run.panel = std::move(panels.front());
-    if (with_captures)
-        if (auto done = load_captures(db, run); !done) return tl::unexpected(done.error());
-    auto events_of_run = events(number);
-    if (!events_of_run) return tl::unexpected(events_of_run.error());
-    run.events = std::move(*events_of_run);
+    if (with_captures) SEAM_OK(load_captures(db, run));
+    SEAM_TRY(auto events_of_run, events(number));
+    run.events = std::move(events_of_run);
     return run;
 }
 
 Expected<Project> ProjectFile::load_setup(std::int64_t setup) const {
-    if (auto sound = check_rows(impl_->db, "setups", "id", setup); !sound)
-        return tl::unexpected(sound.error());
-    auto s = impl_->db.prepare("SELECT body FROM setups WHERE id = ?");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, setup);
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return file_error(Text("setup {} is missing", setup), impl_->path.string());
-    const std::string text = s->text(0);
-    s->reset();
+    SEAM_OK(check_rows(impl_->db, "setups", "id", setup));
+    SEAM_TRY(auto s, impl_->db.prepare("SELECT body FROM setups WHERE id = ?"));
+    s.bind(1, setup);
+    SEAM_TRY(auto row, s.step());
+    if (!row) return file_error(Text("setup {} is missing", setup), impl_->path.string());
+    const std::string text = s.text(0);
+    s.reset();
     return row_value<Project>(text, Text("setup {}", setup), impl_->path.string(), kSetup);
 }
 
 Expected<Project> ProjectFile::load_run_setup(std::int64_t number) const {
-    if (auto sound = check_rows(impl_->db, "runs", "number", number); !sound)
-        return tl::unexpected(sound.error());
-    auto s = impl_->db.prepare("SELECT setup FROM runs WHERE number = ?");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, number);
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return input_error(Text("there is no run {}", number), impl_->path.string());
-    const std::int64_t setup = s->integer(0);
-    s->reset();
+    SEAM_OK(check_rows(impl_->db, "runs", "number", number));
+    SEAM_TRY(auto s, impl_->db.prepare("SELECT setup FROM runs WHERE number = ?"));
+    s.bind(1, number);
+    SEAM_TRY(auto row, s.step());
+    if (!row) return input_error(Text("there is no run {}", number), impl_->path.string());
+    const std::int64_t setup = s.integer(0);
+    s.reset();
     return load_setup(setup);
 }
 
 Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
-    if (auto sound = check_rows(impl_->db, "events", run ? "run" : nullptr, run); !sound)
-        return tl::unexpected(sound.error());
-    auto s = impl_->db.prepare(
-        run ? "SELECT id, utc, run, kind, subject, text FROM events WHERE run = ? ORDER BY id"
-            : "SELECT id, utc, run, kind, subject, text FROM events ORDER BY id");
-    if (!s) return tl::unexpected(s.error());
-    if (run) s->bind(1, run);
+    SEAM_OK(check_rows(impl_->db, "events", run ? "run" : nullptr, run));
+    SEAM_TRY(auto s,
+             impl_->db.prepare(
+                 run ? "SELECT id, utc, run, kind, subject, text FROM events WHERE run = ? ORDER BY id"
+                     : "SELECT id, utc, run, kind, subject, text FROM events ORDER BY id"));
+    if (run) s.bind(1, run);
     std::vector<EventRecord> list;
-    auto read = for_each_row(*s, [&](Statement& row) -> Expected<void> {
+    SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
         EventRecord event;
         event.id = row.integer(0);
         event.utc = row.text(1);
@@ -552,19 +507,16 @@ Expected<std::vector<EventRecord>> ProjectFile::events(std::int64_t run) const {
         event.text = text_from_stored(row.text(5));
         list.push_back(std::move(event));
         return {};
-    });
-    if (!read) return tl::unexpected(read.error());
+    }));
     return list;
 }
 
 Expected<void> ProjectFile::delete_run(std::int64_t number) {
-    auto transaction = Transaction::begin(impl_->db);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto s = impl_->db.prepare("DELETE FROM runs WHERE number = ?");
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, number);
-    if (auto done = s->run(); !done) return done;
-    return transaction->commit();
+    SEAM_TRY(auto transaction, Transaction::begin(impl_->db));
+    SEAM_TRY(auto s, impl_->db.prepare("DELETE FROM runs WHERE number = ?"));
+    s.bind(1, number);
+    SEAM_OK(s.run());
+    return transaction.commit();
 }
 
 std::vector<Error> ProjectFile::check() const {

@@ -42,27 +42,24 @@ std::span<const ChecksummedTable> checksummed_tables() {
 
 Expected<void> check_rows(Database& db, std::string_view table, const char* column, std::int64_t value) {
     const ChecksummedTable& t = table_of(table);
-    auto s = db.prepare(
-        fmt::format("SELECT CAST({} AS TEXT) FROM {} WHERE {}checksum IS NOT row_checksum({}) LIMIT 1", t.key,
-                    t.name, column ? fmt::format("{} = ? AND ", column) : "", t.columns));
-    if (!s) return tl::unexpected(s.error());
-    if (column) s->bind(1, value);
-    auto row = s->step();
-    if (!row) return tl::unexpected(row.error());
-    if (!*row) return {};
-    const std::string where = fmt::format("{}: {} {}", db.path(), t.name, s->text(0));
-    s->reset();
+    SEAM_TRY(auto s, db.prepare(fmt::format(
+                         "SELECT CAST({} AS TEXT) FROM {} WHERE {}checksum IS NOT row_checksum({}) LIMIT 1",
+                         t.key, t.name, column ? fmt::format("{} = ? AND ", column) : "", t.columns)));
+    if (column) s.bind(1, value);
+    SEAM_TRY(auto row, s.step());
+    if (!row) return {};
+    const std::string where = fmt::format("{}: {} {}", db.path(), t.name, s.text(0));
+    s.reset();
     return file_error("the checksum of an entry is wrong: the file is damaged", where,
                       "take the last good copy from the backup");
 }
 
 Expected<void> seal_row(Database& db, std::string_view table, const char* column, std::int64_t value) {
     const ChecksummedTable& t = table_of(table);
-    auto s = db.prepare(
-        fmt::format("UPDATE {} SET checksum = row_checksum({}) WHERE {} = ?", t.name, t.columns, column));
-    if (!s) return tl::unexpected(s.error());
-    s->bind(1, value);
-    return s->run();
+    SEAM_TRY(auto s, db.prepare(fmt::format("UPDATE {} SET checksum = row_checksum({}) WHERE {} = ?", t.name,
+                                            t.columns, column)));
+    s.bind(1, value);
+    return s.run();
 }
 
 }  // namespace seamwright

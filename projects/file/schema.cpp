@@ -209,10 +209,10 @@ Expected<Database::Tables> tables_of(std::int32_t version) {
     static std::map<std::int32_t, Database::Tables> known;
     const std::lock_guard lock(mutex);
     if (const auto found = known.find(version); found != known.end()) return found->second;
-    auto fresh = Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile);
-    if (!fresh) return tl::unexpected(fresh.error());
-    if (auto made = migrate(*fresh, version); !made) return tl::unexpected(made.error());
-    auto tables = fresh->tables();
+    SEAM_TRY(auto fresh,
+             Database::open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, kProjectFile));
+    SEAM_OK(migrate(fresh, version));
+    auto tables = fresh.tables();
     if (tables) known.emplace(version, *tables);
     return tables;
 }
@@ -227,36 +227,32 @@ std::int32_t current_version() {
 }
 
 Expected<void> migrate(Database& db, std::int32_t until) {
-    auto version = db.integer("PRAGMA user_version");
-    if (!version) return tl::unexpected(version.error());
-    auto transaction = Transaction::begin(db);
-    if (!transaction) return tl::unexpected(transaction.error());
+    SEAM_TRY(auto version, db.integer("PRAGMA user_version"));
+    SEAM_TRY(auto transaction, Transaction::begin(db));
     for (const Migration& step : kMigrations) {
-        if (step.version <= *version || step.version > until) continue;
-        if (auto done = db.execute(step.sql); !done) return done;
-        if (auto done = db.execute(fmt::format("PRAGMA user_version = {}", step.version)); !done) return done;
+        if (step.version <= version || step.version > until) continue;
+        SEAM_OK(db.execute(step.sql));
+        SEAM_OK(db.execute(fmt::format("PRAGMA user_version = {}", step.version)));
     }
-    if (auto done = db.execute(fmt::format("PRAGMA application_id = {}", kApplicationId)); !done) return done;
-    return transaction->commit();
+    SEAM_OK(db.execute(fmt::format("PRAGMA application_id = {}", kApplicationId)));
+    return transaction.commit();
 }
 
 Expected<std::int32_t> check_identity(Database& db) {
-    auto id = db.integer("PRAGMA application_id");
-    if (!id) return tl::unexpected(id.error());
-    if (*id == kCaptureApplicationId)
+    SEAM_TRY(auto id, db.integer("PRAGMA application_id"));
+    if (id == kCaptureApplicationId)
         return file_error("this is a recorded capture, no project", db.path(),
                           "name it in the settings of a sensor of driver \"replay\": {\"file\": ...}");
-    if (*id != kApplicationId)
+    if (id != kApplicationId)
         return file_error("this is another program's database, no project file", db.path(),
                           "choose a .seam file");
-    auto version = db.integer("PRAGMA user_version");
-    if (!version) return tl::unexpected(version.error());
-    if (*version > current_version())
+    SEAM_TRY(auto version, db.integer("PRAGMA user_version"));
+    if (version > current_version())
         return file_error(
-            Text("the project file has version {}, this program knows up to {}", *version, current_version()),
+            Text("the project file has version {}, this program knows up to {}", version, current_version()),
             db.path(), "open it with a newer Seamwright");
-    if (*version < 1) return file_error("the project file has no valid version", db.path());
-    return static_cast<std::int32_t>(*version);
+    if (version < 1) return file_error("the project file has no valid version", db.path());
+    return static_cast<std::int32_t>(version);
 }
 
 Expected<void> check_structure(Database& db, std::int32_t version) {
@@ -264,28 +260,22 @@ Expected<void> check_structure(Database& db, std::int32_t version) {
         return file_error(Text("the project file is damaged ({})", finding), db.path(),
                           "take the last good copy from the backup");
     };
-    const auto wanted = tables_of(version);
-    if (!wanted) return tl::unexpected(wanted.error());
-    const auto found = db.tables();
-    if (!found) return tl::unexpected(found.error());
-    if (*found != *wanted) return damaged("its tables are not those of a project");
+    SEAM_TRY(const auto wanted, tables_of(version));
+    SEAM_TRY(const auto found, db.tables());
+    if (found != wanted) return damaged("its tables are not those of a project");
 
-    auto check = db.prepare("PRAGMA integrity_check(1)");
-    if (!check) return tl::unexpected(check.error());
-    auto row = check->step();
+    SEAM_TRY(auto check, db.prepare("PRAGMA integrity_check(1)"));
+    auto row = check.step();
     if (!row) return tl::unexpected(row.error());
-    if (const std::string answer = *row ? check->text(0) : "no answer"; answer != "ok")
-        return damaged(answer);
-    check->reset();
-    auto keys = db.prepare("PRAGMA foreign_key_check");
-    if (!keys) return tl::unexpected(keys.error());
-    row = keys->step();
+    if (const std::string answer = *row ? check.text(0) : "no answer"; answer != "ok") return damaged(answer);
+    check.reset();
+    SEAM_TRY(auto keys, db.prepare("PRAGMA foreign_key_check"));
+    row = keys.step();
     if (!row) return tl::unexpected(row.error());
     if (*row) return damaged("a row refers to one that is not there");
-    keys->reset();
+    keys.reset();
     if (version >= kChecksums)
-        for (const ChecksummedTable& table : checksummed_tables())
-            if (auto sound = check_rows(db, table.name); !sound) return sound;
+        for (const ChecksummedTable& table : checksummed_tables()) SEAM_OK(check_rows(db, table.name));
     return {};
 }
 

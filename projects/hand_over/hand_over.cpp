@@ -247,15 +247,14 @@ void limits_chapter(HandOverWriter& w) {
 }
 
 Expected<void> events_chapter(HandOverWriter& w, const ProjectFile& file) {
-    auto events = file.events();
-    if (!events) return tl::unexpected(events.error());
+    SEAM_TRY(auto events, file.events());
     w.page.heading(w.t("Event log"));
-    const std::size_t shown = std::min(events->size(), w.options.newest_events);
-    if (shown < events->size()) w.page.paragraph(w.t("The newest {} of {} events.", shown, events->size()));
+    const std::size_t shown = std::min(events.size(), w.options.newest_events);
+    if (shown < events.size()) w.page.paragraph(w.t("The newest {} of {} events.", shown, events.size()));
     if (shown == 0) w.page.paragraph(w.t("No events."));
     Rows rows{{w.t("Time (UTC)"), w.t("Run"), w.t("Kind"), w.t("Subject"), w.t("Text")}};
-    for (std::size_t i = events->size() - shown; i < events->size(); ++i) {
-        const EventRecord& e = (*events)[i];
+    for (std::size_t i = events.size() - shown; i < events.size(); ++i) {
+        const EventRecord& e = events[i];
         rows.push_back({w.time_of(e.utc), e.run ? fmt::format("{}", e.run) : "-",
                         std::string(to_string(e.kind)), e.subject, e.text.in(w.options.language)});
     }
@@ -285,9 +284,9 @@ Expected<report::Page> hand_over_report(const ProjectFile& file, const Project& 
     known_shift_chapter(w);
     limits_chapter(w);
     headless_chapter(w);
-    if (auto written = acceptance_chapter(w, file); !written) return tl::unexpected(written.error());
-    if (auto written = panels_chapter(w, file); !written) return tl::unexpected(written.error());
-    if (auto written = events_chapter(w, file); !written) return tl::unexpected(written.error());
+    SEAM_OK(acceptance_chapter(w, file));
+    SEAM_OK(panels_chapter(w, file));
+    SEAM_OK(events_chapter(w, file));
     page.heading(w.t("Hand-over"));
     page.paragraph(w.t("The cell was handed over in the state that this report describes."));
     const std::string date = w.t("Place, date");

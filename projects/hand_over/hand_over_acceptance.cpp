@@ -23,14 +23,13 @@ Expected<void> acceptance_chapter(HandOverWriter& w, const ProjectFile& file) {
     std::vector<StoredAcceptance> regions;
     bool any = w.project.requirements.acceptance.tolerance_mm > 0;
     for (const Region& region : w.project.regions) {
-        auto stored = stored_acceptance(file, w.project, region.id);
-        if (!stored) return tl::unexpected(stored.error());
+        SEAM_TRY(auto stored, stored_acceptance(file, w.project, region.id));
         if (!regions.empty()) {  // robot and trigger are the cell's, not a region's
-            stored->robot.reset();
-            stored->trigger.reset();
+            stored.robot.reset();
+            stored.trigger.reset();
         }
-        any = any || stored->anything();
-        regions.push_back(std::move(*stored));
+        any = any || stored.anything();
+        regions.push_back(std::move(stored));
     }
     if (!any || regions.empty()) {
         w.page.heading(w.t("Acceptance of the measuring process"));

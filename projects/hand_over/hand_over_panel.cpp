@@ -21,19 +21,16 @@ struct LastPanel {
 Expected<std::vector<std::optional<LastPanel>>> last_panels(const ProjectFile& file,
                                                             const std::vector<PanelJob>& jobs) {
     std::vector<std::optional<LastPanel>> last(jobs.size());
-    auto runs = file.runs();
-    if (!runs) return tl::unexpected(runs.error());
+    SEAM_TRY(auto runs, file.runs());
     std::size_t missing = jobs.size();
-    for (auto summary = runs->rbegin(); summary != runs->rend() && missing > 0; ++summary) {
+    for (auto summary = runs.rbegin(); summary != runs.rend() && missing > 0; ++summary) {
         if (summary->spots > 0) continue;  // no panel's
-        auto run = file.load_run(summary->number, false);
-        if (!run) return tl::unexpected(run.error());
-        if (!run->panel || run->panel->before.empty()) continue;
+        SEAM_TRY(auto run, file.load_run(summary->number, false));
+        if (!run.panel || run.panel->before.empty()) continue;
         for (std::size_t k = 0; k < jobs.size(); ++k) {
-            if (last[k] || jobs[k].id != run->panel->job_id) continue;
-            auto setup = file.load_run_setup(summary->number);
-            if (!setup) return tl::unexpected(setup.error());
-            last[k] = LastPanel{*run, std::move(*setup)};
+            if (last[k] || jobs[k].id != run.panel->job_id) continue;
+            SEAM_TRY(auto setup, file.load_run_setup(summary->number));
+            last[k] = LastPanel{run, std::move(setup)};
             --missing;
         }
     }
@@ -152,10 +149,9 @@ void one_job(HandOverWriter& w, const PanelJob& job, const std::optional<LastPan
 
 Expected<void> panels_chapter(HandOverWriter& w, const ProjectFile& file) {
     if (w.project.panel_jobs.empty()) return {};
-    auto last = last_panels(file, w.project.panel_jobs);
-    if (!last) return tl::unexpected(last.error());
+    SEAM_TRY(auto last, last_panels(file, w.project.panel_jobs));
     w.page.heading(w.t("Panels"));
-    for (std::size_t k = 0; k < last->size(); ++k) one_job(w, w.project.panel_jobs[k], (*last)[k]);
+    for (std::size_t k = 0; k < last.size(); ++k) one_job(w, w.project.panel_jobs[k], last[k]);
     return {};
 }
 

@@ -139,75 +139,66 @@ Expected<GapPass> gap_pass(const Project& project, CaptureReader& capture, const
         return input_error(options.sensor_id.empty() ? Text("it does not hold exactly one sensor")
                                                      : Text("it holds no sensor \"{}\"", options.sensor_id),
                            capture.path().string(), "name one that it holds");
-    auto sections = Sections::make(project, source->name);
-    if (!sections) return tl::unexpected(sections.error());
+    SEAM_TRY(auto sections, Sections::make(project, source->name));
 
     std::vector<TimedPose> poses;
     const CaptureSource* robot = capture.find(options.robot_id, SourceKind::robot);
     if (!robot && !options.robot_id.empty())
         return input_error(Text("it holds no robot \"{}\"", options.robot_id), capture.path().string());
     if (robot) {
-        auto events = capture.events(robot->id);
-        if (!events) return tl::unexpected(events.error());
-        for (const CaptureEvent& e : *events)
+        SEAM_TRY(auto events, capture.events(robot->id));
+        for (const CaptureEvent& e : events)
             if (e.base_from_flange) poses.push_back({e.host_time_ns, *e.base_from_flange});
         std::stable_sort(poses.begin(), poses.end(),
                          [](const TimedPose& a, const TimedPose& b) { return a.time_ns < b.time_ns; });
     }
-    GapPass& pass = sections->pass;
+    GapPass& pass = sections.pass;
     pass.frames = capture.frames(source->id);
     for (std::uint64_t k = 0; k < pass.frames; ++k) {
-        auto frame = capture.frame(source->id, k);
-        if (!frame) return tl::unexpected(frame.error());
-        const Capture& c = **frame;
+        SEAM_TRY(auto frame, capture.frame(source->id, k));
+        const Capture& c = *frame;
         const auto flange =
             c.base_from_flange ? c.base_from_flange : pose_at(poses, c.host_time_ns, options.most_between_s);
         if (flange)
-            sections->add(c, *flange);
+            sections.add(c, *flange);
         else
             ++pass.without_pose;
     }
     if (pass.damaged + pass.without_profile == pass.sections.size())
         return input_error(Text("none of its {} frames has a pose and a profile", pass.frames),
                            capture.path().string(), "record the robot's poses beside the sensor");
-    return std::move(sections->pass);
+    return std::move(sections.pass);
 }
 
 Expected<GapPass> gap_pass(Station& station, const DrivenGapPass& options) {
-    auto drive = drive_along(station.project(), options);
-    if (!drive) return tl::unexpected(drive.error());
-    auto sections = Sections::make(station.project(), drive->sensor_id);
-    if (!sections) return tl::unexpected(sections.error());
-    ProfileSource* sensor = station.sensor(drive->sensor_id);
-    RobotLink* robot = station.robot(drive->robot_id);
+    SEAM_TRY(auto drive, drive_along(station.project(), options));
+    SEAM_TRY(auto sections, Sections::make(station.project(), drive.sensor_id));
+    ProfileSource* sensor = station.sensor(drive.sensor_id);
+    RobotLink* robot = station.robot(drive.robot_id);
     if (!sensor || !robot)
         return usage_error("its sensor or robot is not connected", Text("spot {}", options.spot_ids[0]),
                            "connect first");
-    auto by_software = SoftwareTriggered::begin(*sensor);
-    if (!by_software) return tl::unexpected(by_software.error());
+    SEAM_TRY(const auto by_software, SoftwareTriggered::begin(*sensor));
     StartedSensors started;
-    if (auto on = started.start(*sensor); !on) return tl::unexpected(on.error());
+    SEAM_OK(started.start(*sensor));
     const AcquireLimits limits;
-    const int n = static_cast<int>(drive->base_from_flange.size());
+    const int n = static_cast<int>(drive.base_from_flange.size());
     for (int i = 0; i < n; ++i) {
         const std::string name = fmt::format("gap {}", i + 1);
         if (options.cancel.stop_requested()) return device_error(kCancelled, name);
-        auto at = stand_at(*robot, name, drive->base_from_flange[static_cast<std::size_t>(i)]);
-        if (!at) return tl::unexpected(at.error());
-        if (auto fired = sensor->trigger(name); !fired) return tl::unexpected(fired.error());
-        auto frame = next_frame(*sensor, limits.frame_timeout, options.cancel);
-        if (!frame) return tl::unexpected(frame.error());
+        SEAM_TRY(auto at, stand_at(*robot, name, drive.base_from_flange[static_cast<std::size_t>(i)]));
+        SEAM_OK(sensor->trigger(name));
+        SEAM_TRY(auto frame, next_frame(*sensor, limits.frame_timeout, options.cancel));
         // Asked again, so that a recording of the pass holds a pose on either side of the frame.
-        auto still = robot->base_from_flange();
-        if (!still) return tl::unexpected(still.error());
-        if (const double moved = distance_mm(*at, *still); moved > kStillMm)
+        SEAM_TRY(auto still, robot->base_from_flange());
+        if (const double moved = distance_mm(at, still); moved > kStillMm)
             return device_error(Text("the robot moved {:.2f} mm while the sensor exposed", moved), name,
                                 "let it stand at every step");
-        ++sections->pass.frames;
-        sections->add(**frame, *at);
+        ++sections.pass.frames;
+        sections.add(*frame, at);
         if (options.progress) options.progress({i + 1, n, Text("profile {} of {}", i + 1, n)});
     }
-    return std::move(sections->pass);
+    return std::move(sections.pass);
 }
 
 Text GapCheck::where(double path_mm) const {
@@ -222,10 +213,9 @@ Text GapCheck::where(double path_mm) const {
 }
 
 Expected<GapCheck> check_gap(const Project& project, const GapPass& pass, const GapScanOptions& options) {
-    auto scan = scan_gap(pass.sections, options);
-    if (!scan) return tl::unexpected(scan.error());
+    SEAM_TRY(auto scan, scan_gap(pass.sections, options));
     GapCheck out;
-    out.scan = std::move(*scan);
+    out.scan = std::move(scan);
     for (const Spot& spot : project.spots) {
         const Calibration* calibration = calibration_of(project, spot);
         if (!calibration || spot.sensor_id != pass.sensor_id) continue;

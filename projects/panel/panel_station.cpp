@@ -40,8 +40,7 @@ Expected<Places> prepare(Station& station, const PanelJob& job) {
         return usage_error(Text("its robot \"{}\" is not connected", job.robot_id), where, "connect first");
     for (const PanelPlace& place : job.places) {
         if (!place.enabled) continue;
-        auto measurer = PanelMeasurer::make(station.project(), job, place);
-        if (!measurer) return tl::unexpected(measurer.error());
+        SEAM_TRY(auto measurer, PanelMeasurer::make(station.project(), job, place));
         for (const std::string& id : sensors_of(place)) {
             ProfileSource* sensor = station.sensor(id);
             if (!sensor)
@@ -50,7 +49,7 @@ Expected<Places> prepare(Station& station, const PanelJob& job) {
                 return input_error(Text("sensor \"{}\" is used at two places", id), where,
                                    "a sensor sees one place");
         }
-        out.measurers.push_back(std::move(*measurer));
+        out.measurers.push_back(std::move(measurer));
     }
     if (out.measurers.empty()) return input_error("no place is enabled", where, "add places to the job");
     return out;
@@ -70,8 +69,7 @@ class Run {
         : station_(station), job_(job), places_(places), options_(options) {}
 
     Expected<RunRecord> run() {
-        const auto setup = RunSetup::of(station_.project());
-        if (!setup) return tl::unexpected(setup.error());
+        SEAM_TRY(const auto setup, RunSetup::of(station_.project()));
         run_.part_id = options_.part_id;
         run_.push = options_.push;
         run_.started_utc = run_.finished_utc = utc_now();
@@ -80,9 +78,8 @@ class Run {
         run_.panel.emplace();
         run_.panel->job_id = job_.id;
         run_.panel->push.frame_name = job_.frame_name;
-        auto number = station_.file().begin_run(run_, *setup);
-        if (!number) return tl::unexpected(number.error());
-        run_.number = *number;
+        SEAM_TRY(auto number, station_.file().begin_run(run_, setup));
+        run_.number = number;
         if (run_.part_id.empty()) run_.part_id = fmt::format("run {}", run_.number);
         since_ns_ = host_now_ns();
 
@@ -99,8 +96,7 @@ class Run {
             tell(run_.status == RunStatus::device || run_.status == RunStatus::cancelled
                      ? PartVerdict::failed
                      : PartVerdict::refused);
-        if (auto stored = record_outcome(run_, [&] { return store_outcome(); }); !stored)
-            return tl::unexpected(stored.error());
+        SEAM_OK(record_outcome(run_, [&] { return store_outcome(); }));
         station_.file().checkpoint();
         return std::move(run_);
     }
@@ -117,9 +113,8 @@ class Run {
         EventRecord e{0, utc_now(), 0, kind, subject, text};
         if (judged_) {
             e.run = run_.number;
-            auto id = station_.file().append_event(e);
-            if (!id) return tl::unexpected(id.error());
-            e.id = *id;
+            SEAM_TRY(auto id, station_.file().append_event(e));
+            e.id = id;
         }
         run_.events.push_back(std::move(e));
         return {};
@@ -137,38 +132,36 @@ class Run {
         StartedSensors started;
         std::map<std::string, TriggeredFrames> frames;
         for (const auto& [id, sensor] : places_.sensors) {
-            if (auto on = started.start(*sensor); !on) return on;
+            SEAM_OK(started.start(*sensor));
             frames.try_emplace(id, *sensor, *find_sensor(station_.project(), id));
         }
-        if (auto on = places_.robot->start_measuring({move_of(job_, base_from_gripper)}); !on) return on;
+        SEAM_OK(places_.robot->start_measuring({move_of(job_, base_from_gripper)}));
         ++starts_;
-        auto trigger = next_trigger(*places_.robot, options_.limits.trigger_timeout, cancel_);
-        if (!trigger) return tl::unexpected(trigger.error());
-        if (trigger->spot_id != job_.id)
-            return device_error(Text("the robot fired for \"{}\"", trigger->spot_id),
+        SEAM_TRY(auto trigger, next_trigger(*places_.robot, options_.limits.trigger_timeout, cancel_));
+        if (trigger.spot_id != job_.id)
+            return device_error(Text("the robot fired for \"{}\"", trigger.spot_id),
                                 Text("panel job {}", job_.id),
                                 "compare the program on the controller with the project");
-        stands_at = trigger->base_from_flange.value_or(base_from_gripper);
-        if (auto rigid = pose_from_matrix(stands_at.matrix(), "pose reported at the trigger"); !rigid)
-            return tl::unexpected(rigid.error());
+        stands_at = trigger.base_from_flange.value_or(base_from_gripper);
+        SEAM_OK(pose_from_matrix(stands_at.matrix(), "pose reported at the trigger"));
         for (std::size_t i = 0; i < places_.measurers.size(); ++i) {
             if (cancelled()) return device_error(kCancelled, Text("panel job {}", job_.id));
             PanelMeasurer& measurer = places_.measurers[i];
             std::vector<FramePtr> got;
             for (const std::string& id : sensors_of(measurer.place())) {
-                auto frame = frames.at(id).at(
-                    *trigger, options_.limits.frame_timeout, cancel_, [&](const Frame& dropped) {
-                        (void)event(EventKind::device, id,
-                                    Text("frame {} came too early and was dropped", dropped.sequence));
-                    });
-                if (!frame) return tl::unexpected(frame.error());
-                got.push_back(std::move(*frame));
+                SEAM_TRY(auto frame,
+                         frames.at(id).at(
+                             trigger, options_.limits.frame_timeout, cancel_, [&](const Frame& dropped) {
+                                 (void)event(
+                                     EventKind::device, id,
+                                     Text("frame {} came too early and was dropped", dropped.sequence));
+                             }));
+                got.push_back(std::move(frame));
             }
-            keep(measurer, got, trigger->base_from_flange, into[i]);
+            keep(measurer, got, trigger.base_from_flange, into[i]);
             progress(static_cast<int>(i) + 1, Text("{} {}", into[i].place_id, to_string(into[i].status)));
         }
-        for (auto& [id, f] : frames)
-            if (auto complete = f.finish(); !complete) return complete;
+        for (auto& [id, f] : frames) SEAM_OK(f.finish());
         return {};
     }
 
@@ -303,8 +296,7 @@ class Run {
 
     Expected<void> store_outcome() {
         run_.finished_utc = utc_now();
-        if (run_.captures.size() > stored_.captures)
-            if (auto stored = station_.file().append_measured(run_, stored_); !stored) return stored;
+        if (run_.captures.size() > stored_.captures) SEAM_OK(station_.file().append_measured(run_, stored_));
         return station_.file().update_run(run_);
     }
     std::map<std::string, RobotLink*> link() const { return {{job_.robot_id, places_.robot}}; }
@@ -445,15 +437,13 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
     const Text where("panel job {}", draft.id);
     if (options.repeats < 1 || options.repeats > 1000)
         return usage_error(Text("{} repeats", options.repeats), where, "give 1 to 1000");
-    auto places = prepare(station, draft);
-    if (!places) return tl::unexpected(places.error());
+    SEAM_TRY(auto places, prepare(station, draft));
     std::vector<SoftwareTriggered> by_software;
     StartedSensors started;
-    for (const auto& [id, sensor] : places->sensors) {
-        auto software = SoftwareTriggered::begin(*sensor);
-        if (!software) return tl::unexpected(software.error());
-        by_software.push_back(std::move(*software));
-        if (auto on = started.start(*sensor); !on) return tl::unexpected(on.error());
+    for (const auto& [id, sensor] : places.sensors) {
+        SEAM_TRY(auto software, SoftwareTriggered::begin(*sensor));
+        by_software.push_back(std::move(software));
+        SEAM_OK(started.start(*sensor));
     }
     struct Sum {
         Eigen::Vector3d panel = Eigen::Vector3d::Zero(), body = Eigen::Vector3d::Zero();
@@ -462,26 +452,24 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
         Profile profile;
         Text reason;
     };
-    std::vector<Sum> sums(places->measurers.size());
+    std::vector<Sum> sums(places.measurers.size());
     PanelJob taught = draft;
     const AcquireLimits limits;
     for (int round = 0; round < options.repeats; ++round) {
-        auto at = stand_at(*places->robot, draft.id, draft.base_from_gripper);
-        if (!at) return tl::unexpected(at.error());
-        taught.base_from_gripper = *at;
+        SEAM_TRY(auto at, stand_at(*places.robot, draft.id, draft.base_from_gripper));
+        taught.base_from_gripper = at;
         for (std::size_t i = 0; i < sums.size(); ++i) {
             if (options.cancel.stop_requested()) return device_error(kCancelled, where);
-            PanelMeasurer& measurer = places->measurers[i];
+            PanelMeasurer& measurer = places.measurers[i];
             std::vector<FramePtr> frames;
             for (const std::string& id : sensors_of(measurer.place())) {
-                ProfileSource& sensor = *places->sensors.at(id);
-                if (auto fired = sensor.trigger(draft.id); !fired) return tl::unexpected(fired.error());
-                auto frame = next_frame(sensor, limits.frame_timeout, options.cancel);
-                if (!frame) return tl::unexpected(frame.error());
-                frames.push_back(std::move(*frame));
+                ProfileSource& sensor = *places.sensors.at(id);
+                SEAM_OK(sensor.trigger(draft.id));
+                SEAM_TRY(auto frame, next_frame(sensor, limits.frame_timeout, options.cancel));
+                frames.push_back(std::move(frame));
             }
             const PanelMeasurement m =
-                measurer.measure(*frames[0], frames.size() > 1 ? frames[1].get() : nullptr, *at);
+                measurer.measure(*frames[0], frames.size() > 1 ? frames[1].get() : nullptr, at);
             Sum& sum = sums[i];
             if (m.status != SpotStatus::measured) {
                 sum.reason = m.message;
@@ -500,7 +488,7 @@ Expected<PanelJob> teach_panel(Station& station, const PanelJob& draft, const Te
     }
     for (std::size_t i = 0; i < sums.size(); ++i) {
         const Sum& sum = sums[i];
-        const std::string& id = places->measurers[i].place().id;
+        const std::string& id = places.measurers[i].place().id;
         if (2 * sum.count < options.repeats || sum.count == 0)
             return input_error(Text("panel and body were measured in {} of {} repeats ({})", sum.count,
                                     options.repeats, sum.reason),
@@ -524,11 +512,9 @@ Expected<RunRecord> run_panel(Station& station, const std::string& job_id, const
     const PanelJob* found = find_panel_job(station.project(), job_id);
     if (!found) return input_error(Text("there is no panel job \"{}\"", job_id), path);
     const PanelJob job = *found;
-    if (auto safe = none_of_motion(motion_findings(station.project(), job, options.push)); !safe)
-        return tl::unexpected(safe.error());
-    auto places = prepare(station, job);
-    if (!places) return tl::unexpected(places.error());
-    return Run(station, job, *places, options).run();
+    SEAM_OK(none_of_motion(motion_findings(station.project(), job, options.push)));
+    SEAM_TRY(auto places, prepare(station, job));
+    return Run(station, job, places, options).run();
 }
 
 }  // namespace seamwright

@@ -222,15 +222,13 @@ struct Prepared {
 
 Expected<Prepared> prepare(const Project& project, const Region& region) {
     Prepared out;
-    auto spots = spots_of(project, region);
-    if (!spots) return tl::unexpected(spots.error());
-    out.spots = std::move(*spots);
+    SEAM_TRY(auto spots, spots_of(project, region));
+    out.spots = std::move(spots);
     out.correction = correction_options(project, region);
     std::vector<SpotObservation> observations;
     for (const BudgetSpot& b : out.spots) observations.push_back(b.spot);
-    auto plan = plan_region(observations, out.correction);
-    if (!plan) return tl::unexpected(plan.error());
-    out.plan = std::move(*plan);
+    SEAM_TRY(auto plan, plan_region(observations, out.correction));
+    out.plan = std::move(plan);
     out.directions = path_directions(project, region);
     return out;
 }
@@ -249,20 +247,19 @@ Expected<FirstOrder> first_order(const Project& project, const Region& region, c
     b.region_id = region.id;
     b.displacement = displacement;
     b.required_sigma3_mm = project.requirements.sigma3_mm;
-    const auto budget = uncertainty_budget(p.spots, p.correction, displacement);
-    if (!budget) return tl::unexpected(budget.error());
-    if (p.plan.status != CorrectionStatus::ok || !budget->determined) {
+    SEAM_TRY(const auto budget, uncertainty_budget(p.spots, p.correction, displacement));
+    if (p.plan.status != CorrectionStatus::ok || !budget.determined) {
         b.status = CorrectionStatus::under_determined;
         b.message = p.plan.advice;
         return out;
     }
     out.measures =
-        worst_of(p.directions, *budget, displacement.workobject_from_movedworkobject, b.spot_id, out.at);
+        worst_of(p.directions, budget, displacement.workobject_from_movedworkobject, b.spot_id, out.at);
     for (std::size_t i = 0; i < 6; ++i)
         if (region.free[i])
             out.measures.push_back(
                 {static_cast<Quantity>(static_cast<int>(Quantity::x) + static_cast<int>(i))});
-    const Tables tables(project, p.correction, p.spots, *budget);
+    const Tables tables(project, p.correction, p.spots, budget);
     for (const Measure& m : out.measures) b.measurands.push_back(tables.table(m));
     b.remarks = not_stated(project, p.correction, p.spots);
     return out;
@@ -290,15 +287,13 @@ double RegionBudget::bead_u_mm() const {
 Expected<std::vector<StatedScatter>> stated_scatter(const Project& project, const Region& region,
                                                     const PathDirection& at,
                                                     std::span<const Displacement> displacements) {
-    const auto prepared = prepare(project, region);
-    if (!prepared) return tl::unexpected(prepared.error());
+    SEAM_TRY(const auto prepared, prepare(project, region));
     std::vector<StatedScatter> out;
     for (const Displacement& d : displacements) {
-        const auto budget = uncertainty_budget(prepared->spots, prepared->correction, d);
-        if (!budget) return tl::unexpected(budget.error());
-        if (prepared->plan.status != CorrectionStatus::ok || !budget->determined)
-            return input_error(prepared->plan.advice, Text("region {}", region.id));
-        const MeasurandBudget sums = Tables(project, prepared->correction, prepared->spots, *budget)
+        SEAM_TRY(const auto budget, uncertainty_budget(prepared.spots, prepared.correction, d));
+        if (prepared.plan.status != CorrectionStatus::ok || !budget.determined)
+            return input_error(prepared.plan.advice, Text("region {}", region.id));
+        const MeasurandBudget sums = Tables(project, prepared.correction, prepared.spots, budget)
                                          .table(measure_at(at, d.workobject_from_movedworkobject));
         out.push_back({sums.u_random, sums.u_systematic});
     }
@@ -306,20 +301,18 @@ Expected<std::vector<StatedScatter>> stated_scatter(const Project& project, cons
 }
 
 Expected<RegionBudget> worst_budget(const Project& project, const Region& region) {
-    const auto prepared = prepare(project, region);
-    if (!prepared) return tl::unexpected(prepared.error());
+    SEAM_TRY(const auto prepared, prepare(project, region));
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const BudgetSpot& b : prepared->spots)
+    for (const BudgetSpot& b : prepared.spots)
         middle +=
-            b.spot.workobject_from_sensor * b.spot.reference_mm / static_cast<double>(prepared->spots.size());
+            b.spot.workobject_from_sensor * b.spot.reference_mm / static_cast<double>(prepared.spots.size());
     std::optional<RegionBudget> worst;
     for (const Displacement& d : required_displacements(project.requirements, middle)) {
         if (!check_displacement(region, d.workobject_from_movedworkobject)) continue;
-        auto here = first_order(project, region, *prepared, d);
-        if (!here) return tl::unexpected(here.error());
-        if (!worst || here->budget.status != CorrectionStatus::ok ||
-            here->budget.bead_u_mm() > worst->bead_u_mm())
-            worst = std::move(here->budget);
+        SEAM_TRY(auto here, first_order(project, region, prepared, d));
+        if (!worst || here.budget.status != CorrectionStatus::ok ||
+            here.budget.bead_u_mm() > worst->bead_u_mm())
+            worst = std::move(here.budget);
         if (worst->status != CorrectionStatus::ok) break;
     }
     return std::move(*worst);  // as taught is always among them
@@ -328,16 +321,14 @@ Expected<RegionBudget> worst_budget(const Project& project, const Region& region
 Expected<RegionBudget> region_budget(const Project& project, const Region& region,
                                      const BudgetOptions& options) {
     const Pose& d = options.displacement.workobject_from_movedworkobject;
-    if (auto good = check_displacement(region, d); !good) return tl::unexpected(good.error());
-    const auto prepared = prepare(project, region);
-    if (!prepared) return tl::unexpected(prepared.error());
-    const auto first = first_order(project, region, *prepared, options.displacement);
-    if (!first) return tl::unexpected(first.error());
-    RegionBudget out = first->budget;
+    SEAM_OK(check_displacement(region, d));
+    SEAM_TRY(const auto prepared, prepare(project, region));
+    SEAM_TRY(const auto first, first_order(project, region, prepared, options.displacement));
+    RegionBudget out = first.budget;
     out.seed = options.seed;
     if (!options.monte_carlo || out.status != CorrectionStatus::ok) return out;
 
-    CorrectionDraws draws(prepared->spots, prepared->correction, options.displacement, options.seed);
+    CorrectionDraws draws(prepared.spots, prepared.correction, options.displacement, options.seed);
     RegionCorrector corrector(project, region);
     RegionCorrection found;
     const auto truth = printed(d);
@@ -347,20 +338,20 @@ Expected<RegionBudget> region_budget(const Project& project, const Region& regio
             return false;
         const Pose& estimate = found.displacement.workobject_from_movedworkobject;
         const auto off = Eigen::Matrix<double, 6, 1>(printed(estimate) - truth);
-        for (std::size_t i = 0; i < first->measures.size(); ++i) {
-            const int k = static_cast<int>(first->measures[i].quantity) - static_cast<int>(Quantity::x);
+        for (std::size_t i = 0; i < first.measures.size(); ++i) {
+            const int k = static_cast<int>(first.measures[i].quantity) - static_cast<int>(Quantity::x);
             if (k < 0)
-                values[i] = first->at[i].value(estimate) - first->at[i].value(d);
+                values[i] = first.at[i].value(estimate) - first.at[i].value(d);
             else
                 values[i] = k < 3 ? off[k] : std::remainder(off[k], 360.0);
         }
         return true;
     };
-    out.drawn = monte_carlo(first->measures.size(), options.drawing, trial);
+    out.drawn = monte_carlo(first.measures.size(), options.drawing, trial);
     if (options.drawing.cancel.stop_requested())
         return usage_error(Text("cancelled after {} trials", out.drawn->trials), Text("region {}", region.id),
                            "start it again");
-    for (std::size_t i = 0; i < first->measures.size(); ++i)
+    for (std::size_t i = 0; i < first.measures.size(); ++i)
         compare(out.measurands[i], *out.drawn, out.drawn->figures[i]);
     return out;
 }

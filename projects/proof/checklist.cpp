@@ -443,13 +443,11 @@ bool pass_changed(const Project& then, const Project& now, const std::string& sp
 
 Expected<void> gather(const ProjectFile& file, Facts& facts) {
     facts.file = file.path().filename().string();
-    auto more = file.evidence(facts.evidence.empty() ? 0 : facts.evidence.back().id);
-    if (!more) return tl::unexpected(more.error());
-    for (Evidence& e : *more) {
+    SEAM_TRY(auto more, file.evidence(facts.evidence.empty() ? 0 : facts.evidence.back().id));
+    for (Evidence& e : more) {
         if (!facts.setups.count(e.setup)) {
-            auto setup = file.load_setup(e.setup);
-            if (!setup) return tl::unexpected(setup.error());
-            facts.setups[e.setup] = std::make_shared<const Project>(std::move(*setup));
+            SEAM_TRY(auto setup, file.load_setup(e.setup));
+            facts.setups[e.setup] = std::make_shared<const Project>(std::move(setup));
         }
         facts.evidence.push_back(std::move(e));
     }

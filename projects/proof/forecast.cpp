@@ -155,10 +155,9 @@ std::vector<Displacement> required_displacements(const Requirements& need, const
 
 Expected<RegionForecast> forecast_region(const Project& project, const Region& region) {
     Spots spots = planned_observations(project, region);
-    auto plan = plan_region(spots, correction_options(project, region));
-    if (!plan) return tl::unexpected(plan.error());
+    SEAM_TRY(auto plan, plan_region(spots, correction_options(project, region)));
     RegionForecast forecast;
-    forecast.plan = std::move(*plan);
+    forecast.plan = std::move(plan);
     forecast.wanted_mm = std::min(region.sigma_limit_mm, project.requirements.sigma3_mm / 3);
     forecast.wanted_deg = region.sigma_limit_deg;
     if (forecast.plan.status != CorrectionStatus::ok) {

@@ -97,22 +97,19 @@ class Borrowed {
         std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
         std::map<std::string, std::unique_ptr<RobotLink>> robots;
         for (const SensorSetup& setup : project.sensors) {
-            auto sensor = open_sensor(setup.driver, setup.settings, session_);
-            if (!sensor) return tl::unexpected(sensor.error());
-            sensors[setup.id] = std::move(*sensor);
+            SEAM_TRY(auto sensor, open_sensor(setup.driver, setup.settings, session_));
+            sensors[setup.id] = std::move(sensor);
         }
         for (const RobotSetup& setup : project.robots) {
-            auto robot = open_robot(setup.driver, setup.settings, session_);
-            if (!robot) return tl::unexpected(robot.error());
+            SEAM_TRY(auto robot, open_robot(setup.driver, setup.settings, session_));
             if (by == ShiftBy::robot_moves)
-                robots[setup.id] = std::make_unique<ShiftedRobot>(std::move(*robot), shift_);
+                robots[setup.id] = std::make_unique<ShiftedRobot>(std::move(robot), shift_);
             else
-                robots[setup.id] = std::move(*robot);
+                robots[setup.id] = std::move(robot);
         }
         if (by == ShiftBy::simulated_part) {
-            auto cell = shared_cell(project.sensors.front().settings, session_);
-            if (!cell) return tl::unexpected(cell.error());
-            cell_ = std::move(*cell);
+            SEAM_TRY(auto cell, shared_cell(project.sensors.front().settings, session_));
+            cell_ = std::move(cell);
         }
         station_.connect(std::move(sensors), std::move(robots));
         return {};
@@ -166,8 +163,7 @@ Expected<std::vector<ShiftTest>> shift_tests(const Project& project, const Shift
     const double count = 3.0 * 2 * (2.0 * moves + turns);
     if (count > static_cast<double>(kMostTests))
         return usage_error(Text("{:.0f} displacements are too many", count), kWhere, "give larger steps");
-    const auto middle = middle_of(project);
-    if (!middle) return tl::unexpected(middle.error());
+    SEAM_TRY(const auto middle, middle_of(project));
     std::vector<ShiftTest> tests;
     const auto add = [&](ShiftKind kind, int axis, double amount, double mm, double deg) {
         const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
@@ -176,7 +172,7 @@ Expected<std::vector<ShiftTest>> shift_tests(const Project& project, const Shift
         test.kind = kind;
         test.axis = axis;
         test.amount = amount;
-        test.workobject_from_movedworkobject = make_pose(turn, *middle - turn * *middle + along * mm);
+        test.workobject_from_movedworkobject = make_pose(turn, middle - turn * middle + along * mm);
     };
     for (int axis = 0; axis < 3; ++axis) {
         for (int n = -moves; n <= moves; ++n)
@@ -236,9 +232,8 @@ std::vector<ShiftOutcome> judge_shift(const Project& setup, const RunRecord& run
 
 Expected<KnownShift> prove_known_shift(Station& station, const KnownShiftOptions& options) {
     const Project setup = station.project();
-    if (auto fit = fits(setup, options); !fit) return tl::unexpected(fit.error());
-    auto tests = shift_tests(setup, options.grid);
-    if (!tests) return tl::unexpected(tests.error());
+    SEAM_OK(fits(setup, options));
+    SEAM_TRY(auto tests, shift_tests(setup, options.grid));
     KnownShift proof;
     proof.realised_by = options.by;
     proof.range_mm = options.grid.range_mm;
@@ -249,13 +244,13 @@ Expected<KnownShift> prove_known_shift(Station& station, const KnownShiftOptions
         Project unlimited = setup;
         for (Region& region : unlimited.regions) region.limits = kNoLimits;
         station.use(unlimited);
-        if (auto opened = devices.open(options.by); !opened) return tl::unexpected(opened.error());
+        SEAM_OK(devices.open(options.by));
         int done = 0;
         const auto cancelled = [&] {
-            return usage_error(Text("cancelled after {} of {} displacements", done, tests->size()), kWhere,
+            return usage_error(Text("cancelled after {} of {} displacements", done, tests.size()), kWhere,
                                "start it again");
         };
-        for (ShiftTest& test : *tests) {
+        for (ShiftTest& test : tests) {
             if (options.cancel.stop_requested()) return cancelled();
             const Pose& b = setup.part.base_from_workobject;
             const Pose shift = b * test.workobject_from_movedworkobject.inverse() * b.inverse();
@@ -265,20 +260,18 @@ Expected<KnownShift> prove_known_shift(Station& station, const KnownShiftOptions
             RunOptions run_options;
             run_options.part_id = kKnownShiftPrefix + name;
             run_options.cancel = options.cancel;
-            auto run = station.run(run_options);
-            if (!run) return tl::unexpected(run.error());
-            if (options.measured) options.measured(*run);
-            if (run->status == RunStatus::cancelled) return cancelled();
-            if (run->status == RunStatus::device) return device_error(run->message, kWhere);
-            test.run = run->number;
-            test.regions = judge_shift(setup, *run, test.workobject_from_movedworkobject);
+            SEAM_TRY(auto run, station.run(run_options));
+            if (options.measured) options.measured(run);
+            if (run.status == RunStatus::cancelled) return cancelled();
+            if (run.status == RunStatus::device) return device_error(run.message, kWhere);
+            test.run = run.number;
+            test.regions = judge_shift(setup, run, test.workobject_from_movedworkobject);
             ++done;
-            if (options.progress) options.progress({done, static_cast<int>(tests->size()), name});
+            if (options.progress) options.progress({done, static_cast<int>(tests.size()), name});
         }
     }
-    proof.tests = std::move(*tests);
-    if (auto kept = station.file().append_evidence({0, {}, 0, proof}, setup); !kept)
-        return tl::unexpected(kept.error());
+    proof.tests = std::move(tests);
+    SEAM_OK(station.file().append_evidence({0, {}, 0, proof}, setup));
     return proof;
 }
 

@@ -64,9 +64,8 @@ class Recomputer {
             if (nothing_kept(raw) && m.status != SpotStatus::measured) continue;
             auto it = measurers_.find(m.spot_id);
             if (it == measurers_.end()) {
-                auto made = SpotMeasurer::make(setup_, m.spot_id);
-                if (!made) return tl::unexpected(made.error());
-                it = measurers_.emplace(m.spot_id, std::move(*made)).first;
+                SEAM_TRY(auto made, SpotMeasurer::make(setup_, m.spot_id));
+                it = measurers_.emplace(m.spot_id, std::move(made)).first;
             }
             const std::string part_id = m.part_id;
             const int capture = m.capture;
@@ -88,8 +87,7 @@ class Recomputer {
                 }
         }
         again.regions = std::move(regions);
-        if (again.panel)
-            if (auto done = recompute_panel(stored, *again.panel); !done) return tl::unexpected(done.error());
+        if (again.panel) SEAM_OK(recompute_panel(stored, *again.panel));
         return again;
     }
 
@@ -118,9 +116,8 @@ class Recomputer {
                 const std::string key = job->id + "\n" + place->id;
                 auto it = panel_measurers_.find(key);
                 if (it == panel_measurers_.end()) {
-                    auto made = PanelMeasurer::make(setup_, *job, *place);
-                    if (!made) return tl::unexpected(made.error());
-                    it = panel_measurers_.emplace(key, std::move(*made)).first;
+                    SEAM_TRY(auto made, PanelMeasurer::make(setup_, *job, *place));
+                    it = panel_measurers_.emplace(key, std::move(made)).first;
                 }
                 PanelMeasurement again = it->second.measure(first, second);
                 again.part_id = m.part_id;
@@ -241,18 +238,16 @@ std::vector<ReplayDifference> compare(const RunRecord& stored, const RunRecord& 
 Expected<ReplayResult> replay(const std::filesystem::path& path, const ReplayOptions& options) {
     if (options.jobs < 1 || options.jobs > 256)
         return usage_error(Text("{} jobs are not possible", options.jobs), "--jobs", "give 1 to 256");
-    auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto runs = file->runs();
-    if (!runs) return tl::unexpected(runs.error());
+    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
+    SEAM_TRY(auto runs, file.runs());
     if (options.run) {
-        std::erase_if(*runs, [&](const RunSummary& run) { return run.number != options.run; });
-        if (runs->empty()) return input_error(Text("there is no run {}", options.run), path.string());
+        std::erase_if(runs, [&](const RunSummary& run) { return run.number != options.run; });
+        if (runs.empty()) return input_error(Text("there is no run {}", options.run), path.string());
     }
 
     // Runs are handed out one by one; each leaves its part at its own place, so the order of work does not
     // show.
-    std::vector<Part> parts(runs->size());
+    std::vector<Part> parts(runs.size());
     std::atomic<std::size_t> next{0};
     std::mutex mutex;  // of `done` and the caller's progress function
     int done = 0;
@@ -260,26 +255,26 @@ Expected<ReplayResult> replay(const std::filesystem::path& path, const ReplayOpt
         std::map<std::int64_t, Recomputer> setups;
         for (;;) {
             const std::size_t i = next.fetch_add(1);
-            if (i >= runs->size() || options.cancel.stop_requested()) return;
-            parts[i] = replay_run(connection, (*runs)[i], setups);
+            if (i >= runs.size() || options.cancel.stop_requested()) return;
+            parts[i] = replay_run(connection, runs[i], setups);
             const std::lock_guard lock(mutex);
             ++done;
-            if (options.progress) options.progress(done, static_cast<int>(runs->size()));
+            if (options.progress) options.progress(done, static_cast<int>(runs.size()));
         }
     };
     {
         std::vector<Expected<ProjectFile>> connections;
         std::vector<std::jthread> threads;  // joined before their connections close
-        for (int i = 1; i < std::min<int>(options.jobs, static_cast<int>(runs->size())); ++i) {
+        for (int i = 1; i < std::min<int>(options.jobs, static_cast<int>(runs.size())); ++i) {
             connections.push_back(ProjectFile::open(path, FileAccess::read_only));
             if (!connections.back()) return tl::unexpected(connections.back().error());
         }
         for (auto& connection : connections)
             threads.emplace_back([&work, &connection] { work(*connection); });
-        work(*file);
+        work(file);
     }
     ReplayResult result;
-    result.cancelled = options.cancel.stop_requested() && done < static_cast<int>(runs->size());
+    result.cancelled = options.cancel.stop_requested() && done < static_cast<int>(runs.size());
     result.runs = done;
     for (Part& part : parts) {
         if (part.error) return tl::unexpected(*part.error);

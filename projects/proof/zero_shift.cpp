@@ -75,18 +75,16 @@ Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions&
                 options.progress({n * p.total + p.done, options.runs * p.total,
                                   Text("{}/{}: {}", n + 1, options.runs, p.text)});
             };
-        auto run = station.run(run_options);
-        if (!run) return tl::unexpected(run.error());
-        if (options.measured) options.measured(*run);
-        if (run->status == RunStatus::cancelled)
+        SEAM_TRY(auto run, station.run(run_options));
+        if (options.measured) options.measured(run);
+        if (run.status == RunStatus::cancelled)
             return usage_error(Text("cancelled after {} runs", n), "zero shift", "start it again");
-        if (run->status == RunStatus::device) return device_error(run->message, "zero shift");
-        run->captures.clear();
-        runs.push_back(std::move(*run));
+        if (run.status == RunStatus::device) return device_error(run.message, "zero shift");
+        run.captures.clear();
+        runs.push_back(std::move(run));
     }
     ZeroShift zero = summarise_zero_shift(setup, runs);
-    if (auto kept = station.file().append_evidence({0, {}, 0, zero}, setup); !kept)
-        return tl::unexpected(kept.error());
+    SEAM_OK(station.file().append_evidence({0, {}, 0, zero}, setup));
     return zero;
 }
 

@@ -64,41 +64,37 @@ nlohmann::json export_project(const Project& project, bool with_profiles) {
 }
 
 Expected<nlohmann::json> export_file(const ProjectFile& file, bool with_profiles) {
-    auto project = file.load();
-    if (!project) return tl::unexpected(project.error());
-    nlohmann::json document = export_project(*project, with_profiles);
-    auto runs = file.runs();
-    if (!runs) return tl::unexpected(runs.error());
+    SEAM_TRY(auto project, file.load());
+    nlohmann::json document = export_project(project, with_profiles);
+    SEAM_TRY(auto runs, file.runs());
     nlohmann::json list = nlohmann::json::array();
-    for (const RunSummary& summary : *runs) {
-        auto run = file.load_run(summary.number, false);
-        if (!run) return tl::unexpected(run.error());
+    for (const RunSummary& summary : runs) {
+        SEAM_TRY(auto run, file.load_run(summary.number, false));
         nlohmann::json spots = nlohmann::json::array(), regions = nlohmann::json::array();
-        for (const SpotMeasurement& m : run->spots)
+        for (const SpotMeasurement& m : run.spots)
             spots.push_back(
                 to_json_document(m, {.profiles = false, .rigid_poses = false, .patterns = false}));
-        for (const RegionRecord& r : run->regions)
+        for (const RegionRecord& r : run.regions)
             regions.push_back(
                 to_json_document(r, {.profiles = false, .rigid_poses = false, .patterns = false}));
-        list.push_back({{"number", run->number},
-                        {"part_id", run->part_id},
-                        {"started_utc", run->started_utc},
-                        {"finished_utc", run->finished_utc},
-                        {"push", run->push},
-                        {"status", to_string(run->status)},
-                        {"message", run->message.english()},
+        list.push_back({{"number", run.number},
+                        {"part_id", run.part_id},
+                        {"started_utc", run.started_utc},
+                        {"finished_utc", run.finished_utc},
+                        {"push", run.push},
+                        {"status", to_string(run.status)},
+                        {"message", run.message.english()},
                         {"captures", summary.captures},
                         {"spots", spots},
                         {"regions", regions}});
-        if (run->panel)
+        if (run.panel)
             list.back()["panel"] =
-                to_json_document(*run->panel, {.profiles = false, .rigid_poses = false, .patterns = false});
+                to_json_document(*run.panel, {.profiles = false, .rigid_poses = false, .patterns = false});
     }
     document["runs"] = std::move(list);
-    auto events = file.events();
-    if (!events) return tl::unexpected(events.error());
+    SEAM_TRY(auto events, file.events());
     nlohmann::json log = nlohmann::json::array();
-    for (const EventRecord& e : *events)
+    for (const EventRecord& e : events)
         log.push_back({{"id", e.id},
                        {"utc", e.utc},
                        {"run", e.run},
@@ -126,10 +122,8 @@ Expected<Project> import_project(const nlohmann::json& document, const std::stri
 
 Expected<std::vector<fs::path>> export_profiles(const ProjectFile& file, std::int64_t run_number,
                                                 ProfileFormat format, const fs::path& folder) {
-    auto run = file.load_run(run_number);
-    if (!run) return tl::unexpected(run.error());
-    auto setup = file.load_run_setup(run_number);
-    if (!setup) return tl::unexpected(setup.error());
+    SEAM_TRY(auto run, file.load_run(run_number));
+    SEAM_TRY(auto setup, file.load_run_setup(run_number));
     std::error_code code;
     fs::create_directories(folder, code);
     if (!fs::is_directory(folder, code))
@@ -141,25 +135,23 @@ Expected<std::vector<fs::path>> export_profiles(const ProjectFile& file, std::in
         if (done) files.push_back(path);
         return done;
     };
-    for (const SpotMeasurement& m : run->spots) {
-        if (m.capture < 0 || static_cast<std::size_t>(m.capture) >= run->captures.size()) continue;
-        const Capture& capture = run->captures[static_cast<std::size_t>(m.capture)];
-        auto measurer = SpotMeasurer::make(*setup, m.spot_id);
-        if (!measurer) return tl::unexpected(measurer.error());
-        measurer->measure(capture);
-        const Profile& profile = measurer->profile();
+    for (const SpotMeasurement& m : run.spots) {
+        if (m.capture < 0 || static_cast<std::size_t>(m.capture) >= run.captures.size()) continue;
+        const Capture& capture = run.captures[static_cast<std::size_t>(m.capture)];
+        SEAM_TRY(auto measurer, SpotMeasurer::make(setup, m.spot_id));
+        measurer.measure(capture);
+        const Profile& profile = measurer.profile();
         if (profile.size() == 0) continue;
         const std::string stem = file_stem(m.spot_id, taken);
-        const Pose base_from_flange = capture.base_from_flange.value_or(measurer->spot().base_from_flange);
+        const Pose base_from_flange = capture.base_from_flange.value_or(measurer.spot().base_from_flange);
         if (format == ProfileFormat::csv) {
-            if (auto done = write(folder / (stem + ".csv"), profile_csv(profile)); !done)
-                return tl::unexpected(done.error());
+            SEAM_OK(write(folder / (stem + ".csv"), profile_csv(profile)));
             if (auto done = write(folder / (stem + ".json"), pose_json(base_from_flange).dump(1) + "\n");
                 !done)
                 return tl::unexpected(done.error());
             continue;
         }
-        const Calibration* calibration = calibration_of(*setup, measurer->spot());
+        const Calibration* calibration = calibration_of(setup, measurer.spot());
         const Pose base_from_sensor =
             base_from_flange * (calibration ? calibration->flange_from_sensor : Pose::Identity());
         std::vector<Eigen::Vector3d> points;

@@ -113,7 +113,7 @@ class FolderImporter {
         for (const auto step :
              {&FolderImporter::check_options, &FolderImporter::list, &FolderImporter::take_devices,
               &FolderImporter::take_calibration, &FolderImporter::take_spots})
-            if (auto ok = (this->*step)(); !ok) return tl::unexpected(ok.error());
+            SEAM_OK((this->*step)());
         if (Text note = forecast_note(result_.project); !note.empty() && !result_.in_pixels)
             result_.notes.push_back(std::move(note));
         return std::move(result_);
@@ -130,11 +130,10 @@ class FolderImporter {
     }
 
     Expected<void> list() {
-        auto frames = list_recording(folder_, "", true, layout_, &result_.understood);
-        if (!frames) return tl::unexpected(frames.error());
-        if (frames->empty())
+        SEAM_TRY(auto frames, list_recording(folder_, "", true, layout_, &result_.understood));
+        if (frames.empty())
             return input_error("the folder holds no profiles and no images", folder_.string());
-        frames_ = std::move(*frames);
+        frames_ = std::move(frames);
         const RecordedFrame& first = frames_.front();
         if (!first.image && first.file.extension() != ".csv")  // may hold points in space
             layout_.flange_from_sensor =
@@ -142,10 +141,10 @@ class FolderImporter {
         taught_ = frames_;
         if (options_.reference_folder) {
             std::error_code code;
-            auto listed = list_recording(fs::absolute(*options_.reference_folder, code).lexically_normal(),
-                                         "", true, layout_, &result_.understood);
-            if (!listed) return tl::unexpected(listed.error());
-            taught_ = std::move(*listed);
+            SEAM_TRY(auto listed,
+                     list_recording(fs::absolute(*options_.reference_folder, code).lexically_normal(), "",
+                                    true, layout_, &result_.understood));
+            taught_ = std::move(listed);
         } else {
             result_.notes.push_back(
                 "no reference folder: the folder itself is the taught state, the first run finds no "
@@ -174,14 +173,11 @@ class FolderImporter {
         robot.driver = "replay";
         robot.settings = sensor.settings;
         DeviceSession session;
-        auto opened = open_sensor(sensor.driver, sensor.settings, session);
-        if (!opened) return tl::unexpected(opened.error());
-        sensor.identity = (*opened)->identity();
-        auto linked = open_robot(robot.driver, robot.settings, session);
-        if (!linked) return tl::unexpected(linked.error());
-        auto identity = (*linked)->identity();
-        if (!identity) return tl::unexpected(identity.error());
-        robot.identity = *identity;
+        SEAM_TRY(auto opened, open_sensor(sensor.driver, sensor.settings, session));
+        sensor.identity = opened->identity();
+        SEAM_TRY(auto linked, open_robot(robot.driver, robot.settings, session));
+        SEAM_TRY(auto identity, linked->identity());
+        robot.identity = identity;
         project.sensors = {std::move(sensor)};
         project.robots = {std::move(robot)};
         return {};
@@ -189,11 +185,10 @@ class FolderImporter {
 
     Expected<void> take_calibration() {
         Frame first;
-        if (auto read = read_recorded(frames_.front(), layout_, 0, first); !read)
-            return tl::unexpected(read.error());
-        if (auto ok = check_units(options_, first, frames_.front().file); !ok) return ok;
+        SEAM_OK(read_recorded(frames_.front(), layout_, 0, first));
+        SEAM_OK(check_units(options_, first, frames_.front().file));
         const bool images = frames_.front().image;
-        if (auto ok = check_calibration(options_, images, first); !ok) return ok;
+        SEAM_OK(check_calibration(options_, images, first));
         Calibration calibration;
         if (options_.calibration) {
             calibration = *options_.calibration;
@@ -245,9 +240,8 @@ class FolderImporter {
                 result_.notes.push_back(Text("spot {}: not in the reference folder, switched off", spot.id));
                 continue;
             }
-            auto taught = teach(spot, recorded, *reference->second);
-            if (!taught) return tl::unexpected(taught.error());
-            if (*taught) region.spot_ids.push_back(spot.id);
+            SEAM_TRY(auto taught, teach(spot, recorded, *reference->second));
+            if (taught) region.spot_ids.push_back(spot.id);
         }
         if (region.spot_ids.empty()) return nothing_found();
         result_.project.regions = {std::move(region)};
@@ -275,19 +269,18 @@ class FolderImporter {
             result_.notes.push_back(Text("spot {}: {}, switched off", spot.id, read.error().text()));
             return false;
         }
-        if (auto ok = check_units(options_, frame_, reference.file); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_units(options_, frame_, reference.file));
         // The recorded part in another unit than the taught one; what cannot be read shows in the run.
         if (Frame other;
             !recorded.image && recorded.file != reference.file && read_recorded(recorded, layout_, 0, other))
-            if (auto ok = check_units(options_, other, recorded.file); !ok) return tl::unexpected(ok.error());
+            SEAM_OK(check_units(options_, other, recorded.file));
         if (options_.feature.kind == "template") {
             auto cut = cut_from_frame(spot);
             if (!cut || !*cut) return cut;
         }
-        auto measurer = SpotMeasurer::make(result_.project, spot.id);
-        if (!measurer) return tl::unexpected(measurer.error());
-        const SpotMeasurement& measured = measurer->measure(frame_);
-        spot.reference_profile = measurer->profile();
+        SEAM_TRY(auto measurer, SpotMeasurer::make(result_.project, spot.id));
+        const SpotMeasurement& measured = measurer.measure(frame_);
+        spot.reference_profile = measurer.profile();
         if (measured.status != SpotStatus::measured) {
             result_.notes.push_back(Text("spot {}: {} ({}), switched off", spot.id,
                                          to_string(measured.status), measured.message));
@@ -313,7 +306,7 @@ class FolderImporter {
             result_.notes.push_back(Text("spot {}: {}, switched off", spot.id, tracked.error().text()));
             return false;
         }
-        if (auto cut = cut_template(options_, taught_profile, spot); !cut) return tl::unexpected(cut.error());
+        SEAM_OK(cut_template(options_, taught_profile, spot));
         return true;
     }
 

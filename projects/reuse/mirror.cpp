@@ -192,12 +192,11 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
     }
 
     if (!out.part.mesh_ply.empty()) {
-        auto mesh = mesh_from_ply(out.part.mesh_ply, "the part of " + project.name);
-        if (!mesh) return tl::unexpected(mesh.error());
-        for (Eigen::Vector3d& vertex : mesh->vertices) vertex = reflection(plane.normal) * vertex;
-        for (Eigen::Vector3i& triangle : mesh->triangles)
+        SEAM_TRY(auto mesh, mesh_from_ply(out.part.mesh_ply, "the part of " + project.name));
+        for (Eigen::Vector3d& vertex : mesh.vertices) vertex = reflection(plane.normal) * vertex;
+        for (Eigen::Vector3i& triangle : mesh.triangles)
             std::swap(triangle[1], triangle[2]);  // outside stays outside
-        out.part.mesh_ply = ply_bytes(*mesh);
+        out.part.mesh_ply = ply_bytes(mesh);
         out.part.mesh_source = fmt::format("{} (mirrored)", project.part.mesh_source);
     }
     return out;

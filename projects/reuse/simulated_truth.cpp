@@ -16,8 +16,7 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
     if (!is_simulated_cell(sensor.driver) || !is_simulated_cell(robot.driver))
         return input_error("only a simulated cell knows its own calibration", Text("sensor {}", sensor.id),
                            "calibrate the sensor");
-    auto cell = SimulatedCell::open(sensor.settings);
-    if (!cell) return tl::unexpected(cell.error());
+    SEAM_TRY(auto cell, SimulatedCell::open(sensor.settings));
     Calibration c;
     c.id = "simulated-truth";
     c.method = "simulated truth";
@@ -27,22 +26,20 @@ Expected<Calibration> simulated_truth(const SensorSetup& sensor, const RobotSetu
     c.robot_identity = robot.identity;
     c.created_utc = utc_now();
     c.source = "the simulated cell's own optics and mounting";
-    c.model = (*cell)->sensor_model();
-    c.flange_from_sensor = (*cell)->flange_from_sensor();
+    c.model = cell->sensor_model();
+    c.flange_from_sensor = cell->flange_from_sensor();
     c.verdict = Verdict::good;
     return c;
 }
 
 Expected<Project> simulated_panel_project(const nlohmann::json& given) {
     constexpr const char* kFrame = "panel";
-    const auto parsed = parse_gripper_settings(given);
-    if (!parsed) return tl::unexpected(parsed.error());
+    SEAM_TRY(const auto parsed, parse_gripper_settings(given));
     nlohmann::json settings = given;
     settings.erase("head");
-    settings["robot"]["frames"][kFrame] = pose_json(parsed->base_from_opening);
+    settings["robot"]["frames"][kFrame] = pose_json(parsed.base_from_opening);
     DeviceSession session;
-    auto cell = shared_gripper_cell(settings, session);
-    if (!cell) return tl::unexpected(cell.error());
+    SEAM_TRY(auto cell, shared_gripper_cell(settings, session));
 
     Project p;
     p.name = "simulated panel";
@@ -50,14 +47,14 @@ Expected<Project> simulated_panel_project(const nlohmann::json& given) {
     robot.id = "R1";
     robot.driver = "simulated-gripper";
     robot.settings = settings;
-    robot.identity = *make_gripper_robot(*cell)->identity();
-    for (const auto& [head, flange_from_sensor] : parsed->heads) {
+    robot.identity = *make_gripper_robot(cell)->identity();
+    for (const auto& [head, flange_from_sensor] : parsed.heads) {
         SensorSetup sensor;
         sensor.id = head;
         sensor.driver = "simulated-gripper";
         sensor.settings = settings;
         sensor.settings["head"] = head;
-        sensor.identity = make_gripper_sensor(*cell, head)->identity();
+        sensor.identity = make_gripper_sensor(cell, head)->identity();
         Calibration c;
         c.id = sensor.calibration_id = "truth " + head;
         c.method = "simulated truth";
@@ -67,7 +64,7 @@ Expected<Project> simulated_panel_project(const nlohmann::json& given) {
         c.robot_identity = robot.identity;
         c.created_utc = utc_now();
         c.source = "the simulated gripper's own optics and mounting";
-        c.model = (*cell)->sensor_model();
+        c.model = cell->sensor_model();
         c.flange_from_sensor = flange_from_sensor;
         c.verdict = Verdict::good;
         p.calibrations.push_back(std::move(c));
@@ -78,16 +75,16 @@ Expected<Project> simulated_panel_project(const nlohmann::json& given) {
     PanelJob job;
     job.id = "panel";
     job.robot_id = robot.id;
-    job.base_from_gripper = parsed->base_from_opening;
+    job.base_from_gripper = parsed.base_from_opening;
     job.frame_name = kFrame;
-    job.base_from_frame = parsed->base_from_opening;
+    job.base_from_frame = parsed.base_from_opening;
     job.limits = {20, 2};
     for (const GripperPlace& place : default_gripper_places()) {
         PanelPlace out;
         out.id = place.id;
         out.sensor_id = "H" + place.id.substr(1);
-        if (parsed->heads.count(out.sensor_id + "b")) out.second_sensor_id = out.sensor_id + "b";
-        if (!parsed->heads.count(out.sensor_id)) continue;
+        if (parsed.heads.count(out.sensor_id + "b")) out.second_sensor_id = out.sensor_id + "b";
+        if (!parsed.heads.count(out.sensor_id)) continue;
         out.gauge.reference = GapFlushSettings::Reference::right;
         out.sigma_mm = 0.05;
         job.places.push_back(std::move(out));
@@ -106,25 +103,23 @@ Expected<Project> simulated_gap_project(nlohmann::json settings, const std::vect
     p.part.name = "two sheets with a gap";
     p.part.mesh_ply = ply_bytes(gap_part_mesh(gap));
     const std::string_view ply(reinterpret_cast<const char*>(p.part.mesh_ply.data()), p.part.mesh_ply.size());
-    if (auto written = write_text_file(mesh_file, ply); !written) return tl::unexpected(written.error());
+    SEAM_OK(write_text_file(mesh_file, ply));
     settings["mesh"] = std::filesystem::absolute(mesh_file).string();
     settings["mesh_unit"] = "mm";
-    auto cell = SimulatedCell::open(settings);
-    if (!cell) return tl::unexpected(cell.error());
-    p.part.base_from_workobject = (*cell)->base_from_workobject();
+    SEAM_TRY(auto cell, SimulatedCell::open(settings));
+    p.part.base_from_workobject = cell->base_from_workobject();
     SensorSetup sensor;
     sensor.id = "A";
     sensor.driver = "simulated";
     sensor.settings = settings;
-    sensor.identity = make_simulated_sensor(*cell)->identity();
+    sensor.identity = make_simulated_sensor(cell)->identity();
     RobotSetup robot;
     robot.id = "R1";
     robot.driver = "simulated";
     robot.settings = settings;
-    robot.identity = *make_simulated_robot(*cell)->identity();
-    auto truth = simulated_truth(sensor, robot);
-    if (!truth) return tl::unexpected(truth.error());
-    sensor.calibration_id = truth->id;
+    robot.identity = *make_simulated_robot(cell)->identity();
+    SEAM_TRY(auto truth, simulated_truth(sensor, robot));
+    sensor.calibration_id = truth.id;
     constexpr double kShares[] = {0.05, 0.4, 0.6, 0.95};
     for (const double share : kShares) {
         const double y = gap.front().y_mm + share * (gap.back().y_mm - gap.front().y_mm);
@@ -133,14 +128,14 @@ Expected<Project> simulated_gap_project(nlohmann::json settings, const std::vect
         spot.sensor_id = sensor.id;
         spot.robot_id = robot.id;
         spot.base_from_flange =
-            (*cell)->flange_for(make_pose(Eigen::Matrix3d::Identity(), {0, y, gap_at(gap, y).flush_mm / 2}));
+            cell->flange_for(make_pose(Eigen::Matrix3d::Identity(), {0, y, gap_at(gap, y).flush_mm / 2}));
         spot.feature.kind = "contour-end";
         spot.feature.parameters = {{"side", 1}};
         p.spots.push_back(std::move(spot));
     }
     p.sensors = {std::move(sensor)};
     p.robots = {std::move(robot)};
-    p.calibrations = {std::move(*truth)};
+    p.calibrations = {std::move(truth)};
     return p;
 }
 

@@ -88,7 +88,7 @@ Expected<FramePtr> TriggeredFrames::at(const TriggerEvent& trigger, std::chrono:
         if (f.spot_id.empty() || f.spot_id == trigger.spot_id) return frame;
         return device_error(Text("the frame is of spot {}", f.spot_id), Text("sensor {}", setup_.id));
     }
-    if (auto fired = sensor_.trigger(trigger.spot_id); !fired) return tl::unexpected(fired.error());
+    SEAM_OK(sensor_.trigger(trigger.spot_id));
     auto frame = next_frame(sensor_, timeout, cancel);
     while (frame && !(*frame)->spot_id.empty() && (*frame)->spot_id != trigger.spot_id) {
         if (dropped) dropped(**frame);
@@ -162,12 +162,11 @@ Expected<SoftwareTriggered> SoftwareTriggered::begin(ProfileSource& sensor) {
         const auto software = std::find(info.choices.begin(), info.choices.end(), "software");
         if (info.name != "trigger" || software == info.choices.end()) continue;
         const auto wanted = static_cast<double>(software - info.choices.begin());
-        auto now = sensor.get(info.name);
-        if (!now) return tl::unexpected(now.error());
-        if (*now == wanted) break;
-        if (auto set = sensor.set(info.name, wanted); !set) return tl::unexpected(set.error());
+        SEAM_TRY(auto now, sensor.get(info.name));
+        if (now == wanted) break;
+        SEAM_OK(sensor.set(info.name, wanted));
         triggered.sensor_ = &sensor;
-        triggered.before_ = *now;
+        triggered.before_ = now;
     }
     return triggered;
 }

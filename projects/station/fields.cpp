@@ -16,7 +16,7 @@ Expected<void> set_in(const std::vector<Field<T>>& fields, T& thing, std::string
         std::find_if(fields.begin(), fields.end(), [&](const Field<T>& f) { return f.info.name == name; });
     assert(field != fields.end());
     const ParameterValues one{{field->info.name, value}};
-    if (auto valid = validate(one, {field->info}, where); !valid) return valid;
+    SEAM_OK(validate(one, {field->info}, where));
     field->set(thing, value);
     return {};
 }
@@ -203,7 +203,7 @@ Expected<void> set_field(Requirements& requirements, std::string_view name, doub
 
 Expected<void> validate_fields(const Spot& spot) {
     const Text where("spot {}", spot.id);
-    if (auto valid = validate_in(spot_fields(), spot, where); !valid) return valid;
+    SEAM_OK(validate_in(spot_fields(), spot, where));
     const FeatureKind* kind = feature_kind(spot.feature.kind);
     if (!kind) return input_error(Text("the feature kind \"{}\" is not known", spot.feature.kind), where);
     return validate(spot.feature.parameters, kind->parameters, where);
@@ -217,13 +217,13 @@ Expected<void> validate_fields(const PanelJob& job) {
 }
 
 Expected<void> validate_fields(const Requirements& requirements) {
-    if (auto valid = validate_in(requirement_fields(), requirements, "requirements"); !valid) return valid;
+    SEAM_OK(validate_in(requirement_fields(), requirements, "requirements"));
     return validate_fields(requirements.acceptance);
 }
 
 Expected<void> validate_fields(const AcceptanceRequirements& requirements) {
     const Text where("requirements of the acceptance");
-    if (auto valid = validate_in(acceptance_fields(), requirements, where); !valid) return valid;
+    SEAM_OK(validate_in(acceptance_fields(), requirements, where));
     if (requirements.grr_accepted_percent > requirements.grr_refused_percent)
         return input_error(Text("%GRR of {} is accepted and of {} refused", requirements.grr_accepted_percent,
                                 requirements.grr_refused_percent),

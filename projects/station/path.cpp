@@ -132,14 +132,13 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
     std::vector<Pose> taught;
     for (const ApplicationPoint& point : path.points)
         taught.push_back(workobject_from_frame * point.frame_from_tool);
-    auto region_of = regions_of(setup, path, taught);
-    if (!region_of) return tl::unexpected(region_of.error());
+    SEAM_TRY(auto region_of, regions_of(setup, path, taught));
 
     PathAnswer answer;
     std::vector<PathRegion> corrections;
     std::vector<const Region*> regions;
     std::vector<int> index(setup.regions.size(), -1);
-    for (const int r : *region_of) {
+    for (const int r : region_of) {
         if (r < 0 || index[static_cast<std::size_t>(r)] >= 0) continue;
         const Region& region = setup.regions[static_cast<std::size_t>(r)];
         index[static_cast<std::size_t>(r)] = static_cast<int>(regions.size());
@@ -167,12 +166,11 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
     }
     std::vector<PathPoint> points;
     for (std::size_t i = 0; i < taught.size(); ++i) {
-        const int r = (*region_of)[i];
+        const int r = region_of[i];
         points.push_back({taught[i], r < 0 ? -1 : index[static_cast<std::size_t>(r)]});
     }
-    auto corrected = correct_path(points, corrections, answer.region_ids, options);
-    if (!corrected) return tl::unexpected(corrected.error());
-    answer.corrected = std::move(*corrected);
+    SEAM_TRY(auto corrected, correct_path(points, corrections, answer.region_ids, options));
+    answer.corrected = std::move(corrected);
     if (answer.refusals.empty()) judge(regions, answer);
 
     const Pose frame_from_workobject = workobject_from_frame.inverse();

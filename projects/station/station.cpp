@@ -117,28 +117,27 @@ struct Station::Impl {
         for (const Spot& spot : project.spots)
             if (spot.enabled && spot.robot_id == robot_id) spots.push_back(&spot);
         RobotLink& robot = *robots.at(robot_id);
-        if (auto started = robot.start_measuring(measuring_program(project, robot_id)); !started)
-            return started;
+        SEAM_OK(robot.start_measuring(measuring_program(project, robot_id)));
         job.started_robots.push_back(robot_id);
         std::set<std::string> open;
         for (const Spot* spot : spots) open.insert(spot->id);
         while (!open.empty()) {
             if (job.options.cancel.stop_requested()) return {};
-            auto trigger = next_trigger(robot, job.options.limits.trigger_timeout, job.options.cancel);
-            if (!trigger) return tl::unexpected(trigger.error());
+            SEAM_TRY(auto trigger,
+                     next_trigger(robot, job.options.limits.trigger_timeout, job.options.cancel));
             const auto spot = std::find_if(spots.begin(), spots.end(),
-                                           [&](const Spot* s) { return s->id == trigger->spot_id; });
-            if (spot == spots.end() || !open.count(trigger->spot_id))
+                                           [&](const Spot* s) { return s->id == trigger.spot_id; });
+            if (spot == spots.end() || !open.count(trigger.spot_id))
                 return device_error(
-                    Text("the robot fired for spot \"{}\", which is {}", trigger->spot_id,
+                    Text("the robot fired for spot \"{}\", which is {}", trigger.spot_id,
                          spot == spots.end() ? "not in the measuring program" : "measured already"),
                     Text("robot {}", robot_id), "compare the program on the controller with the project");
-            if (auto measured = measure_spot(job, **spot, *trigger); !measured) return measured;
-            open.erase(trigger->spot_id);
+            SEAM_OK(measure_spot(job, **spot, trigger));
+            open.erase(trigger.spot_id);
             ++job.done;
             job.progress(Text("{} {}", (*spot)->id, to_string(job.measurement((*spot)->id).status)));
             if (!open.empty())  // while the robot travels; the last ones go with the judged run
-                if (auto stored = file.append_measured(job.run, job.stored); !stored) return stored;
+                SEAM_OK(file.append_measured(job.run, job.stored));
         }
         return {};
     }
@@ -153,16 +152,15 @@ struct Station::Impl {
                 sensor_ids.push_back(spot.sensor_id);
         }
         for (const std::string& id : sensor_ids) {
-            if (auto on = job.started_sensors.start(*sensors.at(id), job.options.cancel); !on) return on;
+            SEAM_OK(job.started_sensors.start(*sensors.at(id), job.options.cancel));
             job.frames.try_emplace(id, *sensors.at(id), *find_sensor(project, id));
         }
         for (const std::string& id : robot_ids) {
             if (job.options.cancel.stop_requested()) return {};
-            if (auto measured = measure_robot(job, id); !measured) return measured;
+            SEAM_OK(measure_robot(job, id));
         }
         if (job.options.cancel.stop_requested()) return {};
-        for (auto& [id, frames] : job.frames)
-            if (auto complete = frames.finish(); !complete) return complete;
+        for (auto& [id, frames] : job.frames) SEAM_OK(frames.finish());
         return {};
     }
 
@@ -262,7 +260,7 @@ struct Station::Impl {
         if (job.in_file) return {};
         for (auto& [id, robot] : robots)
             for (const Text& notice : robot->take_notices()) job.event(EventKind::device, id, notice);
-        if (auto stored = file.finish_run(job.run, job.stored); !stored) return stored;
+        SEAM_OK(file.finish_run(job.run, job.stored));
         for (EventRecord& event : job.run.events) event.run = job.run.number;
         job.in_file = true;
         return {};
@@ -276,9 +274,8 @@ struct Station::Impl {
             return store_judged(job);
         }
         EventRecord event{0, utc_now(), job.run.number, kind, subject, text};
-        auto id = file.append_event(event);
-        if (!id) return tl::unexpected(id.error());
-        event.id = *id;
+        SEAM_TRY(auto id, file.append_event(event));
+        event.id = id;
         job.run.events.push_back(std::move(event));
         return {};
     }
@@ -327,7 +324,7 @@ struct Station::Impl {
     // The outcome of the run so far, durable.
     Expected<void> store_outcome(Job& job) {
         job.run.finished_utc = utc_now();
-        if (auto judged = store_judged(job); !judged) return judged;
+        SEAM_OK(store_judged(job));
         return file.update_run(job.run);
     }
 
@@ -428,11 +425,9 @@ Station::~Station() {
 }
 
 Expected<Station> Station::open(const std::filesystem::path& path, FileAccess access) {
-    auto file = ProjectFile::open(path, access);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    Station station(std::move(*file), std::move(*project));
+    SEAM_TRY(auto file, ProjectFile::open(path, access));
+    SEAM_TRY(auto project, file.load());
+    Station station(std::move(file), std::move(project));
     station.impl_->writable = access == FileAccess::read_write;
     return station;
 }
@@ -466,7 +461,7 @@ RobotLink* Station::robot(const std::string& id) {
 }
 
 Expected<void> Station::edit(const Project& project) {
-    if (auto saved = impl_->file.save(project); !saved) return saved;
+    SEAM_OK(impl_->file.save(project));
     impl_->project = project;
     return {};
 }
@@ -483,9 +478,8 @@ Expected<void> Station::connect(const Patience& patience) {
                            [](const auto& setup) { return !is_own_device(setup.driver); });
     };
     if (alone(i.project.sensors) || alone(i.project.robots)) {
-        auto use = FileUse::take(i.file.path(), FileUse::For::devices);
-        if (!use) return tl::unexpected(use.error());
-        i.use = std::move(*use);
+        SEAM_TRY(auto use, FileUse::take(i.file.path(), FileUse::For::devices));
+        i.use = std::move(use);
     }
     const auto give_up = [&](Error error, const Text& where) {
         i.disconnect();
@@ -540,17 +534,15 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (!i.connected)
         return usage_error("the station is not connected to its devices", i.file.path().string(),
                            "connect first");
-    if (auto safe = none_of_motion(motion_findings(i.project, options.push)); !safe)
-        return tl::unexpected(safe.error());
+    SEAM_OK(none_of_motion(motion_findings(i.project, options.push)));
     Impl::Job job{.options = options};
     RunRecord& run = job.run;
     for (const Spot& spot : i.project.spots) {
         if (!spot.enabled) continue;
-        auto measurer = SpotMeasurer::make(i.project, spot.id);
-        if (!measurer) return tl::unexpected(measurer.error());
+        SEAM_TRY(auto measurer, SpotMeasurer::make(i.project, spot.id));
         if (!i.sensors.count(spot.sensor_id) || !i.robots.count(spot.robot_id))
             return input_error("its sensor or robot is not connected", Text("spot {}", spot.id));
-        job.measurers.insert_or_assign(spot.id, std::move(*measurer));
+        job.measurers.insert_or_assign(spot.id, std::move(measurer));
         SpotMeasurement m;
         m.spot_id = spot.id;
         m.message = "no frame came";
@@ -562,8 +554,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
                                ? "teach a spot first"
                                : "teach a spot, or run its panel job (seamwright panel)");
 
-    const auto setup = RunSetup::of(i.project);
-    if (!setup) return tl::unexpected(setup.error());
+    SEAM_TRY(const auto setup, RunSetup::of(i.project));
 
     run.part_id = options.part_id;
     run.push = options.push;
@@ -571,9 +562,8 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     run.status = RunStatus::interrupted;
     run.message = "the program ended while the part was measured";
     // Begun before the robot moves: a file that cannot be written stops the run here.
-    auto number = i.file.begin_run(run, *setup);
-    if (!number) return tl::unexpected(number.error());
-    run.number = *number;
+    SEAM_TRY(auto number, i.file.begin_run(run, setup));
+    run.number = number;
     if (run.part_id.empty()) run.part_id = fmt::format("run {}", run.number);
     run.status = RunStatus::ok;
     job.part_since_ns = host_now_ns();
@@ -629,8 +619,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     }
     if (pushing) {
         i.push_all(job, passes);
-        if (auto stored = record_outcome(run, [&] { return i.store_outcome(job); }); !stored)
-            return tl::unexpected(stored.error());
+        SEAM_OK(record_outcome(run, [&] { return i.store_outcome(job); }));
     } else {
         i.confirm_all(job, run.status == RunStatus::device || run.status == RunStatus::cancelled
                                ? PartVerdict::failed

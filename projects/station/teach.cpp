@@ -37,24 +37,20 @@ Expected<void> measure_standing(Station& station, const Spot& spot, std::span<co
         project.spots.push_back(spot);
     else
         *known = spot;
-    auto measurer = SpotMeasurer::make(project, spot.id);
-    if (!measurer) return tl::unexpected(measurer.error());
+    SEAM_TRY(auto measurer, SpotMeasurer::make(project, spot.id));
 
-    auto by_software = SoftwareTriggered::begin(*sensor);
-    if (!by_software) return tl::unexpected(by_software.error());
+    SEAM_TRY(const auto by_software, SoftwareTriggered::begin(*sensor));
     StartedSensors started;
-    if (auto on = started.start(*sensor); !on) return on;
+    SEAM_OK(started.start(*sensor));
     const AcquireLimits limits;
     for (std::size_t i = 0; i < stands.size(); ++i) {
         if (cancel.stop_requested())
             return device_error(ErrorCode::cancelled, "cancelled", Text("spot {}", spot.id));
-        auto at = stand_at(*robot, spot.id, stands[i].base_from_flange);
-        if (!at) return tl::unexpected(at.error());
+        SEAM_TRY(auto at, stand_at(*robot, spot.id, stands[i].base_from_flange));
         for (int n = 0; n < stands[i].measurements; ++n) {
-            if (auto fired = sensor->trigger(spot.id); !fired) return fired;
-            auto frame = next_frame(*sensor, limits.frame_timeout, cancel);
-            if (!frame) return tl::unexpected(frame.error());
-            visit(i, *measurer, measurer->measure(**frame, *at));
+            SEAM_OK(sensor->trigger(spot.id));
+            SEAM_TRY(auto frame, next_frame(*sensor, limits.frame_timeout, cancel));
+            visit(i, measurer, measurer.measure(*frame, at));
         }
         if (progress)
             progress({static_cast<int>(i) + 1, static_cast<int>(stands.size()),
@@ -165,14 +161,13 @@ Expected<RecordedPass> record_pass(Station& station, const Spot& spot, const Pas
         travel.push_back(y);
     }
     RecordedPass pass;
-    auto measured = measure_standing(
+    SEAM_OK(measure_standing(
         station, spot, poses, options.cancel, options.progress,
         [&](std::size_t i, const SpotMeasurer& measurer, const SpotMeasurement& m) {
             if (measurer.profile().size() > 0) pass.profiles.push_back({travel[i], measurer.profile()});
             if (m.status == SpotStatus::measured)
                 pass.references.push_back({travel[i], m.feature.point_mm.x(), m.feature.point_mm.y()});
-        });
-    if (!measured) return tl::unexpected(measured.error());
+        }));
     return pass;
 }
 

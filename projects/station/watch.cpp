@@ -64,14 +64,12 @@ class Watch {
     Expected<WatchCounts> run() {
         while (!ended()) {
             if (!station_.connected()) {
-                auto connected = connect();
-                if (!connected) return tl::unexpected(connected.error());
-                if (!*connected) continue;
+                SEAM_TRY(auto connected, connect());
+                if (!connected) continue;
             }
-            auto start = next_start();
-            if (!start) return tl::unexpected(start.error());
-            if (!start->has_value()) continue;
-            if (auto part = measure((*start)->part_id); !part) return tl::unexpected(part.error());
+            SEAM_TRY(auto start, next_start());
+            if (!start.has_value()) continue;
+            SEAM_OK(measure(start->part_id));
         }
         state_ = WatchState::stopped;
         tell(WatchLevel::info, watched::Stopped{}, Text("stopped after {} parts", counts_.parts));
@@ -216,10 +214,9 @@ class Watch {
             tell(WatchLevel::info, watched::SpotDone{p.done, p.total}, p.text);
         };
         const auto begun = std::chrono::steady_clock::now();
-        auto record = station_.run(run);
-        if (!record) return tl::unexpected(record.error());
+        SEAM_TRY(auto record, station_.run(run));
         const auto took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun);
-        const RunStatus status = record->status;
+        const RunStatus status = record.status;
         const bool alarm = status == RunStatus::alarm;
         const bool failed = status == RunStatus::device || status == RunStatus::cancelled;
         (status == RunStatus::ok ? counts_.corrected
@@ -227,7 +224,7 @@ class Watch {
          : failed                ? counts_.failed
                                  : counts_.refused) += 1;
         state_ = WatchState::waiting;
-        const auto done = std::make_shared<const RunRecord>(std::move(*record));
+        const auto done = std::make_shared<const RunRecord>(std::move(record));
         tell(alarm || status == RunStatus::device ? WatchLevel::alarm
              : status == RunStatus::ok            ? WatchLevel::info
                                                   : WatchLevel::warning,
@@ -249,11 +246,10 @@ class Watch {
 
     Expected<void> forget_old_runs() {
         if (options_.keep_runs <= 0) return {};
-        auto runs = station_.file().runs();
-        if (!runs) return tl::unexpected(runs.error());
+        SEAM_TRY(auto runs, station_.file().runs());
         const auto keep = static_cast<std::size_t>(options_.keep_runs);
-        for (std::size_t i = 0; i + keep < runs->size(); ++i)
-            if (auto deleted = station_.file().delete_run((*runs)[i].number); !deleted) return deleted;
+        for (std::size_t i = 0; i + keep < runs.size(); ++i)
+            SEAM_OK(station_.file().delete_run(runs[i].number));
         return {};
     }
 

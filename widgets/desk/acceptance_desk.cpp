@@ -80,21 +80,18 @@ void AcceptanceDesk::look() {
 }
 
 Expected<void> AcceptanceDesk::import_references(const std::filesystem::path& csv) {
-    auto table = read_study_csv(csv);
-    if (!table) return tl::unexpected(table.error());
-    extras_.references = std::move(*table);
+    SEAM_TRY(auto table, read_study_csv(csv));
+    extras_.references = std::move(table);
     due_ = true;
     look();
     return {};
 }
 
 Expected<void> AcceptanceDesk::import_sensor_data(const std::filesystem::path& json) {
-    auto data = read_json_file(json);
-    if (!data) return tl::unexpected(data.error());
+    SEAM_TRY(auto data, read_json_file(json));
     // What is wrong with it is said at once, and nothing of it is kept.
-    if (auto check = sensor_check(*data, json.string(), &desk_.project()); !check)
-        return tl::unexpected(check.error());
-    extras_.sensor_data = std::move(*data);
+    SEAM_OK(sensor_check(data, json.string(), &desk_.project()));
+    extras_.sensor_data = std::move(data);
     extras_.sensor_data_from = json.string();
     due_ = true;
     look();
@@ -119,7 +116,7 @@ Expected<void> AcceptanceDesk::edit_region(const std::function<Expected<void>(Re
     const int at = index_of<Region>(desk_.project(), region());
     if (at < 0) return input_error("the project has no region");
     Region after = desk_.project().regions[static_cast<std::size_t>(at)];
-    if (auto done = change(after); !done) return done;
+    SEAM_OK(change(after));
     return desk_.edit(after, what);
 }
 
@@ -127,15 +124,13 @@ Expected<int> AcceptanceDesk::keep_offset() {
     if (!stored() || !stored()->studies)
         return input_error("there is no correlation", {}, "import the other instrument's values");
     int version = 0;
-    auto done = edit_region(
+    SEAM_OK(edit_region(
         [&](Region& r) -> Expected<void> {
-            auto kept = seamwright::keep_offset(r, *stored()->studies, utc_now());
-            if (!kept) return tl::unexpected(kept.error());
-            version = *kept;
+            SEAM_TRY(auto kept, seamwright::keep_offset(r, *stored()->studies, utc_now()));
+            version = kept;
             return {};
         },
-        tr("the kept offsets"));
-    if (!done) return tl::unexpected(done.error());
+        tr("the kept offsets")));
     return version;
 }
 

@@ -87,9 +87,8 @@ Expected<void> CalibrationDesk::open(const std::string& method, const std::strin
                                      const std::string& robot_id) {
     if (!desk_.is_open()) return usage_error("no project is open", {}, "open or make one");
     close();
-    auto session = CalibrationSession::open(desk_.path(), method, sensor_id, robot_id);
-    if (!session) return tl::unexpected(session.error());
-    session_ = std::move(*session);
+    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor_id, robot_id));
+    session_ = std::move(session);
     for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())
         if (auto settings = prepared_settings(session_->method(), session_->state().settings, base(),
@@ -399,11 +398,10 @@ Expected<void> CalibrationDesk::finish(bool use) {
     if (session_->stage() != SessionStage::use && session_->stage() != SessionStage::used)
         return input_error("the solution is not verified", session_->method().id,
                            "take a pose for verification first");
-    auto made = calibrations_of_session(*session_, desk_.project());
-    if (!made) return tl::unexpected(made.error());
+    SEAM_TRY(auto made, calibrations_of_session(*session_, desk_.project()));
     std::vector<std::string> ids;
-    for (const Calibration& c : *made) ids.push_back(c.id);
-    if (auto done = desk_.take_calibrations(std::move(*made), use); !done) return done;
+    for (const Calibration& c : made) ids.push_back(c.id);
+    SEAM_OK(desk_.take_calibrations(std::move(made), use));
     auto noted = session_->set_used_as(std::move(ids));
     emit changed();
     return noted;

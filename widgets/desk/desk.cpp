@@ -37,9 +37,8 @@ Expected<void> known_devices(const Project& project, const Spot& spot) {
 }
 template <>
 Expected<void> valid<Spot>(const Project& project, const Spot& spot) {
-    if (auto known = known_devices(project, spot); !known) return known;
-    if (auto rigid = pose_from_matrix(spot.base_from_flange.matrix(), "spot " + spot.id); !rigid)
-        return tl::unexpected(rigid.error());
+    SEAM_OK(known_devices(project, spot));
+    SEAM_OK(pose_from_matrix(spot.base_from_flange.matrix(), "spot " + spot.id));
     return validate_fields(spot);
 }
 template <>
@@ -50,8 +49,7 @@ Expected<void> valid<Region>(const Project& project, const Region& region) {
     if (std::none_of(region.free.begin(), region.free.end(), [](bool f) { return f; }))
         return input_error("no degree of freedom is free", Text("region {}", region.id),
                            "leave at least one free");
-    if (auto rigid = pose_from_matrix(region.base_from_frame.matrix(), "region " + region.id); !rigid)
-        return tl::unexpected(rigid.error());
+    SEAM_OK(pose_from_matrix(region.base_from_frame.matrix(), "region " + region.id));
     return validate_fields(region);
 }
 template <>
@@ -212,35 +210,30 @@ void Desk::keep_newest() {
 
 Expected<void> Desk::create(const std::filesystem::path& path, const Project& project) {
     if (file_ && path == file_->path()) close();
-    auto use = FileUse::take(path, FileUse::For::desk);
-    if (!use) return tl::unexpected(use.error());
-    auto file = ProjectFile::create(path, project, true);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(auto use, FileUse::take(path, FileUse::For::desk));
+    SEAM_TRY(auto file, ProjectFile::create(path, project, true));
     if (auto aside = CalibrationSession::put_aside(path); !aside) emit trouble(shown_error(aside.error()));
     discard_recovery(path);
     drop_kept();
     recovery_.reset();
-    take_over(std::move(*file), project);
-    use_ = std::move(*use);
+    take_over(std::move(file), project);
+    use_ = std::move(use);
     return {};
 }
 
 Expected<void> Desk::open(const std::filesystem::path& path) {
     std::optional<FileUse> use;
     if (!file_ || path != file_->path()) {
-        auto taken = FileUse::take(path, FileUse::For::desk);
-        if (!taken) return tl::unexpected(taken.error());
-        use = std::move(*taken);
+        SEAM_TRY(auto taken, FileUse::take(path, FileUse::For::desk));
+        use = std::move(taken);
     }
-    auto file = ProjectFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
+    SEAM_TRY(auto file, ProjectFile::open(path));
+    SEAM_TRY(auto project, file.load());
     // Edits that were not saved in the project that is left are given up; before the look at what a crash
     // left, because both may be one file.
     drop_kept();
     recovery_writer_.flush();
-    auto found = find_recovery(path, *project);
+    auto found = find_recovery(path, project);
     recovery_.reset();
     QString told;
     if (found) {
@@ -254,7 +247,7 @@ Expected<void> Desk::open(const std::filesystem::path& path) {
                   "this session, which are not kept against a crash: %2")
                    .arg(shown(found.error().what), shown_error(aside.error()));
     }
-    take_over(std::move(*file), std::move(*project));
+    take_over(std::move(file), std::move(project));
     if (use) use_ = std::move(*use);
     if (!told.isEmpty()) {
         note(EventKind::note, "studio", told.toStdString());
@@ -287,7 +280,7 @@ Expected<void> Desk::save() {
     // An older state left behind by a crash after the save would be offered as unsaved edits; one that equals
     // what was saved is not.
     keep_newest();
-    if (auto saved = file_->save(project_); !saved) return saved;
+    SEAM_OK(file_->save(project_));
     restored_ = false;
     undo_.setClean();
     drop_kept();
@@ -300,18 +293,16 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     if (path == file_->path()) return save();
     if (worker_.busy())
         return usage_error("a measurement is running", path.string(), "wait for its end or cancel it");
-    auto use = FileUse::take(path, FileUse::For::desk);
-    if (!use) return tl::unexpected(use.error());
+    SEAM_TRY(auto use, FileUse::take(path, FileUse::For::desk));
     keep_newest();
     // The old file keeps what was saved there; runs go along.
     const auto target = behind_links(path);
     const auto part = std::filesystem::path(target.string() + ".part");
     std::error_code failed;
-    if (auto copied = file_->copy_to(part); !copied) return copied;
+    SEAM_OK(file_->copy_to(part));
     {
-        auto copy = ProjectFile::open(part);
-        if (!copy) return tl::unexpected(copy.error());
-        if (auto saved = copy->save(project_); !saved) return saved;
+        SEAM_TRY(auto copy, ProjectFile::open(part));
+        SEAM_OK(copy.save(project_));
     }
     discard_recovery(path);  // of a file that is replaced; must not meet the one that takes its name
     std::filesystem::rename(part, target, failed);
@@ -320,13 +311,12 @@ Expected<void> Desk::save_as(const std::filesystem::path& path) {
     recovery_writer_.flush();
     if (auto copied = CalibrationSession::copy_all(file_->path(), path); !copied)
         emit trouble(shown_error(copied.error()));
-    auto file = ProjectFile::open(path);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(auto file, ProjectFile::open(path));
     const std::string spot = selection_.spot(), region = selection_.region();
     const bool connected = state_->connected;
     recovery_.reset();
-    take_over(std::move(*file), project_);
-    use_ = std::move(*use);
+    take_over(std::move(file), project_);
+    use_ = std::move(use);
     selection_.select_spot(spot);
     selection_.select_region(region);
     if (connected) worker_.connect_devices();
@@ -369,10 +359,10 @@ Expected<void> Desk::together(const QString& text, const std::function<Expected<
 
 template <class T>
 Expected<void> Desk::add(T thing, int at) {
-    if (auto ok = check_id(thing.id); !ok) return ok;
+    SEAM_OK(check_id(thing.id));
     if (index_of<T>(project_, thing.id) >= 0)
         return input_error(Text("the name \"{}\" is used already", thing.id), {}, "choose another");
-    if (auto ok = valid<T>(project_, thing); !ok) return ok;
+    SEAM_OK(valid<T>(project_, thing));
     const std::size_t size = list_of<T>(project_).size();
     const std::size_t where = at < 0 ? size : std::min(size, static_cast<std::size_t>(at));
     push(std::make_unique<CmdAdd<T>>(editor(), std::move(thing), where));
@@ -383,7 +373,7 @@ template <class T>
 Expected<void> Desk::remove(const std::string& id) {
     const int at = index_of<T>(project_, id);
     if (at < 0) return input_error(Text("there is no \"{}\"", id));
-    if (auto ok = removable<T>(project_, id); !ok) return ok;
+    SEAM_OK(removable<T>(project_, id));
     push(std::make_unique<CmdRemove<T>>(editor(), project_, static_cast<std::size_t>(at)));
     return {};
 }
@@ -393,7 +383,7 @@ Expected<void> Desk::rename(const std::string& from, const std::string& to) {
     const int at = index_of<T>(project_, from);
     if (at < 0) return input_error(Text("there is no \"{}\"", from));
     if (from == to) return {};
-    if (auto ok = check_id(to); !ok) return ok;
+    SEAM_OK(check_id(to));
     if (index_of<T>(project_, to) >= 0)
         return input_error(Text("the name \"{}\" is used already", to), {}, "choose another");
     const bool spot = std::is_same_v<T, Spot> && selection_.spot() == from;
@@ -424,7 +414,7 @@ Expected<void> Desk::edit(const T& after, const QString& what) {
     if (at < 0) return input_error(Text("there is no \"{}\"", after.id));
     const T& before = list_of<T>(project_)[static_cast<std::size_t>(at)];
     if (to_json_document(before) == to_json_document(after)) return {};
-    if (auto ok = valid<T>(project_, after); !ok) return ok;
+    SEAM_OK(valid<T>(project_, after));
     push(std::make_unique<CmdEdit<T>>(editor(), before, after, static_cast<std::size_t>(at), what));
     return {};
 }
@@ -464,7 +454,7 @@ Expected<void> Desk::set_spot_field(const std::string& id, const std::string& fi
     const Spot* spot = find_spot(project_, id);
     if (!spot) return input_error(Text("there is no spot \"{}\"", id));
     Spot after = *spot;
-    if (auto set = set_field(after, field, value); !set) return set;
+    SEAM_OK(set_field(after, field, value));
     return edit(after, QString::fromStdString(field));
 }
 
@@ -472,7 +462,7 @@ Expected<void> Desk::set_region_field(const std::string& id, const std::string& 
     const int at = index_of<Region>(project_, id);
     if (at < 0) return input_error(Text("there is no region \"{}\"", id));
     Region after = project_.regions[static_cast<std::size_t>(at)];
-    if (auto set = set_field(after, field, value); !set) return set;
+    SEAM_OK(set_field(after, field, value));
     return edit(after, QString::fromStdString(field));
 }
 
@@ -501,9 +491,9 @@ Expected<void> Desk::take_calibrations(std::vector<Calibration> made, bool use) 
     return together(text.arg(ids.join(", ")), [&]() -> Expected<void> {
         for (Calibration& c : made) {
             const std::string id = c.id, sensor = c.sensor_id;
-            if (auto ok = add(std::move(c)); !ok) return ok;
+            SEAM_OK(add(std::move(c)));
             if (!use) continue;
-            if (auto ok = use_calibration(sensor, id); !ok) return ok;
+            SEAM_OK(use_calibration(sensor, id));
         }
         return {};
     });
@@ -513,17 +503,15 @@ Expected<void> Desk::edit_part(const PartSetup& after, const QString& text) {
     if (to_json_document(project_.part) == to_json_document(after) &&
         project_.part.mesh_ply == after.mesh_ply)
         return {};
-    if (auto rigid = pose_from_matrix(after.base_from_workobject.matrix(), "part"); !rigid)
-        return tl::unexpected(rigid.error());
+    SEAM_OK(pose_from_matrix(after.base_from_workobject.matrix(), "part"));
     push(std::make_unique<CmdPartEdit>(editor(), project_.part, after, text));
     return {};
 }
 
 Expected<void> Desk::import_part(const std::filesystem::path& path, const std::string& unit) {
-    auto mesh = load_mesh(path, unit);
-    if (!mesh) return tl::unexpected(mesh.error());
+    SEAM_TRY(auto mesh, load_mesh(path, unit));
     PartSetup after = project_.part;
-    after.mesh_ply = ply_bytes(*mesh);
+    after.mesh_ply = ply_bytes(mesh);
     after.mesh_source = path.string();
     if (after.name.empty()) after.name = path.stem().string();
     return edit_part(after,
@@ -538,7 +526,7 @@ Expected<void> Desk::rename_project(const std::string& name) {
 
 Expected<void> Desk::set_requirement(const std::string& field, double value) {
     Requirements after = project_.requirements;
-    if (auto set = set_field(after, field, value); !set) return set;
+    SEAM_OK(set_field(after, field, value));
     if (to_json_document(after) == to_json_document(project_.requirements)) return {};
     push(std::make_unique<CmdRequirementsEdit>(editor(), project_.requirements, after));
     return {};
@@ -546,7 +534,7 @@ Expected<void> Desk::set_requirement(const std::string& field, double value) {
 
 Expected<void> Desk::edit_acceptance(const AcceptanceRequirements& after) {
     if (after == project_.requirements.acceptance) return {};
-    if (auto valid = validate_fields(after); !valid) return valid;
+    SEAM_OK(validate_fields(after));
     Requirements all = project_.requirements;
     all.acceptance = after;
     push(std::make_unique<CmdRequirementsEdit>(editor(), project_.requirements, all));
@@ -561,11 +549,10 @@ Expected<void> Desk::edit_project(const std::function<void(Project&)>& change, c
 }
 
 Expected<std::vector<MovedSpot>> Desk::reteach(const Exchange& exchange) {
-    auto retaught = after_exchange(project_, exchange);
-    if (!retaught) return tl::unexpected(retaught.error());
-    push(std::make_unique<CmdProjectReplace>(editor(), project_, std::move(retaught->project),
+    SEAM_TRY(auto retaught, after_exchange(project_, exchange));
+    push(std::make_unique<CmdProjectReplace>(editor(), project_, std::move(retaught.project),
                                              DeskCommand::tr("Take up again after an exchange")));
-    return std::move(retaught->spots);
+    return std::move(retaught.spots);
 }
 
 Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_mm, double twist_mm) {
@@ -576,11 +563,11 @@ Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_
             for (auto& setup : all) {
                 if (!is_simulated_cell(setup.driver)) continue;
                 setup.settings["part"] = part;
-                if (auto ok = edit(setup); !ok) return ok;
+                SEAM_OK(edit(setup));
             }
             return {};
         };
-        if (auto ok = place(project_.sensors); !ok) return ok;
+        SEAM_OK(place(project_.sensors));
         return place(project_.robots);
     });
 }
@@ -644,7 +631,7 @@ void Desk::set_language(Language language) {
 
 Expected<void> Desk::record(const Evidence& evidence) {
     if (!file_) return usage_error("no project is open", {}, "open or make one");
-    if (auto kept = file_->append_evidence(evidence, project_); !kept) return tl::unexpected(kept.error());
+    SEAM_OK(file_->append_evidence(evidence, project_));
     derive();
     return {};
 }

@@ -60,14 +60,12 @@ struct LiveSensors::Lane {
 
     Expected<void> one_picture() {
         if (!by_software) {
-            auto taken = SoftwareTriggered::begin(source);
-            if (!taken) return tl::unexpected(taken.error());
-            if (auto started = source.start(); !started) return started;
-            by_software.emplace(std::move(*taken));
+            SEAM_TRY(auto taken, SoftwareTriggered::begin(source));
+            SEAM_OK(source.start());
+            by_software.emplace(std::move(taken));
         }
-        if (auto fired = source.trigger(""); !fired) return fired;
-        auto frame = source.wait_next(kFrame);
-        if (!frame) return tl::unexpected(frame.error());
+        SEAM_OK(source.trigger(""));
+        SEAM_OK(source.wait_next(kFrame));
         return {};
     }
 

@@ -68,11 +68,9 @@ Expected<std::optional<Recovery>> find_recovery(const std::filesystem::path& pro
     const auto path = recovery_path(project_file);
     std::error_code none;
     if (!std::filesystem::exists(path, none)) return std::nullopt;
-    auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    Recovery recovery{std::move(*project), std::filesystem::last_write_time(path, none), {}};
+    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    Recovery recovery{std::move(project), std::filesystem::last_write_time(path, none), {}};
     recovery.holds = differences(saved, recovery.project);
     if (recovery.holds.isEmpty()) return std::nullopt;
     return recovery;

@@ -76,9 +76,8 @@ Expected<Pose> pose_from_text(const QString& text, PoseNotation notation) {
     const Eigen::Vector3d xyz(n[0], n[1], n[2]);
     Eigen::Matrix3d rotation;
     if (n.size() == 7) {
-        const auto turned = rotation_from_abb({n[3], n[4], n[5], n[6]}, where);
-        if (!turned) return tl::unexpected(turned.error());
-        rotation = *turned;
+        SEAM_TRY(const auto turned, rotation_from_abb({n[3], n[4], n[5], n[6]}, where));
+        rotation = turned;
     } else if (notation == PoseNotation::ur_rotvec) {
         rotation = rotation_from_ur({n[3], n[4], n[5]});
     } else if (notation == PoseNotation::fanuc_wpr) {

@@ -75,14 +75,13 @@ Expected<SceneMesh> mesh_from_ply(const std::vector<std::byte>& ply) {
 }
 
 Expected<SceneMesh> mesh_from_file(const std::filesystem::path& file, const std::string& unit) {
-    const auto loaded = load_mesh(file, unit);
-    if (!loaded) return tl::unexpected(loaded.error());
+    SEAM_TRY(const auto loaded, load_mesh(file, unit));
     SceneMesh mesh;
-    mesh.points.reserve(loaded->vertices.size());
-    for (const Eigen::Vector3d& v : loaded->vertices)
+    mesh.points.reserve(loaded.vertices.size());
+    for (const Eigen::Vector3d& v : loaded.vertices)
         mesh.points.push_back(
             {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
-    for (const Eigen::Vector3i& t : loaded->triangles) mesh.triangles.push_back({t.x(), t.y(), t.z()});
+    for (const Eigen::Vector3i& t : loaded.triangles) mesh.triangles.push_back({t.x(), t.y(), t.z()});
     return mesh;
 }
 

@@ -328,16 +328,14 @@ SceneView::SceneView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<
 SceneView::~SceneView() = default;
 
 Expected<void> SceneView::set_part_ply(const std::vector<std::byte>& ply) {
-    const auto mesh = mesh_from_ply(ply);
-    if (!mesh) return tl::unexpected(mesh.error());
-    set_part(*mesh);
+    SEAM_TRY(const auto mesh, mesh_from_ply(ply));
+    set_part(mesh);
     return {};
 }
 
 Expected<void> SceneView::set_part_file(const std::filesystem::path& file, const std::string& unit) {
-    const auto mesh = mesh_from_file(file, unit);
-    if (!mesh) return tl::unexpected(mesh.error());
-    set_part(*mesh);
+    SEAM_TRY(const auto mesh, mesh_from_file(file, unit));
+    set_part(mesh);
     return {};
 }
 

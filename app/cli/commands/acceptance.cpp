@@ -35,11 +35,9 @@ struct AcceptanceArguments {
 Expected<AcceptanceSettings> settings_of(const AcceptanceArguments& a) {
     AcceptanceRequirements required;
     if (!a.file.empty()) {
-        auto file = ProjectFile::open(a.file, FileAccess::read_only);
-        if (!file) return tl::unexpected(file.error());
-        auto project = file->load();
-        if (!project) return tl::unexpected(project.error());
-        required = project->requirements.acceptance;
+        SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+        SEAM_TRY(auto project, file.load());
+        required = project.requirements.acceptance;
     }
     AcceptanceSettings settings = a.settings;
     const AcceptanceRequirements given = requirements_of(a.settings);
@@ -65,22 +63,19 @@ Expected<AcceptanceSettings> settings_of(const AcceptanceArguments& a) {
 Expected<StoredStudy> values_of(const AcceptanceArguments& a) {
     StoredStudy study;
     if (!a.file.empty()) {
-        auto file = ProjectFile::open(a.file, FileAccess::read_only);
-        if (!file) return tl::unexpected(file.error());
-        auto stored = stored_values(*file, a.region);
+        SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+        auto stored = stored_values(file, a.region);
         if (!stored) return stored;
         study = std::move(*stored);
     } else {
         if (!a.region.empty()) return usage_error("--region belongs to a project", "acceptance");
-        auto table = read_study_csv(a.data);
-        if (!table) return tl::unexpected(table.error());
-        study.values = StudyValues::of(*table);
+        SEAM_TRY(auto table, read_study_csv(a.data));
+        study.values = StudyValues::of(table);
         study.source.file = std::filesystem::path(a.data).filename().string();
     }
     if (!a.references.empty()) {
-        auto table = read_study_csv(a.references);
-        if (!table) return tl::unexpected(table.error());
-        add_references(study.values, *table);
+        SEAM_TRY(auto table, read_study_csv(a.references));
+        add_references(study.values, table);
     }
     return study;
 }
@@ -103,20 +98,17 @@ struct StoredDeviceStudies {
 Expected<StoredDeviceStudies> device_studies_of(const AcceptanceArguments& a) {
     StoredDeviceStudies studies;
     if (a.file.empty()) return studies;
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     if (a.study != "trigger") {
-        auto robot = stored_robot_study(*file, {});
-        if (!robot) return tl::unexpected(robot.error());
-        studies.robot = std::move(*robot);
+        SEAM_TRY(auto robot, stored_robot_study(file, {}));
+        studies.robot = std::move(robot);
         if (a.study == "robot" && !studies.robot)
             return input_error("no study of the robot is stored", a.file,
                                "make it: seamwright measure-robot");
     }
     if (a.study != "robot") {
-        auto trigger = stored_trigger_study(*file);
-        if (!trigger) return tl::unexpected(trigger.error());
-        studies.trigger = std::move(*trigger);
+        SEAM_TRY(auto trigger, stored_trigger_study(file));
+        studies.trigger = std::move(trigger);
         if (a.study == "trigger" && !studies.trigger)
             return input_error("no study of the trigger is stored", a.file,
                                "make it: seamwright measure-trigger");
@@ -131,11 +123,11 @@ Expected<void> write_page(const AcceptanceArguments& a, const report::Page& page
         answer.text += path + " written\n";
     };
     if (!a.html.empty()) {
-        if (auto done = write_text_file(a.html, page.html()); !done) return done;
+        SEAM_OK(write_text_file(a.html, page.html()));
         written("html", a.html);
     }
     if (!a.pdf.empty()) {
-        if (auto done = write_pdf(page, a.pdf); !done) return done;
+        SEAM_OK(write_pdf(page, a.pdf));
         written("pdf", a.pdf);
     }
     return {};
@@ -144,26 +136,21 @@ Expected<void> write_page(const AcceptanceArguments& a, const report::Page& page
 // None without --sensor-data.
 Expected<std::optional<SensorCheck>> sensor_of(const AcceptanceArguments& a) {
     if (a.sensor_data.empty()) return std::optional<SensorCheck>();
-    auto data = read_json_file(a.sensor_data);
-    if (!data) return tl::unexpected(data.error());
+    SEAM_TRY(auto data, read_json_file(a.sensor_data));
     std::optional<Project> project;
     if (!a.file.empty()) {
-        auto file = ProjectFile::open(a.file, FileAccess::read_only);
-        if (!file) return tl::unexpected(file.error());
-        auto loaded = file->load();
-        if (!loaded) return tl::unexpected(loaded.error());
-        project = std::move(*loaded);
+        SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+        SEAM_TRY(auto loaded, file.load());
+        project = std::move(loaded);
     }
-    auto check = sensor_check(*data, a.sensor_data, project ? &*project : nullptr);
-    if (!check) return tl::unexpected(check.error());
-    return std::optional(std::move(*check));
+    SEAM_TRY(auto check, sensor_check(data, a.sensor_data, project ? &*project : nullptr));
+    return std::optional(std::move(check));
 }
 
 Expected<Answer> sensor_command(const AcceptanceArguments& a) {
     if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
-    auto check = sensor_of(a);
-    if (!check) return tl::unexpected(check.error());
-    if (!*check)
+    SEAM_TRY(auto check, sensor_of(a));
+    if (!check)
         return usage_error("the artefacts are not named", "--study sensor",
                            "give --sensor-data FILE.json: their certificate, and points or profiles");
     const auto page = [&](Language language) {
@@ -171,41 +158,38 @@ Expected<Answer> sensor_command(const AcceptanceArguments& a) {
                              std::filesystem::path(a.sensor_data).filename().string())
                             .in(language),
                         std::string(code_of(language)));
-        add_chapter(of, language, **check);
+        add_chapter(of, language, *check);
         return of;
     };
-    const AcceptanceVerdict verdict = (*check)->study.verdict;
+    const AcceptanceVerdict verdict = check->study.verdict;
     Answer answer;
     // Without a permitted error nothing is judged, and nothing is not ok.
     const bool judged = verdict != AcceptanceVerdict::too_little_data;
     answer.json = {{"status", judged ? to_string(verdict) : "not_judged"},
-                   {"sensor", sensor_check_json(**check)}};
+                   {"sensor", sensor_check_json(*check)}};
     answer.text = page(Language::english).text();
     answer.exit_code = verdict == AcceptanceVerdict::ok || !judged ? kExitOk : kExitVerdict;
-    if (auto done = write_page(a, page(*language_from(a.language)), answer); !done)
-        return tl::unexpected(done.error());
+    SEAM_OK(write_page(a, page(*language_from(a.language)), answer));
     return answer;
 }
 
 Expected<Answer> device_study_command(const AcceptanceArguments& a) {
     if (a.file.empty()) return usage_error("it is of a project", "--study", "give FILE.seam");
     if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
-    auto studies = device_studies_of(a);
-    if (!studies) return tl::unexpected(studies.error());
+    SEAM_TRY(auto studies, device_studies_of(a));
     const auto page = [&](Language language) {
         report::Page of(
             Text("Acceptance of the measuring process: {}", std::filesystem::path(a.file).filename().string())
                 .in(language),
             std::string(code_of(language)));
-        studies->write(of, language);
+        studies.write(of, language);
         return of;
     };
     Answer answer;
     answer.json = {{"status", "ok"}};
-    studies->write(answer.json);
+    studies.write(answer.json);
     answer.text = page(Language::english).text();
-    if (auto done = write_page(a, page(*language_from(a.language)), answer); !done)
-        return tl::unexpected(done.error());
+    SEAM_OK(write_page(a, page(*language_from(a.language)), answer));
     return answer;
 }
 
@@ -226,13 +210,10 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
                            "give FILE.seam or --data values.csv");
     if (a.keep_offset && a.study != "correlation")
         return usage_error("an offset is of a correlation", "--keep-offset", "give --study correlation");
-    auto settings = settings_of(a);
-    if (!settings) return tl::unexpected(settings.error());
-    a.settings = std::move(*settings);
-    if (auto valid = check_settings(a.settings); !valid) return tl::unexpected(valid.error());
-    if (a.keep_requirements)
-        if (auto kept = keep_requirements(a.file, requirements_of(a.settings)); !kept)
-            return tl::unexpected(kept.error());
+    SEAM_TRY(auto settings, settings_of(a));
+    a.settings = std::move(settings);
+    SEAM_OK(check_settings(a.settings));
+    if (a.keep_requirements) SEAM_OK(keep_requirements(a.file, requirements_of(a.settings)));
     std::optional<StudyProgress> progress;
     if (a.runs->count() > 0) {
         const auto one = study_from(a.study);
@@ -240,52 +221,43 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
         a.live.file = a.file;
         a.live.region = a.region;
         a.live.part = a.settings.part;
-        auto measured = measure_live(a.live, *one, a.settings);
-        if (!measured) return tl::unexpected(measured.error());
-        if (!measured->complete()) return incomplete_answer(*measured);
-        progress = std::move(*measured);
+        SEAM_TRY(auto measured, measure_live(a.live, *one, a.settings));
+        if (!measured.complete()) return incomplete_answer(measured);
+        progress = std::move(measured);
     }
-    auto study = values_of(a);
-    if (!study) return tl::unexpected(study.error());
-    if (a.settings.part.empty()) a.settings.part = study->reference_part;
+    SEAM_TRY(auto study, values_of(a));
+    if (a.settings.part.empty()) a.settings.part = study.reference_part;
     std::vector<Study> studies(std::begin(kStudies), std::end(kStudies));
     if (const auto one = study_from(a.study)) studies = {*one};
-    auto acceptance =
-        judge_acceptance(std::move(study->values), std::move(study->source), a.settings, studies);
+    auto acceptance = judge_acceptance(std::move(study.values), std::move(study.source), a.settings, studies);
     if (!acceptance) return tl::unexpected(acceptance.error());
     StoredDeviceStudies devices;
     if (a.study == "all") {
-        auto stored = device_studies_of(a);
-        if (!stored) return tl::unexpected(stored.error());
-        devices = std::move(*stored);
+        SEAM_TRY(auto stored, device_studies_of(a));
+        devices = std::move(stored);
     }
-    auto sensor = sensor_of(a);
-    if (!sensor) return tl::unexpected(sensor.error());
+    SEAM_TRY(auto sensor, sensor_of(a));
     AcceptancePageOptions options;
     options.program = "Seamwright " SEAMWRIGHT_VERSION;
     options.more = [&](report::Page& page, Language language) {
         devices.write(page, language);
-        if (*sensor) add_chapter(page, language, **sensor);
+        if (sensor) add_chapter(page, language, *sensor);
     };
     Answer answer;
     answer.json = acceptance_json(*acceptance);
     if (progress) answer.json["plan"] = study_progress_json(*progress);
     devices.write(answer.json);
-    if (*sensor) answer.json["sensor"] = sensor_check_json(**sensor);
+    if (sensor) answer.json["sensor"] = sensor_check_json(*sensor);
     answer.text = acceptance_page(*acceptance, options).text();
     answer.exit_code = acceptance->verdict() == AcceptanceVerdict::ok ? kExitOk : kExitVerdict;
-    if (a.keep_offset)
-        if (auto kept = keep_offset_of(a.file, *acceptance, answer); !kept)
-            return tl::unexpected(kept.error());
+    if (a.keep_offset) SEAM_OK(keep_offset_of(a.file, *acceptance, answer));
     if (!a.dfq.empty()) {
-        if (auto done = write_text_file(a.dfq, dfq_text(qdas_study(*acceptance))); !done)
-            return tl::unexpected(done.error());
+        SEAM_OK(write_text_file(a.dfq, dfq_text(qdas_study(*acceptance))));
         answer.json["dfq"] = a.dfq;
         answer.text += a.dfq + " written\n";
     }
     options.language = *language_from(a.language);
-    if (auto done = write_page(a, acceptance_page(*acceptance, options), answer); !done)
-        return tl::unexpected(done.error());
+    SEAM_OK(write_page(a, acceptance_page(*acceptance, options), answer));
     return answer;
 }
 

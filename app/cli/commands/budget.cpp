@@ -49,35 +49,30 @@ Expected<std::vector<RegionBudget>> budgets_of(const BudgetArguments& a, const P
 
 Expected<Answer> budget_command(const BudgetArguments& given) {
     BudgetArguments a = given;
-    auto displacement = read_pose_argument(a.displacement, "--displacement");
-    if (!displacement) return tl::unexpected(displacement.error());
-    a.options.displacement.workobject_from_movedworkobject = *displacement;
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto budgets = budgets_of(a, *project);
-    if (!budgets) return tl::unexpected(budgets.error());
+    SEAM_TRY(auto displacement, read_pose_argument(a.displacement, "--displacement"));
+    a.options.displacement.workobject_from_movedworkobject = displacement;
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto budgets, budgets_of(a, project));
     BudgetPageOptions page;
     page.file = std::filesystem::path(a.file).filename().string();
     page.program = "Seamwright " SEAMWRIGHT_VERSION;
     Answer answer;
-    answer.text = budget_page(*budgets, page).text();
+    answer.text = budget_page(budgets, page).text();
     bool determined = true, holds = true;
     nlohmann::json regions = nlohmann::json::array();
-    for (const RegionBudget& b : *budgets) {
+    for (const RegionBudget& b : budgets) {
         determined = determined && b.status == CorrectionStatus::ok;
         holds = holds && b.first_order_holds();
         regions.push_back(budget_json(b));
     }
     const char* status = !determined ? "under_determined" : holds ? "ok" : "first_order_does_not_hold";
     answer.json = {
-        {"status", status}, {"required_sigma3_mm", project->requirements.sigma3_mm}, {"regions", regions}};
+        {"status", status}, {"required_sigma3_mm", project.requirements.sigma3_mm}, {"regions", regions}};
     answer.exit_code = determined && holds ? kExitOk : kExitVerdict;
     if (a.out.empty()) return answer;
     page.language = *language_from(a.language);
-    if (auto written = write_text_file(a.out, budget_page(*budgets, page).html()); !written)
-        return tl::unexpected(written.error());
+    SEAM_OK(write_text_file(a.out, budget_page(budgets, page).html()));
     answer.json["html"] = a.out;
     answer.text += a.out + " written\n";
     return answer;

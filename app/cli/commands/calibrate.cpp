@@ -55,17 +55,15 @@ Expected<Given> read_data(const CalibrationMethod& method, const CalibrateArgume
     if (images) {
         if (a.board.empty() || !(a.pitch_mm > 0))
             return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm", where(method));
-        auto data = method.data_of_images({a.data, a.board, a.pitch_mm, a.pattern, a.exclude, show_progress});
-        if (!data) return tl::unexpected(data.error());
-        given = {std::move(*data), {}};
+        SEAM_TRY(auto data,
+                 method.data_of_images({a.data, a.board, a.pitch_mm, a.pattern, a.exclude, show_progress}));
+        given = {std::move(data), {}};
     } else {
-        auto data = read_json_file(a.data);
-        if (!data) return tl::unexpected(data.error());
-        given.data = std::move(*data);
+        SEAM_TRY(auto data, read_json_file(a.data));
+        given.data = std::move(data);
     }
     for (const std::string& said : a.pose_convention)
-        if (auto ok = say_convention(method.poses, said, where(method), given.data); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(say_convention(method.poses, said, where(method), given.data));
     return given;
 }
 
@@ -73,7 +71,7 @@ Expected<Given> read_data(const CalibrationMethod& method, const CalibrateArgume
 Expected<void> write_table(const std::string& path, CalibrationSolution& solution) {
     const auto* found = std::get_if<PixelTable>(&solution.found);
     if (path.empty() || !found || !serves(solution.verdict())) return {};
-    if (auto ok = write_lookup_table(path, found->table); !ok) return ok;
+    SEAM_OK(write_lookup_table(path, found->table));
     solution.document["table_file"] = path;
     return {};
 }
@@ -82,36 +80,34 @@ Expected<void> write_table(const std::string& path, CalibrationSolution& solutio
 // use by that.
 Expected<std::string> store(const CalibrateArguments& a, const CalibrationMethod& method, const Given& given,
                             const CalibrationSolution& solution) {
-    auto file = ProjectFile::open(a.project);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    const auto sensor = std::find_if(project->sensors.begin(), project->sensors.end(),
+    SEAM_TRY(auto file, ProjectFile::open(a.project));
+    SEAM_TRY(auto project, file.load());
+    const auto sensor = std::find_if(project.sensors.begin(), project.sensors.end(),
                                      [&](const SensorSetup& s) { return s.id == a.sensor; });
-    if (sensor == project->sensors.end())
+    if (sensor == project.sensors.end())
         return usage_error(Text("the project has no sensor \"{}\"", a.sensor), "--sensor");
     const Calibration* base = nullptr;
-    for (const Calibration& other : project->calibrations)
+    for (const Calibration& other : project.calibrations)
         if (other.id == sensor->calibration_id) base = &other;
     Calibration c;
     // What gives no model and no place on the flange is kept as a record.
     if (auto made = calibration_of_solution(method, given.data, given.exclude, solution, base))
         c = std::move(*made);
-    c.id = fmt::format("{}-{}", method.id, project->calibrations.size() + 1);
+    c.id = fmt::format("{}-{}", method.id, project.calibrations.size() + 1);
     c.method = method.id;
     c.sensor_id = a.sensor;
     c.sensor_identity = sensor->identity;
-    if (!project->robots.empty()) {
-        c.robot_id = project->robots.front().id;
-        c.robot_identity = project->robots.front().identity;
+    if (!project.robots.empty()) {
+        c.robot_id = project.robots.front().id;
+        c.robot_identity = project.robots.front().identity;
     }
     c.created_utc = utc_now();
     c.source = std::filesystem::absolute(a.data).string();
     c.verdict = solution.verdict();
     c.raw = {{"data", given.data}, {"exclude", given.exclude}};
     c.result = solution.document;
-    project->calibrations.push_back(c);
-    if (auto saved = file->save(*project); !saved) return tl::unexpected(saved.error());
+    project.calibrations.push_back(c);
+    SEAM_OK(file.save(project));
     return c.id;
 }
 
@@ -186,8 +182,7 @@ void hint_at_convention(const CalibrationMethod& method, const Given& given, Cal
 }
 
 Expected<Answer> write_example(const CalibrationMethod& method, const std::string& path) {
-    if (auto written = write_text_file(path, method.example().dump(1) + "\n"); !written)
-        return tl::unexpected(written.error());
+    SEAM_OK(write_text_file(path, method.example().dump(1) + "\n"));
     Answer answer;
     answer.json = {{"status", "ok"}, {"file", path}};
     answer.text =
@@ -213,39 +208,36 @@ Expected<void> check_arguments(const CalibrationMethod& method, const CalibrateA
 
 Expected<Answer> calibrate(const CalibrationMethod& method, const CalibrateArguments& a) {
     if (!a.example.empty()) return write_example(method, a.example);
-    if (auto ok = check_arguments(method, a); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_arguments(method, a));
     if (a.live.live) {
         auto answer = calibrate_on_devices(method, a.data, a.sensor, a.live);
         if (answer) answer->text = text_of(method, answer->json) + answer->text;
         return answer;
     }
-    const auto given = read_data(method, a);
-    if (!given) return tl::unexpected(given.error());
-    auto solution = solve_calibration(method, given->data, given->exclude);
+    SEAM_TRY(const auto given, read_data(method, a));
+    auto solution = solve_calibration(method, given.data, given.exclude);
     std::string convention;
     if (a.detect_convention) {
-        auto said = detect(method, *given, solution);
-        if (!said) return tl::unexpected(said.error());
-        convention = std::move(*said);
+        SEAM_TRY(auto said, detect(method, given, solution));
+        convention = std::move(said);
     }
     if (!solution) return tl::unexpected(solution.error());
-    if (!a.detect_convention) hint_at_convention(method, *given, *solution);
-    if (auto ok = write_table(a.table, *solution); !ok) return tl::unexpected(ok.error());
+    if (!a.detect_convention) hint_at_convention(method, given, *solution);
+    SEAM_OK(write_table(a.table, *solution));
     Answer answer;
     answer.json = solution->document;
     answer.exit_code = serves(solution->verdict()) ? kExitOk : kExitVerdict;
     answer.text = text_of(method, answer.json) + convention;
     if (!a.report.empty()) {
-        if (auto written = write_text_file(a.report, calibration_report(method, given->data, *solution));
+        if (auto written = write_text_file(a.report, calibration_report(method, given.data, *solution));
             !written)
             return tl::unexpected(written.error());
         answer.text += "report " + a.report + "\n";
     }
     if (!a.project.empty()) {
-        auto id = store(a, method, *given, *solution);
-        if (!id) return tl::unexpected(id.error());
-        answer.json["stored_as"] = *id;
-        answer.text += fmt::format("stored in {} as {}\n", a.project, *id);
+        SEAM_TRY(auto id, store(a, method, given, *solution));
+        answer.json["stored_as"] = id;
+        answer.text += fmt::format("stored in {} as {}\n", a.project, id);
     }
     return answer;
 }

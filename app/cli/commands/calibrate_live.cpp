@@ -21,9 +21,8 @@ Expected<std::map<std::string, double>> settings_of(const CalibrationMethod& met
                                         [&](const MethodSetting& s) { return s.info.name == name; });
         if (known == method.settings.end())
             return usage_error(Text("there is no setting \"{}\"", name), "--set");
-        auto value = setting_value(known->info, one.substr(equals + 1));
-        if (!value) return tl::unexpected(value.error());
-        values[name] = *value;
+        SEAM_TRY(auto value, setting_value(known->info, one.substr(equals + 1)));
+        values[name] = value;
     }
     return values;
 }
@@ -88,15 +87,13 @@ void add_live_options(CLI::App& command, const CalibrationMethod& method, LiveCa
 Expected<Answer> calibrate_on_devices(const CalibrationMethod& method, const std::string& file,
                                       const std::string& sensor, const LiveCalibrationArguments& a) {
     if (sensor.empty()) return usage_error("say which of the project's sensors", "--sensor");
-    auto settings = settings_of(method, a.settings);
-    if (!settings) return tl::unexpected(settings.error());
-    auto station = Station::open(file);
-    if (!station) return tl::unexpected(station.error());
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    SEAM_TRY(auto settings, settings_of(method, a.settings));
+    SEAM_TRY(auto station, Station::open(file));
+    SEAM_OK(station.connect());
     LiveCalibrationOptions options;
     options.sensor_id = sensor;
     options.robot_id = a.robot;
-    options.settings = std::move(*settings);
+    options.settings = std::move(settings);
     options.captures = a.captures;
     options.verification = a.verification;
     options.anew = a.anew;
@@ -104,23 +101,22 @@ Expected<Answer> calibrate_on_devices(const CalibrationMethod& method, const std
     options.patience = std::chrono::milliseconds(static_cast<long>(1000 * a.patience_s));
     options.said = [](const Text& text) { fmt::print(stderr, "{}\n", text.english()); };
     options.cancel = stop_on_signal();
-    auto live = calibrate_live(*station, method, options);
-    if (!live) return tl::unexpected(live.error());
+    SEAM_TRY(auto live, calibrate_live(station, method, options));
     Answer answer;
-    answer.json = live->solution.document;
-    answer.json["captures"] = live->captures;
-    answer.json["verification"] = verification_json(live->verification);
-    answer.json["stored_as"] = live->stored;
-    answer.json["used"] = live->used;
+    answer.json = live.solution.document;
+    answer.json["captures"] = live.captures;
+    answer.json["verification"] = verification_json(live.verification);
+    answer.json["stored_as"] = live.stored;
+    answer.json["used"] = live.used;
     const bool serves_all =
-        serves(live->solution.verdict()) && (!method.keeps_back || live->verification.confirmed);
+        serves(live.solution.verdict()) && (!method.keeps_back || live.verification.confirmed);
     answer.exit_code = serves_all ? kExitOk : kExitVerdict;
-    answer.text = verified_text(live->verification);
-    for (const std::string& id : live->stored)
-        answer.text += fmt::format("stored in {} as {}{}\n", file, id, live->used ? ", in use" : "");
-    if (live->stored.empty() && method.use != AnswerUse::check)
+    answer.text = verified_text(live.verification);
+    for (const std::string& id : live.stored)
+        answer.text += fmt::format("stored in {} as {}{}\n", file, id, live.used ? ", in use" : "");
+    if (live.stored.empty() && method.use != AnswerUse::check)
         answer.text +=
-            serves(live->solution.verdict())
+            serves(live.solution.verdict())
                 ? "not stored: the answer is not verified; take more captures with the same command\n"
                 : "not stored: see reason and cure; more captures with the same command, or --anew\n";
     return answer;

@@ -57,65 +57,52 @@ Expected<SpotObservation> read_spot(const json& spot, const std::string& path, b
         !known)
         return tl::unexpected(known.error());
     SpotObservation s;
-    auto id = json_string(spot, "id", path);
-    if (!id) return tl::unexpected(id.error());
-    s.id = *id;
-    auto pose = json_field(spot, "workobject_from_sensor", path);
-    if (!pose) return tl::unexpected(pose.error());
-    auto parsed = parse_pose(**pose, json_path(path, "workobject_from_sensor"));
-    if (!parsed) return tl::unexpected(parsed.error());
-    s.workobject_from_sensor = *parsed;
-    auto reference = json_vector3(spot, "reference", path);
-    if (!reference) return tl::unexpected(reference.error());
-    s.reference_mm = s.measured_mm = *reference;
+    SEAM_TRY(auto id, json_string(spot, "id", path));
+    s.id = id;
+    SEAM_TRY(auto pose, json_field(spot, "workobject_from_sensor", path));
+    SEAM_TRY(auto parsed, parse_pose(*pose, json_path(path, "workobject_from_sensor")));
+    s.workobject_from_sensor = parsed;
+    SEAM_TRY(auto reference, json_vector3(spot, "reference", path));
+    s.reference_mm = s.measured_mm = reference;
     if (needs_measured) {
-        auto measured = json_vector3(spot, "measured", path);
-        if (!measured) return tl::unexpected(measured.error());
-        s.measured_mm = *measured;
+        SEAM_TRY(auto measured, json_vector3(spot, "measured", path));
+        s.measured_mm = measured;
     }
     if (spot.contains("weights")) {
-        auto weights = json_vector3(spot, "weights", path);
-        if (!weights) return tl::unexpected(weights.error());
-        s.weights = *weights;
+        SEAM_TRY(auto weights, json_vector3(spot, "weights", path));
+        s.weights = weights;
     }
-    auto sigma = json_number_or(spot, "sigma_mm", s.sigma_mm, path);
-    if (!sigma) return tl::unexpected(sigma.error());
-    s.sigma_mm = *sigma;
+    SEAM_TRY(auto sigma, json_number_or(spot, "sigma_mm", s.sigma_mm, path));
+    s.sigma_mm = sigma;
     if (spot.contains("covariance_mm2") && !spot["covariance_mm2"].is_null()) {
-        auto covariance = read_covariance(spot["covariance_mm2"], json_path(path, "covariance_mm2"));
-        if (!covariance) return tl::unexpected(covariance.error());
-        s.covariance_mm2 = *covariance;
+        SEAM_TRY(auto covariance, read_covariance(spot["covariance_mm2"], json_path(path, "covariance_mm2")));
+        s.covariance_mm2 = covariance;
     }
     if (spot.contains("sensor") && !spot["sensor"].is_null()) {
-        auto sensor = json_string(spot, "sensor", path);
-        if (!sensor) return tl::unexpected(sensor.error());
-        if (sensor->empty())
+        SEAM_TRY(auto sensor, json_string(spot, "sensor", path));
+        if (sensor.empty())
             return input_error("the sensor's id is empty", json_path(path, "sensor"),
                                "name one of \"sensors\", or leave the field out");
-        s.sensor = *sensor;
+        s.sensor = sensor;
     }
     if (const auto c = spot.find("reference_covariance_mm2"); c != spot.end() && !c->is_null()) {
-        auto covariance = read_covariance(*c, json_path(path, "reference_covariance_mm2"));
-        if (!covariance) return tl::unexpected(covariance.error());
-        s.reference_covariance_mm2 = *covariance;
+        SEAM_TRY(auto covariance, read_covariance(*c, json_path(path, "reference_covariance_mm2")));
+        s.reference_covariance_mm2 = covariance;
     }
     if (const auto c = spot.find("robot_covariance"); c != spot.end() && !c->is_null()) {
-        auto covariance = read_pose_covariance(*c, json_path(path, "robot_covariance"));
-        if (!covariance) return tl::unexpected(covariance.error());
-        s.robot_covariance = *covariance;
+        SEAM_TRY(auto covariance, read_pose_covariance(*c, json_path(path, "robot_covariance")));
+        s.robot_covariance = covariance;
     }
     return s;
 }
 
 Expected<SensorPrior> read_sensor(const std::string& id, const json& sensor, const std::string& path) {
-    if (auto known = only_fields(sensor, {"hand_eye_covariance", "scale_sigma", "shear_sigma"}, path); !known)
-        return tl::unexpected(known.error());
+    SEAM_OK(only_fields(sensor, {"hand_eye_covariance", "scale_sigma", "shear_sigma"}, path));
     SensorPrior prior;
     prior.id = id;
     if (const auto c = sensor.find("hand_eye_covariance"); c != sensor.end() && !c->is_null()) {
-        auto covariance = read_pose_covariance(*c, json_path(path, "hand_eye_covariance"));
-        if (!covariance) return tl::unexpected(covariance.error());
-        prior.hand_eye_covariance = *covariance;
+        SEAM_TRY(auto covariance, read_pose_covariance(*c, json_path(path, "hand_eye_covariance")));
+        prior.hand_eye_covariance = covariance;
     }
     if (const auto k = sensor.find("scale_sigma"); k != sensor.end() && !k->is_null()) {
         if (!k->is_array() || k->size() != 2 || !(*k)[0].is_number() || !(*k)[1].is_number())
@@ -123,9 +110,8 @@ Expected<SensorPrior> read_sensor(const std::string& id, const json& sensor, con
                                "give the shares of x and z, e.g. [0.001, 0.001]");
         prior.scale_sigma = {(*k)[0].get<double>(), (*k)[1].get<double>()};
     }
-    auto shear = json_number_or(sensor, "shear_sigma", 0.0, path);
-    if (!shear) return tl::unexpected(shear.error());
-    prior.shear_sigma = *shear;
+    SEAM_TRY(auto shear, json_number_or(sensor, "shear_sigma", 0.0, path));
+    prior.shear_sigma = shear;
     return prior;
 }
 
@@ -146,72 +132,59 @@ Expected<FreeDof> read_free(const json& list) {
 }
 
 Expected<Job> read_job(const std::string& file, bool needs_measured) {
-    auto text = read_text_file(file);
-    if (!text) return tl::unexpected(text.error());
-    auto document = parse_json(*text, file);
-    if (!document) return tl::unexpected(document.error());
-    if (auto known = only_fields(*document, {"spots", "free", "limits", "sensors"}, ""); !known)
-        return tl::unexpected(known.error());
-    auto spots = json_array(*document, "spots", "");
-    if (!spots) return tl::unexpected(spots.error());
+    SEAM_TRY(auto text, read_text_file(file));
+    SEAM_TRY(auto document, parse_json(text, file));
+    SEAM_OK(only_fields(document, {"spots", "free", "limits", "sensors"}, ""));
+    SEAM_TRY(auto spots, json_array(document, "spots", ""));
     Job job;
-    for (std::size_t i = 0; i < (*spots)->size(); ++i) {
-        auto spot = read_spot((**spots)[i], json_path("spots", i), needs_measured);
-        if (!spot) return tl::unexpected(spot.error());
-        job.spots.push_back(std::move(*spot));
+    for (std::size_t i = 0; i < spots->size(); ++i) {
+        SEAM_TRY(auto spot, read_spot((*spots)[i], json_path("spots", i), needs_measured));
+        job.spots.push_back(std::move(spot));
     }
-    if (document->contains("free") && !(*document)["free"].is_null()) {
-        auto list = json_array(*document, "free", "");
-        if (!list) return tl::unexpected(list.error());
-        auto free = read_free(**list);
-        if (!free) return tl::unexpected(free.error());
-        job.options.free = *free;
+    if (document.contains("free") && !document["free"].is_null()) {
+        SEAM_TRY(auto list, json_array(document, "free", ""));
+        SEAM_TRY(auto free, read_free(*list));
+        job.options.free = free;
     }
-    if (const auto sensors = document->find("sensors"); sensors != document->end() && !sensors->is_null()) {
+    if (const auto sensors = document.find("sensors"); sensors != document.end() && !sensors->is_null()) {
         if (!sensors->is_object())
             return input_error("not an object", "sensors",
                                "give {\"A\":{\"hand_eye_covariance\":..}} with the spots' sensors as names");
         for (const auto& [id, sensor] : sensors->items()) {
-            auto prior = read_sensor(id, sensor, json_path("sensors", id));
-            if (!prior) return tl::unexpected(prior.error());
-            job.options.sensors.push_back(std::move(*prior));
+            SEAM_TRY(auto prior, read_sensor(id, sensor, json_path("sensors", id)));
+            job.options.sensors.push_back(std::move(prior));
         }
     }
-    if (document->contains("limits") && !(*document)["limits"].is_null()) {
-        const json& limits = (*document)["limits"];
-        if (auto known = only_fields(limits, {"translation_mm", "rotation_deg"}, "limits"); !known)
-            return tl::unexpected(known.error());
+    if (document.contains("limits") && !document["limits"].is_null()) {
+        const json& limits = document["limits"];
+        SEAM_OK(only_fields(limits, {"translation_mm", "rotation_deg"}, "limits"));
         auto translation =
             json_number_or(limits, "translation_mm", job.options.limits.translation_mm, "limits");
         if (!translation) return tl::unexpected(translation.error());
-        auto rotation = json_number_or(limits, "rotation_deg", job.options.limits.rotation_deg, "limits");
-        if (!rotation) return tl::unexpected(rotation.error());
-        job.options.limits = {*translation, *rotation};
+        SEAM_TRY(auto rotation,
+                 json_number_or(limits, "rotation_deg", job.options.limits.rotation_deg, "limits"));
+        job.options.limits = {*translation, rotation};
     }
     return job;
 }
 
 Expected<Answer> correct(const std::string& file) {
-    auto job = read_job(file, true);
-    if (!job) return tl::unexpected(job.error());
-    auto result = solve_region(job->spots, job->options);
-    if (!result) return tl::unexpected(result.error());
+    SEAM_TRY(auto job, read_job(file, true));
+    SEAM_TRY(auto result, solve_region(job.spots, job.options));
     Answer answer;
-    answer.json = correction_json(*result);
-    answer.text = correction_text(*result);
-    answer.exit_code = result->status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    answer.json = correction_json(result);
+    answer.text = correction_text(result);
+    answer.exit_code = result.status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
 
 Expected<Answer> plan(const std::string& file) {
-    auto job = read_job(file, false);
-    if (!job) return tl::unexpected(job.error());
-    auto result = plan_region(job->spots, job->options);
-    if (!result) return tl::unexpected(result.error());
+    SEAM_TRY(auto job, read_job(file, false));
+    SEAM_TRY(auto result, plan_region(job.spots, job.options));
     Answer answer;
-    answer.json = plan_json(*result);
-    answer.text = plan_text(*result);
-    answer.exit_code = result->status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    answer.json = plan_json(result);
+    answer.text = plan_text(result);
+    answer.exit_code = result.status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
 

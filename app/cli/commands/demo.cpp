@@ -38,35 +38,34 @@ std::string statistic_text(const char* title, const std::vector<DemoStatistic>& 
 }
 
 Expected<Answer> demo(const DemoOptions& options) {
-    auto outcome = run_demo(options, [](const std::string& step) { fmt::print(stderr, "{}\n", step); });
-    if (!outcome) return tl::unexpected(outcome.error());
-    if (auto written = write_text_file(outcome->report_file, demo_report(*outcome)); !written)
-        return tl::unexpected(written.error());
+    SEAM_TRY(auto outcome,
+             run_demo(options, [](const std::string& step) { fmt::print(stderr, "{}\n", step); }));
+    SEAM_OK(write_text_file(outcome.report_file, demo_report(outcome)));
     int pushed = 0;
-    for (const DemoPart& part : outcome->parts) pushed += part.pushed();
-    const auto spots = statistics(*outcome, &DemoPart::spots), path = statistics(*outcome, &DemoPart::path);
-    const bool ok = pushed == static_cast<int>(outcome->parts.size());
+    for (const DemoPart& part : outcome.parts) pushed += part.pushed();
+    const auto spots = statistics(outcome, &DemoPart::spots), path = statistics(outcome, &DemoPart::path);
+    const bool ok = pushed == static_cast<int>(outcome.parts.size());
     Answer answer;
     answer.exit_code = ok ? kExitOk : kExitVerdict;
     answer.json = {{"status", ok ? "ok" : "refused"},
-                   {"project", outcome->project_file.string()},
-                   {"report", outcome->report_file.string()},
+                   {"project", outcome.project_file.string()},
+                   {"report", outcome.report_file.string()},
                    {"seed", options.seed},
-                   {"parts", outcome->parts.size()},
+                   {"parts", outcome.parts.size()},
                    {"pushed", pushed},
-                   {"calibration_verdict", name_of(outcome->calibration.calibration.verdict)},
-                   {"calibration_error_mm", outcome->calibration.truth_mm},
+                   {"calibration_verdict", name_of(outcome.calibration.calibration.verdict)},
+                   {"calibration_error_mm", outcome.calibration.truth_mm},
                    {"spots", statistic_json(spots)},
                    {"path", statistic_json(path)},
-                   {"cell", outcome->cell},
-                   {"seconds", outcome->seconds}};
-    for (const DemoCalibrationStep& step : outcome->calibration.steps)
+                   {"cell", outcome.cell},
+                   {"seconds", outcome.seconds}};
+    for (const DemoCalibrationStep& step : outcome.calibration.steps)
         answer.text += fmt::format("calibration {:<14} {}: {}\n", step.name,
                                    name_of(step.report.judgement.verdict), step.summary);
     answer.text +=
-        fmt::format("calibrated chain against the cell's truth: {:.3f} mm\n", outcome->calibration.truth_mm);
-    answer.text += fmt::format("{} of {} parts corrected and pushed\n", pushed, outcome->parts.size());
-    for (const DemoPart& part : outcome->parts)
+        fmt::format("calibrated chain against the cell's truth: {:.3f} mm\n", outcome.calibration.truth_mm);
+    answer.text += fmt::format("{} of {} parts corrected and pushed\n", pushed, outcome.parts.size());
+    for (const DemoPart& part : outcome.parts)
         if (!part.pushed()) answer.text += fmt::format("  {}: {}\n", part.run.part_id, part.run.message);
     if (pushed > 0) {
         answer.text += statistic_text("deviation at the spots, pushed parts", spots);
@@ -75,7 +74,7 @@ Expected<Answer> demo(const DemoOptions& options) {
     answer.text += fmt::format(
         "\nsimulated (noise, jitter, repeatability and seed are stated in the report), {:.1f} s\nproject "
         "{}\nreport  {}\n",
-        outcome->seconds, outcome->project_file.string(), outcome->report_file.string());
+        outcome.seconds, outcome.project_file.string(), outcome.report_file.string());
     return answer;
 }
 
@@ -206,9 +205,8 @@ void add_demo(CommandLine& line) {
             if (std::count(without->begin(), without->end(), to_string(source)) > 0)
                 options->without.insert(source);
         if (!seeds->empty()) {
-            const auto range = seed_range(*seeds);
-            if (!range) return tl::unexpected(range.error());
-            return sweep(*options, range->first, range->second);
+            SEAM_TRY(const auto range, seed_range(*seeds));
+            return sweep(*options, range.first, range.second);
         }
         if (options->parts == 0)
             return usage_error("no part is no demo", "--parts", "give 1 or more, or --seeds");

@@ -25,7 +25,7 @@ struct DeviceStudyArguments {
 Expected<Station> connected_station(const std::string& file) {
     auto station = Station::open(file);
     if (!station) return station;
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    SEAM_OK(station->connect());
     return station;
 }
 
@@ -54,40 +54,32 @@ Answer undone(const char* what) {
 
 Expected<Answer> measure_robot_command(const DeviceStudyArguments& a) {
     if (a.undo) {
-        auto station = Station::open(a.file);
-        if (!station) return tl::unexpected(station.error());
-        if (auto back = undo_robot_study(*station, a.robot); !back) return tl::unexpected(back.error());
+        SEAM_TRY(auto station, Station::open(a.file));
+        SEAM_OK(undo_robot_study(station, a.robot));
         return undone("arrival covariance");
     }
-    auto station = connected_station(a.file);
-    if (!station) return tl::unexpected(station.error());
+    SEAM_TRY(auto station, connected_station(a.file));
     MeasureRobotOptions options = a.on_robot;
     watch_over(options, a.dry_run);
-    auto measured = measure_robot(*station, options);
-    if (!measured) return tl::unexpected(measured.error());
+    SEAM_TRY(auto measured, measure_robot(station, options));
     Answer answer;
-    answer.json = robot_study_json(*measured);
-    answer.text = text_of(*measured);
+    answer.json = robot_study_json(measured);
+    answer.text = text_of(measured);
     answer.text += a.dry_run
                        ? "dry run: nothing is set\n"
                        : fmt::format("arrival_covariance of robot {} is set; --undo sets back what it was\n",
-                                     measured->returns.robot_id);
+                                     measured.returns.robot_id);
     return answer;
 }
 
 Expected<Answer> write_passes(const DeviceStudyArguments& a) {
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto request = trigger_program(*project, a.on_trigger);
-    if (!request) return tl::unexpected(request.error());
-    auto files = write_robot_program(a.brand, *request);
-    if (!files) return tl::unexpected(files.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto request, trigger_program(project, a.on_trigger));
+    SEAM_TRY(auto files, write_robot_program(a.brand, request));
     Answer answer;
-    answer.json = {{"status", "ok"}, {"passes", request->moves.size()}};
-    if (auto written = write_program_files(a.program, *files, answer); !written)
-        return tl::unexpected(written.error());
+    answer.json = {{"status", "ok"}, {"passes", request.moves.size()}};
+    SEAM_OK(write_program_files(a.program, files, answer));
     return answer;
 }
 
@@ -96,27 +88,24 @@ Expected<Answer> measure_trigger_command(const DeviceStudyArguments& a) {
         return usage_error("--program and --brand belong together", "measure-trigger", "give both");
     if (!a.program.empty()) return write_passes(a);
     if (a.undo) {
-        auto station = Station::open(a.file);
-        if (!station) return tl::unexpected(station.error());
-        if (auto back = undo_trigger_study(*station); !back) return tl::unexpected(back.error());
+        SEAM_TRY(auto station, Station::open(a.file));
+        SEAM_OK(undo_trigger_study(station));
         return undone("latency and jitter");
     }
-    auto station = connected_station(a.file);
-    if (!station) return tl::unexpected(station.error());
+    SEAM_TRY(auto station, connected_station(a.file));
     MeasureTriggerOptions options = a.on_trigger;
     watch_over(options, a.dry_run);
-    auto measured = measure_trigger(*station, options);
-    if (!measured) return tl::unexpected(measured.error());
+    SEAM_TRY(auto measured, measure_trigger(station, options));
     Answer answer;
-    answer.json = trigger_study_json(*measured);
-    answer.text = text_of(*measured);
-    answer.exit_code = measured->study ? kExitOk : kExitVerdict;
-    if (measured->study)
+    answer.json = trigger_study_json(measured);
+    answer.text = text_of(measured);
+    answer.exit_code = measured.study ? kExitOk : kExitVerdict;
+    if (measured.study)
         answer.text += a.dry_run ? "dry run: nothing is set\n"
                                  : fmt::format(
                                        "trigger_latency_ms and jitter_mm of {} spots are set; --undo sets "
                                        "back what they were\n",
-                                       measured->jitter_mm.size());
+                                       measured.jitter_mm.size());
     return answer;
 }
 

@@ -98,13 +98,12 @@ void add_devices(CommandLine& line) {
             }
         }
         if (file->empty()) return answer;
-        auto station = Station::open(*file, FileAccess::read_only);
-        if (!station) return tl::unexpected(station.error());
-        if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+        SEAM_TRY(auto station, Station::open(*file, FileAccess::read_only));
+        SEAM_OK(station.connect());
         answer.json["sensors"] = json::array();
         answer.json["robots"] = json::array();
-        for (const SensorSetup& s : station->project().sensors) {
-            ProfileSource* sensor = station->sensor(s.id);
+        for (const SensorSetup& s : station.project().sensors) {
+            ProfileSource* sensor = station.sensor(s.id);
             const SensorIdentity id = sensor->identity();
             const SourceCounters c = sensor->counters();
             answer.json["sensors"].push_back({{"id", s.id},
@@ -123,20 +122,18 @@ void add_devices(CommandLine& line) {
             answer.text += fmt::format("sensor {}: {} {} {} serial {}\n", s.id, s.driver, id.vendor, id.model,
                                        id.serial);
         }
-        for (const RobotSetup& r : station->project().robots) {
-            RobotLink* robot = station->robot(r.id);
-            auto id = robot->identity();
-            if (!id) return tl::unexpected(id.error());
-            auto mode = robot->mode();
-            if (!mode) return tl::unexpected(mode.error());
+        for (const RobotSetup& r : station.project().robots) {
+            RobotLink* robot = station.robot(r.id);
+            SEAM_TRY(auto id, robot->identity());
+            SEAM_TRY(auto mode, robot->mode());
             answer.json["robots"].push_back({{"id", r.id},
                                              {"driver", r.driver},
-                                             {"brand", id->brand},
-                                             {"model", id->model},
-                                             {"serial", id->serial},
-                                             {"mode", to_string(*mode)}});
-            answer.text += fmt::format("robot {}: {} {} {} serial {}, mode {}\n", r.id, r.driver, id->brand,
-                                       id->model, id->serial, to_string(*mode));
+                                             {"brand", id.brand},
+                                             {"model", id.model},
+                                             {"serial", id.serial},
+                                             {"mode", to_string(mode)}});
+            answer.text += fmt::format("robot {}: {} {} {} serial {}, mode {}\n", r.id, r.driver, id.brand,
+                                       id.model, id.serial, to_string(mode));
         }
         return answer;
     });

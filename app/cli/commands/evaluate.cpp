@@ -77,12 +77,10 @@ void add_evaluate(CommandLine& line) {
         a->settings.experiment = a->experiment == "all"      ? 0
                                  : a->experiment == "online" ? kOnline
                                                              : a->experiment[0] - '0';
-        auto result = evaluate(a->settings, [](const std::string& s) { fmt::print(stderr, "{}\n", s); });
-        if (!result) return tl::unexpected(result.error());
-        if (!a->report.empty())
-            if (auto written = write_text_file(a->report, evaluation_html(*result)); !written)
-                return tl::unexpected(written.error());
-        return Answer{evaluation_json(*result), evaluation_text(*result), kExitOk};
+        SEAM_TRY(auto result,
+                 evaluate(a->settings, [](const std::string& s) { fmt::print(stderr, "{}\n", s); }));
+        if (!a->report.empty()) SEAM_OK(write_text_file(a->report, evaluation_html(result)));
+        return Answer{evaluation_json(result), evaluation_text(result), kExitOk};
     });
 }
 

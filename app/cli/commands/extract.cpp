@@ -27,14 +27,13 @@ Expected<Answer> extract(ExtractArguments a) {
         a.options.method = PeakMethod::gaussian;
     else
         a.options.method = PeakMethod::steger;
-    auto choice = choose_channel(a.image);
-    if (!choice) return tl::unexpected(choice.error());
-    const ImageChannel channel = a.channel == "automatic" ? choice->channel : *image_channel(a.channel);
+    SEAM_TRY(auto choice, choose_channel(a.image));
+    const ImageChannel channel = a.channel == "automatic" ? choice.channel : *image_channel(a.channel);
     Frame frame;
-    if (auto read = read_image_file(a.image, frame, 0, channel); !read) return tl::unexpected(read.error());
+    SEAM_OK(read_image_file(a.image, frame, 0, channel));
     if (!a.off.empty()) {
         Frame off;
-        if (auto read = read_image_file(a.off, off, 0, channel); !read) return tl::unexpected(read.error());
+        SEAM_OK(read_image_file(a.off, off, 0, channel));
         if (auto taken = subtract_image(frame, off); !taken) {
             taken.error().where = a.off;
             return tl::unexpected(taken.error());
@@ -43,12 +42,11 @@ Expected<Answer> extract(ExtractArguments a) {
     if (a.rows) {
         a.options.scan = ScanLines::rows;
     } else if (!a.columns) {
-        auto guess = guess_scan_lines(frame.image);
-        if (!guess) return tl::unexpected(guess.error());
-        a.options.scan = *guess;
+        SEAM_TRY(auto guess, guess_scan_lines(frame.image));
+        a.options.scan = guess;
     }
     StripePeaks peaks;
-    if (auto found = find_peaks(frame.image, a.options, peaks); !found) return tl::unexpected(found.error());
+    SEAM_OK(find_peaks(frame.image, a.options, peaks));
     std::string csv = "index,position_px,intensity,width_px,peak\n";
     int lines_with_stripe = 0, lines_going_on = 0;
     for (int line = 0; line < peaks.lines; ++line) {
@@ -63,7 +61,7 @@ Expected<Answer> extract(ExtractArguments a) {
                            peaks.position_px[i], peaks.intensity[i], peaks.width_px[i], k);
         }
     }
-    if (auto written = write_text_file(a.out, csv); !written) return tl::unexpected(written.error());
+    SEAM_OK(write_text_file(a.out, csv));
     const char* scan = peaks.scan == ScanLines::rows ? "rows" : "columns";
     Answer answer;
     answer.json = {{"status", lines_with_stripe ? "ok" : "no_stripe"},
@@ -71,7 +69,7 @@ Expected<Answer> extract(ExtractArguments a) {
                    {"lines", peaks.lines},
                    {"lines_with_stripe", lines_with_stripe},
                    {"lines_going_on", lines_going_on},
-                   {"colour", choice->colour},
+                   {"colour", choice.colour},
                    {"channel", to_string(channel)},
                    {"width", frame.image.width},
                    {"height", frame.image.height},
@@ -79,13 +77,13 @@ Expected<Answer> extract(ExtractArguments a) {
     answer.text =
         fmt::format("{} of {} {} have a peak, {} of them beside that of the {} before\n", lines_with_stripe,
                     peaks.lines, scan, lines_going_on, peaks.scan == ScanLines::rows ? "row" : "column");
-    if (choice->colour) answer.text += fmt::format("colour: read in {}\n", to_string(channel));
+    if (choice.colour) answer.text += fmt::format("colour: read in {}\n", to_string(channel));
     std::vector<std::string> warnings;
-    if (choice->colour && channel == ImageChannel::grey && choice->channel != ImageChannel::grey)
+    if (choice.colour && channel == ImageChannel::grey && choice.channel != ImageChannel::grey)
         warnings.push_back(
             fmt::format("colour is folded to grey; in {} a line goes on over {:.0f} % of the lines, in "
                         "grey over {:.0f} %",
-                        to_string(choice->channel), 100 * choice->share, 100 * choice->share_grey));
+                        to_string(choice.channel), 100 * choice.share, 100 * choice.share_grey));
     if (lines_with_stripe > 0 && 2 * lines_going_on < lines_with_stripe)
         warnings.push_back(
             "the strongest peaks jump from line to line: they may be no laser stripe (--channel, "

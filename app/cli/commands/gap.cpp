@@ -211,66 +211,52 @@ std::string check_html(const GapPass& pass, const GapCheck& c, const GapScanOpti
 // The pass, with the project it was made with.
 Expected<std::pair<Project, GapPass>> pass_of(GapArguments& a) {
     if (a.simulated) {
-        auto project = simulated_gap_project({{"seed", a.seed}}, default_gap_stations(),
-                                             std::filesystem::path(a.file).replace_extension(".ply"));
-        if (!project) return tl::unexpected(project.error());
+        SEAM_TRY(auto project,
+                 simulated_gap_project({{"seed", a.seed}}, default_gap_stations(),
+                                       std::filesystem::path(a.file).replace_extension(".ply")));
         if (a.driven.spot_ids.empty() && a.capture.empty())
-            for (const Spot& spot : project->spots) a.driven.spot_ids.push_back(spot.id);
-        auto file = ProjectFile::create(a.file, *project);
-        if (!file) return tl::unexpected(file.error());
+            for (const Spot& spot : project.spots) a.driven.spot_ids.push_back(spot.id);
+        SEAM_OK(ProjectFile::create(a.file, project));
     }
     if (!a.capture.empty()) {
-        auto file = ProjectFile::open(a.file, FileAccess::read_only);
-        if (!file) return tl::unexpected(file.error());
-        auto project = file->load();
-        if (!project) return tl::unexpected(project.error());
-        auto capture = CaptureReader::open(a.capture);
-        if (!capture) return tl::unexpected(capture.error());
-        auto pass = gap_pass(*project, *capture, a.recorded);
-        if (!pass) return tl::unexpected(pass.error());
-        return std::pair{std::move(*project), std::move(*pass)};
+        SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+        SEAM_TRY(auto project, file.load());
+        SEAM_TRY(auto capture, CaptureReader::open(a.capture));
+        SEAM_TRY(auto pass, gap_pass(project, capture, a.recorded));
+        return std::pair{std::move(project), std::move(pass)};
     }
     if (a.driven.spot_ids.empty())
         return usage_error("there is no pass to check", a.file,
                            "give a recorded one with --capture, or the spots to go along with --spots");
-    auto station = Station::open(a.file);
-    if (!station) return tl::unexpected(station.error());
-    auto recorder = open_recorder(a.record, {.images = true});
-    if (!recorder) return tl::unexpected(recorder.error());
-    a.recorder = *recorder;
-    station->record_to(a.recorder);
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto recorder, open_recorder(a.record, {.images = true}));
+    a.recorder = recorder;
+    station.record_to(a.recorder);
+    SEAM_OK(station.connect());
     a.driven.cancel = stop_on_signal();
     a.driven.progress = [](const RunProgress& p) {
         if (p.done == p.total || p.done % 50 == 0) fmt::print(stderr, "[{}/{}]\n", p.done, p.total);
     };
-    auto pass = gap_pass(*station, a.driven);
-    if (!pass) return tl::unexpected(pass.error());
-    return std::pair{station->project(), std::move(*pass)};
+    SEAM_TRY(auto pass, gap_pass(station, a.driven));
+    return std::pair{station.project(), std::move(pass)};
 }
 
 Expected<Answer> check(GapArguments& a) {
     GapScanOptions defaults;
     defaults.gauge.reference =
         a.reference == "left" ? GapFlushSettings::Reference::left : GapFlushSettings::Reference::right;
-    const auto options = with_values(defaults, a.values);
-    if (!options) return tl::unexpected(options.error());
-    auto made = pass_of(a);
-    if (!made) return tl::unexpected(made.error());
-    const auto& [project, pass] = *made;
-    auto found = check_gap(project, pass, *options);
-    if (!found) return tl::unexpected(found.error());
-    if (!a.out.empty())
-        if (auto written = write_text_file(a.out, check_csv(found->scan)); !written)
-            return tl::unexpected(written.error());
+    SEAM_TRY(const auto options, with_values(defaults, a.values));
+    SEAM_TRY(auto made, pass_of(a));
+    const auto& [project, pass] = made;
+    SEAM_TRY(auto found, check_gap(project, pass, options));
+    if (!a.out.empty()) SEAM_OK(write_text_file(a.out, check_csv(found.scan)));
     if (!a.report.empty())
-        if (auto written = write_text_file(a.report, check_html(pass, *found, *options, project.name));
+        if (auto written = write_text_file(a.report, check_html(pass, found, options, project.name));
             !written)
             return tl::unexpected(written.error());
-    Answer answer{check_json(pass, *found, *options), check_text(pass, *found, *options),
-                  found->scan.passes() ? kExitOk : kExitVerdict};
-    if (auto told = tell_recording(a.recorder.get(), a.record, answer); !told)
-        return tl::unexpected(told.error());
+    Answer answer{check_json(pass, found, options), check_text(pass, found, options),
+                  found.scan.passes() ? kExitOk : kExitVerdict};
+    SEAM_OK(tell_recording(a.recorder.get(), a.record, answer));
     return answer;
 }
 

@@ -21,32 +21,28 @@ struct ReportArguments {
 Expected<Answer> report_command(const ReportArguments& a) {
     if (a.html.empty() && a.pdf.empty())
         return usage_error("nothing to write", "report", "give --html FILE, --pdf FILE, or both");
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
     Facts facts;
-    if (auto known = gather(*file, facts); !known) return tl::unexpected(known.error());
+    SEAM_OK(gather(file, facts));
     HandOverOptions options;
     options.language = *language_from(a.language);
     options.program = "Seamwright " SEAMWRIGHT_VERSION;
-    auto page = hand_over_report(*file, *project, facts, options);
-    if (!page) return tl::unexpected(page.error());
+    SEAM_TRY(auto page, hand_over_report(file, project, facts, options));
     Answer answer;
     answer.json = {{"status", "ok"}};
     if (!a.html.empty()) {
-        if (auto written = write_text_file(a.html, page->html()); !written)
-            return tl::unexpected(written.error());
+        SEAM_OK(write_text_file(a.html, page.html()));
         answer.json["html"] = a.html;
         answer.text += a.html + " written\n";
     }
     if (!a.pdf.empty()) {
-        if (auto written = write_pdf(*page, a.pdf); !written) return tl::unexpected(written.error());
+        SEAM_OK(write_pdf(page, a.pdf));
         answer.json["pdf"] = a.pdf;
         answer.text += a.pdf + " written\n";
     }
     json open = json::array();
-    for (const CheckItem& item : checklist(*project, facts))
+    for (const CheckItem& item : checklist(project, facts))
         if (!item.done()) open.push_back(to_string(item.step));
     answer.json["open_steps"] = open;
     return answer;
@@ -62,31 +58,27 @@ Expected<Answer> reteach_command(const ReteachArguments& a) {
     exchange.sensor_id = a.sensor;
     exchange.calibration_id = a.calibration;
     if (!a.base_from_workobject.empty()) {
-        auto pose = read_pose_argument(a.base_from_workobject, "--base-from-workobject");
-        if (!pose) return tl::unexpected(pose.error());
-        exchange.base_from_workobject = *pose;
+        SEAM_TRY(auto pose, read_pose_argument(a.base_from_workobject, "--base-from-workobject"));
+        exchange.base_from_workobject = pose;
     }
-    auto file = ProjectFile::open(a.file, a.dry_run ? FileAccess::read_only : FileAccess::read_write);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto retaught = after_exchange(*project, exchange);
-    if (!retaught) return tl::unexpected(retaught.error());
+    SEAM_TRY(auto file,
+             ProjectFile::open(a.file, a.dry_run ? FileAccess::read_only : FileAccess::read_write));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto retaught, after_exchange(project, exchange));
     Answer answer;
     json spots = json::array();
-    for (const MovedSpot& s : retaught->spots) {
+    for (const MovedSpot& s : retaught.spots) {
         spots.push_back({{"id", s.spot_id}, {"moved_mm", s.moved_mm}, {"turned_deg", s.turned_deg}});
         answer.text += fmt::format("spot {}: flange pose moved by {:.3f} mm and {:.4f} deg\n", s.spot_id,
                                    s.moved_mm, s.turned_deg);
     }
     answer.json = {{"status", "ok"}, {"sensor", a.sensor}, {"calibration", a.calibration}, {"spots", spots}};
     if (a.dry_run) return answer;
-    if (auto saved = file->save(retaught->project); !saved) return tl::unexpected(saved.error());
+    SEAM_OK(file.save(retaught.project));
     const std::string note =
         fmt::format("retaught after an exchange: calibration {} in use, {} spots led along", a.calibration,
-                    retaught->spots.size());
-    if (auto noted = file->append_event({0, {}, 0, EventKind::note, a.sensor, note}); !noted)
-        return tl::unexpected(noted.error());
+                    retaught.spots.size());
+    SEAM_OK(file.append_event({0, {}, 0, EventKind::note, a.sensor, note}));
     answer.text += "Saved. Drive every spot slowly once, then repeat the zero shift.\n";
     return answer;
 }

@@ -44,12 +44,11 @@ Calibration named_after(const std::string& path, Calibration made) {
 
 // A table says where pixels lie in the sensor's plane, and not how well; its verdict is that of the one who brings it.
 Expected<Calibration> table_calibration(const std::string& path) {
-    auto table = read_lookup_table(path);
-    if (!table) return tl::unexpected(table.error());
+    SEAM_TRY(auto table, read_lookup_table(path));
     Calibration c;
     c.method = "lut";
     c.verdict = Verdict::usable;
-    c.model.emplace().table = std::move(*table);
+    c.model.emplace().table = std::move(table);
     return named_after(path, std::move(c));
 }
 
@@ -58,12 +57,11 @@ Expected<Calibration> table_calibration(const std::string& path) {
 Expected<Calibration> read_calibration(const std::string& path, const std::string& id) {
     if (path.ends_with(".lut")) return table_calibration(path);
     if (path.ends_with(".json")) {
-        auto answer = read_json_file(path);
-        if (!answer) return tl::unexpected(answer.error());
-        const auto named = answer->find("method");
+        SEAM_TRY(auto answer, read_json_file(path));
+        const auto named = answer.find("method");
         const CalibrationMethod* method =
-            named != answer->end() && named->is_string() ? find_method(named->get<std::string>()) : nullptr;
-        auto solution = solution_from_document(*answer);
+            named != answer.end() && named->is_string() ? find_method(named->get<std::string>()) : nullptr;
+        auto solution = solution_from_document(answer);
         const bool turns = solution && (std::holds_alternative<CameraAndLaser>(solution->found) ||
                                         std::holds_alternative<SensorOnFlange>(solution->found));
         if (!method || !solution || (!turns && solution->verdict() != Verdict::undetermined))
@@ -73,13 +71,11 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
         if (!made) return made;
         return named_after(path, std::move(*made));
     }
-    auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
+    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
     std::string there;
     std::vector<const Calibration*> fit;
-    for (const Calibration& c : project->calibrations) {
+    for (const Calibration& c : project.calibrations) {
         there += (there.empty() ? "" : ", ") + c.id;
         if (id.empty() ? c.method != "pixels" : c.id == id) fit.push_back(&c);
     }
@@ -93,37 +89,34 @@ Expected<Calibration> read_calibration(const std::string& path, const std::strin
 
 // What images need and do not say: the channel that shows the stripe, and how it runs.
 Expected<void> look_at_images(const ImportArguments& a, FolderImport& options, std::vector<Text>& notes) {
-    auto frames = list_recording(fs::absolute(options.folder).lexically_normal(), "", false, options.layout);
-    if (!frames) return tl::unexpected(frames.error());
-    if (!frames->front().image) return {};
-    const fs::path& first = frames->front().file;
-    auto choice = choose_channel(first);
-    if (!choice) return tl::unexpected(choice.error());
+    SEAM_TRY(auto frames,
+             list_recording(fs::absolute(options.folder).lexically_normal(), "", false, options.layout));
+    if (!frames.front().image) return {};
+    const fs::path& first = frames.front().file;
+    SEAM_TRY(auto choice, choose_channel(first));
     if (a.channel == "automatic")
-        options.layout.channel = choice->channel;
+        options.layout.channel = choice.channel;
     else
         options.layout.channel = *image_channel(a.channel);
-    if (choice->colour) {
+    if (choice.colour) {
         notes.push_back(
             fmt::format("colour images: the stripe is read in {}", to_string(options.layout.channel)));
-        if (options.layout.channel == ImageChannel::grey && choice->channel != ImageChannel::grey)
+        if (options.layout.channel == ImageChannel::grey && choice.channel != ImageChannel::grey)
             notes.push_back(
                 fmt::format("colour is folded to grey, where the stripe goes on over {:.0f} % of the lines; "
                             "in {} over {:.0f} %",
-                            100 * choice->share_grey, to_string(choice->channel), 100 * choice->share));
+                            100 * choice.share_grey, to_string(choice.channel), 100 * choice.share));
     }
     if (a.rows) options.peaks.scan = ScanLines::rows;
     if (a.columns) options.peaks.scan = ScanLines::columns;
     if (!a.rows && !a.columns) {
         Frame frame;
-        if (auto read = read_image_file(first, frame, 0, options.layout.channel); !read)
-            return tl::unexpected(read.error());
-        auto guess = guess_scan_lines(frame.image);
-        if (!guess) return tl::unexpected(guess.error());
-        options.peaks.scan = *guess;
+        SEAM_OK(read_image_file(first, frame, 0, options.layout.channel));
+        SEAM_TRY(auto guess, guess_scan_lines(frame.image));
+        options.peaks.scan = guess;
         notes.push_back(fmt::format("the stripe of {} is cut by {}; --rows or --columns says otherwise",
                                     first.filename().string(),
-                                    *guess == ScanLines::rows ? "rows" : "columns"));
+                                    guess == ScanLines::rows ? "rows" : "columns"));
     }
     return {};
 }
@@ -136,12 +129,10 @@ Expected<FolderImport> folder_import(const ImportArguments& a) {
     options.feature.kind = a.kind;
     options.layout = a.layout;
     if (!options.layout.poses.empty()) options.layout.poses = fs::absolute(options.layout.poses).string();
-    auto kind = find_feature_kind(a.kind);
-    if (!kind) return tl::unexpected(kind.error());
+    SEAM_TRY(auto kind, find_feature_kind(a.kind));
     for (const std::string& entry : a.set) {
-        auto value = feature_setting(**kind, entry);
-        if (!value) return tl::unexpected(value.error());
-        options.feature.parameters[value->first] = value->second;
+        SEAM_TRY(auto value, feature_setting(*kind, entry));
+        options.feature.parameters[value.first] = value.second;
     }
     if (a.kind != "template" && (!a.piece.empty() || !a.landmark.empty()))
         return usage_error("--piece and --landmark belong to --kind template", "import");
@@ -150,20 +141,17 @@ Expected<FolderImport> folder_import(const ImportArguments& a) {
         options.piece_x_mm = {a.piece[0], a.piece[1]};
     }
     if (!a.landmark.empty()) options.template_reference_mm = {a.landmark[0], a.landmark[1]};
-    auto flange = read_pose_argument(a.flange_from_sensor, "--flange-from-sensor");
-    if (!flange) return tl::unexpected(flange.error());
-    options.flange_from_sensor = *flange;
-    auto base = read_pose_argument(a.base_from_workobject, "--base-from-workobject");
-    if (!base) return tl::unexpected(base.error());
-    options.base_from_workobject = *base;
+    SEAM_TRY(auto flange, read_pose_argument(a.flange_from_sensor, "--flange-from-sensor"));
+    options.flange_from_sensor = flange;
+    SEAM_TRY(auto base, read_pose_argument(a.base_from_workobject, "--base-from-workobject"));
+    options.base_from_workobject = base;
     options.sigma_mm = a.sigma_mm;
     options.sigma_limit_mm = a.sigma_limit_mm;
     if (!a.flange_from_sensor.empty()) options.calibration_verdict = Verdict::usable;
     if (!a.calibration.empty()) {
-        auto calibration = read_calibration(a.calibration, a.calibration_id);
-        if (!calibration) return tl::unexpected(calibration.error());
-        if (!a.flange_from_sensor.empty()) calibration->flange_from_sensor = *flange;
-        options.calibration = std::move(*calibration);
+        SEAM_TRY(auto calibration, read_calibration(a.calibration, a.calibration_id));
+        if (!a.flange_from_sensor.empty()) calibration.flange_from_sensor = flange;
+        options.calibration = std::move(calibration);
     } else if (!a.calibration_id.empty()) {
         return usage_error("--calibration-id needs --calibration FILE.seam", "import");
     }
@@ -182,18 +170,16 @@ Expected<Answer> look(const ImportArguments& a) {
     RecordingLayout layout = a.layout;
     if (!layout.poses.empty()) layout.poses = fs::absolute(layout.poses).string();
     if (a.channel != "automatic") layout.channel = *image_channel(a.channel);
-    auto flange = read_pose_argument(a.flange_from_sensor, "--flange-from-sensor");
-    if (!flange) return tl::unexpected(flange.error());
-    layout.flange_from_sensor = *flange;
-    auto seen = look_at_recording(a.source, layout);
-    if (!seen) return tl::unexpected(seen.error());
+    SEAM_TRY(auto flange, read_pose_argument(a.flange_from_sensor, "--flange-from-sensor"));
+    layout.flange_from_sensor = flange;
+    SEAM_TRY(auto seen, look_at_recording(a.source, layout));
     Answer answer;
     json files = json::array();
-    bool sound = seen->problem.empty();
-    answer.text = fmt::format("{} frames in {}\n", seen->frames, a.source);
-    for (const std::string& line : seen->understood) answer.text += "  " + line + "\n";
-    if (!seen->problem.empty()) answer.text += "  problem: " + seen->problem + "\n";
-    for (const auto& f : seen->files) {
+    bool sound = seen.problem.empty();
+    answer.text = fmt::format("{} frames in {}\n", seen.frames, a.source);
+    for (const std::string& line : seen.understood) answer.text += "  " + line + "\n";
+    if (!seen.problem.empty()) answer.text += "  problem: " + seen.problem + "\n";
+    for (const auto& f : seen.files) {
         json entry{{"file", f.name},
                    {"spot", f.spot_id},
                    {"readable", f.readable},
@@ -242,9 +228,9 @@ Expected<Answer> look(const ImportArguments& a) {
         files.push_back(std::move(entry));
     }
     answer.json = {{"status", sound ? "ok" : "unclear"},
-                   {"frames", seen->frames},
-                   {"understood", seen->understood},
-                   {"problem", seen->problem},
+                   {"frames", seen.frames},
+                   {"understood", seen.understood},
+                   {"problem", seen.problem},
                    {"files", files}};
     answer.exit_code = sound ? kExitOk : kExitVerdict;
     return answer;
@@ -260,23 +246,18 @@ Expected<Answer> import_command(const ImportArguments& a) {
     bool in_pixels = false;
     // A table is a recording; only .json is a project.
     if (!a.source.ends_with(".json") && (fs::is_directory(a.source) || fs::path(a.source).has_extension())) {
-        auto options = folder_import(a);
-        if (!options) return tl::unexpected(options.error());
-        if (auto seen = look_at_images(a, *options, notes); !seen) return tl::unexpected(seen.error());
-        auto imported = import_folder(*options);
-        if (!imported) return tl::unexpected(imported.error());
-        project = std::move(imported->project);
-        notes.insert(notes.end(), imported->notes.begin(), imported->notes.end());
-        understood = std::move(imported->understood);
-        in_pixels = imported->in_pixels;
+        SEAM_TRY(auto options, folder_import(a));
+        SEAM_OK(look_at_images(a, options, notes));
+        SEAM_TRY(auto imported, import_folder(options));
+        project = std::move(imported.project);
+        notes.insert(notes.end(), imported.notes.begin(), imported.notes.end());
+        understood = std::move(imported.understood);
+        in_pixels = imported.in_pixels;
     } else {
-        auto text = read_text_file(a.source);
-        if (!text) return tl::unexpected(text.error());
-        auto document = parse_json(*text, a.source);
-        if (!document) return tl::unexpected(document.error());
-        auto imported = import_project(*document);
-        if (!imported) return tl::unexpected(imported.error());
-        project = std::move(*imported);
+        SEAM_TRY(auto text, read_text_file(a.source));
+        SEAM_TRY(auto document, parse_json(text, a.source));
+        SEAM_TRY(auto imported, import_project(document));
+        project = std::move(imported);
     }
     auto file = ProjectFile::create(a.file, project, a.replace);
     if (!file) return tl::unexpected(file.error());

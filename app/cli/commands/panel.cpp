@@ -36,16 +36,12 @@ struct FitJob {
 };
 
 Expected<PanelSide> read_side(const json& spot, const std::string& key, const std::string& path) {
-    auto side = json_field(spot, key, path);
-    if (!side) return tl::unexpected(side.error());
+    SEAM_TRY(auto side, json_field(spot, key, path));
     const std::string where = json_path(path, key);
-    if (auto known = only_fields(**side, {"reference", "measured"}, where); !known)
-        return tl::unexpected(known.error());
-    auto reference = json_vector3(**side, "reference", where);
-    if (!reference) return tl::unexpected(reference.error());
-    auto measured = json_vector3(**side, "measured", where);
-    if (!measured) return tl::unexpected(measured.error());
-    return PanelSide{*reference, *measured};
+    SEAM_OK(only_fields(*side, {"reference", "measured"}, where));
+    SEAM_TRY(auto reference, json_vector3(*side, "reference", where));
+    SEAM_TRY(auto measured, json_vector3(*side, "measured", where));
+    return PanelSide{reference, measured};
 }
 
 Expected<PanelSpot> read_fit_spot(const json& spot, const std::string& path) {
@@ -54,31 +50,23 @@ Expected<PanelSpot> read_fit_spot(const json& spot, const std::string& path) {
         !known)
         return tl::unexpected(known.error());
     PanelSpot s;
-    auto id = json_string(spot, "id", path);
-    if (!id) return tl::unexpected(id.error());
-    s.id = *id;
-    auto pose = json_field(spot, "gripper_from_sensor", path);
-    if (!pose) return tl::unexpected(pose.error());
-    auto parsed = parse_pose(**pose, json_path(path, "gripper_from_sensor"));
-    if (!parsed) return tl::unexpected(parsed.error());
-    s.gripper_from_sensor = *parsed;
-    auto panel = read_side(spot, "panel", path);
-    if (!panel) return tl::unexpected(panel.error());
-    s.panel = *panel;
-    auto body = read_side(spot, "body", path);
-    if (!body) return tl::unexpected(body.error());
-    s.body = *body;
+    SEAM_TRY(auto id, json_string(spot, "id", path));
+    s.id = id;
+    SEAM_TRY(auto pose, json_field(spot, "gripper_from_sensor", path));
+    SEAM_TRY(auto parsed, parse_pose(*pose, json_path(path, "gripper_from_sensor")));
+    s.gripper_from_sensor = parsed;
+    SEAM_TRY(auto panel, read_side(spot, "panel", path));
+    s.panel = panel;
+    SEAM_TRY(auto body, read_side(spot, "body", path));
+    s.body = body;
     if (spot.contains("weights")) {
-        auto weights = json_vector3(spot, "weights", path);
-        if (!weights) return tl::unexpected(weights.error());
-        s.weights = *weights;
+        SEAM_TRY(auto weights, json_vector3(spot, "weights", path));
+        s.weights = weights;
     }
-    auto sigma = json_number_or(spot, "sigma_mm", s.sigma_mm, path);
-    if (!sigma) return tl::unexpected(sigma.error());
-    s.sigma_mm = *sigma;
-    auto surface = json_number_or(spot, "surface_deg", 0, path);
-    if (!surface) return tl::unexpected(surface.error());
-    s.surface_rad = rad_from_deg(*surface);
+    SEAM_TRY(auto sigma, json_number_or(spot, "sigma_mm", s.sigma_mm, path));
+    s.sigma_mm = sigma;
+    SEAM_TRY(auto surface, json_number_or(spot, "surface_deg", 0, path));
+    s.surface_rad = rad_from_deg(surface);
     return s;
 }
 
@@ -97,56 +85,43 @@ Expected<PanelDeviation> deviation_from(const std::string& word) {
 }
 
 Expected<FitJob> read_fit_job(const std::string& file) {
-    auto text = read_text_file(file);
-    if (!text) return tl::unexpected(text.error());
-    auto document = parse_json(*text, file);
-    if (!document) return tl::unexpected(document.error());
-    if (auto known = only_fields(*document, {"spots", "limits", "deviation"}, ""); !known)
-        return tl::unexpected(known.error());
-    auto spots = json_array(*document, "spots", "");
-    if (!spots) return tl::unexpected(spots.error());
+    SEAM_TRY(auto text, read_text_file(file));
+    SEAM_TRY(auto document, parse_json(text, file));
+    SEAM_OK(only_fields(document, {"spots", "limits", "deviation"}, ""));
+    SEAM_TRY(auto spots, json_array(document, "spots", ""));
     FitJob job;
-    for (std::size_t i = 0; i < (*spots)->size(); ++i) {
-        auto spot = read_fit_spot((**spots)[i], json_path("spots", i));
-        if (!spot) return tl::unexpected(spot.error());
-        job.spots.push_back(std::move(*spot));
+    for (std::size_t i = 0; i < spots->size(); ++i) {
+        SEAM_TRY(auto spot, read_fit_spot((*spots)[i], json_path("spots", i)));
+        job.spots.push_back(std::move(spot));
     }
-    if (document->contains("limits") && !(*document)["limits"].is_null()) {
-        const json& limits = (*document)["limits"];
-        if (auto known = only_fields(limits, {"translation_mm", "rotation_deg"}, "limits"); !known)
-            return tl::unexpected(known.error());
+    if (document.contains("limits") && !document["limits"].is_null()) {
+        const json& limits = document["limits"];
+        SEAM_OK(only_fields(limits, {"translation_mm", "rotation_deg"}, "limits"));
         CorrectionLimits& to = job.options.limits;
-        auto translation = json_number_or(limits, "translation_mm", to.translation_mm, "limits");
-        if (!translation) return tl::unexpected(translation.error());
-        auto rotation = json_number_or(limits, "rotation_deg", to.rotation_deg, "limits");
-        if (!rotation) return tl::unexpected(rotation.error());
-        to = {*translation, *rotation};
+        SEAM_TRY(auto translation, json_number_or(limits, "translation_mm", to.translation_mm, "limits"));
+        SEAM_TRY(auto rotation, json_number_or(limits, "rotation_deg", to.rotation_deg, "limits"));
+        to = {translation, rotation};
     }
-    if (document->contains("deviation")) {
-        auto word = json_string(*document, "deviation", "");
-        if (!word) return tl::unexpected(word.error());
-        auto deviation = deviation_from(*word);
-        if (!deviation) return tl::unexpected(deviation.error());
-        job.options.deviation = *deviation;
+    if (document.contains("deviation")) {
+        SEAM_TRY(auto word, json_string(document, "deviation", ""));
+        SEAM_TRY(auto deviation, deviation_from(word));
+        job.options.deviation = deviation;
     }
     return job;
 }
 
 // `deviation`, where given, stands above the file's.
 Expected<Answer> panel(const std::string& file, const std::string& deviation) {
-    auto job = read_fit_job(file);
-    if (!job) return tl::unexpected(job.error());
+    SEAM_TRY(auto job, read_fit_job(file));
     if (!deviation.empty()) {
-        auto asked = deviation_from(deviation);
-        if (!asked) return tl::unexpected(asked.error());
-        job->options.deviation = *asked;
+        SEAM_TRY(auto asked, deviation_from(deviation));
+        job.options.deviation = asked;
     }
-    auto fit = fit_panel(job->spots, job->options);
-    if (!fit) return tl::unexpected(fit.error());
+    SEAM_TRY(auto fit, fit_panel(job.spots, job.options));
     Answer answer;
-    answer.json = panel_fit_json(*fit);
-    answer.text = panel_fit_text(*fit);
-    answer.exit_code = fit->status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
+    answer.json = panel_fit_json(fit);
+    answer.text = panel_fit_text(fit);
+    answer.exit_code = fit.status == CorrectionStatus::ok ? kExitOk : kExitVerdict;
     return answer;
 }
 
@@ -202,9 +177,8 @@ Expected<void> teach(Station& station, const std::string& id, const PanelArgumen
     options.repeats = a.teach;
     options.cancel = stop_on_signal();
     options.progress = run_options(a).progress;
-    auto taught = teach_panel(station, *job, options);
-    if (!taught) return tl::unexpected(taught.error());
-    *job = std::move(*taught);
+    SEAM_TRY(auto taught, teach_panel(station, *job, options));
+    *job = std::move(taught);
     return station.edit(project);
 }
 
@@ -224,11 +198,10 @@ Expected<Answer> set(Station& station, const std::string& id, const PanelArgumen
         if (!field)
             return usage_error(Text("a panel job has no setting \"{}\"", name), "--set",
                                Text("known are {}", known));
-        const auto value = setting_value(field->info, text);
-        if (!value) return tl::unexpected(value.error());
-        if (auto good = set_field(*job, name, *value); !good) return tl::unexpected(good.error());
+        SEAM_TRY(const auto value, setting_value(field->info, text));
+        SEAM_OK(set_field(*job, name, value));
     }
-    if (auto kept = station.edit(project); !kept) return tl::unexpected(kept.error());
+    SEAM_OK(station.edit(project));
     Answer answer;
     answer.json = {{"status", "set"}, {"job", id}};
     for (const Field<PanelJob>& f : panel_fields()) {
@@ -257,16 +230,13 @@ nlohmann::json somewhere(Random& random) {
 // else.
 Expected<void> make_simulated(const PanelArguments& a) {
     const json settings = {{"seed", a.seed}};
-    auto project = simulated_panel_project(settings);
-    if (!project) return tl::unexpected(project.error());
-    auto file = ProjectFile::create(a.file, *project);
-    if (!file) return tl::unexpected(file.error());
-    Station station(std::move(*file), std::move(*project));
-    if (auto connected = station.connect(); !connected) return connected;
+    SEAM_TRY(auto project, simulated_panel_project(settings));
+    SEAM_TRY(auto file, ProjectFile::create(a.file, project));
+    Station station(std::move(file), std::move(project));
+    SEAM_OK(station.connect());
     PanelArguments teaching = a;
     if (teaching.teach == 0) teaching.teach = 5;
-    if (auto taught = teach(station, station.project().panel_jobs.front().id, teaching); !taught)
-        return taught;
+    SEAM_OK(teach(station, station.project().panel_jobs.front().id, teaching));
     station.disconnect();
     Project displaced = station.project();
     Random random(a.seed, 77);
@@ -277,37 +247,33 @@ Expected<void> make_simulated(const PanelArguments& a) {
 }
 
 Expected<Answer> panel_on_devices(const PanelArguments& a) {
-    if (a.simulated)
-        if (auto made = make_simulated(a); !made) return tl::unexpected(made.error());
-    auto station = Station::open(a.file);
-    if (!station) return tl::unexpected(station.error());
-    auto id = job_of(station->project(), a);
-    if (!id) return tl::unexpected(id.error());
-    if (!a.settings.empty()) return set(*station, *id, a);
-    if (const PanelJob* job = find_panel_job(station->project(), *id); job && a.teach == 0)
-        if (auto refused = refuse_unsafe(*station, motion_findings(station->project(), *job, a.push)))
+    if (a.simulated) SEAM_OK(make_simulated(a));
+    SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_TRY(auto id, job_of(station.project(), a));
+    if (!a.settings.empty()) return set(station, id, a);
+    if (const PanelJob* job = find_panel_job(station.project(), id); job && a.teach == 0)
+        if (auto refused = refuse_unsafe(station, motion_findings(station.project(), *job, a.push)))
             return *refused;
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    SEAM_OK(station.connect());
     Answer answer;
     if (a.teach > 0 && !a.simulated) {
-        if (auto taught = teach(*station, *id, a); !taught) return tl::unexpected(taught.error());
+        SEAM_OK(teach(station, id, a));
         json places = json::array();
-        for (const PanelJob& job : station->project().panel_jobs) {
-            if (job.id != *id) continue;
+        for (const PanelJob& job : station.project().panel_jobs) {
+            if (job.id != id) continue;
             for (const PanelPlace& p : job.places) {
                 places.push_back({{"id", p.id}, {"gap_mm", p.gap_mm}, {"flush_mm", p.flush_mm}});
                 answer.text +=
                     fmt::format("place {:<6} gap {:8.3f}   flush {:+8.3f} mm\n", p.id, p.gap_mm, p.flush_mm);
             }
         }
-        answer.json = {{"status", "taught"}, {"job", *id}, {"places", places}};
+        answer.json = {{"status", "taught"}, {"job", id}, {"places", places}};
         return answer;
     }
-    auto record = run_panel(*station, *id, run_options(a));
-    if (!record) return tl::unexpected(record.error());
-    answer.json = run_json(*record);
-    answer.text = run_text(*record);
-    answer.exit_code = run_exit_code(*record);
+    SEAM_TRY(auto record, run_panel(station, id, run_options(a)));
+    answer.json = run_json(record);
+    answer.text = run_text(record);
+    answer.exit_code = run_exit_code(record);
     return answer;
 }
 

@@ -159,56 +159,44 @@ Expected<std::vector<ProgramFile>> files_of(const PathArguments& a, const PathAn
     request.rounding_mm = a.rounding_mm;
     for (const ApplicationPoint& p : answer.path.points) request.frame_from_tool.push_back(p.frame_from_tool);
     if (a.blend.closed) request.frame_from_tool.push_back(request.frame_from_tool.front());
-    auto program = write_robot_path(a.brand, request);
-    if (!program) return tl::unexpected(program.error());
-    files.insert(files.end(), program->begin(), program->end());
+    SEAM_TRY(auto program, write_robot_path(a.brand, request));
+    files.insert(files.end(), program.begin(), program.end());
     return files;
 }
 
 Expected<Answer> correct_path(const PathArguments& a) {
-    const auto notation = path_notation_from(a.brand);
-    if (!notation) return tl::unexpected(notation.error());
-    auto path = read_path_csv(a.path, *notation);
-    if (!path) return tl::unexpected(path.error());
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(const auto notation, path_notation_from(a.brand));
+    SEAM_TRY(auto path, read_path_csv(a.path, notation));
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     std::int64_t number = a.run;
     if (number == 0) {
-        auto runs = file->runs();
-        if (!runs) return tl::unexpected(runs.error());
-        if (runs->empty())
+        SEAM_TRY(auto runs, file.runs());
+        if (runs.empty())
             return input_error("the project has no run to correct the path by", a.file,
                                "measure with `seamwright run` first");
-        number = runs->back().number;
+        number = runs.back().number;
     }
-    auto run = file->load_run(number, false);
-    if (!run) return tl::unexpected(run.error());
-    auto setup = file->load_run_setup(number);
-    if (!setup) return tl::unexpected(setup.error());
+    SEAM_TRY(auto run, file.load_run(number, false));
+    SEAM_TRY(auto setup, file.load_run_setup(number));
     const PathFrame frame = a.frame == "base" ? PathFrame::base : PathFrame::workobject;
-    auto answer = correct_application_path(*setup, *run, *path, frame, a.blend);
-    if (!answer) return tl::unexpected(answer.error());
+    SEAM_TRY(auto answer, correct_application_path(setup, run, path, frame, a.blend));
 
     Answer out;
-    out.json = answer_json(*answer, number);
-    out.exit_code = answer->ok() ? kExitOk : kExitVerdict;
-    if (answer->ok() && !a.folder.empty()) {
-        auto files = files_of(a, *answer, *notation, frame, *setup, number);
-        if (!files) return tl::unexpected(files.error());
+    out.json = answer_json(answer, number);
+    out.exit_code = answer.ok() ? kExitOk : kExitVerdict;
+    if (answer.ok() && !a.folder.empty()) {
+        SEAM_TRY(auto files, files_of(a, answer, notation, frame, setup, number));
         std::error_code failed;
         std::filesystem::create_directories(a.folder, failed);
         if (failed)
             return file_error(Text("the folder cannot be made: {}", failed.message()), a.folder.string());
-        for (const ProgramFile& f : *files) {
+        for (const ProgramFile& f : files) {
             const auto target = a.folder / f.name;
-            if (auto written = write_text_file(target, f.text); !written)
-                return tl::unexpected(written.error());
+            SEAM_OK(write_text_file(target, f.text));
             out.json["files"].push_back(target.string());
         }
     }
-    if (!a.report.empty())
-        if (auto written = write_text_file(a.report, report_html(*answer, out.json, setup->name)); !written)
-            return tl::unexpected(written.error());
+    if (!a.report.empty()) SEAM_OK(write_text_file(a.report, report_html(answer, out.json, setup.name)));
     out.text = answer_text(out.json);
     return out;
 }

@@ -46,7 +46,7 @@ Expected<Profile> read_in_unit(const std::string& file, const std::string& unit,
     auto profile = read_profile_csv(file);
     if (!profile) return profile;
     invalid.apply(*profile, file);
-    if (auto ok = check_unit(*profile, file, unit); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_unit(*profile, file, unit));
     convert_to_mm(*profile, unit);
     return profile;
 }
@@ -56,8 +56,7 @@ Expected<Profile> read_filtered(const std::string& file, const std::string& unit
                                 const FilterOptions& options) {
     auto profile = read_in_unit(file, unit, invalid);
     if (!profile) return profile;
-    if (!profile->filtered())
-        if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
+    if (!profile->filtered()) SEAM_OK(filter_profile(*profile, options));
     return profile;
 }
 
@@ -76,26 +75,25 @@ void add_filter_options(CLI::App* command, FilterOptions& o) {
 
 Expected<Answer> filter(const std::string& in, const std::string& out, const std::string& unit,
                         NoReturnOption& invalid, const FilterOptions& options) {
-    auto profile = read_in_unit(in, unit, invalid);
-    if (!profile) return tl::unexpected(profile.error());
-    if (auto done = filter_profile(*profile, options); !done) return tl::unexpected(done.error());
-    if (auto written = write_profile_csv(out, *profile); !written) return tl::unexpected(written.error());
+    SEAM_TRY(auto profile, read_in_unit(in, unit, invalid));
+    SEAM_OK(filter_profile(profile, options));
+    SEAM_OK(write_profile_csv(out, profile));
     int accepted = 0, outliers = 0, missing = 0;
     std::int32_t segments = 0;
-    for (std::size_t i = 0; i < profile->size(); ++i) {
-        if (std::isnan(profile->z_mm[i]))
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        if (std::isnan(profile.z_mm[i]))
             ++missing;
-        else if (profile->segment[i] == kOutlier)
+        else if (profile.segment[i] == kOutlier)
             ++outliers;
         else
             ++accepted;
-        segments = std::max(segments, profile->segment[i] + 1);
+        segments = std::max(segments, profile.segment[i] + 1);
     }
     Answer answer;
-    answer.json = {{"status", "ok"},       {"points", profile->size()}, {"accepted", accepted},
-                   {"outliers", outliers}, {"no_return", missing},      {"segments", segments}};
+    answer.json = {{"status", "ok"},       {"points", profile.size()}, {"accepted", accepted},
+                   {"outliers", outliers}, {"no_return", missing},     {"segments", segments}};
     answer.text = fmt::format("{} points: {} accepted in {} segments, {} outliers, {} without return\n",
-                              profile->size(), accepted, segments, outliers, missing);
+                              profile.size(), accepted, segments, outliers, missing);
     invalid.warn(answer);
     return answer;
 }
@@ -116,31 +114,26 @@ struct FeatureArguments {
 };
 
 Expected<Answer> feature(FeatureArguments& a) {
-    auto kind = find_feature_kind(a.kind);
-    if (!kind) return tl::unexpected(kind.error());
+    SEAM_TRY(auto kind, find_feature_kind(a.kind));
     FeatureRecipe recipe;
     recipe.kind = a.kind;
     for (const auto& [name, text] : a.values) {
         if (text.empty()) continue;
-        auto value = feature_setting(**kind, name, text);
-        if (!value) return tl::unexpected(value.error());
-        recipe.parameters[name] = *value;
+        SEAM_TRY(auto value, feature_setting(*kind, name, text));
+        recipe.parameters[name] = value;
     }
     if (a.kind == "template") {
         if (a.template_file.empty())
             return usage_error("the kind \"template\" needs --template T.csv", "--template");
-        auto contour = read_filtered(a.template_file, a.unit, a.invalid, a.filter);
-        if (!contour) return tl::unexpected(contour.error());
-        recipe.template_profile = std::move(*contour);
+        SEAM_TRY(auto contour, read_filtered(a.template_file, a.unit, a.invalid, a.filter));
+        recipe.template_profile = std::move(contour);
         if (a.reference.size() == 2) recipe.template_reference_mm = {a.reference[0], a.reference[1]};
     } else if (!a.template_file.empty()) {
         return usage_error("only the kind \"template\" takes a template", "--template");
     }
-    auto finder = make_feature_finder(recipe);
-    if (!finder) return tl::unexpected(finder.error());
-    auto profile = read_filtered(a.file, a.unit, a.invalid, a.filter);
-    if (!profile) return tl::unexpected(profile.error());
-    const Feature found = (*finder)->find(*profile);
+    SEAM_TRY(auto finder, make_feature_finder(recipe));
+    SEAM_TRY(auto profile, read_filtered(a.file, a.unit, a.invalid, a.filter));
+    const Feature found = finder->find(profile);
     Answer answer;
     answer.json = feature_json(found);
     answer.text = feature_text(found);
@@ -167,14 +160,11 @@ Eigen::Vector2d middle(const Profile& profile) {
 }
 
 Expected<Answer> match(MatchArguments& a) {
-    auto contour = read_filtered(a.template_file, a.unit, a.invalid, a.filter);
-    if (!contour) return tl::unexpected(contour.error());
-    auto scene = read_filtered(a.scene_file, a.unit, a.invalid, a.filter);
-    if (!scene) return tl::unexpected(scene.error());
+    SEAM_TRY(auto contour, read_filtered(a.template_file, a.unit, a.invalid, a.filter));
+    SEAM_TRY(auto scene, read_filtered(a.scene_file, a.unit, a.invalid, a.filter));
     const Eigen::Vector2d reference =
-        a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(*contour);
-    auto matcher = ContourMatcher::make(*contour, reference);
-    if (!matcher) return tl::unexpected(matcher.error());
+        a.reference.size() == 2 ? Eigen::Vector2d(a.reference[0], a.reference[1]) : middle(contour);
+    SEAM_TRY(auto matcher, ContourMatcher::make(contour, reference));
     SearchWindow window;
     if (!a.window.empty()) {
         if (!(a.window[0] > 0 && a.window[1] > 0 && a.window[2] >= 0 && a.window[2] <= 180))
@@ -185,7 +175,7 @@ Expected<Answer> match(MatchArguments& a) {
     }
     // Whoever gives a window in the scene's coordinates or about the landmark means the same contour.
     window.pivot = SearchPivot::reference_or_origin;
-    const Registration found = matcher->match(*scene, window);
+    const Registration found = matcher.match(scene, window);
     Answer answer;
     answer.json = registration_json(found);
     answer.text = registration_text(found);
@@ -207,13 +197,11 @@ Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
     if (a.project.empty() != a.spot.empty())
         return usage_error("a spot is one of a project: give both", "--project, --spot");
     if (!a.project.empty()) {
-        auto file = ProjectFile::open(a.project, FileAccess::read_only);
-        if (!file) return tl::unexpected(file.error());
-        auto project = file->load();
-        if (!project) return tl::unexpected(project.error());
-        const auto spot = std::find_if(project->spots.begin(), project->spots.end(),
+        SEAM_TRY(auto file, ProjectFile::open(a.project, FileAccess::read_only));
+        SEAM_TRY(auto project, file.load());
+        const auto spot = std::find_if(project.spots.begin(), project.spots.end(),
                                        [&](const Spot& s) { return s.id == a.spot; });
-        if (spot == project->spots.end())
+        if (spot == project.spots.end())
             return input_error(Text("the project has no spot \"{}\"", a.spot), "--spot");
         options.jitter_mm = spot->jitter_mm;
         options.window_mm = std::max(spot->entry_mm, spot->exit_mm);
@@ -228,26 +216,21 @@ Expected<AlignmentOptions> alignment_options(const AlignArguments& a) {
 
 Expected<Answer> align(AlignArguments& a) {
     const std::string &file = a.file, &unit = a.unit;
-    auto options = alignment_options(a);
-    if (!options) return tl::unexpected(options.error());
-    auto pass = read_align_csv(file);
-    if (!pass) return tl::unexpected(pass.error());
-    for (TravelProfile& p : *pass) {
+    SEAM_TRY(auto options, alignment_options(a));
+    SEAM_TRY(auto pass, read_align_csv(file));
+    for (TravelProfile& p : pass) {
         a.invalid.apply(p.profile, file);
-        if (auto ok = check_unit(p.profile, file, unit); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_unit(p.profile, file, unit));
         convert_to_mm(p.profile, unit);
         p.travel_mm *= mm_of(unit);
     }
-    for (TravelProfile& p : *pass)
-        if (auto done = filter_profile(p.profile, FilterOptions{}); !done)
-            return tl::unexpected(done.error());
-    auto result = check_alignment(*pass, *options);
-    if (!result) return tl::unexpected(result.error());
+    for (TravelProfile& p : pass) SEAM_OK(filter_profile(p.profile, FilterOptions{}));
+    SEAM_TRY(auto result, check_alignment(pass, options));
     Answer answer;
-    answer.json = alignment_json(*result);
-    answer.text = alignment_text(*result);
+    answer.json = alignment_json(result);
+    answer.text = alignment_text(result);
     a.invalid.warn(answer);
-    answer.exit_code = result->status == AlignmentStatus::frozen ? kExitOk : kExitVerdict;
+    answer.exit_code = result.status == AlignmentStatus::frozen ? kExitOk : kExitVerdict;
     return answer;
 }
 

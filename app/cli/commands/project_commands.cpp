@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 Expected<Answer> new_project(const std::string& path, const std::string& name) {
     Project project;
     project.name = name.empty() ? fs::path(path).stem().string() : name;
-    auto file = ProjectFile::create(path, project);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_OK(ProjectFile::create(path, project));
     Answer answer;
     answer.json = {{"status", "ok"}, {"file", path}, {"name", project.name}};
     answer.text = fmt::format("{} created\n", path);
@@ -36,37 +35,34 @@ Expected<Answer> new_project(const std::string& path, const std::string& name) {
 
 Expected<Answer> info(const std::string& path) {
     if (seam_file_kind(path) == SeamFile::capture) return capture_info(path);
-    auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto runs = file->runs();
-    if (!runs) return tl::unexpected(runs.error());
+    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto runs, file.runs());
     json list = json::array();
-    std::string text = fmt::format("{}: {}\n", path, project->name);
+    std::string text = fmt::format("{}: {}\n", path, project.name);
     auto lines = [&](const char* title, const auto& items, auto describe) {
         text += fmt::format("{} {}\n", items.size(), title);
         for (const auto& item : items) text += "  " + describe(item) + "\n";
     };
-    lines("sensors", project->sensors, [](const SensorSetup& s) {
+    lines("sensors", project.sensors, [](const SensorSetup& s) {
         return fmt::format("{}  {} {} {}", s.id, s.driver, s.identity.model, s.identity.serial);
     });
-    lines("robots", project->robots, [](const RobotSetup& r) {
+    lines("robots", project.robots, [](const RobotSetup& r) {
         return fmt::format("{}  {} {} {}", r.id, r.driver, r.identity.model, r.identity.serial);
     });
-    lines("calibrations", project->calibrations, [](const Calibration& c) {
+    lines("calibrations", project.calibrations, [](const Calibration& c) {
         return fmt::format("{}  {} of sensor {}, {}, {}", c.id, c.method, c.sensor_id, c.created_utc,
                            name_of(c.verdict));
     });
-    lines("spots", project->spots, [](const Spot& s) {
+    lines("spots", project.spots, [](const Spot& s) {
         return fmt::format("{}  {} with sensor {}{}", s.id, s.feature.kind, s.sensor_id,
                            s.enabled ? "" : ", switched off");
     });
-    lines("regions", project->regions, [](const Region& r) {
+    lines("regions", project.regions, [](const Region& r) {
         return fmt::format("{}  {} spots, frame {}", r.id, r.spot_ids.size(), r.frame_name);
     });
-    text += fmt::format("{} runs\n", runs->size());
-    for (const RunSummary& r : *runs) {
+    text += fmt::format("{} runs\n", runs.size());
+    for (const RunSummary& r : runs) {
         text += fmt::format("  {}  part {}  {}  {}  {}\n", r.number, r.part_id, r.started_utc,
                             r.push ? "push" : "dry run", to_string(r.status));
         list.push_back({{"number", r.number},
@@ -80,14 +76,14 @@ Expected<Answer> info(const std::string& path) {
     }
     Answer answer;
     answer.json = {{"status", "ok"},
-                   {"name", project->name},
-                   {"sensors", project->sensors.size()},
-                   {"robots", project->robots.size()},
-                   {"calibrations", project->calibrations.size()},
-                   {"spots", project->spots.size()},
-                   {"regions", project->regions.size()},
+                   {"name", project.name},
+                   {"sensors", project.sensors.size()},
+                   {"robots", project.robots.size()},
+                   {"calibrations", project.calibrations.size()},
+                   {"spots", project.spots.size()},
+                   {"regions", project.regions.size()},
                    {"runs", list},
-                   {"project", export_project(*project)}};
+                   {"project", export_project(project)}};
     answer.text = text;
     return answer;
 }
@@ -99,17 +95,16 @@ struct CheckArguments {
 
 // Who answers now, for the checklist.
 Expected<void> ask_devices(const std::string& path, Facts& facts) {
-    auto station = Station::open(path, FileAccess::read_only);
-    if (!station) return tl::unexpected(station.error());
+    SEAM_TRY(auto station, Station::open(path, FileAccess::read_only));
     facts.sensors.emplace();
     facts.robots.emplace();
-    if (auto connected = station->connect(); !connected) {
+    if (auto connected = station.connect(); !connected) {
         fmt::print(stderr, "{}\n", connected.error().sentence());
         return {};  // nobody answers: the checklist says so
     }
-    for (const SensorSetup& s : station->project().sensors) facts.sensors->push_back({s.id, true, {}});
-    for (const RobotSetup& r : station->project().robots) {
-        auto mode = station->robot(r.id)->mode();
+    for (const SensorSetup& s : station.project().sensors) facts.sensors->push_back({s.id, true, {}});
+    for (const RobotSetup& r : station.project().robots) {
+        auto mode = station.robot(r.id)->mode();
         facts.robots->push_back({r.id, true, mode ? std::string() : mode.error().sentence()});
     }
     return {};
@@ -132,19 +127,16 @@ json checklist_json(const std::vector<CheckItem>& items) {
 Expected<Answer> check_project(const CheckArguments& a) {
     const std::string& path = a.file;
     if (seam_file_kind(path) == SeamFile::capture) return capture_check(path);
-    auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
     Answer answer;
     json integrity = json::array(), plausibility = json::array();
-    for (const Error& e : file->check()) integrity.push_back(e.sentence());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    for (const Error& e : check(*project)) plausibility.push_back(e.sentence());
+    for (const Error& e : file.check()) integrity.push_back(e.sentence());
+    SEAM_TRY(auto project, file.load());
+    for (const Error& e : check(project)) plausibility.push_back(e.sentence());
     Facts facts;
-    if (auto known = gather(*file, facts); !known) return tl::unexpected(known.error());
-    if (a.connect)
-        if (auto asked = ask_devices(path, facts); !asked) return tl::unexpected(asked.error());
-    const std::vector<CheckItem> items = checklist(*project, facts);
+    SEAM_OK(gather(file, facts));
+    if (a.connect) SEAM_OK(ask_devices(path, facts));
+    const std::vector<CheckItem> items = checklist(project, facts);
     const bool commissioned =
         std::all_of(items.begin(), items.end(), [](const CheckItem& item) { return item.done(); });
     const bool findings = !plausibility.empty() || (a.commissioned && !commissioned);
@@ -180,36 +172,31 @@ struct ExportArguments {
 Expected<Answer> export_command(const ExportArguments& a) {
     if (a.out.empty() && a.profiles.empty())
         return usage_error("nothing to export", "export", "give --out FILE.json, --profiles DIR, or both");
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     Answer answer;
     answer.json = {{"status", "ok"}};
     if (!a.out.empty()) {
-        auto document = export_file(*file, a.taught_profiles);
-        if (!document) return tl::unexpected(document.error());
-        if (auto written = write_text_file(a.out, document->dump(2) + "\n"); !written)
-            return tl::unexpected(written.error());
+        SEAM_TRY(auto document, export_file(file, a.taught_profiles));
+        SEAM_OK(write_text_file(a.out, document.dump(2) + "\n"));
         answer.json["file"] = a.out;
         answer.text += a.out + " written\n";
     }
     if (!a.profiles.empty()) {
         std::int64_t run = a.run;
         if (run == 0) {
-            auto runs = file->runs();
-            if (!runs) return tl::unexpected(runs.error());
-            if (runs->empty())
+            SEAM_TRY(auto runs, file.runs());
+            if (runs.empty())
                 return input_error("the project has no run whose profiles could be exported", a.file);
-            run = runs->back().number;
+            run = runs.back().number;
         }
         const ProfileFormat format = a.format == "ply"   ? ProfileFormat::ply
                                      : a.format == "pcd" ? ProfileFormat::pcd
                                                          : ProfileFormat::csv;
-        auto written = export_profiles(*file, run, format, a.profiles);
-        if (!written) return tl::unexpected(written.error());
+        SEAM_TRY(auto written, export_profiles(file, run, format, a.profiles));
         answer.json["run"] = run;
         answer.json["profiles"] = json::array();
-        for (const fs::path& p : *written) answer.json["profiles"].push_back(p.string());
-        answer.text += fmt::format("{} profiles of run {} written to {}\n", written->size(), run, a.profiles);
+        for (const fs::path& p : written) answer.json["profiles"].push_back(p.string());
+        answer.text += fmt::format("{} profiles of run {} written to {}\n", written.size(), run, a.profiles);
     }
     return answer;
 }
@@ -221,30 +208,25 @@ struct MirrorArguments {
 };
 
 Expected<Answer> mirror_command(const MirrorArguments& a) {
-    auto plane = parse_mirror_plane(a.plane, a.offset_mm);
-    if (!plane) return tl::unexpected(plane.error());
+    SEAM_TRY(auto plane, parse_mirror_plane(a.plane, a.offset_mm));
     std::error_code ignored;
     if (fs::equivalent(a.file, a.out, ignored))
         return usage_error("the mirrored project would replace the one it is made from", a.out,
                            "give another file to --out");
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto mirrored = mirrored_project(*project, *plane);
-    if (!mirrored) return tl::unexpected(mirrored.error());
-    mirrored->name = fs::path(a.out).stem().string();
-    auto created = ProjectFile::create(a.out, *mirrored, a.replace);
-    if (!created) return tl::unexpected(created.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto mirrored, mirrored_project(project, plane));
+    mirrored.name = fs::path(a.out).stem().string();
+    SEAM_OK(ProjectFile::create(a.out, mirrored, a.replace));
     Answer answer;
     answer.json = {{"status", "ok"},
                    {"file", a.out},
-                   {"normal", vector_json(plane->normal)},
-                   {"offset_mm", plane->offset_mm},
-                   {"spots", mirrored->spots.size()},
-                   {"regions", mirrored->regions.size()}};
+                   {"normal", vector_json(plane.normal)},
+                   {"offset_mm", plane.offset_mm},
+                   {"spots", mirrored.spots.size()},
+                   {"regions", mirrored.regions.size()}};
     answer.text = fmt::format("{} created: {} spots and {} regions mirrored; runs and events stay with {}\n",
-                              a.out, mirrored->spots.size(), mirrored->regions.size(), a.file);
+                              a.out, mirrored.spots.size(), mirrored.regions.size(), a.file);
     return answer;
 }
 

@@ -27,26 +27,24 @@ constexpr std::array<const char*, 3> kKinds{"translation", "rotation", "both"};
 Expected<Station> open_connected(const std::string& file) {
     auto station = Station::open(file);
     if (!station) return station;
-    if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+    SEAM_OK(station->connect());
     return station;
 }
 
 Expected<Answer> zero_shift(const std::string& file, int runs) {
-    auto station = open_connected(file);
-    if (!station) return tl::unexpected(station.error());
+    SEAM_TRY(auto station, open_connected(file));
     ZeroShiftOptions options;
     options.runs = runs;
     options.cancel = stop_on_signal();
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
     };
-    auto zero = measure_zero_shift(*station, options);
-    if (!zero) return tl::unexpected(zero.error());
-    const double required = station->project().requirements.sigma3_mm;
+    SEAM_TRY(auto zero, measure_zero_shift(station, options));
+    const double required = station.project().requirements.sigma3_mm;
     Answer answer;
     json regions = json::array();
     double worst = 0;
-    for (const ZeroShiftRegion& r : zero->regions) {
+    for (const ZeroShiftRegion& r : zero.regions) {
         worst = std::max(worst, r.worst_mean_mm);
         json values = json::object();
         answer.text += fmt::format("region {}: the mean moves a spot by {:.3f} mm at most\n", r.region_id,
@@ -60,13 +58,13 @@ Expected<Answer> zero_shift(const std::string& file, int runs) {
         }
         regions.push_back({{"id", r.region_id}, {"worst_mean_mm", r.worst_mean_mm}, {"values", values}});
     }
-    const bool ok = zero->refused == 0 && worst <= required;
+    const bool ok = zero.refused == 0 && worst <= required;
     answer.exit_code = ok ? kExitOk : kExitVerdict;
-    answer.json = {{"status", ok ? "ok" : "not_zero"}, {"runs", zero->runs},
-                   {"refused", zero->refused},         {"worst_mean_mm", worst},
+    answer.json = {{"status", ok ? "ok" : "not_zero"}, {"runs", zero.runs},
+                   {"refused", zero.refused},          {"worst_mean_mm", worst},
                    {"required_sigma3_mm", required},   {"regions", regions}};
     answer.text += fmt::format("{}: {} runs, {} refused, mean within {:.3f} mm, required {:.3f} mm\n",
-                               ok ? "ok" : "not zero", zero->runs.size(), zero->refused, worst, required);
+                               ok ? "ok" : "not zero", zero.runs.size(), zero.refused, worst, required);
     return answer;
 }
 
@@ -110,9 +108,8 @@ std::string csv_of(const KnownShift& proof) {
 }
 
 Expected<Answer> known_shift(const KnownShiftArguments& a) {
-    auto station = Station::open(a.file);
-    if (!station) return tl::unexpected(station.error());
-    const Project project = station->project();
+    SEAM_TRY(auto station, Station::open(a.file));
+    const Project project = station.project();
     KnownShiftOptions options;
     options.grid = a.grid;
     options.by = a.by == "part"   ? ShiftBy::simulated_part
@@ -133,11 +130,8 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
         options.place = [&](const ShiftTest& test, const Pose& shift) {
             return ask_to_place(test, shift, naming);
         };
-    auto proof = prove_known_shift(*station, options);
-    if (!proof) return tl::unexpected(proof.error());
-    if (!a.csv.empty())
-        if (auto written = write_text_file(a.csv, csv_of(*proof)); !written)
-            return tl::unexpected(written.error());
+    SEAM_TRY(auto proof, prove_known_shift(station, options));
+    if (!a.csv.empty()) SEAM_OK(write_text_file(a.csv, csv_of(proof)));
 
     const double required = project.requirements.sigma3_mm;
     Answer answer;
@@ -145,7 +139,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
         fmt::format("{:<10} {:<12} {:>5} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12}\n", "region", "shift",
                     "tests", "refused", "mean", "min", "max", "var", "3 sigma", "about truth");
     json table = json::array(), regions = json::array(), tests = json::array();
-    for (const ShiftStatistic& s : statistics(*proof)) {
+    for (const ShiftStatistic& s : statistics(proof)) {
         const char* kind = kKinds[static_cast<std::size_t>(s.kind)];
         answer.text +=
             fmt::format("{:<10} {:<12} {:>5} {:>7} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>12.4f}\n",
@@ -165,7 +159,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
     }
     bool ok = true;
     for (const Region& region : project.regions) {
-        const ProvenAccuracy proven = proven_accuracy(*proof, region.id);
+        const ProvenAccuracy proven = proven_accuracy(proof, region.id);
         const bool holds = proven.refused == 0 && proven.tests > 0 && proven.three_sigma_mm <= required;
         ok = ok && holds;
         regions.push_back({{"id", region.id},
@@ -178,7 +172,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
                         holds ? "recovered" : "not recovered", proven.three_sigma_mm, required,
                         proven.refused ? fmt::format(", {} refused", proven.refused) : "");
     }
-    for (const ShiftTest& test : proof->tests) {
+    for (const ShiftTest& test : proof.tests) {
         json outcomes = json::array();
         for (const ShiftOutcome& o : test.regions)
             outcomes.push_back({{"region", o.region_id},
@@ -186,7 +180,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
                                 {"mean_abs_mm", o.mean_abs_mm},
                                 {"deviations_mm", o.deviations_mm},
                                 {"message", o.message}});
-        tests.push_back({{"name", shift_name(test, *proof)},
+        tests.push_back({{"name", shift_name(test, proof)},
                          {"kind", kKinds[static_cast<std::size_t>(test.kind)]},
                          {"axis", std::string(1, "XYZ"[test.axis])},
                          {"amount", test.amount},
@@ -194,7 +188,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
                          {"run", test.run},
                          {"regions", outcomes}});
     }
-    const ProvenRange range = proven_range(*proof);
+    const ProvenRange range = proven_range(proof);
     answer.exit_code = ok ? kExitOk : kExitVerdict;
     answer.json = {{"status", ok ? "ok" : "not_recovered"},
                    {"required_sigma3_mm", required},

@@ -59,15 +59,12 @@ std::function<bool(const Frame&, ProfileCandidates&)> candidates_with(const Sens
 }
 
 Expected<Answer> record(const RecordArguments& a) {
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto sensors = chosen(project->sensors, a.sensors, "sensor");
-    if (!sensors) return tl::unexpected(sensors.error());
-    auto robots = chosen(a.no_robots ? std::vector<RobotSetup>() : project->robots, a.robots, "robot");
-    if (!robots) return tl::unexpected(robots.error());
-    if (sensors->empty() && robots->empty())
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto sensors, chosen(project.sensors, a.sensors, "sensor"));
+    SEAM_TRY(auto robots,
+             chosen(a.no_robots ? std::vector<RobotSetup>() : project.robots, a.robots, "robot"));
+    if (sensors.empty() && robots.empty())
         return input_error("the project has no device to record", a.file, "add a sensor first");
 
     const auto stop = stop_on_signal();
@@ -78,61 +75,56 @@ Expected<Answer> record(const RecordArguments& a) {
         error.within(where);
         return tl::unexpected(std::move(error));
     };
-    for (const SensorSetup& s : *sensors) {
+    for (const SensorSetup& s : sensors) {
         auto opened = open_sensor(s.driver, s.settings, session);
         if (!opened) return named(opened.error(), "sensor " + s.id);
         sources[s.id] = std::move(*opened);
     }
-    for (const RobotSetup& r : *robots) {
+    for (const RobotSetup& r : robots) {
         auto opened = open_robot(r.driver, r.settings, session);
         if (!opened) return named(opened.error(), "robot " + r.id);
         links[r.id] = std::move(*opened);
     }
     // Without a calibration the pixels are all that can be measured later.
     const auto model_of = [&](const SensorSetup& s) -> const SensorModel* {
-        for (const Calibration& c : project->calibrations)
+        for (const Calibration& c : project.calibrations)
             if (c.id == s.calibration_id && c.model) return &*c.model;
         return nullptr;
     };
-    const bool images = a.images || !std::all_of(sensors->begin(), sensors->end(), model_of);
-    auto recorder = open_recorder(a.out, {.images = images});
-    if (!recorder) return tl::unexpected(recorder.error());
+    const bool images = a.images || !std::all_of(sensors.begin(), sensors.end(), model_of);
+    SEAM_TRY(auto recorder, open_recorder(a.out, {.images = images}));
     std::vector<RecordingSession::Sensor> from;
     std::vector<RecordingSession::Robot> beside;
-    for (const SensorSetup& s : *sensors) {
-        auto source = (*recorder)->add_sensor(s.id, sources[s.id]->identity());
-        if (!source) return tl::unexpected(source.error());
-        RecordingSession::Sensor sensor{*source, sources[s.id].get(), nullptr, a.trigger_hz};
+    for (const SensorSetup& s : sensors) {
+        SEAM_TRY(auto source, recorder->add_sensor(s.id, sources[s.id]->identity()));
+        RecordingSession::Sensor sensor{source, sources[s.id].get(), nullptr, a.trigger_hz};
         if (!images) sensor.candidates = candidates_with(*model_of(s));
         from.push_back(std::move(sensor));
     }
-    for (const RobotSetup& r : *robots) {
+    for (const RobotSetup& r : robots) {
         auto identity = links[r.id]->identity();
         if (!identity) return named(identity.error(), "robot " + r.id);
-        auto source = (*recorder)->add_robot(r.id, *identity);
-        if (!source) return tl::unexpected(source.error());
-        beside.push_back({*source, links[r.id].get(), a.pose_hz});
+        SEAM_TRY(auto source, recorder->add_robot(r.id, *identity));
+        beside.push_back({source, links[r.id].get(), a.pose_hz});
     }
-    auto running = RecordingSession::start(*recorder, std::move(from), beside);
-    if (!running) return tl::unexpected(running.error());
+    SEAM_TRY(auto running, RecordingSession::start(recorder, std::move(from), beside));
     const auto begun = Clock::now();
     std::optional<Error> failure;
     while (!stop.stop_requested() && !failure) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         if (a.seconds > 0 && Clock::now() - begun >= std::chrono::duration<double>(a.seconds)) break;
-        if (a.profiles > 0 && (*running)->frames() >= a.profiles) break;
-        if (!sensors->empty() && (!(*running)->running() || (*running)->refusal())) break;
-        failure = (*recorder)->status().failure;
+        if (a.profiles > 0 && running->frames() >= a.profiles) break;
+        if (!sensors.empty() && (!running->running() || running->refusal())) break;
+        failure = recorder->status().failure;
     }
-    (*running)->stop();
-    const std::optional<Error> refused = (*running)->refusal();  // of a sensor that is given up
+    running->stop();
+    const std::optional<Error> refused = running->refusal();  // of a sensor that is given up
     Answer answer;
     answer.json = {{"status", "ok"},
                    {"seconds", std::chrono::duration<double>(Clock::now() - begun).count()}};
-    if (auto told = tell_recording(recorder->get(), a.out, answer); !told)
-        return tl::unexpected(told.error());
+    SEAM_OK(tell_recording(recorder.get(), a.out, answer));
     if (refused) return tl::unexpected(*refused);
-    if (!sensors->empty() && (*running)->frames() == 0) {
+    if (!sensors.empty() && running->frames() == 0) {
         answer.exit_code = kExitVerdict;
         answer.json["status"] = "no frames";
         answer.text += "no frame came: a sensor that waits for software triggers wants --trigger-hz\n";

@@ -20,21 +20,16 @@ struct ProgramArguments {
 };
 
 Expected<Answer> write_program(const ProgramArguments& a) {
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto request = program_request(*project, a.robot);
-    if (!request) return tl::unexpected(request.error());
-    auto files = write_robot_program(a.brand, *request);
-    if (!files) return tl::unexpected(files.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto request, program_request(project, a.robot));
+    SEAM_TRY(auto files, write_robot_program(a.brand, request));
     Answer answer;
     answer.json = {{"status", "ok"}, {"brand", a.brand}};
-    if (auto written = write_program_files(a.folder, *files, answer); !written)
-        return tl::unexpected(written.error());
-    answer.json["spots"] = request->moves.size();
-    answer.json["frames"] = request->frames.size();
-    answer.text += fmt::format("{} spots, {} frames\n", request->moves.size(), request->frames.size());
+    SEAM_OK(write_program_files(a.folder, files, answer));
+    answer.json["spots"] = request.moves.size();
+    answer.json["frames"] = request.frames.size();
+    answer.text += fmt::format("{} spots, {} frames\n", request.moves.size(), request.frames.size());
     return answer;
 }
 

@@ -111,17 +111,14 @@ std::string host_name() {
 Expected<void> keep_headless_proof(Station& station, std::int64_t run, const std::string& part_id,
                                    bool push) {
     const HeadlessRun proof{run, part_id, push, host_name()};
-    if (auto kept = station.file().append_evidence({0, {}, 0, proof}, station.project()); !kept)
-        return tl::unexpected(kept.error());
+    SEAM_OK(station.file().append_evidence({0, {}, 0, proof}, station.project()));
     return {};
 }
 
 Expected<Answer> watch_project(const RunArguments& a) {
-    auto log = open_log(a.log);
-    if (!log) return tl::unexpected(log.error());
-    auto station = Station::open(a.file);
-    if (!station) return tl::unexpected(station.error());
-    if (auto refused = refuse_unsafe(*station, motion_findings(station->project(), a.push))) return *refused;
+    SEAM_TRY(auto log, open_log(a.log));
+    SEAM_TRY(auto station, Station::open(a.file));
+    if (auto refused = refuse_unsafe(station, motion_findings(station.project(), a.push))) return *refused;
     WatchOptions options;
     options.push = a.push;
     options.keep_images = a.keep_images;
@@ -129,21 +126,20 @@ Expected<Answer> watch_project(const RunArguments& a) {
     options.keep_runs = a.keep_runs;
     options.start_expiry = std::chrono::milliseconds(std::llround(1000 * a.start_expiry_s));
     options.cancel = stop_on_signal();
-    auto recorder = open_recorder(a.record, {.images = true});
-    if (!recorder) return tl::unexpected(recorder.error());
-    station->record_to(*recorder);
+    SEAM_TRY(auto recorder, open_recorder(a.record, {.images = true}));
+    station.record_to(recorder);
     bool proven = false;
     Expected<void> proof;
     options.tell = [&](const WatchEvent& e) {
         print_status(e);
-        if (*log) (*log)->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
+        if (log) log->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
         // The first good part proves it; one a part would only fill the file.
         const auto* run = std::get_if<watched::RunDone>(&e.happening);
         if (proven || !run || run->record->status != RunStatus::ok) return;
-        proof = keep_headless_proof(*station, run->record->number, run->record->part_id, a.push);
+        proof = keep_headless_proof(station, run->record->number, run->record->part_id, a.push);
         proven = true;
     };
-    auto counts = watch(*station, options);
+    auto counts = watch(station, options);
     if (isatty(fileno(stderr))) fmt::print(stderr, "\n");
     if (!counts) return tl::unexpected(counts.error());
     if (!proof) return tl::unexpected(proof.error());
@@ -153,19 +149,16 @@ Expected<Answer> watch_project(const RunArguments& a) {
     answer.text =
         fmt::format("{} parts: {} corrected, {} refused, {} failed, {} alarms, {} outages\n", counts->parts,
                     counts->corrected, counts->refused, counts->failed, counts->alarms, counts->lost);
-    station->disconnect();
-    if (auto told = tell_recording(recorder->get(), a.record, answer); !told)
-        return tl::unexpected(told.error());
+    station.disconnect();
+    SEAM_OK(tell_recording(recorder.get(), a.record, answer));
     return answer;
 }
 
 Expected<Answer> run(const RunArguments& a) {
-    auto station = Station::open(a.file);
-    if (!station) return tl::unexpected(station.error());
-    if (auto refused = refuse_unsafe(*station, motion_findings(station->project(), a.push))) return *refused;
-    auto recorder = open_recorder(a.record, {.images = true});
-    if (!recorder) return tl::unexpected(recorder.error());
-    station->record_to(*recorder);
+    SEAM_TRY(auto station, Station::open(a.file));
+    if (auto refused = refuse_unsafe(station, motion_findings(station.project(), a.push))) return *refused;
+    SEAM_TRY(auto recorder, open_recorder(a.record, {.images = true}));
+    station.record_to(recorder);
     RunOptions options;
     options.part_id = a.part;
     options.push = a.push;
@@ -174,25 +167,23 @@ Expected<Answer> run(const RunArguments& a) {
     options.cancel = stop_on_signal();
     const Patience patience{.cancel = options.cancel,
                             .progress = [](const Text& text) { fmt::print(stderr, "waiting: {}\n", text); }};
-    if (auto connected = station->connect(patience); !connected) return tl::unexpected(connected.error());
+    SEAM_OK(station.connect(patience));
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
     };
-    auto record = station->run(options);
-    if (!record) return tl::unexpected(record.error());
+    SEAM_TRY(auto record, station.run(options));
     // A proof that the file does not take is no reason to call a part failed whose application runs.
-    if (record->status == RunStatus::ok)
-        if (auto kept = keep_headless_proof(*station, record->number, record->part_id, record->push); !kept) {
-            if (!record->push) return tl::unexpected(kept.error());
+    if (record.status == RunStatus::ok)
+        if (auto kept = keep_headless_proof(station, record.number, record.part_id, record.push); !kept) {
+            if (!record.push) return tl::unexpected(kept.error());
             fmt::print(stderr, "the headless run is not kept as evidence: {}\n", kept.error().sentence());
         }
     Answer answer;
-    answer.json = run_json(*record);
-    answer.text = run_text(*record);
-    answer.exit_code = run_exit_code(*record);
-    station->disconnect();
-    if (auto told = tell_recording(recorder->get(), a.record, answer); !told)
-        return tl::unexpected(told.error());
+    answer.json = run_json(record);
+    answer.text = run_text(record);
+    answer.exit_code = run_exit_code(record);
+    station.disconnect();
+    SEAM_OK(tell_recording(recorder.get(), a.record, answer));
     return answer;
 }
 
@@ -213,22 +204,21 @@ Expected<Answer> replay_command(const ReplayArguments& a) {
         options.run = a.run;
         options.jobs = a.jobs;
         options.cancel = stop_on_signal();
-        auto result = replay(file, options);
-        if (!result) return tl::unexpected(result.error());
+        SEAM_TRY(auto result, replay(file, options));
         json list = json::array();
-        for (const ReplayDifference& d : result->differences) {
+        for (const ReplayDifference& d : result.differences) {
             list.push_back({{"run", d.run}, {"what", d.what}, {"text", d.text}, {"size_mm", d.size_mm}});
             answer.text += fmt::format("{} run {} {}: {}\n", file, d.run, d.what, d.text);
         }
         answer.json["files"].push_back({{"file", file},
-                                        {"runs", result->runs},
-                                        {"captures", result->captures},
-                                        {"cancelled", result->cancelled},
+                                        {"runs", result.runs},
+                                        {"captures", result.captures},
+                                        {"cancelled", result.cancelled},
                                         {"differences", list}});
-        runs += result->runs;
-        captures += result->captures;
-        differences += result->differences.size();
-        if (result->cancelled) answer.exit_code = kExitVerdict;
+        runs += result.runs;
+        captures += result.captures;
+        differences += result.differences.size();
+        if (result.cancelled) answer.exit_code = kExitVerdict;
     }
     if (differences) answer.exit_code = kExitVerdict;
     answer.json["status"] = differences ? "differs" : answer.exit_code ? "cancelled" : "ok";

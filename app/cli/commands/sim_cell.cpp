@@ -73,23 +73,20 @@ Expected<void> take_serve(json& cell_settings, SimCellArguments& a) {
 }
 
 Expected<CellServer> serve(SimCellArguments a, json cell_settings) {
-    if (auto taken = take_serve(cell_settings, a); !taken) return tl::unexpected(taken.error());
+    SEAM_OK(take_serve(cell_settings, a));
     CellServerOptions options;
     options.cell = cell_settings;
     options.camera_address = a.camera;
     if (!a.gocator.empty()) options.gocator = {{"address", a.gocator}};
     for (const std::string& text : a.controllers) {
-        auto controller = controller_from(text);
-        if (!controller) return tl::unexpected(controller.error());
-        options.controllers.push_back(std::move(*controller));
+        SEAM_TRY(auto controller, controller_from(text));
+        options.controllers.push_back(std::move(controller));
     }
     if (!a.project.empty()) {
-        auto file = ProjectFile::open(a.project, FileAccess::read_only);
-        if (!file) return tl::unexpected(file.error());
-        auto project = file->load();
-        if (!project) return tl::unexpected(project.error());
-        for (const RobotSetup& robot : project->robots) {
-            auto program = measuring_program(*project, robot.id);
+        SEAM_TRY(auto file, ProjectFile::open(a.project, FileAccess::read_only));
+        SEAM_TRY(auto project, file.load());
+        for (const RobotSetup& robot : project.robots) {
+            auto program = measuring_program(project, robot.id);
             options.program.insert(options.program.end(), program.begin(), program.end());
         }
     }
@@ -158,19 +155,17 @@ json obey(CellServer& server, const std::string& line, bool& stop) {
 Expected<Answer> sim_cell(const SimCellArguments& a) {
     json settings = json::object();
     if (!a.settings.empty()) {
-        auto read = read_json_file(a.settings);
-        if (!read) return tl::unexpected(read.error());
-        settings = std::move(*read);
+        SEAM_TRY(auto read, read_json_file(a.settings));
+        settings = std::move(read);
     }
     const auto stop = stop_on_signal();
-    auto server = serve(a, settings);
-    if (!server) return tl::unexpected(server.error());
+    SEAM_TRY(auto server, serve(a, settings));
     if (!a.fault.empty()) {
         const auto fault = controller_fault_from(a.fault);
         if (!fault) return usage_error(Text("there is no fault \"{}\"", a.fault), "--fault");
-        for (const auto& [name, controller] : server->controllers()) controller->set_fault(*fault);
+        for (const auto& [name, controller] : server.controllers()) controller->set_fault(*fault);
     }
-    std::cout << state_json(*server).dump() << std::endl;
+    std::cout << state_json(server).dump() << std::endl;
     bool done = false, input = true;
     std::string pending;
     while (!done && !stop.stop_requested()) {
@@ -187,13 +182,13 @@ Expected<Answer> sim_cell(const SimCellArguments& a) {
             const std::string line = pending.substr(0, end);
             pending.erase(0, end + 1);
             if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-            std::cout << obey(*server, line, done).dump(-1, ' ', false, json::error_handler_t::replace)
+            std::cout << obey(server, line, done).dump(-1, ' ', false, json::error_handler_t::replace)
                       << std::endl;
         }
         if (pending.size() > 65536) return input_error("a line of over 65536 bytes", "standard input");
     }
     Answer answer;
-    answer.json = state_json(*server);
+    answer.json = state_json(server);
     answer.json["status"] = "stopped";
     answer.text = "stopped\n";
     return answer;

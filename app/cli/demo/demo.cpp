@@ -49,9 +49,8 @@ Expected<ServedDemo> listen_for_robot(const DemoOptions& options, DeviceSession&
         int port = options.robot_port;
         if (port == 0 && attempt == 0) port = kUsualRobotPort;
         if (port == 0) {
-            auto listener = TcpListener::listen("127.0.0.1", 0);
-            if (!listener) return tl::unexpected(listener.error());
-            port = listener->port();
+            SEAM_TRY(auto listener, TcpListener::listen("127.0.0.1", 0));
+            port = listener.port();
         }
         const nlohmann::json settings = {{"port", port}};
         auto robot = open_robot("kuka-eki", settings, session);
@@ -69,13 +68,11 @@ Expected<ServedDemo> serve_demo(const DemoOptions& options, const std::shared_pt
     nlohmann::json controller = demo->robot_settings;
     controller["time_scale"] = 8;  // a pace that the camera can follow
     serve.controllers = {{"kuka-eki", controller}};
-    auto server = CellServer::start(serve, cell);
-    if (!server) return tl::unexpected(server.error());
-    demo->server.emplace(std::move(*server));
+    SEAM_TRY(auto server, CellServer::start(serve, cell));
+    demo->server.emplace(std::move(server));
     demo->sensor_settings = {{"address", demo->server->camera_address()}, {"hardware_trigger", true}};
-    auto sensor = open_sensor("genicam", demo->sensor_settings, session);
-    if (!sensor) return tl::unexpected(sensor.error());
-    demo->devices.sensor = std::move(*sensor);
+    SEAM_TRY(auto sensor, open_sensor("genicam", demo->sensor_settings, session));
+    demo->devices.sensor = std::move(sensor);
     return demo;
 }
 
@@ -121,29 +118,24 @@ Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, c
     spot.feature.parameters = {{"side", 0.0}};
     TeachOptions repeated;
     repeated.repeats = kEdgeRepeats;
-    auto edge = teach_again(station, spot, repeated);
-    if (!edge) return tl::unexpected(edge.error());
-    const double x = edge->spot.reference_mm.x(), z = edge->spot.reference_mm.z();
+    SEAM_TRY(auto edge, teach_again(station, spot, repeated));
+    const double x = edge.spot.reference_mm.x(), z = edge.spot.reference_mm.z();
     spot.feature.kind = "template";
     spot.feature.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
-    spot.feature.template_profile = cut_out(edge->spot.reference_profile, x - 1, x + 40);
+    spot.feature.template_profile = cut_out(edge.spot.reference_profile, x - 1, x + 40);
     spot.feature.template_reference_mm = {x, z};
     repeated.repeats = kReferenceRepeats;
-    auto taught = teach_again(station, spot, repeated);
-    if (!taught) return tl::unexpected(taught.error());
-    spot = taught->spot;
+    SEAM_TRY(auto taught, teach_again(station, spot, repeated));
+    spot = taught.spot;
     PassOptions passing;
     passing.step_mm = kPassStepMm;
-    auto pass = record_pass(station, spot, passing);
-    if (!pass) return tl::unexpected(pass.error());
+    SEAM_TRY(auto pass, record_pass(station, spot, passing));
     AlignmentOptions alignment;
     alignment.jitter_mm = spot.jitter_mm;
-    auto frozen = check_alignment(pass->profiles, alignment);
-    if (!frozen) return tl::unexpected(frozen.error());
-    auto curve = fit_contour_curve(pass->references);
-    if (!curve) return tl::unexpected(curve.error());
-    spot.curve = *curve;
-    return DemoTaughtSpot{spot.id, taught->spread_mm, *frozen, alignment};
+    SEAM_TRY(auto frozen, check_alignment(pass.profiles, alignment));
+    SEAM_TRY(auto curve, fit_contour_curve(pass.references));
+    spot.curve = curve;
+    return DemoTaughtSpot{spot.id, taught.spread_mm, frozen, alignment};
 }
 
 // Deviation of a taught point (work object): what is left between the frame on the controller and the part's
@@ -167,12 +159,11 @@ DemoDeviation deviation(const SimulatedCell& cell, const Region& region, const P
 
 Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLink& robot, DemoPart& part) {
     for (const Region& region : project.regions) {
-        auto pushed = robot.read_frame(region.frame_name);
-        if (!pushed) return tl::unexpected(pushed.error());
+        SEAM_TRY(auto pushed, robot.read_frame(region.frame_name));
         for (const DoorSpot& spot : dense_door_spots()) {
             if (door_side_of(spot.workobject_from_sensor.translation()) != region.id) continue;
             const Eigen::Matrix3d axes = spot.workobject_from_sensor.linear();
-            part.spots.push_back(deviation(cell, region, *pushed, spot.workobject_from_sensor * spot.edge_mm,
+            part.spots.push_back(deviation(cell, region, pushed, spot.workobject_from_sensor * spot.edge_mm,
                                            axes.col(0), axes.col(2)));
             part.spots.back().arc_mm = static_cast<double>(part.spots.size() - 1);
         }
@@ -182,7 +173,7 @@ Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLin
             const Eigen::Vector3d along =
                 (path[(i + 1) % path.size()] - path[(i + path.size() - 1) % path.size()]).normalized();
             const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(along).normalized();
-            part.path.push_back(deviation(cell, region, *pushed, path[i], across, along.cross(across)));
+            part.path.push_back(deviation(cell, region, pushed, path[i], across, along.cross(across)));
             part.path.back().arc_mm = 10.0 * static_cast<double>(i);
         }
     }
@@ -208,8 +199,7 @@ std::string taught_bead(const SimulatedCell& cell) {
 // Restores the taught frames, as the controller does between two parts.
 Expected<void> reset_frames(RobotLink& robot, const Project& project) {
     for (const Region& region : project.regions)
-        if (auto written = robot.write_frame(region.frame_name, region.base_from_frame); !written)
-            return written;
+        SEAM_OK(robot.write_frame(region.frame_name, region.base_from_frame));
     return {};
 }
 
@@ -324,9 +314,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     outcome.project_file = options.folder / "demo.seam";
     outcome.report_file = options.folder / "report.html";
     nlohmann::json settings = cell_settings(options);
-    auto opened = SimulatedCell::open(settings);
-    if (!opened) return tl::unexpected(opened.error());
-    const std::shared_ptr<SimulatedCell> cell = *opened;
+    SEAM_TRY(auto opened, SimulatedCell::open(settings));
+    const std::shared_ptr<SimulatedCell> cell = opened;
     SimulatedCell& world = *cell;
     Expected<ServedDemo> served =
         ServedDemo{{}, settings, settings, {make_simulated_sensor(cell), make_simulated_robot(cell)}};
@@ -339,8 +328,7 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         settings["serve"] = {{"camera", served->server->camera_address()}, {"controllers", {controller}}};
     }
     // For `seamwright sim-cell`: the same cell again, for further runs of the project.
-    if (auto written = write_text_file(options.folder / "cell.json", settings.dump(2)); !written)
-        return tl::unexpected(written.error());
+    SEAM_OK(write_text_file(options.folder / "cell.json", settings.dump(2)));
 
     progress("calibrating the sensor on plate and sphere");
     world.set_mode(RobotMode::manual_reduced);  // moved by command while calibrating and teaching
@@ -357,14 +345,13 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     robot_setup.settings = served->robot_settings;
     robot_setup.required_mode = RobotMode::automatic;
     sensor_setup.identity = served->devices.sensor->identity();
-    auto identity = served->devices.robot->identity();
-    if (!identity) return tl::unexpected(identity.error());
-    robot_setup.identity = *identity;
-    auto calibrated = options.without.contains(DemoSource::calibration)
-                          ? Expected<DemoCalibration>(true_calibration(world))
-                          : calibrate_demo_sensor(world, *served->devices.sensor, *served->devices.robot);
-    if (!calibrated) return tl::unexpected(calibrated.error());
-    outcome.calibration = std::move(*calibrated);
+    SEAM_TRY(auto identity, served->devices.robot->identity());
+    robot_setup.identity = identity;
+    SEAM_TRY(auto calibrated,
+             options.without.contains(DemoSource::calibration)
+                 ? Expected<DemoCalibration>(true_calibration(world))
+                 : calibrate_demo_sensor(world, *served->devices.sensor, *served->devices.robot));
+    outcome.calibration = std::move(calibrated);
     if (options.parts == 0) return outcome;
     Calibration& calibration = outcome.calibration.calibration;
     calibration.id = "cal-1";
@@ -378,9 +365,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     project.robots = {robot_setup};
     project.calibrations = {calibration};
 
-    auto file = ProjectFile::create(outcome.project_file, project, true);
-    if (!file) return tl::unexpected(file.error());
-    Station station(std::move(*file), project);
+    SEAM_TRY(auto file, ProjectFile::create(outcome.project_file, project, true));
+    Station station(std::move(file), project);
     world.set_scene(Scene::part);
     std::map<std::string, std::unique_ptr<ProfileSource>> sensors;
     std::map<std::string, std::unique_ptr<RobotLink>> robots;
@@ -391,9 +377,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
     for (const DoorSpot& door : dense_door_spots()) {
         progress("teaching spot " + door.id);
         Spot spot;
-        auto taught = teach(station, world.flange_for(door.workobject_from_sensor), door, spot);
-        if (!taught) return tl::unexpected(taught.error());
-        outcome.taught.push_back(std::move(*taught));
+        SEAM_TRY(auto taught, teach(station, world.flange_for(door.workobject_from_sensor), door, spot));
+        outcome.taught.push_back(std::move(taught));
         project.spots.push_back(std::move(spot));
     }
     for (const DoorRegion& door : dense_door_regions()) {
@@ -404,32 +389,30 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         region.base_from_frame = project.part.base_from_workobject;
         project.regions.push_back(region);
     }
-    if (auto saved = station.edit(project); !saved) return tl::unexpected(saved.error());
+    SEAM_OK(station.edit(project));
     for (const DemoTaughtSpot& spot : outcome.taught)
         if (auto kept = station.file().append_evidence(
                 {0, {}, 0, frozen_contour(spot.id, spot.alignment, spot.judged_by)}, project);
             !kept)
             return tl::unexpected(kept.error());
-    if (auto written = write_text_file(options.folder / "bead.csv", taught_bead(world)); !written)
-        return tl::unexpected(written.error());
+    SEAM_OK(write_text_file(options.folder / "bead.csv", taught_bead(world)));
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     world.set_mode(RobotMode::automatic);
     for (const Region& region : project.regions) {
-        auto plan = plan_region(planned_observations(project, region), correction_options(project, region));
-        if (!plan) return tl::unexpected(plan.error());
-        outcome.plans.push_back(std::move(*plan));
+        SEAM_TRY(auto plan,
+                 plan_region(planned_observations(project, region), correction_options(project, region)));
+        outcome.plans.push_back(std::move(plan));
     }
 
     RobotLink& robot = *station.robot(kRobot);
-    if (auto reset = reset_frames(robot, project); !reset) return tl::unexpected(reset.error());
+    SEAM_OK(reset_frames(robot, project));
     for (int i = 0; i < 3; ++i) {
         progress(fmt::format("zero shift, run {} of 3", i + 1));
         RunOptions run;
         run.part_id = fmt::format("master {}", i + 1);
-        auto record = station.run(run);
-        if (!record) return tl::unexpected(record.error());
-        record->captures.clear();
-        outcome.zero_shift.push_back(std::move(*record));
+        SEAM_TRY(auto record, station.run(run));
+        record.captures.clear();
+        outcome.zero_shift.push_back(std::move(record));
     }
     std::mt19937_64 random(options.seed);
     for (int i = 0; i < options.parts; ++i) {
@@ -437,15 +420,14 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         DemoPart part;
         part.truth = next_part(random, !options.without.contains(DemoSource::bend));
         world.set_part(part.truth);
-        if (auto reset = reset_frames(robot, project); !reset) return tl::unexpected(reset.error());
+        SEAM_OK(reset_frames(robot, project));
         RunOptions run;
         run.part_id = fmt::format("CAR-{:04}", i + 1);
         run.push = true;
-        auto record = station.run(run);
-        if (!record) return tl::unexpected(record.error());
-        record->captures.clear();
-        part.run = std::move(*record);
-        if (auto judged = judge(world, project, robot, part); !judged) return tl::unexpected(judged.error());
+        SEAM_TRY(auto record, station.run(run));
+        record.captures.clear();
+        part.run = std::move(record);
+        SEAM_OK(judge(world, project, robot, part));
         outcome.parts.push_back(std::move(part));
     }
     outcome.cell = world.describe();

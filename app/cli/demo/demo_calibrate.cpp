@@ -30,7 +30,7 @@ auto solve_with_further_looks(std::size_t views, int& looks_again, const Take& t
     for (int look = 1;; ++look) {
         for (std::size_t i = 0; i < views; ++i) {
             if (!wanted[i]) continue;
-            if (auto taken = take(i); !taken) return tl::unexpected(taken.error());
+            SEAM_OK(take(i));
             looks_again += look > 1;
         }
         std::vector<char> left_out(views, 0);
@@ -42,7 +42,7 @@ auto solve_with_further_looks(std::size_t views, int& looks_again, const Take& t
 }
 
 Expected<FramePtr> snap(ProfileSource& sensor) {
-    if (auto fired = sensor.trigger(""); !fired) return tl::unexpected(fired.error());
+    SEAM_OK(sensor.trigger(""));
     return sensor.wait_next(std::chrono::milliseconds(5000));
 }
 
@@ -52,9 +52,8 @@ Expected<FramePtr> look(const SimulatedCell& cell, ProfileSource& sensor, RobotL
                                    cell.flange_from_sensor().inverse());
         !there)
         return tl::unexpected(there.error());
-    auto at = robot.base_from_flange();
-    if (!at) return tl::unexpected(at.error());
-    base_from_flange = *at;
+    SEAM_TRY(auto at, robot.base_from_flange());
+    base_from_flange = at;
     return snap(sensor);
 }
 
@@ -98,9 +97,8 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
                                                 RobotLink& robot) {
     DemoCalibration demo;
     StripePeaks peaks;
-    auto by_software = SoftwareTriggered::begin(sensor);
-    if (!by_software) return tl::unexpected(by_software.error());
-    if (auto started = sensor.start(); !started) return tl::unexpected(started.error());
+    SEAM_TRY(const auto by_software, SoftwareTriggered::begin(sensor));
+    SEAM_OK(sensor.start());
 
     // Plate: each view twice, the board under ambient light with the laser off, then the stripe on it.
     cell.set_scene(Scene::plate);
@@ -117,51 +115,48 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
         observation.height = cell.settings().optics.height;
         observation.scan = ScanLines::columns;
         Pose base_from_flange;
-        if (auto set = expose(cell, sensor, 0, kPlateExposureUs); !set) return set;
+        SEAM_OK(expose(cell, sensor, 0, kPlateExposureUs));
         auto image = look(cell, sensor, robot, plate_views()[i], base_from_flange);
         if (!image) return tl::unexpected(image.error());
         observation.board = find_board((*image)->image, board).board;
         observation.base_from_flange = base_from_flange;
-        if (auto set = expose(cell, sensor, 1, exposure_us); !set) return set;
+        SEAM_OK(expose(cell, sensor, 1, exposure_us));
         image = snap(sensor);  // the robot stands still between the two
         if (!image) return tl::unexpected(image.error());
-        auto stripe = stripe_points((*image)->image, peaks);
-        if (!stripe) return tl::unexpected(stripe.error());
-        observation.stripe = std::move(*stripe);
+        SEAM_TRY(auto stripe, stripe_points((*image)->image, peaks));
+        observation.stripe = std::move(stripe);
         observations[i] = std::move(observation);
         return {};
     };
-    auto camera = solve_with_further_looks(
-        observations.size(), demo.looks_again, take_plate, [&](std::vector<char>& left_out) {
-            auto solved = calibrate_stripe_camera(observations, board, {});
-            for (std::size_t i = 0; i < observations.size(); ++i)
-                left_out[i] = !observations[i].board ||
-                              (solved && !(solved->frames[i].used && solved->frames[i].stripe_used));
-            return solved;
-        });
-    if (!camera) return tl::unexpected(camera.error());
-    if (!camera->plane || !camera->flange_from_camera)
+    SEAM_TRY(auto camera,
+             solve_with_further_looks(
+                 observations.size(), demo.looks_again, take_plate, [&](std::vector<char>& left_out) {
+                     auto solved = calibrate_stripe_camera(observations, board, {});
+                     for (std::size_t i = 0; i < observations.size(); ++i)
+                         left_out[i] = !observations[i].board ||
+                                       (solved && !(solved->frames[i].used && solved->frames[i].stripe_used));
+                     return solved;
+                 }));
+    if (!camera.plane || !camera.flange_from_camera)
         return device_error(
-            Text("the plate frames do not determine the laser plane: {}", camera->report.judgement.reason),
+            Text("the plate frames do not determine the laser plane: {}", camera.report.judgement.reason),
             "stripe-camera");
     Calibration& c = demo.calibration;
-    c.model = SensorModel{camera->camera, camera->camera_from_laser, std::nullopt};
+    c.model = SensorModel{camera.camera, camera.camera_from_laser, std::nullopt};
     demo.steps.push_back(
-        {"stripe-camera", camera->report,
+        {"stripe-camera", camera.report,
          fmt::format("{} boards, f {:.1f} px, reprojection {:.3f} px, {:.1f} % of the stripe within 0.5 mm "
                      "of the plane",
-                     camera->boards_found, camera->camera.fx, camera->rms_px, 100 * camera->on_plane_share)});
+                     camera.boards_found, camera.camera.fx, camera.rms_px, 100 * camera.on_plane_share)});
 
     // Lens: stripes on the plate at all heights are straight lines in the world; an independent look at the
     // distortion.
     std::vector<std::vector<Eigen::Vector2d>> lines(line_views().size());
     const auto take_line = [&](std::size_t i) -> Expected<void> {
         Pose base_from_flange;
-        auto image = look(cell, sensor, robot, line_views()[i], base_from_flange);
-        if (!image) return tl::unexpected(image.error());
-        auto line = stripe_points((*image)->image, peaks);
-        if (!line) return tl::unexpected(line.error());
-        lines[i] = on_the_plate(std::move(*line));
+        SEAM_TRY(auto image, look(cell, sensor, robot, line_views()[i], base_from_flange));
+        SEAM_TRY(auto line, stripe_points(image->image, peaks));
+        lines[i] = on_the_plate(std::move(line));
         return {};
     };
     auto straight =
@@ -192,39 +187,37 @@ Expected<DemoCalibration> calibrate_demo_sensor(SimulatedCell& cell, ProfileSour
     ProfileCandidates candidates;
     const auto take_sphere = [&](std::size_t i) -> Expected<void> {
         SphereObservation observation;
-        auto image = look(cell, sensor, robot, sphere_views()[i], observation.base_from_flange);
-        if (!image) return tl::unexpected(image.error());
+        SEAM_TRY(auto image, look(cell, sensor, robot, sphere_views()[i], observation.base_from_flange));
         observation.id = fmt::format("sphere{:02}", i + 1);
-        if (auto found = find_peaks((*image)->image, {}, peaks); !found) return found;
+        SEAM_OK(find_peaks(image->image, {}, peaks));
         to_millimetres(peaks, *c.model, candidates);
-        if (auto tracked = track_stripe(candidates, {}, observation.profile); !tracked) return tracked;
+        SEAM_OK(track_stripe(candidates, {}, observation.profile));
         sphere[i] = std::move(observation);
         return {};
     };
     TcpSphereOptions options;
     options.radius_mm = cell.settings().sphere_radius_mm;
-    auto tcp = solve_with_further_looks(sphere.size(), demo.looks_again, take_sphere,
-                                        [&](std::vector<char>& left_out) {
-                                            auto solved = calibrate_tcp_sphere(sphere, options);
-                                            for (std::size_t i = 0; solved && i < sphere.size(); ++i)
-                                                left_out[i] = !solved->report.poses[i].used;
-                                            return solved;
-                                        });
-    if (!tcp) return tl::unexpected(tcp.error());
-    if (tcp->status != TcpSphereStatus::ok)
+    SEAM_TRY(auto tcp, solve_with_further_looks(sphere.size(), demo.looks_again, take_sphere,
+                                                [&](std::vector<char>& left_out) {
+                                                    auto solved = calibrate_tcp_sphere(sphere, options);
+                                                    for (std::size_t i = 0; solved && i < sphere.size(); ++i)
+                                                        left_out[i] = !solved->report.poses[i].used;
+                                                    return solved;
+                                                }));
+    if (tcp.status != TcpSphereStatus::ok)
         return device_error(
-            Text("the sphere does not determine the sensor's place: {}", tcp->report.judgement.reason),
+            Text("the sphere does not determine the sensor's place: {}", tcp.report.judgement.reason),
             "tcp-sphere");
-    c.flange_from_sensor = tcp->flange_from_sensor;
-    c.covariance = tcp->covariance;
+    c.flange_from_sensor = tcp.flange_from_sensor;
+    c.covariance = tcp.covariance;
     c.method = "stripe-camera + tcp-sphere";
     c.source = Text("{} frames of a plate, {} of a sphere of {} mm, rendered", observations.size(),
                     sphere.size(), *options.radius_mm);
     c.raw = sphere_json(sphere, *options.radius_mm);
-    c.verdict = std::max(camera->report.judgement.verdict, tcp->report.judgement.verdict);
-    demo.steps.push_back({"tcp-sphere", tcp->report,
-                          fmt::format("rms {:.4f} mm, sigma at the working distance {:.4f} mm", tcp->rms_mm,
-                                      tcp->working_sigma_mm)});
+    c.verdict = std::max(camera.report.judgement.verdict, tcp.report.judgement.verdict);
+    demo.steps.push_back({"tcp-sphere", tcp.report,
+                          fmt::format("rms {:.4f} mm, sigma at the working distance {:.4f} mm", tcp.rms_mm,
+                                      tcp.working_sigma_mm)});
     sensor.stop();
     demo.truth_mm = chain_error_mm(cell, c);
     return demo;

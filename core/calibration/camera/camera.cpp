@@ -42,7 +42,7 @@ Expected<void> check(const CameraData& data, const CameraOptions& options) {
     std::vector<std::string> ids;
     for (const auto& v : data.views) ids.push_back(v.id);
     if (ids.empty()) return input_error("there is no view", "views", "give at least 3 views of the plate");
-    if (auto ok = check_ids(ids, options.exclude, "views"); !ok) return ok;
+    SEAM_OK(check_ids(ids, options.exclude, "views"));
     double size_mm = 0;
     for (const auto& v : data.views) {
         const std::string where = "views[" + v.id + "]";
@@ -296,7 +296,7 @@ Judgement judge(const CameraResult& r, std::size_t views, const Text& hint) {
 }  // namespace
 
 Expected<CameraResult> calibrate_camera(const CameraData& input, const CameraOptions& options) {
-    if (auto ok = check(input, options); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check(input, options));
     CameraResult result;
     const std::size_t total = input.views.size();
     result.camera_from_target.assign(total, Pose::Identity());

@@ -105,11 +105,11 @@ Expected<void> check_input(const std::vector<HandEyePair>& pairs, const std::vec
         robot.push_back(pair.base_from_flange);
         camera.push_back(pair.camera_from_target);
     }
-    if (auto ok = check_ids(ids, exclude, "pairs"); !ok) return ok;
-    if (auto ok = check_rigid(robot, ids, "base_from_flange of"); !ok) return ok;
-    if (auto ok = check_rigid(camera, ids, "camera_from_target of"); !ok) return ok;
-    if (auto ok = check_millimetres(robot, "base_from_flange of the pairs"); !ok) return ok;
-    if (auto ok = check_millimetres(camera, "camera_from_target of the pairs"); !ok) return ok;
+    SEAM_OK(check_ids(ids, exclude, "pairs"));
+    SEAM_OK(check_rigid(robot, ids, "base_from_flange of"));
+    SEAM_OK(check_rigid(camera, ids, "camera_from_target of"));
+    SEAM_OK(check_millimetres(robot, "base_from_flange of the pairs"));
+    SEAM_OK(check_millimetres(camera, "camera_from_target of the pairs"));
     used.assign(pairs.size(), true);
     for (size_t i = 0; i < pairs.size(); ++i) {
         if (std::find(exclude.begin(), exclude.end(), ids[i]) != exclude.end())
@@ -231,7 +231,7 @@ std::string_view name_of(HandEyeStatus status) {
 Expected<HandEyeResult> calibrate_hand_eye(Mount mount, const std::vector<HandEyePair>& pairs,
                                            const std::vector<std::string>& exclude) {
     std::vector<bool> used;
-    if (auto ok = check_input(pairs, exclude, used); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_input(pairs, exclude, used));
     Chain chain = chain_of(mount, pairs, used);
     const std::vector<bool> wanted = used;
 

@@ -98,7 +98,7 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
             return input_error("a coordinate is beyond 100 m on the plate or 1 km in the world",
                                Text("point '{}'", point.id), "give millimetres");
     }
-    if (auto ok = check_ids(ids, options.exclude, "points"); !ok) return ok;
+    SEAM_OK(check_ids(ids, options.exclude, "points"));
     if (options.sigma_mm && !(std::isfinite(*options.sigma_mm) && *options.sigma_mm > 0))
         return input_error("sigma_mm is not a positive number", "sigma_mm");
     use.assign(points.size(), true);
@@ -150,7 +150,7 @@ std::string_view name_of(PlateStatus status) {
 
 Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, const PlateOptions& options) {
     std::vector<bool> use;
-    if (auto ok = check_input(points, options, use); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_input(points, options, use));
     const std::vector<bool> wanted = use;
     Points plate, world;
     for (const auto& point : points) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double kGoodChain_mm = 0.1, kUsableChain_mm = 0.3;  // three sigma of the working point
 
 Expected<void> check_link(const UncertainPose& link, const Text& where) {
-    if (auto pose = pose_from_matrix(link.pose.matrix(), where); !pose) return tl::unexpected(pose.error());
+    SEAM_OK(pose_from_matrix(link.pose.matrix(), where));
     if (!link.covariance.allFinite())
         return input_error("the covariance holds a value that is not a finite number", where);
     const double scale = std::max(1e-12, link.covariance.cwiseAbs().maxCoeff());
@@ -59,25 +59,20 @@ Expected<StaticChainResult> calibrate_static(const std::vector<StaticSensor>& se
     std::vector<std::string> ids;
     for (const auto& sensor : sensors) ids.push_back(sensor.id);
     if (sensors.empty()) return input_error("there is no sensor", "sensors", "give at least one");
-    if (auto ok = check_ids(ids, options.exclude, "sensors"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_ids(ids, options.exclude, "sensors"));
     std::vector<Pose> cameras, worlds;
     for (const auto& sensor : sensors) {
         const Text where("sensor '{}', ", sensor.id);
-        if (auto ok = check_link(sensor.world_from_plate, joined(where, "", "world_from_plate")); !ok)
-            return tl::unexpected(ok.error());
-        if (auto ok = check_link(sensor.plate_from_camera, joined(where, "", "plate_from_camera")); !ok)
-            return tl::unexpected(ok.error());
-        if (auto ok = check_link(sensor.camera_from_laser, joined(where, "", "camera_from_laser")); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(check_link(sensor.world_from_plate, joined(where, "", "world_from_plate")));
+        SEAM_OK(check_link(sensor.plate_from_camera, joined(where, "", "plate_from_camera")));
+        SEAM_OK(check_link(sensor.camera_from_laser, joined(where, "", "camera_from_laser")));
         if (!sensor.working_point_mm.allFinite())
             return input_error("the working point is not finite", joined(where, "", "working_point_mm"));
         cameras.push_back(sensor.plate_from_camera.pose);
     }
-    if (auto ok = check_millimetres(cameras, "plate_from_camera of the sensors"); !ok)
-        return tl::unexpected(ok.error());
+    SEAM_OK(check_millimetres(cameras, "plate_from_camera of the sensors"));
     if (options.reference_from_world)
-        if (auto ok = check_link(*options.reference_from_world, "reference_from_world"); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(check_link(*options.reference_from_world, "reference_from_world"));
 
     StaticChainResult result;
     result.judgement = {Verdict::good, "", ""};

@@ -106,8 +106,7 @@ Expected<DriftMeasurement> drift_measurement(const SphereObservation& observatio
     const Text where("measurement '{}'", observation.id);
     if (!(std::isfinite(radius_mm) && radius_mm > 0))
         return input_error("the sphere's radius is not a positive number", where);
-    if (auto ok = check_rigid({observation.base_from_flange}, {observation.id}, "base_from_flange of"); !ok)
-        return tl::unexpected(ok.error());
+    SEAM_OK(check_rigid({observation.base_from_flange}, {observation.id}, "base_from_flange of"));
     if (observation.profile.x_mm.size() != observation.profile.z_mm.size())
         return input_error("the profile has different numbers of x and z", where);
     CircleSectionLimits limits;
@@ -172,9 +171,9 @@ Expected<DriftResult> check_drift(const std::vector<DriftMeasurement>& measureme
             return input_error("the covariance is not symmetric and positive definite", where);
         weight.push_back(llt.solve(Eigen::Matrix3d::Identity()));
     }
-    if (auto ok = check_ids(ids, {}, "measurements"); !ok) return tl::unexpected(ok.error());
-    if (auto ok = check_rigid(poses, ids, "base_from_flange of"); !ok) return tl::unexpected(ok.error());
-    if (auto ok = check_millimetres(poses, "measurements"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_ids(ids, {}, "measurements"));
+    SEAM_OK(check_rigid(poses, ids, "base_from_flange of"));
+    SEAM_OK(check_millimetres(poses, "measurements"));
     if (!(limits.translation_mm > 0) || !(limits.rotation_deg > 0))
         return input_error("the limits of the drift check are not positive", "limits");
 

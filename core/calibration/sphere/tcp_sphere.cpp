@@ -38,12 +38,12 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
             return input_error("the profile has different numbers of x and z",
                                Text("observation '{}'", observation.id));
     }
-    if (auto ok = check_ids(ids, options.exclude, "observations"); !ok) return ok;
+    SEAM_OK(check_ids(ids, options.exclude, "observations"));
     if (options.radius_mm && !(std::isfinite(*options.radius_mm) && *options.radius_mm > 0))
         return input_error("the sphere's radius is not a positive number", "radius_mm",
                            "give it in millimetres or null");
-    if (auto ok = check_rigid(poses, ids, "base_from_flange of"); !ok) return ok;
-    if (auto ok = check_millimetres(poses, "observations"); !ok) return ok;
+    SEAM_OK(check_rigid(poses, ids, "base_from_flange of"));
+    SEAM_OK(check_millimetres(poses, "observations"));
     if (options.nominal_flange_from_sensor)
         if (auto ok = check_rigid({*options.nominal_flange_from_sensor}, {"nominal"}, "flange_from_sensor");
             !ok)
@@ -394,7 +394,7 @@ std::string_view name_of(MirroredAxis axis) {
 
 Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservation>& observations,
                                                const TcpSphereOptions& options) {
-    if (auto ok = check_input(observations, options); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_input(observations, options));
     const bool radius_free = !options.radius_mm.has_value();
     std::vector<bool> excluded(observations.size());
     for (size_t i = 0; i < observations.size(); ++i)

@@ -45,7 +45,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
                                                  const std::vector<std::string>& exclude) {
     std::vector<std::string> ids;
     for (const auto& p : pairs) ids.push_back(p.id);
-    if (auto ok = check_ids(ids, exclude, "pairs"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_ids(ids, exclude, "pairs"));
     LaserPlaneResult result;
     auto& report = result.report;
     std::vector<char> used(pairs.size(), 1);
@@ -66,7 +66,7 @@ Expected<LaserPlaneResult> calibrate_laser_plane(const CameraModel& camera,
     if (count() < 4)
         return input_error(Text("{} pairs are too few, at least 4 are needed", count()), "pairs",
                            "place the body in 10 or more positions over the whole field of view");
-    if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_span_millimetres(extent, "pairs"));
     static constexpr const char* names[] = {"x", "y", "z", "rx", "ry", "rz"};
     const auto undetermined = [&](const Text& why) {
         report.judgement = {Verdict::undetermined, why,

@@ -45,11 +45,11 @@ class Solver {
         : observations_(observations), spec_(spec), options_(options) {}
 
     Expected<StripeCameraResult> run() {
-        if (auto ok = collect(); !ok) return tl::unexpected(ok.error());
-        if (auto ok = start(); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(collect());
+        SEAM_OK(start());
         choose_model();
         refine_without_stripe();
-        if (auto ok = check_scale_again(); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(check_scale_again());
         locate_stripes();
         refine_with_stripe();
         measure();
@@ -171,7 +171,7 @@ class Solver {
             b.push_back(state_.camera_from_target[k]);
             pairs.push_back({data_.views[k].id, a.back(), b.back()});
         }
-        if (auto ok = check_millimetres(a, "base_from_flange"); !ok) return ok;
+        SEAM_OK(check_millimetres(a, "base_from_flange"));
         auto start = calibrate_hand_eye(Mount::eye_in_hand, pairs);
         if (!start) {
             robot_note_ = start.error().what;
@@ -182,7 +182,7 @@ class Solver {
                                                     : start->degenerate.front();
             return {};
         }
-        if (auto ok = check_scale(a, b, start->x.linear()); !ok) return ok;
+        SEAM_OK(check_scale(a, b, start->x.linear()));
         state_.flange_from_camera = start->x;
         state_.base_from_target = start->y;
         for (std::size_t i = 0; i < with.size(); ++i)
@@ -736,7 +736,7 @@ class Solver {
 Expected<StripeCameraResult> calibrate_stripe_camera(const std::vector<StripeObservation>& observations,
                                                      const BoardSpec& spec,
                                                      const StripeCameraOptions& options) {
-    if (auto ok = validate(spec); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(validate(spec));
     return Solver(observations, spec, options).run();
 }
 

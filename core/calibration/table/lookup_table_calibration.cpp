@@ -142,7 +142,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
                            "thin them out to 100000 or fewer");
     std::vector<std::string> ids;
     for (const auto& p : pairs) ids.push_back(p.id);
-    if (auto ok = check_ids(ids, options.exclude, "pairs"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_ids(ids, options.exclude, "pairs"));
     LookupTableResult result;
     auto& report = result.report;
     std::vector<std::string> excluded = options.exclude;
@@ -169,7 +169,7 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     if (count < 6)
         return input_error(Text("{} pairs are too few, at least 6 are needed", count), "pairs",
                            "measure 25 or more positions over the whole field of view");
-    if (auto ok = check_span_millimetres(extent, "pairs"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_span_millimetres(extent, "pairs"));
 
     const char* spread = "measure 25 or more positions over the whole field of view, near and far";
     const auto undetermined = [&](Text reason) {

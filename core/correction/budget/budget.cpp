@@ -145,7 +145,7 @@ Expected<UncertaintyBudget> uncertainty_budget(std::span<const BudgetSpot> spots
         observations.push_back(b.spot);
         observations.back().measured_mm = b.spot.reference_mm;
     }
-    if (auto good = check_region(observations, options, false); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_region(observations, options, false));
     const bool as_taught = displacement.workobject_from_movedworkobject.matrix().isIdentity(0);
     for (std::size_t n = 0; n < spots.size(); ++n) {
         observations[n].measured_mm = displaced_measure(observations[n], displacement);

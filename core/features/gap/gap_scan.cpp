@@ -29,12 +29,11 @@ ParameterValues values_of(const GapScanOptions& o) {
 
 Expected<void> check(std::span<const GapSection> sections, const GapScanOptions& o) {
     if (sections.empty()) return input_error("there are no profiles", "gap");
-    if (auto ok = validate(values_of(o), gap_scan_parameters(), "gap"); !ok) return ok;
-    if (auto ok = check(o.gauge); !ok) return ok;
+    SEAM_OK(validate(values_of(o), gap_scan_parameters(), "gap"));
+    SEAM_OK(check(o.gauge));
     for (std::size_t i = 0; i < sections.size(); ++i) {
         const Text where("profile {}", i + 1);
-        if (auto ok = pose_from_matrix(sections[i].frame_from_sensor.matrix(), where, 1e-6); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(pose_from_matrix(sections[i].frame_from_sensor.matrix(), where, 1e-6));
         if (sections[i].profile.size() > 0 && !sections[i].profile.filtered())
             return input_error("it was not filtered", where);
     }
@@ -248,7 +247,7 @@ const std::vector<ParameterInfo>& gap_scan_parameters() {
 }
 
 Expected<GapScanOptions> with_values(GapScanOptions options, const ParameterValues& values) {
-    if (auto ok = validate(values, gap_scan_parameters(), "gap"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(validate(values, gap_scan_parameters(), "gap"));
     ParameterValues all = values_of(options);
     for (const auto& [name, value] : values) all[name] = value;
     options.nozzle_mm = all["nozzle_mm"];
@@ -260,12 +259,12 @@ Expected<GapScanOptions> with_values(GapScanOptions options, const ParameterValu
     options.gauge.edge_skip_mm = all["edge_skip_mm"];
     options.gauge.window.x_min = all["x_min_mm"];
     options.gauge.window.x_max = all["x_max_mm"];
-    if (auto ok = check(options.gauge); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check(options.gauge));
     return options;
 }
 
 Expected<GapScan> scan_gap(std::span<const GapSection> sections, const GapScanOptions& options) {
-    if (auto ok = check(sections, options); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check(sections, options));
     GapScan scan;
     GapFlushGauge gauge(options.gauge);
     Along measured;

@@ -287,13 +287,12 @@ class CircleFinder final : public FeatureFinder {
 
 Expected<std::unique_ptr<FeatureFinder>> make_circle(const FeatureRecipe& recipe) {
     const auto infos = circle_parameters();
-    const auto window = FeatureWindow::from(recipe.parameters, infos);
-    if (!window) return tl::unexpected(window.error());
+    SEAM_TRY(const auto window, FeatureWindow::from(recipe.parameters, infos));
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
     if (!(value("radius_min_mm") < value("radius_max_mm")))
         return input_error("the limits of the radius are empty", "radius_min_mm",
                            "give a minimum below the maximum");
-    return std::make_unique<CircleFinder>(*window, value("radius_mm"), value("radius_min_mm"),
+    return std::make_unique<CircleFinder>(window, value("radius_mm"), value("radius_min_mm"),
                                           value("radius_max_mm"), rad_from_deg(value("minimum_arc_deg")));
 }
 

@@ -444,8 +444,7 @@ class ContourEnd final : public FeatureFinder {
 
 Expected<std::unique_ptr<FeatureFinder>> make_contour_end(const FeatureRecipe& recipe) {
     const auto infos = contour_end_parameters();
-    const auto window = FeatureWindow::from(recipe.parameters, infos);
-    if (!window) return tl::unexpected(window.error());
+    SEAM_TRY(const auto window, FeatureWindow::from(recipe.parameters, infos));
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
     const SensorField field{value("field_x_min_mm"), value("field_x_max_mm")};
     if (!(field.x_min < field.x_max))
@@ -454,7 +453,7 @@ Expected<std::unique_ptr<FeatureFinder>> make_contour_end(const FeatureRecipe& r
     const auto whole = [&](const char* name) { return static_cast<int>(std::lround(value(name))); };
     const EndRule rule{static_cast<EndSide>(whole("side")), static_cast<EndOf>(whole("segment")),
                        whole("order"), whole("minimum_points")};
-    return std::make_unique<ContourEnd>(*window, field, rule, value("fit_length_mm"));
+    return std::make_unique<ContourEnd>(window, field, rule, value("fit_length_mm"));
 }
 
 }  // namespace

@@ -304,8 +304,7 @@ class Corner final : public FeatureFinder {
 
 Expected<std::unique_ptr<FeatureFinder>> make_corner(const FeatureRecipe& recipe) {
     const auto infos = corner_parameters();
-    const auto window = FeatureWindow::from(recipe.parameters, infos);
-    if (!window) return tl::unexpected(window.error());
+    SEAM_TRY(const auto window, FeatureWindow::from(recipe.parameters, infos));
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
     Corner::Settings s;
     s.given = value("split") > 0.5;
@@ -324,7 +323,7 @@ Expected<std::unique_ptr<FeatureFinder>> make_corner(const FeatureRecipe& recipe
         return input_error(
             Text("side_length_mm = {} leaves no points outside of blend_mm = {}", s.side_length, s.blend),
             "side_length_mm", "give a longer side");
-    return std::make_unique<Corner>(*window, s);
+    return std::make_unique<Corner>(window, s);
 }
 
 }  // namespace

@@ -184,10 +184,9 @@ class Extremum final : public FeatureFinder {
 
 Expected<std::unique_ptr<FeatureFinder>> make_extremum(const FeatureRecipe& recipe) {
     const auto infos = extremum_parameters();
-    const auto window = FeatureWindow::from(recipe.parameters, infos);
-    if (!window) return tl::unexpected(window.error());
+    SEAM_TRY(const auto window, FeatureWindow::from(recipe.parameters, infos));
     return std::make_unique<Extremum>(
-        *window, static_cast<Which>(std::lround(parameter(recipe.parameters, infos, "which"))),
+        window, static_cast<Which>(std::lround(parameter(recipe.parameters, infos, "which"))),
         parameter(recipe.parameters, infos, "fit_length_mm"));
 }
 

@@ -32,8 +32,7 @@ Expected<std::unique_ptr<FeatureFinder>> make_feature_finder(const FeatureRecipe
         return input_error(Text("unknown kind of feature \"{}\"", recipe.kind), "kind",
                            Text("known are: {}", known));
     }
-    if (auto valid = validate(recipe.parameters, kind->parameters, std::string(kind->name)); !valid)
-        return tl::unexpected(valid.error());
+    SEAM_OK(validate(recipe.parameters, kind->parameters, std::string(kind->name)));
     return kind->make(recipe);
 }
 

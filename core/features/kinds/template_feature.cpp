@@ -89,14 +89,13 @@ class TemplateFeature final : public FeatureFinder {
 
 Expected<std::unique_ptr<FeatureFinder>> make_template(const FeatureRecipe& recipe) {
     const auto infos = template_parameters();
-    auto matcher = ContourMatcher::make(recipe.template_profile, recipe.template_reference_mm);
-    if (!matcher) return tl::unexpected(matcher.error());
+    SEAM_TRY(auto matcher, ContourMatcher::make(recipe.template_profile, recipe.template_reference_mm));
     auto value = [&](const char* name) { return parameter(recipe.parameters, infos, name); };
     SearchWindow window;
     window.dx_mm = value("window_dx_mm");
     window.dz_mm = value("window_dz_mm");
     window.phi_rad = rad_from_deg(value("window_dphi_deg"));
-    return std::make_unique<TemplateFeature>(std::move(*matcher), window, recipe.template_reference_mm,
+    return std::make_unique<TemplateFeature>(std::move(matcher), window, recipe.template_reference_mm,
                                              value("minimum_share"));
 }
 

@@ -87,9 +87,8 @@ Expected<std::vector<ProgramFile>> files_of_folder(const std::string& folder) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
         const auto kind = entry.path().extension();
         if (kind != ".mod" && kind != ".sys") continue;
-        auto text = read_text_file(entry.path());
-        if (!text) return tl::unexpected(text.error());
-        files.push_back({entry.path().filename().string(), std::move(*text)});
+        SEAM_TRY(auto text, read_text_file(entry.path()));
+        files.push_back({entry.path().filename().string(), std::move(text)});
     }
     if (failed) return file_error(Text("the folder cannot be read: {}", failed.message()), folder);
     std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -190,20 +189,17 @@ class Controller final : public AbbRapidController {
 
 Expected<std::unique_ptr<AbbRapidController>> start_abb_rapid_controller(std::shared_ptr<SimulatedCell> cell,
                                                                          const nlohmann::json& settings) {
-    auto options = options_from(settings);
-    if (!options) return tl::unexpected(options.error());
-    if (options->robot.serial.empty()) options->robot.serial = cell->settings().serial;
-    auto listener = TcpListener::listen(options->address, static_cast<std::uint16_t>(options->port));
-    if (!listener) return tl::unexpected(listener.error());
-    options->port = listener->port();
-    auto files = programs_of(*cell, *options);
-    if (!files) return tl::unexpected(files.error());
+    SEAM_TRY(auto options, options_from(settings));
+    if (options.robot.serial.empty()) options.robot.serial = cell->settings().serial;
+    SEAM_TRY(auto listener, TcpListener::listen(options.address, static_cast<std::uint16_t>(options.port)));
+    options.port = listener.port();
+    SEAM_TRY(auto files, programs_of(*cell, options));
     try {
-        Sources sources = sorted(*files);
-        if (!sources.has_main) sources.motion.push_back({"SimApplication.mod", application(*cell, *options)});
-        auto controller = std::make_unique<Controller>(std::move(cell), *options, std::move(*listener));
+        Sources sources = sorted(files);
+        if (!sources.has_main) sources.motion.push_back({"SimApplication.mod", application(*cell, options)});
+        auto controller = std::make_unique<Controller>(std::move(cell), options, std::move(listener));
         controller->load(sources);
-        if (auto started = controller->start(); !started) return tl::unexpected(started.error());
+        SEAM_OK(controller->start());
         return controller;
     } catch (const rapid::LoadError& e) {
         return input_error(e.what(), "programs of the ABB controller");
@@ -212,9 +208,8 @@ Expected<std::unique_ptr<AbbRapidController>> start_abb_rapid_controller(std::sh
 
 Expected<std::unique_ptr<SimulatedController>> start_abb_rapid(std::shared_ptr<SimulatedCell> cell,
                                                                const nlohmann::json& settings) {
-    auto controller = start_abb_rapid_controller(std::move(cell), settings);
-    if (!controller) return tl::unexpected(controller.error());
-    return std::move(*controller);
+    SEAM_TRY(auto controller, start_abb_rapid_controller(std::move(cell), settings));
+    return controller;
 }
 
 Expected<void> check_rapid(const std::vector<ProgramFile>& motion, const std::vector<ProgramFile>& server) {

@@ -221,12 +221,11 @@ Expected<std::vector<rapid::SourceText>> modules_of(const EgmRobotOptions& o) {
     request.project = "the simulated cell";
     request.driver = "abb-egm";
     request.settings = {{"cycle_ms", o.cycle_ms}};
-    auto files = write_abb_program(request);
-    if (!files) return tl::unexpected(files.error());
+    SEAM_TRY(auto files, write_abb_program(request));
     std::string application(resources::SimEgmApplication_mod);
     replace(application, "@REST@", fmt::format("{:.3f}", o.restart_ms / 1e3));
     std::vector<rapid::SourceText> modules = {{"SimEgmApplication.mod", application}};
-    for (ProgramFile& file : *files) {
+    for (ProgramFile& file : files) {
         if (file.name != "SeamwrightEgm.mod") continue;
         replace(file.text, "CommTimeout:=1",
                 fmt::format("CommTimeout:={:.3f}", o.late_limit * o.cycle_ms / 1e3));
@@ -248,44 +247,37 @@ Expected<std::unique_ptr<SimulatedController>> start_abb_egm(std::shared_ptr<Sim
         !ok)
         return tl::unexpected(ok.error());
     EgmRobotOptions o;
-    auto address = json_string_or(settings, "address", o.address, "");
-    if (!address) return tl::unexpected(address.error());
-    o.address = *address;
+    SEAM_TRY(auto address, json_string_or(settings, "address", o.address, ""));
+    o.address = address;
     for (const auto& [key, value] : {std::pair<const char*, int*>{"port", &o.port},
                                      {"cycle_ms", &o.cycle_ms},
                                      {"late_limit", &o.late_limit},
                                      {"restart_ms", &o.restart_ms},
                                      {"ramp_out_ms", &o.ramp_out_ms},
                                      {"slow_ms", &o.slow_ms}}) {
-        auto number = json_number_or(settings, key, *value, "");
-        if (!number) return tl::unexpected(number.error());
-        if (!(*number >= 1 && *number <= 65535)) return input_error("not within 1 and 65535", key);
-        *value = static_cast<int>(*number);
+        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
+        if (!(number >= 1 && number <= 65535)) return input_error("not within 1 and 65535", key);
+        *value = static_cast<int>(number);
     }
     for (const auto& [key, value] :
          {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
           {"path_s", &o.path_s},
           {"speed_mm_s", &o.path.speed_mm_s}}) {
-        auto number = json_number_or(settings, key, *value, "");
-        if (!number) return tl::unexpected(number.error());
-        if (!(*number >= 0 && *number <= 1e4)) return input_error("not within 0 and 10000", key);
-        *value = *number;
+        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
+        if (!(number >= 0 && number <= 1e4)) return input_error("not within 0 and 10000", key);
+        *value = number;
     }
-    auto straight = json_bool_or(settings, "straight", false, "");
-    if (!straight) return tl::unexpected(straight.error());
-    o.path.straight = *straight;
-    auto application = json_bool_or(settings, "application", o.application, "");
-    if (!application) return tl::unexpected(application.error());
-    o.application = *application;
+    SEAM_TRY(auto straight, json_bool_or(settings, "straight", false, ""));
+    o.path.straight = straight;
+    SEAM_TRY(auto application, json_bool_or(settings, "application", o.application, ""));
+    o.application = application;
     auto measuring = start_measuring_controller(settings, std::move(cell), start_controller);
     if (!measuring) return measuring;
-    auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);
-    if (!socket) return tl::unexpected(socket.error());
-    auto modules = modules_of(o);
-    if (!modules) return tl::unexpected(modules.error());
-    auto controller = std::make_unique<Egm>(o, std::move(*socket), std::move(*measuring));
+    SEAM_TRY(auto socket, UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0));
+    SEAM_TRY(auto modules, modules_of(o));
+    auto controller = std::make_unique<Egm>(o, std::move(socket), std::move(*measuring));
     try {
-        controller->start(*modules);
+        controller->start(modules);
     } catch (const rapid::LoadError& e) {
         return input_error(e.what(), "programs of the ABB controller");
     }

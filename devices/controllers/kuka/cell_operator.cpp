@@ -81,9 +81,8 @@ Expected<std::vector<ProgramFile>> KukaCell::files() const {
         std::vector<ProgramFile> all;
         for (const char* name : {"Seamwright.xml", "seamwright.dat", "seamwright.src", "seamwright_sub.sub",
                                  "seamwright_spots.dat", "seamwright_spots.src"}) {
-            auto text = read_text_file(std::filesystem::path(settings_.programs) / name);
-            if (!text) return tl::unexpected(text.error());
-            all.push_back({name, *text});
+            SEAM_TRY(auto text, read_text_file(std::filesystem::path(settings_.programs) / name));
+            all.push_back({name, text});
         }
         return all;
     }
@@ -99,13 +98,12 @@ Expected<std::vector<ProgramFile>> KukaCell::files() const {
 }
 
 Expected<void> KukaCell::load(bool everything) {
-    auto all = files();
-    if (!all) return tl::unexpected(all.error());
+    SEAM_TRY(auto all, files());
     try {
-        std::stable_sort(all->begin(), all->end(), [](const ProgramFile& a, const ProgramFile& b) {
+        std::stable_sort(all.begin(), all.end(), [](const ProgramFile& a, const ProgramFile& b) {
             return a.name.ends_with(".dat") > b.name.ends_with(".dat");
         });
-        for (const ProgramFile& file : *all) {
+        for (const ProgramFile& file : all) {
             if (file.name.ends_with(".xml"))
                 channels_[capitals(file.name.substr(0, file.name.size() - 4))] = file.text;
             else if (everything || file.name.starts_with("seamwright_spots"))
@@ -127,7 +125,7 @@ Expected<void> KukaCell::load(bool everything) {
 Expected<void> KukaCell::begin() {
     const auto moves = cell_->program();
     loaded_ = program_signature(moves);
-    if (auto loaded = load(true); !loaded) return loaded;
+    SEAM_OK(load(true));
     RobotSettings robot;
     robot.time_scale = settings_.time_scale;
     robot.slow = Timeout(settings_.slow_ms);

@@ -19,10 +19,9 @@ class EkiController final : public krl::KukaCell {
 
 Expected<std::unique_ptr<SimulatedController>> start_kuka_eki_controller(std::shared_ptr<SimulatedCell> cell,
                                                                          const nlohmann::json& settings) {
-    auto parsed = krl::parse_operator_settings(settings, 54600, 1);
-    if (!parsed) return tl::unexpected(parsed.error());
-    auto controller = std::make_unique<EkiController>(std::move(cell), std::move(*parsed));
-    if (auto begun = controller->begin(); !begun) return tl::unexpected(begun.error());
+    SEAM_TRY(auto parsed, krl::parse_operator_settings(settings, 54600, 1));
+    auto controller = std::make_unique<EkiController>(std::move(cell), std::move(parsed));
+    SEAM_OK(controller->begin());
     return controller;
 }
 

@@ -23,7 +23,7 @@ class KvpController final : public krl::KukaCell {
         end();
     }
     Expected<void> start() {
-        if (auto begun = begin(); !begun) return begun;
+        SEAM_OK(begin());
         thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
         return {};
     }
@@ -103,13 +103,11 @@ class KvpController final : public krl::KukaCell {
 
 Expected<std::unique_ptr<SimulatedController>> start_kuka_kvp_controller(std::shared_ptr<SimulatedCell> cell,
                                                                          const nlohmann::json& settings) {
-    auto parsed = krl::parse_operator_settings(settings, 7000, 0);
-    if (!parsed) return tl::unexpected(parsed.error());
-    auto listener = TcpListener::listen(parsed->address, static_cast<std::uint16_t>(parsed->port));
-    if (!listener) return tl::unexpected(listener.error());
+    SEAM_TRY(auto parsed, krl::parse_operator_settings(settings, 7000, 0));
+    SEAM_TRY(auto listener, TcpListener::listen(parsed.address, static_cast<std::uint16_t>(parsed.port)));
     auto controller =
-        std::make_unique<KvpController>(std::move(cell), std::move(*parsed), std::move(*listener));
-    if (auto begun = controller->start(); !begun) return tl::unexpected(begun.error());
+        std::make_unique<KvpController>(std::move(cell), std::move(parsed), std::move(listener));
+    SEAM_OK(controller->start());
     return controller;
 }
 

@@ -295,9 +295,8 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
                                      {"mode", &mode},
                                      {"reference", &reference},
                                      {"delay", &delay}}) {
-        auto text = json_string_or(settings, key, *value, "");
-        if (!text) return tl::unexpected(text.error());
-        *value = *text;
+        SEAM_TRY(auto text, json_string_or(settings, key, *value, ""));
+        *value = text;
     }
     if (mode != "absolute" && mode != "relative") return input_error("not absolute or relative", "mode");
     if (reference != "base" && reference != "tool") return input_error("not base or tool", "reference");
@@ -306,9 +305,8 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
     o.sums_late = delay == "sum";
     for (const auto& [key, value] : {std::pair<const char*, bool*>{"hold_on", &(o.hold_on = !o.relative)},
                                      {"application", &o.application}}) {
-        auto read = json_bool_or(settings, key, *value, "");
-        if (!read) return tl::unexpected(read.error());
-        *value = *read;
+        SEAM_TRY(auto read, json_bool_or(settings, key, *value, ""));
+        *value = read;
     }
     o.tool = reference == "tool";
     for (const auto& [key, value] : {std::pair<const char*, int*>{"port", &o.port},
@@ -317,31 +315,27 @@ Expected<std::unique_ptr<SimulatedController>> start_kuka_rsi(std::shared_ptr<Si
                                      {"restart_ms", &o.restart_ms},
                                      {"following_ms", &o.following_ms},
                                      {"slow_ms", &o.slow_ms}}) {
-        auto number = json_number_or(settings, key, *value, "");
-        if (!number) return tl::unexpected(number.error());
-        if (!(*number >= 1 && *number <= 65535)) return input_error("not within 1 and 65535", key);
-        *value = static_cast<int>(*number);
+        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
+        if (!(number >= 1 && number <= 65535)) return input_error("not within 1 and 65535", key);
+        *value = static_cast<int>(number);
     }
     for (const auto& [key, value] :
          {std::pair<const char*, double*>{"max_translation_mm", &o.max_translation_mm},
           {"path_s", &o.path_s},
           {"speed_mm_s", &o.path.speed_mm_s}}) {
-        auto number = json_number_or(settings, key, *value, "");
-        if (!number) return tl::unexpected(number.error());
-        if (!(*number >= 0 && *number <= 1e4)) return input_error("not within 0 and 10000", key);
-        *value = *number;
+        SEAM_TRY(auto number, json_number_or(settings, key, *value, ""));
+        if (!(number >= 0 && number <= 1e4)) return input_error("not within 0 and 10000", key);
+        *value = number;
     }
     auto measuring = start_measuring_controller(settings, cell, start_controller);
     if (!measuring) return measuring;
-    auto socket = UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0);
-    if (!socket) return tl::unexpected(socket.error());
+    SEAM_TRY(auto socket, UdpSocket::bind(o.address == "127.0.0.1" ? "127.0.0.1" : "0.0.0.0", 0));
     ProgramRequest request;
     request.settings = {{"port", o.port}, {"mode", mode}, {"reference", reference}, {"sen_type", o.sen_type}};
-    auto program = write_rsi_program(request);
-    if (!program) return tl::unexpected(program.error());
-    auto controller = std::make_unique<Rsi>(std::move(o), std::move(*socket), std::move(*measuring));
+    SEAM_TRY(auto program, write_rsi_program(request));
+    auto controller = std::make_unique<Rsi>(std::move(o), std::move(socket), std::move(*measuring));
     try {
-        controller->start(cell, *program);
+        controller->start(cell, program);
     } catch (const krl::KrlError& e) {
         return device_error(Text("the controller does not take the program: {}", e.what()), "simulated KUKA");
     }

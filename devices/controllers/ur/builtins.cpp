@@ -71,8 +71,8 @@ Expected<void> movel(BuiltinCall& c) {
         const PoseValue at = c.robot.target_pose();
         speed = std::hypot(to[0] - at[0], to[1] - at[1], to[2] - at[2]) / time;
     }
-    if (auto ok = a.done(); !ok) return ok;
-    if (auto ok = c.robot.movel(c.thread, to, acceleration, speed, radius); !ok) return ok;
+    SEAM_OK(a.done());
+    SEAM_OK(c.robot.movel(c.thread, to, acceleration, speed, radius));
     // With a blend the program goes on while the robot still drives, far enough ahead for the next move to
     // be there.
     constexpr std::size_t kAhead = 2;
@@ -87,7 +87,7 @@ Expected<void> sync(BuiltinCall& c) {
 Expected<void> sleep(BuiltinCall& c) {
     Arguments a(c);
     const double t = a.real(0);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     if (!(t >= 0 && t < 1e6)) return input_error(Text("sleep({})", t));
     c.wait = {Wait::For::time, c.robot.time_s() + t, 0, 0};
     return {};
@@ -112,7 +112,7 @@ Expected<void> get_tcp_offset(BuiltinCall& c) {
 Expected<void> set_tcp(BuiltinCall& c) {
     Arguments a(c);
     const PoseValue tcp = a.pose(0);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     if (c.robot.moves_left() > 0) return input_error("set_tcp() while the robot moves");
     return c.robot.set_tcp(tcp);
 }
@@ -142,19 +142,19 @@ Expected<void> whole_of(BuiltinCall& c, double v) {
 Expected<void> floor(BuiltinCall& c) {
     Arguments a(c);
     const double v = std::floor(a.real(0));
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     return whole_of(c, v);
 }
 Expected<void> ceil(BuiltinCall& c) {
     Arguments a(c);
     const double v = std::ceil(a.real(0));
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     return whole_of(c, v);
 }
 Expected<void> sqrt(BuiltinCall& c) {
     Arguments a(c);
     const double v = a.real(0);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     if (!(v >= 0)) return input_error(Text("sqrt({})", v));
     c.result = {std::sqrt(v)};
     return {};
@@ -190,7 +190,7 @@ Expected<void> str_sub(BuiltinCall& c) {
     Arguments a(c);
     const std::string text = a.text(0);
     const std::int32_t at = a.whole(1), count = a.whole(2, static_cast<std::int32_t>(text.size()));
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     if (at < 0 || at >= static_cast<std::int32_t>(text.size()) || count < 0)
         return input_error(Text("str_sub() at {} of {} signs", at, text.size()));
     c.result = {text.substr(static_cast<std::size_t>(at), static_cast<std::size_t>(count))};
@@ -200,7 +200,7 @@ Expected<void> str_at(BuiltinCall& c) {
     Arguments a(c);
     const std::string text = a.text(0);
     const std::int32_t at = a.whole(1);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     if (at < 0 || at >= static_cast<std::int32_t>(text.size()))
         return input_error(Text("str_at() at {} of {} signs", at, text.size()));
     c.result = {text.substr(static_cast<std::size_t>(at), 1)};
@@ -210,7 +210,7 @@ Expected<void> str_find(BuiltinCall& c) {
     Arguments a(c);
     const std::string text = a.text(0), wanted = a.text(1);
     const std::int32_t from = a.whole(2, 0);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     if (from < 0) return input_error(Text("str_find() from {}", from));
     const auto at = text.find(wanted, static_cast<std::size_t>(from));
     c.result = {at == std::string::npos ? std::int32_t{-1} : static_cast<std::int32_t>(at)};
@@ -223,7 +223,7 @@ Expected<void> to_str(BuiltinCall& c) {
 Expected<void> to_num(BuiltinCall& c) {
     Arguments a(c);
     const std::string text = a.text(0);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     double v = 0;
     const auto r = std::from_chars(text.data(), text.data() + text.size(), v);
     if (r.ec != std::errc{} || r.ptr != text.data() + text.size())
@@ -244,7 +244,7 @@ Expected<void> popup(BuiltinCall& c) {
     Arguments a(c);
     const std::string title = a.text(1, "Popup");
     const bool warning = a.truth(2), error = a.truth(3), blocking = a.truth(4);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     const char* kind = error ? "error" : warning ? "warning" : "message";
     c.robot.popup = fmt::format("{} ({}): {}", title, kind, text_of(c.arguments[0]));
     if (blocking) c.wait.what = Wait::For::popup;
@@ -266,7 +266,7 @@ Expected<void> set_standard_digital_out(BuiltinCall& c) {
     Arguments a(c);
     const int number = a.whole_up_to(0, 7);
     const bool on = a.truth(1);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     c.robot.set_digital_out(number, on);
     return {};
 }
@@ -296,7 +296,7 @@ Expected<void> write_int(BuiltinCall& c) {
     Arguments a(c);
     const int at = a.whole_up_to(0, 47);
     const std::int32_t v = a.whole(1);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     c.robot.outputs.ints[static_cast<std::size_t>(at)] = v;
     return {};
 }
@@ -304,7 +304,7 @@ Expected<void> write_real(BuiltinCall& c) {
     Arguments a(c);
     const int at = a.whole_up_to(0, 47);
     const double v = a.real(1);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     c.robot.outputs.reals[static_cast<std::size_t>(at)] = v;
     return {};
 }
@@ -312,7 +312,7 @@ Expected<void> write_bit(BuiltinCall& c) {
     Arguments a(c);
     const int at = a.whole_up_to(0, 127);
     const bool v = a.truth(1);
-    if (auto ok = a.done(); !ok) return ok;
+    SEAM_OK(a.done());
     c.robot.outputs.bits[static_cast<std::size_t>(at)] = v;
     return {};
 }

@@ -357,18 +357,15 @@ Expected<std::vector<Source>> sources_of(const SimulatedCell& cell, const Contro
         for (const auto& [name, taught] : cell.settings().robot.frames)
             request.frames.push_back({name, name, cell.read_frame(name).value_or(taught)});
         request.settings = {{"first_register", s.first_register}, {"trigger_output", s.trigger_output}};
-        auto files = write_ur_program(request);
-        if (!files) return tl::unexpected(files.error());
-        for (ProgramFile& file : *files) sources.push_back({file.name, std::move(file.text)});
+        SEAM_TRY(auto files, write_ur_program(request));
+        for (ProgramFile& file : files) sources.push_back({file.name, std::move(file.text)});
     } else {
         const std::filesystem::path folder = s.scripts;
-        auto module = read_text_file(folder / "seamwright.script");
-        if (!module) return tl::unexpected(module.error());
-        sources.push_back({"seamwright.script", std::move(*module)});
+        SEAM_TRY(auto module, read_text_file(folder / "seamwright.script"));
+        sources.push_back({"seamwright.script", std::move(module)});
         if (std::error_code none; std::filesystem::exists(folder / "application.script", none)) {
-            auto own = read_text_file(folder / "application.script");
-            if (!own) return tl::unexpected(own.error());
-            application = std::move(*own);
+            SEAM_TRY(auto own, read_text_file(folder / "application.script"));
+            application = std::move(own);
         }
     }
     sources.push_back({"application.script", std::move(application)});
@@ -405,19 +402,14 @@ Expected<std::unique_ptr<SimulatedController>> start_ur_rtde_controller(std::sha
     f.pose("tool", s.flange_from_tool);
     if (f.failed()) return tl::unexpected(f.error());
     s.most_slice = std::max(s.least_slice, s.most_slice);
-    auto sources = sources_of(*cell, s);
-    if (!sources) return tl::unexpected(sources.error());
-    auto application = urscript::compile(*sources);
-    if (!application) return tl::unexpected(application.error());
-    sources->back() = {"teach", "sw_teach()\n"};
-    auto teaching = urscript::compile(*sources);
-    if (!teaching) return tl::unexpected(teaching.error());
-    auto rtde = TcpListener::listen(s.address, static_cast<std::uint16_t>(s.port));
-    if (!rtde) return tl::unexpected(rtde.error());
-    auto dashboard = TcpListener::listen(s.address, static_cast<std::uint16_t>(s.dashboard_port));
-    if (!dashboard) return tl::unexpected(dashboard.error());
-    return std::make_unique<UrController>(std::move(cell), s, std::move(*application), std::move(*teaching),
-                                          std::move(*rtde), std::move(*dashboard));
+    SEAM_TRY(auto sources, sources_of(*cell, s));
+    SEAM_TRY(auto application, urscript::compile(sources));
+    sources.back() = {"teach", "sw_teach()\n"};
+    SEAM_TRY(auto teaching, urscript::compile(sources));
+    SEAM_TRY(auto rtde, TcpListener::listen(s.address, static_cast<std::uint16_t>(s.port)));
+    SEAM_TRY(auto dashboard, TcpListener::listen(s.address, static_cast<std::uint16_t>(s.dashboard_port)));
+    return std::make_unique<UrController>(std::move(cell), s, std::move(application), std::move(teaching),
+                                          std::move(rtde), std::move(dashboard));
 }
 
 }  // namespace seamwright

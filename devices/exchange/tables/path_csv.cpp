@@ -35,9 +35,8 @@ Expected<Pose> pose_of(const std::array<double, 7>& v, PathNotation notation, do
         return input_error("the point lies beyond 100 m", where,
                            mm > 1 ? "lengths of this notation are metres" : "give millimetres");
     if (notation == PathNotation::abb) {
-        auto r = rotation_from_abb({v[3], v[4], v[5], v[6]}, where);
-        if (!r) return tl::unexpected(r.error());
-        return make_pose(*r, t);
+        SEAM_TRY(auto r, rotation_from_abb({v[3], v[4], v[5], v[6]}, where));
+        return make_pose(r, t);
     }
     const Eigen::Vector3d w(v[3], v[4], v[5]);
     const double most = notation == PathNotation::kuka ? 720 : 2 * kPi + 1e-6;
@@ -64,36 +63,31 @@ Expected<ApplicationPath> parse_path_csv(std::string_view text, PathNotation not
                                          const std::string& where) {
     const Columns columns = columns_of(notation);
     CsvTable table(text, where, "[,region]");
-    if (auto ok = table.header({columns.names.data(), columns.numbers + 1}, columns.numbers); !ok)
-        return tl::unexpected(ok.error());
+    SEAM_OK(table.header({columns.names.data(), columns.numbers + 1}, columns.numbers));
     ApplicationPath path;
     path.regions_named = table.has(columns.numbers);
     for (;;) {
-        const auto more = table.row();
-        if (!more) return tl::unexpected(more.error());
-        if (!*more) break;
+        SEAM_TRY(const auto more, table.row());
+        if (!more) break;
         if (path.points.size() >= kPathPointLimit)
             return input_error(Text("there are more than {} points", kPathPointLimit), table.at());
         std::array<double, 7> v{};
         for (std::size_t c = 0; c < columns.numbers; ++c) {
-            const auto number = table.number(c, columns.names[c]);
-            if (!number) return tl::unexpected(number.error());
-            if (!std::isfinite(*number))
+            SEAM_TRY(const auto number, table.number(c, columns.names[c]));
+            if (!std::isfinite(number))
                 return input_error(Text("{} is missing", columns.names[c]), table.at());
-            v[c] = *number;
+            v[c] = number;
         }
-        const auto pose = pose_of(v, notation, columns.mm, table.at());
-        if (!pose) return tl::unexpected(pose.error());
-        path.points.push_back({*pose, path.regions_named ? table.text(columns.numbers) : std::string()});
+        SEAM_TRY(const auto pose, pose_of(v, notation, columns.mm, table.at()));
+        path.points.push_back({pose, path.regions_named ? table.text(columns.numbers) : std::string()});
     }
     if (path.points.empty()) return input_error("the path has no points", where);
     return path;
 }
 
 Expected<ApplicationPath> read_path_csv(const std::filesystem::path& path, PathNotation notation) {
-    const auto text = read_text_file(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_path_csv(*text, notation, path.string());
+    SEAM_TRY(const auto text, read_text_file(path));
+    return parse_path_csv(text, notation, path.string());
 }
 
 std::string path_csv(const ApplicationPath& path, PathNotation notation) {

@@ -124,9 +124,8 @@ Expected<PointTable> read_points(std::string_view bytes, std::size_t line_number
     table.columns.resize(properties.size());
     table.blocks = {0};
     for (const Property& p : properties) table.names.push_back(p.name);
-    auto read = binary ? read_binary(bytes, count, stride, properties, table, where)
-                       : read_ascii(bytes, line_number, count, table, where);
-    if (!read) return tl::unexpected(read.error());
+    SEAM_OK(binary ? read_binary(bytes, count, stride, properties, table, where)
+                   : read_ascii(bytes, line_number, count, table, where));
     table.understood = fmt::format("{} {}", kind, binary ? "binary" : "ascii");
     return table;
 }

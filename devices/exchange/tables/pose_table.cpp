@@ -73,9 +73,8 @@ Expected<Pose> pose_of(const PoseForm& form, const PoseRow& row) {
     const Eigen::Vector3d t = form.mm * Eigen::Vector3d(n[0], n[1], n[2]);
     if (t.cwiseAbs().maxCoeff() > kFarthestPose_mm)
         return input_error("the position exceeds 100 m", row.at, "say the unit with --pose-unit");
-    auto r = rotation(form, n, row.at);
-    if (!r) return tl::unexpected(r.error());
-    return make_pose(*r, t);
+    SEAM_TRY(auto r, rotation(form, n, row.at));
+    return make_pose(r, t);
 }
 
 // Units that neither person nor header named: usual ones, unless the numbers speak against them.
@@ -200,21 +199,18 @@ char separator_of(std::string_view text) {
 }
 
 Expected<PoseTable> from_json(std::string_view text, const std::string& where) {
-    const auto json = parse_json(text, where);
-    if (!json) return tl::unexpected(json.error());
+    SEAM_TRY(const auto json, parse_json(text, where));
     PoseTable table;
     table.understood = "JSON poses";
-    if (json->is_array()) {
-        for (std::size_t i = 0; i < json->size(); ++i) {
-            auto pose = parse_pose((*json)[i], json_path(where, i));
-            if (!pose) return tl::unexpected(pose.error());
-            table.poses.push_back({"", *pose, json_path(where, i)});
+    if (json.is_array()) {
+        for (std::size_t i = 0; i < json.size(); ++i) {
+            SEAM_TRY(auto pose, parse_pose(json[i], json_path(where, i)));
+            table.poses.push_back({"", pose, json_path(where, i)});
         }
-    } else if (json->is_object()) {
-        for (const auto& [name, value] : json->items()) {
-            auto pose = parse_pose(value, where + ": " + csv::shown(name));
-            if (!pose) return tl::unexpected(pose.error());
-            table.poses.push_back({name, *pose, where + ": " + csv::shown(name)});
+    } else if (json.is_object()) {
+        for (const auto& [name, value] : json.items()) {
+            SEAM_TRY(auto pose, parse_pose(value, where + ": " + csv::shown(name)));
+            table.poses.push_back({name, pose, where + ": " + csv::shown(name)});
         }
     }
     if (table.poses.empty())
@@ -276,9 +272,8 @@ Expected<PoseTable> parse_fanuc_ls(std::string_view text, const std::string& whe
                                "give poses of one user frame and one tool");
         frames = here;
         PoseForm form{"fanuc-wpr", 1, kPi / 180};
-        auto read = pose_of(form, {pose.name, pose.at, {values.begin(), values.end()}});
-        if (!read) return tl::unexpected(read.error());
-        pose.pose = *read;
+        SEAM_TRY(auto read, pose_of(form, {pose.name, pose.at, {values.begin(), values.end()}}));
+        pose.pose = read;
         table.poses.push_back(std::move(pose));
         line += static_cast<std::size_t>(
             std::count(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
@@ -392,17 +387,15 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
         }
         rows = std::move(stacked);
     }
-    if (auto ok = check_width(form, rows.front().numbers.size(), rows.front().at); !ok)
-        return tl::unexpected(ok.error());
-    if (auto ok = settle_units(form, rows, where); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_width(form, rows.front().numbers.size(), rows.front().at));
+    SEAM_OK(settle_units(form, rows, where));
     PoseTable table;
     std::set<std::string> names;
     for (const PoseRow& row : rows) {
-        auto pose = pose_of(form, row);
-        if (!pose) return tl::unexpected(pose.error());
+        SEAM_TRY(auto pose, pose_of(form, row));
         if (!row.name.empty() && !names.insert(row.name).second)
             return input_error(Text("the pose \"{}\" is given twice", csv::shown(row.name)), row.at);
-        table.poses.push_back({row.name, *pose, row.at});
+        table.poses.push_back({row.name, pose, row.at});
     }
     table.understood = fmt::format("{} poses by {}, {}, {} mm a unit", table.poses.size(),
                                    names.empty() ? "order" : "name", form.convention, form.mm);
@@ -410,32 +403,29 @@ Expected<PoseTable> parse_pose_table(std::string_view text, const std::string& w
 }
 
 Expected<PoseTable> read_pose_table(const std::filesystem::path& path, const PoseLayout& layout) {
-    const auto text = read_text_file(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_pose_table(*text, path.string(), layout);
+    SEAM_TRY(const auto text, read_text_file(path));
+    return parse_pose_table(text, path.string(), layout);
 }
 
 Expected<Pose> read_frame_pose(const std::filesystem::path& path, const PoseLayout& layout) {
     const std::string extension = path.extension().string();
     if (extension != ".txt") return read_pose_file(path);
-    const auto text = read_text_file(path, std::size_t{1} << 20);
-    if (!text) return tl::unexpected(text.error());
+    SEAM_TRY(const auto text, read_text_file(path, std::size_t{1} << 20));
     const auto numbers = [&] {
         std::size_t count = 0, at = 0;
         constexpr std::string_view separators = "()[], \t\r\n;";
-        while ((at = text->find_first_not_of(separators, at)) != std::string::npos) {
+        while ((at = text.find_first_not_of(separators, at)) != std::string::npos) {
             ++count;
-            at = std::min(text->find_first_of(separators, at), text->size());
+            at = std::min(text.find_first_of(separators, at), text.size());
         }
         return count;
     }();
     const bool usual = numbers != 6 && numbers != 12 && numbers != 16 && layout == PoseLayout{};
     if (usual) return read_pose_file(path);
-    auto table = parse_pose_table(*text, path.string(), layout);
-    if (!table) return tl::unexpected(table.error());
-    if (table->poses.size() != 1)
-        return input_error(Text("holds {} poses beside one frame", table->poses.size()), path.string());
-    return table->poses.front().pose;
+    SEAM_TRY(auto table, parse_pose_table(text, path.string(), layout));
+    if (table.poses.size() != 1)
+        return input_error(Text("holds {} poses beside one frame", table.poses.size()), path.string());
+    return table.poses.front().pose;
 }
 
 Expected<std::vector<Pose>> poses_of_frames(const PoseTable& table, std::span<const std::string> frames,

@@ -23,32 +23,27 @@ Expected<void> append_point(const CsvTable& table, const PointColumns& c, Profil
     if (profile.size() >= kProfilePointLimit) {
         return input_error(Text("there are more than {} points", kProfilePointLimit), table.at());
     }
-    const auto x = table.millimetres(c.x, "x_mm");
-    if (!x) return tl::unexpected(x.error());
-    const auto z = table.millimetres(c.z, "z_mm");
-    if (!z) return tl::unexpected(z.error());
-    const bool returned = !std::isnan(*x) && !std::isnan(*z);
-    profile.x_mm.push_back(*x);
-    profile.z_mm.push_back(returned ? *z : kNaN);
+    SEAM_TRY(const auto x, table.millimetres(c.x, "x_mm"));
+    SEAM_TRY(const auto z, table.millimetres(c.z, "z_mm"));
+    const bool returned = !std::isnan(x) && !std::isnan(z);
+    profile.x_mm.push_back(x);
+    profile.z_mm.push_back(returned ? z : kNaN);
     if (table.has(c.intensity)) {
-        const auto grey = table.number(c.intensity, "intensity");
-        if (!grey) return tl::unexpected(grey.error());
-        profile.intensity.push_back(std::isnan(*grey) ? 0.0F : static_cast<float>(*grey));
+        SEAM_TRY(const auto grey, table.number(c.intensity, "intensity"));
+        profile.intensity.push_back(std::isnan(grey) ? 0.0F : static_cast<float>(grey));
     }
     std::optional<bool> valid;
     if (table.has(c.valid)) {
-        const auto value = table.number(c.valid, "valid");
-        if (!value) return tl::unexpected(value.error());
-        if (*value != 0 && *value != 1) return input_error("valid must be 0 or 1", table.at());
-        valid = *value == 1;
+        SEAM_TRY(const auto value, table.number(c.valid, "valid"));
+        if (value != 0 && value != 1) return input_error("valid must be 0 or 1", table.at());
+        valid = value == 1;
     }
     if (table.has(c.segment)) {
-        const auto value = table.number(c.segment, "segment");
-        if (!value) return tl::unexpected(value.error());
-        if (!(*value >= kOutlier && *value < 1e9) || *value != std::floor(*value)) {
+        SEAM_TRY(const auto value, table.number(c.segment, "segment"));
+        if (!(value >= kOutlier && value < 1e9) || value != std::floor(value)) {
             return input_error("segment must be a whole number from -1 on", table.at());
         }
-        const auto segment = static_cast<std::int32_t>(*value);
+        const auto segment = static_cast<std::int32_t>(value);
         if (valid && *valid != (segment != kOutlier)) {
             return input_error(Text("valid = {} contradicts segment = {}", *valid ? 1 : 0, segment),
                                table.at());
@@ -73,13 +68,12 @@ void append_number(fmt::memory_buffer& out, double value) {
 Expected<Profile> parse_profile_csv(std::string_view text, const std::string& where) {
     constexpr std::string_view wanted[] = {"x_mm", "z_mm", "intensity", "valid", "segment"};
     CsvTable table(text, where, "[,intensity]");
-    if (auto ok = table.header(wanted, 2); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(table.header(wanted, 2));
     Profile profile;
     for (;;) {
-        const auto more = table.row();
-        if (!more) return tl::unexpected(more.error());
-        if (!*more) break;
-        if (auto ok = append_point(table, {0, 1, 2, 3, 4}, profile); !ok) return tl::unexpected(ok.error());
+        SEAM_TRY(const auto more, table.row());
+        if (!more) break;
+        SEAM_OK(append_point(table, {0, 1, 2, 3, 4}, profile));
     }
     if (profile.size() == 0) return input_error("the profile has no points", where);
     return profile;
@@ -110,9 +104,8 @@ std::string profile_csv(const Profile& profile) {
 }
 
 Expected<Profile> read_profile_csv(const std::filesystem::path& path) {
-    const auto text = read_text_file(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_profile_csv(*text, path.string());
+    SEAM_TRY(const auto text, read_text_file(path));
+    return parse_profile_csv(text, path.string());
 }
 
 Expected<void> write_profile_csv(const std::filesystem::path& path, const Profile& profile) {
@@ -123,35 +116,31 @@ Expected<std::vector<TravelProfile>> parse_align_csv(std::string_view text, cons
     constexpr std::string_view wanted[] = {"travel_mm", "profile_index", "x_mm",   "z_mm",
                                            "intensity", "valid",         "segment"};
     CsvTable table(text, where, "[,intensity]");
-    if (auto ok = table.header(wanted, 4); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(table.header(wanted, 4));
     std::vector<TravelProfile> pass;
     std::set<long> seen;
     long current = -1;
     for (;;) {
-        const auto more = table.row();
-        if (!more) return tl::unexpected(more.error());
-        if (!*more) break;
-        const auto travel = table.millimetres(0, "travel_mm");
-        if (!travel) return tl::unexpected(travel.error());
-        if (std::isnan(*travel)) return input_error("travel_mm is missing", table.at());
-        const auto index = table.number(1, "profile_index");
-        if (!index) return tl::unexpected(index.error());
-        if (!(*index >= 0 && *index < 1e9) || *index != std::floor(*index)) {
+        SEAM_TRY(const auto more, table.row());
+        if (!more) break;
+        SEAM_TRY(const auto travel, table.millimetres(0, "travel_mm"));
+        if (std::isnan(travel)) return input_error("travel_mm is missing", table.at());
+        SEAM_TRY(const auto index, table.number(1, "profile_index"));
+        if (!(index >= 0 && index < 1e9) || index != std::floor(index)) {
             return input_error("profile_index must be a whole number from 0 on", table.at());
         }
-        const long number = static_cast<long>(*index);
+        const long number = static_cast<long>(index);
         if (pass.empty() || number != current) {
             if (!seen.insert(number).second) {
                 return input_error(Text("profile {} comes back after another one", number), table.at(),
                                    "keep the rows of a profile together");
             }
             current = number;
-            pass.push_back({*travel, {}});
-        } else if (pass.back().travel_mm != *travel) {
+            pass.push_back({travel, {}});
+        } else if (pass.back().travel_mm != travel) {
             return input_error(Text("travel_mm changes within profile {}", number), table.at());
         }
-        if (auto ok = append_point(table, {2, 3, 4, 5, 6}, pass.back().profile); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(append_point(table, {2, 3, 4, 5, 6}, pass.back().profile));
     }
     if (pass.empty()) return input_error("there are no profiles", where);
     return pass;
@@ -173,9 +162,8 @@ std::string align_csv(std::span<const TravelProfile> pass) {
 }
 
 Expected<std::vector<TravelProfile>> read_align_csv(const std::filesystem::path& path) {
-    const auto text = read_text_file(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_align_csv(*text, path.string());
+    SEAM_TRY(const auto text, read_text_file(path));
+    return parse_align_csv(text, path.string());
 }
 
 }  // namespace seamwright

@@ -107,11 +107,9 @@ Expected<PointRoles> find_columns(const PointTable& table, const ProfileLayout& 
         if (words.size() != 2)
             return usage_error("gives other than two columns", "--columns-xz",
                                "write X,Z by name or by number from 1");
-        auto x = column_called(table, words[0], where);
-        if (!x) return tl::unexpected(x.error());
-        auto z = column_called(table, words[1], where);
-        if (!z) return tl::unexpected(z.error());
-        found.x = *x, found.z = *z;
+        SEAM_TRY(auto x, column_called(table, words[0], where));
+        SEAM_TRY(auto z, column_called(table, words[1], where));
+        found.x = x, found.z = z;
         if (found.y == found.x || found.y == found.z) found.y.reset();
         return found;
     }
@@ -206,75 +204,71 @@ Expected<ReadProfiles> parse_profiles(std::string_view bytes, const std::string&
     if (layout.columns.empty() && first.find("x_mm") != first.npos && first.find("z_mm") != first.npos &&
         first.find("profile_index") == first.npos && first.find(';') == first.npos &&
         first.find('\t') == first.npos) {
-        auto profile = parse_profile_csv(bytes, where);
-        if (!profile) return tl::unexpected(profile.error());
-        erase_no_returns(*profile, layout.invalid);
-        if (std::none_of(profile->z_mm.begin(), profile->z_mm.end(),
+        SEAM_TRY(auto profile, parse_profile_csv(bytes, where));
+        erase_no_returns(profile, layout.invalid);
+        if (std::none_of(profile.z_mm.begin(), profile.z_mm.end(),
                          [](double z) { return std::isfinite(z); }) &&
             !layout.invalid.empty())
             return input_error("every height stands for \"no return\"", where, "check --invalid");
-        for (auto* column : {&profile->x_mm, &profile->z_mm})
+        for (auto* column : {&profile.x_mm, &profile.z_mm})
             for (double& value : *column) value *= mm_of_unit(layout.unit).value_or(1);
-        result.profiles.push_back({0, std::move(*profile), {}});
+        result.profiles.push_back({0, std::move(profile), {}});
         result.understood = "our own CSV (x_mm, z_mm)";
         return result;
     }
-    auto table = parse_points(bytes, where, kProfilePointLimit);
-    if (!table) return tl::unexpected(table.error());
-    auto found = find_columns(*table, layout, where);
-    if (!found) return tl::unexpected(found.error());
-    const PointRoles& c = *found;
+    SEAM_TRY(auto table, parse_points(bytes, where, kProfilePointLimit));
+    SEAM_TRY(auto found, find_columns(table, layout, where));
+    const PointRoles& c = found;
     bool asked_x = result.unit_asked, asked_z = result.unit_asked;
-    const double x_mm = factor(*table, *c.x, layout, asked_x), z_mm = factor(*table, *c.z, layout, asked_z);
+    const double x_mm = factor(table, *c.x, layout, asked_x), z_mm = factor(table, *c.z, layout, asked_z);
     result.unit_asked = asked_x || asked_z;
-    const double y_mm = c.y ? factor(*table, *c.y, layout, asked_x) : 1;
-    const bool flat = !c.y || (!table->in_base && constant(table->columns[*c.y]));
-    const bool by_y = !flat && !table->in_base && !c.profile && steps(table->columns[*c.y]);
+    const double y_mm = c.y ? factor(table, *c.y, layout, asked_x) : 1;
+    const bool flat = !c.y || (!table.in_base && constant(table.columns[*c.y]));
+    const bool by_y = !flat && !table.in_base && !c.profile && steps(table.columns[*c.y]);
     const auto key = c.profile ? c.profile : by_y ? c.y : std::nullopt;
     std::set<double> seen;
     std::size_t block = 0, returns = 0;
-    for (std::size_t i = 0; i < table->rows(); ++i) {
-        const bool new_block = block < table->blocks.size() && table->blocks[block] == i;
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+        const bool new_block = block < table.blocks.size() && table.blocks[block] == i;
         if (new_block) ++block;
         double number = static_cast<double>(block) - 1;
-        if (key) number = table->columns[*key][i];
+        if (key) number = table.columns[*key][i];
         if (std::isnan(number))
-            return input_error("the number of the profile is missing", table->at(where, i));
+            return input_error("the number of the profile is missing", table.at(where, i));
         if (result.profiles.empty() || result.profiles.back().number != number) {
             if (!seen.insert(number).second)
                 return input_error(Text("profile {} comes back after another one", number),
-                                   table->at(where, i), "keep the rows of a profile together");
+                                   table.at(where, i), "keep the rows of a profile together");
             result.profiles.push_back({number, {}, {}});
         }
         ReadProfile& into = result.profiles.back();
-        const double height = table->columns[*c.z][i];
+        const double height = table.columns[*c.z][i];
         const bool code = std::count(layout.invalid.begin(), layout.invalid.end(), height) > 0;
-        const double x = table->columns[*c.x][i] * x_mm,
+        const double x = table.columns[*c.x][i] * x_mm,
                      z = code ? std::numeric_limits<double>::quiet_NaN() : height * z_mm;
         if (std::abs(x) > kFarthestPoint_mm || std::abs(z) > kFarthestPoint_mm)
             return input_error(Text("{} mm is beyond 1 km", std::abs(x) > kFarthestPoint_mm ? x : z),
-                               table->at(where, i), "say what the numbers are in with --unit");
+                               table.at(where, i), "say what the numbers are in with --unit");
         const bool returned = !std::isnan(x) && !std::isnan(z);
         returns += returned ? 1 : 0;
         into.profile.x_mm.push_back(x);
         into.profile.z_mm.push_back(returned ? z : std::numeric_limits<double>::quiet_NaN());
         if (c.intensity) {
-            const double grey = table->columns[*c.intensity][i];
+            const double grey = table.columns[*c.intensity][i];
             into.profile.intensity.push_back(std::isnan(grey) ? 0.0F : static_cast<float>(grey));
         }
-        if (!flat && !by_y && !c.profile) into.y_mm.push_back(table->columns[*c.y][i] * y_mm);
+        if (!flat && !by_y && !c.profile) into.y_mm.push_back(table.columns[*c.y][i] * y_mm);
     }
     if (returns == 0) return input_error("no point has both x and z", where);
-    result.understood = table->understood + ": " + told(*table, c);
+    result.understood = table.understood + ": " + told(table, c);
     if (by_y) result.understood += ", one profile for every y";
     if (result.profiles.size() > 1) result.understood += fmt::format(", {} profiles", result.profiles.size());
     return result;
 }
 
 Expected<ReadProfiles> read_profiles(const std::filesystem::path& path, const ProfileLayout& layout) {
-    const auto bytes = read_text_file(path);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return parse_profiles(*bytes, path.string(), layout);
+    SEAM_TRY(const auto bytes, read_text_file(path));
+    return parse_profiles(bytes, path.string(), layout);
 }
 
 }  // namespace seamwright

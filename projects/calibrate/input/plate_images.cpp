@@ -33,7 +33,7 @@ Expected<BoardSpec> parse_board(const std::string& counts, double pitch_mm, cons
     else
         return usage_error(Text("the pattern '{}' is unknown", pattern), "--pattern",
                            "write chessboard, circles or charuco");
-    if (auto ok = validate(spec); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(validate(spec));
     return spec;
 }
 

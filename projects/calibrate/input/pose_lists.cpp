@@ -20,17 +20,15 @@ Expected<std::optional<PoseConvention>> said_of(const json& data, std::string_vi
     if (said->is_string()) {
         if (key == kRobot) code = &*said;
     } else if (said->is_object()) {
-        if (auto ok = only_fields(*said, {kRobot, "camera_from_target"}, kSaid); !ok)
-            return tl::unexpected(ok.error());
+        SEAM_OK(only_fields(*said, {kRobot, "camera_from_target"}, kSaid));
         if (const auto it = said->find(key); it != said->end()) code = &*it;
     } else {
         return input_error("this is neither a code nor an object of codes", kSaid);
     }
     if (!code) return std::nullopt;
     if (!code->is_string()) return input_error("this is no code", kSaid);
-    auto convention = pose_convention_named(code->get<std::string>(), kSaid);
-    if (!convention) return tl::unexpected(convention.error());
-    return *convention;
+    SEAM_TRY(auto convention, pose_convention_named(code->get<std::string>(), kSaid));
+    return convention;
 }
 
 const json* entries_of(const json& data, const PoseListPlace& place) {
@@ -60,21 +58,19 @@ Expected<std::vector<WrittenPoses>> written_poses(const PoseLists& places, const
         for (std::size_t i = 0; i < entries->size(); ++i) {
             const json* one = pose_of_entry((*entries)[i], place);
             if (!one) continue;
-            auto written = written_pose(*one, where_of(place, i));
-            if (!written) return tl::unexpected(written.error());
-            if (list.numbers.empty()) list.as_given = written->as_given;
-            if (!(written->as_given == list.as_given))
+            SEAM_TRY(auto written, written_pose(*one, where_of(place, i)));
+            if (list.numbers.empty()) list.as_given = written.as_given;
+            if (!(written.as_given == list.as_given))
                 return input_error("the poses are written in several forms", where_of(place, i),
                                    "write all of a list in one form");
-            list.numbers.push_back(written->numbers);
+            list.numbers.push_back(written.numbers);
         }
         if (list.numbers.empty()) continue;
-        auto said = said_of(data, place.key);
-        if (!said) return tl::unexpected(said.error());
-        if (*said) {
-            if (form_of((*said)->rotation) != list.numbers.front().form)
-                return input_error(Text("the poses are not written as {}", words_of(**said)), kSaid);
-            list.as_given = **said;
+        SEAM_TRY(auto said, said_of(data, place.key));
+        if (said) {
+            if (form_of(said->rotation) != list.numbers.front().form)
+                return input_error(Text("the poses are not written as {}", words_of(*said)), kSaid);
+            list.as_given = *said;
         }
         lists.push_back(std::move(list));
     }
@@ -119,18 +115,16 @@ Expected<UsualPoses> with_usual_poses(const PoseLists& lists, const json& data) 
     if (!data.is_object() || !data.contains(kSaid)) return UsualPoses(data);
     json changed = data;
     for (const PoseListPlace& place : lists) {
-        auto said = said_of(data, place.key);
-        if (!said) return tl::unexpected(said.error());
-        if (!*said || !entries_of(data, place)) continue;
+        SEAM_TRY(auto said, said_of(data, place.key));
+        if (!said || !entries_of(data, place)) continue;
         json& entries = changed[place.entries];
         for (std::size_t i = 0; i < entries.size(); ++i) {
             const json* one = pose_of_entry(entries[i], place);
             if (!one) continue;
-            auto written = written_pose(*one, where_of(place, i));
-            if (!written) return tl::unexpected(written.error());
-            const auto pose = read_pose(written->numbers, **said);
+            SEAM_TRY(auto written, written_pose(*one, where_of(place, i)));
+            const auto pose = read_pose(written.numbers, *said);
             if (!pose)
-                return input_error(Text("these numbers are no pose as {}", words_of(**said)),
+                return input_error(Text("these numbers are no pose as {}", words_of(*said)),
                                    where_of(place, i),
                                    "leave the convention out, or see --detect-convention");
             entries[i][place.key] = pose_json(*pose);

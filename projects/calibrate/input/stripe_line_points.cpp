@@ -6,7 +6,7 @@
 namespace seamwright {
 
 Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, StripePeaks& peaks) {
-    if (auto found = find_peaks(image, {}, peaks); !found) return tl::unexpected(found.error());
+    SEAM_OK(find_peaks(image, {}, peaks));
     ProfileCandidates candidates;
     candidates.lines = peaks.lines;
     candidates.per_line = peaks.per_line;
@@ -19,7 +19,7 @@ Expected<std::vector<Eigen::Vector2d>> stripe_points(const StripeImage& image, S
         for (int k = 0; k < peaks.per_line; ++k)
             candidates.x_mm[static_cast<std::size_t>(peaks.index(line, k))] = line;
     Profile stripe;
-    if (auto tracked = track_stripe(candidates, {}, stripe); !tracked) return tl::unexpected(tracked.error());
+    SEAM_OK(track_stripe(candidates, {}, stripe));
     std::vector<Eigen::Vector2d> points;
     for (std::size_t i = 0; i < stripe.size(); ++i)
         if (stripe.segment[i] != kOutlier) points.emplace_back(stripe.x_mm[i], stripe.z_mm[i]);

@@ -26,15 +26,13 @@ json camera_json(const CameraModel& c) {
 Expected<CameraModel> parse_camera(const json& data, const std::string& where) {
     CameraModel c;
     for (auto [key, target] : {std::pair{"fx", &c.fx}, {"fy", &c.fy}, {"cx", &c.cx}, {"cy", &c.cy}}) {
-        auto value = json_number(data, key, where);
-        if (!value) return tl::unexpected(value.error());
-        *target = *value;
+        SEAM_TRY(auto value, json_number(data, key, where));
+        *target = value;
     }
     for (auto [key, target] :
          {std::pair{"k1", &c.k1}, {"k2", &c.k2}, {"p1", &c.p1}, {"p2", &c.p2}, {"k3", &c.k3}}) {
-        auto value = json_number_or(data, key, 0, where);
-        if (!value) return tl::unexpected(value.error());
-        *target = *value;
+        SEAM_TRY(auto value, json_number_or(data, key, 0, where));
+        *target = value;
     }
     if (!(c.fx > 0) || !(c.fy > 0))
         return input_error("a focal length must be positive", where, "give fx and fy in pixels");
@@ -50,30 +48,24 @@ Expected<CameraModel> parse_camera(const json& data, const std::string& where) {
 namespace {
 
 Expected<CameraData> parse_views(const json& written) {
-    auto size = image_size_of(written, "");
-    if (!size) return tl::unexpected(size.error());
+    SEAM_TRY(auto size, image_size_of(written, ""));
     CameraData data;
-    data.width = size->first;
-    data.height = size->second;
-    auto views = json_array(written, "views", "");
-    if (!views) return tl::unexpected(views.error());
-    for (std::size_t i = 0; i < (*views)->size(); ++i) {
-        const json& entry = (**views)[i];
+    data.width = size.first;
+    data.height = size.second;
+    SEAM_TRY(auto views, json_array(written, "views", ""));
+    for (std::size_t i = 0; i < views->size(); ++i) {
+        const json& entry = (*views)[i];
         const std::string where = json_path("views", i);
         CameraPoints view;
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
-        view.id = *id;
-        auto points = json_array(entry, "points", where);
-        if (!points) return tl::unexpected(points.error());
-        for (std::size_t k = 0; k < (*points)->size(); ++k) {
+        SEAM_TRY(auto id, entry_id(entry, i, where));
+        view.id = id;
+        SEAM_TRY(auto points, json_array(entry, "points", where));
+        for (std::size_t k = 0; k < points->size(); ++k) {
             const std::string at = json_path(json_path(where, "points"), k);
-            auto object = json_vector3((**points)[k], "object", at);
-            if (!object) return tl::unexpected(object.error());
-            auto pixel = json_vector2((**points)[k], "pixel", at);
-            if (!pixel) return tl::unexpected(pixel.error());
-            view.object_mm.push_back(*object);
-            view.pixel.push_back(*pixel);
+            SEAM_TRY(auto object, json_vector3((*points)[k], "object", at));
+            SEAM_TRY(auto pixel, json_vector2((*points)[k], "pixel", at));
+            view.object_mm.push_back(object);
+            view.pixel.push_back(pixel);
         }
         data.views.push_back(std::move(view));
     }
@@ -81,49 +73,45 @@ Expected<CameraData> parse_views(const json& written) {
 }
 
 Expected<CalibrationSolution> solve_camera(const json& written, const ExcludedIds& exclude) {
-    auto data = parse_views(written);
-    if (!data) return tl::unexpected(data.error());
+    SEAM_TRY(auto data, parse_views(written));
     CameraOptions options;
     options.exclude = exclude;
-    auto solved = calibrate_camera(*data, options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto solved, calibrate_camera(data, options));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
-    if (known) solution.found = CameraAndLaser{solved->camera, std::nullopt, std::nullopt};
+    const bool known = solved.report.judgement.verdict != Verdict::undetermined;
+    if (known) solution.found = CameraAndLaser{solved.camera, std::nullopt, std::nullopt};
     if (const auto missed = written.find("not_found"); missed != written.end() && missed->is_array()) {
-        result["images"] = data->views.size() + missed->size();
-        result["boards_found"] = data->views.size();
+        result["images"] = data.views.size() + missed->size();
+        result["boards_found"] = data.views.size();
         result["not_found"] = *missed;
     }
     result["status"] = known ? "ok" : "undetermined";
-    result["camera"] = known ? camera_json(solved->camera) : json(nullptr);
-    result["reprojection_rms_px"] = number_json(solved->rms_px);
-    result["sigma_px"] = number_json(solved->sigma_px);
-    result["covered_share"] = number_json(solved->covered_share);
+    result["camera"] = known ? camera_json(solved.camera) : json(nullptr);
+    result["reprojection_rms_px"] = number_json(solved.rms_px);
+    result["sigma_px"] = number_json(solved.sigma_px);
+    result["covered_share"] = number_json(solved.covered_share);
     json views = json::array();
-    for (std::size_t i = 0; i < data->views.size(); ++i)
+    for (std::size_t i = 0; i < data.views.size(); ++i)
         views.push_back(
-            {{"id", data->views[i].id},
-             {"camera_from_target", known ? pose_json(solved->camera_from_target[i]) : json(nullptr)},
-             {"sigma", pose_sigma_json(solved->camera_from_target[i], solved->pose_covariance[i])}});
+            {{"id", data.views[i].id},
+             {"camera_from_target", known ? pose_json(solved.camera_from_target[i]) : json(nullptr)},
+             {"sigma", pose_sigma_json(solved.camera_from_target[i], solved.pose_covariance[i])}});
     result["views"] = std::move(views);
-    solution.report = std::move(solved->report);
+    solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;
 }
 
 Expected<json> camera_images(const BoardImages& images) {
-    auto spec = parse_board(images.board, images.pitch_mm, images.pattern);
-    if (!spec) return tl::unexpected(spec.error());
-    auto files = plate_images(images.folder, images.exclude);
-    if (!files) return tl::unexpected(files.error());
+    SEAM_TRY(auto spec, parse_board(images.board, images.pitch_mm, images.pattern));
+    SEAM_TRY(auto files, plate_images(images.folder, images.exclude));
     CameraData data;
     json missed = json::array();
     BoardMiss miss;
     int done = 0;
-    for (const auto& path : *files) {
+    for (const auto& path : files) {
         Frame frame;
         if (auto read = read_image_file(path, frame); !read)
             return input_error(Text("the image cannot be read: {}", read.error().what), path.string(),
@@ -135,19 +123,19 @@ Expected<json> camera_images(const BoardImages& images) {
             return input_error("the images have different sizes", path.string(),
                                "give images of one camera at one resolution");
         }
-        const BoardSearch search = find_board(frame.image, *spec);
+        const BoardSearch search = find_board(frame.image, spec);
         if (search.board)
             data.views.push_back({path.stem().string(), search.board->object_mm, search.board->pixel});
         else
             missed.push_back(path.stem().string());
         if (search.miss.counted || search.miss.several) miss = search.miss;
-        if (images.progress) images.progress(++done, static_cast<int>(files->size()));
+        if (images.progress) images.progress(++done, static_cast<int>(files.size()));
     }
     if (data.views.empty() && (miss.counted || miss.several))
-        return input_error(why_missed(*spec, miss), images.folder, cure_of(miss));
+        return input_error(why_missed(spec, miss), images.folder, cure_of(miss));
     if (data.views.empty())
         return input_error(Text("no board of {} points was found in any of {} images", images.board,
-                                std::to_string(files->size())),
+                                std::to_string(files.size())),
                            images.folder, "check --board, --pattern, light and focus");
     json views = json::array();
     for (const CameraPoints& view : data.views) {

@@ -29,61 +29,47 @@ const json& entry_or_top(const json& entry, const json& data, const char* key) {
 
 Expected<std::vector<DriftMeasurement>> from_spheres(const json& data,
                                                      const std::vector<std::string>& exclude) {
-    auto stored_field = json_field(data, "flange_from_sensor", "");
-    if (!stored_field) return tl::unexpected(stored_field.error());
-    auto stored = parse_pose(**stored_field, "flange_from_sensor");
-    if (!stored) return tl::unexpected(stored.error());
-    auto other = json_number_or(data, "other_sigma_mm", 0.02, "");
-    if (!other) return tl::unexpected(other.error());
-    if (*other < 0) return input_error("a sigma is negative", "other_sigma_mm");
-    auto list = json_array(data, "observations", "");
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto stored_field, json_field(data, "flange_from_sensor", ""));
+    SEAM_TRY(auto stored, parse_pose(*stored_field, "flange_from_sensor"));
+    SEAM_TRY(auto other, json_number_or(data, "other_sigma_mm", 0.02, ""));
+    if (other < 0) return input_error("a sigma is negative", "other_sigma_mm");
+    SEAM_TRY(auto list, json_array(data, "observations", ""));
     std::vector<DriftMeasurement> measurements;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& entry = (*list)[i];
         const std::string where = json_path("observations", i);
-        auto observation = parse_sphere_observation(entry, i, where);
-        if (!observation) return tl::unexpected(observation.error());
-        if (std::find(exclude.begin(), exclude.end(), observation->id) != exclude.end()) continue;
-        auto radius = json_number(entry_or_top(entry, data, "radius_mm"), "radius_mm", where);
-        if (!radius) return tl::unexpected(radius.error());
-        auto centre = json_vector3(entry_or_top(entry, data, "centre_base_mm"), "centre_base_mm", where);
-        if (!centre) return tl::unexpected(centre.error());
-        auto measurement = drift_measurement(*observation, *radius, *stored, *centre, *other);
-        if (!measurement) return tl::unexpected(measurement.error());
-        measurements.push_back(*measurement);
+        SEAM_TRY(auto observation, parse_sphere_observation(entry, i, where));
+        if (std::find(exclude.begin(), exclude.end(), observation.id) != exclude.end()) continue;
+        SEAM_TRY(auto radius, json_number(entry_or_top(entry, data, "radius_mm"), "radius_mm", where));
+        SEAM_TRY(auto centre,
+                 json_vector3(entry_or_top(entry, data, "centre_base_mm"), "centre_base_mm", where));
+        SEAM_TRY(auto measurement, drift_measurement(observation, radius, stored, centre, other));
+        measurements.push_back(measurement);
     }
     return measurements;
 }
 
 Expected<std::vector<DriftMeasurement>> from_points(const json& data,
                                                     const std::vector<std::string>& exclude) {
-    auto list = json_array(data, "measurements", "");
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(data, "measurements", ""));
     std::vector<DriftMeasurement> measurements;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& entry = (*list)[i];
         const std::string where = json_path("measurements", i);
         DriftMeasurement m;
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
-        m.id = *id;
+        SEAM_TRY(auto id, entry_id(entry, i, where));
+        m.id = id;
         if (std::find(exclude.begin(), exclude.end(), m.id) != exclude.end()) continue;
-        auto field = json_field(entry, "base_from_flange", where);
-        if (!field) return tl::unexpected(field.error());
-        auto pose = parse_pose(**field, json_path(where, "base_from_flange"));
-        if (!pose) return tl::unexpected(pose.error());
-        m.base_from_flange = *pose;
-        auto measured = json_vector3(entry, "measured_flange", where);
-        if (!measured) return tl::unexpected(measured.error());
-        m.measured_flange_mm = *measured;
-        auto known = json_vector3(entry, "known_base", where);
-        if (!known) return tl::unexpected(known.error());
-        m.known_base_mm = *known;
-        auto sigma = json_number_or(entry, "sigma_mm", 0.05, where);
-        if (!sigma) return tl::unexpected(sigma.error());
-        if (*sigma <= 0) return input_error("the sigma is not positive", json_path(where, "sigma_mm"));
-        m.covariance = *sigma * *sigma * Eigen::Matrix3d::Identity();
+        SEAM_TRY(auto field, json_field(entry, "base_from_flange", where));
+        SEAM_TRY(auto pose, parse_pose(*field, json_path(where, "base_from_flange")));
+        m.base_from_flange = pose;
+        SEAM_TRY(auto measured, json_vector3(entry, "measured_flange", where));
+        m.measured_flange_mm = measured;
+        SEAM_TRY(auto known, json_vector3(entry, "known_base", where));
+        m.known_base_mm = known;
+        SEAM_TRY(auto sigma, json_number_or(entry, "sigma_mm", 0.05, where));
+        if (sigma <= 0) return input_error("the sigma is not positive", json_path(where, "sigma_mm"));
+        m.covariance = sigma * sigma * Eigen::Matrix3d::Identity();
         measurements.push_back(m);
     }
     return measurements;
@@ -92,33 +78,30 @@ Expected<std::vector<DriftMeasurement>> from_points(const json& data,
 Expected<CalibrationSolution> solve_drift(const json& data, const ExcludedIds& exclude) {
     DriftLimits limits;
     if (const auto it = data.find("limits"); it != data.end()) {
-        auto mm = json_number_or(*it, "translation_mm", limits.translation_mm, "limits");
-        if (!mm) return tl::unexpected(mm.error());
-        auto deg = json_number_or(*it, "rotation_deg", limits.rotation_deg, "limits");
-        if (!deg) return tl::unexpected(deg.error());
-        limits = {*mm, *deg};
+        SEAM_TRY(auto mm, json_number_or(*it, "translation_mm", limits.translation_mm, "limits"));
+        SEAM_TRY(auto deg, json_number_or(*it, "rotation_deg", limits.rotation_deg, "limits"));
+        limits = {mm, deg};
     }
     auto measurements =
         data.contains("measurements") ? from_points(data, exclude) : from_spheres(data, exclude);
     if (!measurements) return tl::unexpected(measurements.error());
-    auto checked = check_drift(*measurements, limits);
-    if (!checked) return tl::unexpected(checked.error());
+    SEAM_TRY(auto checked, check_drift(*measurements, limits));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    result["status"] = std::string(name_of(checked->status));
-    result["change"] = pose_json(checked->change);
-    result["change_mm"] = checked->change_mm;
-    result["change_deg"] = checked->change_deg;
-    result["sigma_mm"] = number_json(checked->sigma_mm);
-    result["sigma_deg"] = number_json(checked->sigma_deg);
-    result["sigma"] = pose_sigma_json(checked->change, checked->covariance);
-    result["chi_squared"] = number_json(checked->chi_squared);
-    result["chi_squared_limit"] = checked->chi_squared_limit;
-    result["rms_before_mm"] = number_json(checked->rms_before_mm);
-    result["rms_after_mm"] = number_json(checked->rms_after_mm);
-    result["not_determined"] = checked->not_determined;
-    solution.report = std::move(checked->report);
+    result["status"] = std::string(name_of(checked.status));
+    result["change"] = pose_json(checked.change);
+    result["change_mm"] = checked.change_mm;
+    result["change_deg"] = checked.change_deg;
+    result["sigma_mm"] = number_json(checked.sigma_mm);
+    result["sigma_deg"] = number_json(checked.sigma_deg);
+    result["sigma"] = pose_sigma_json(checked.change, checked.covariance);
+    result["chi_squared"] = number_json(checked.chi_squared);
+    result["chi_squared_limit"] = checked.chi_squared_limit;
+    result["rms_before_mm"] = number_json(checked.rms_before_mm);
+    result["rms_after_mm"] = number_json(checked.rms_after_mm);
+    result["not_determined"] = checked.not_determined;
+    solution.report = std::move(checked.report);
     finish_document(solution);
     return solution;
 }

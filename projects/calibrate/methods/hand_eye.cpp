@@ -17,29 +17,24 @@ namespace seamwright {
 using nlohmann::json;
 
 Expected<HandEyeData> parse_hand_eye_data(const json& data) {
-    auto mount_name = json_string(data, "mount", "");
-    if (!mount_name) return tl::unexpected(mount_name.error());
-    const auto mount = mount_named(*mount_name);
+    SEAM_TRY(auto mount_name, json_string(data, "mount", ""));
+    const auto mount = mount_named(mount_name);
     if (!mount)
-        return input_error(Text("the mount '{}' is unknown", *mount_name), "mount",
+        return input_error(Text("the mount '{}' is unknown", mount_name), "mount",
                            "write eye_in_hand or eye_to_hand");
-    auto list = json_array(data, "pairs", "");
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(data, "pairs", ""));
     HandEyeData set{*mount, {}};
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& entry = (*list)[i];
         const std::string where = json_path("pairs", i);
         HandEyePair pair;
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
-        pair.id = *id;
+        SEAM_TRY(auto id, entry_id(entry, i, where));
+        pair.id = id;
         for (auto [key, target] : {std::pair{"base_from_flange", &pair.base_from_flange},
                                    std::pair{"camera_from_target", &pair.camera_from_target}}) {
-            auto field = json_field(entry, key, where);
-            if (!field) return tl::unexpected(field.error());
-            auto pose = parse_pose(**field, json_path(where, key));
-            if (!pose) return tl::unexpected(pose.error());
-            *target = *pose;
+            SEAM_TRY(auto field, json_field(entry, key, where));
+            SEAM_TRY(auto pose, parse_pose(*field, json_path(where, key)));
+            *target = pose;
         }
         set.pairs.push_back(std::move(pair));
     }
@@ -65,33 +60,31 @@ std::optional<ConventionFit> convention_fit(Mount mount, const std::vector<HandE
 namespace {
 
 Expected<CalibrationSolution> solve_hand_eye(const json& data, const ExcludedIds& exclude) {
-    auto set = parse_hand_eye_data(data);
-    if (!set) return tl::unexpected(set.error());
-    auto solved = calibrate_hand_eye(set->mount, set->pairs, exclude);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto set, parse_hand_eye_data(data));
+    SEAM_TRY(auto solved, calibrate_hand_eye(set.mount, set.pairs, exclude));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool ok = solved->status == HandEyeStatus::ok;
-    const bool in_hand = set->mount == Mount::eye_in_hand;
-    const UncertainPose camera{solved->x, solved->covariance_x};
+    const bool ok = solved.status == HandEyeStatus::ok;
+    const bool in_hand = set.mount == Mount::eye_in_hand;
+    const UncertainPose camera{solved.x, solved.covariance_x};
     if (ok && in_hand) solution.found = CameraOnFlange{camera};
     if (ok && !in_hand) solution.found = CameraBesideRobot{camera};
-    result["mount"] = std::string(name_of(set->mount));
-    result["status"] = std::string(name_of(solved->status));
-    result[in_hand ? "flange_from_camera" : "base_from_camera"] = ok ? pose_json(solved->x) : json(nullptr);
-    result[in_hand ? "base_from_target" : "flange_from_target"] = ok ? pose_json(solved->y) : json(nullptr);
-    result["rms_mm"] = ok ? number_json(solved->rms_mm) : json(nullptr);
-    result["rms_deg"] = ok ? number_json(solved->rms_deg) : json(nullptr);
-    result["sigma"] = ok ? pose_sigma_json(solved->x, solved->covariance_x) : json(nullptr);
+    result["mount"] = std::string(name_of(set.mount));
+    result["status"] = std::string(name_of(solved.status));
+    result[in_hand ? "flange_from_camera" : "base_from_camera"] = ok ? pose_json(solved.x) : json(nullptr);
+    result[in_hand ? "base_from_target" : "flange_from_target"] = ok ? pose_json(solved.y) : json(nullptr);
+    result["rms_mm"] = ok ? number_json(solved.rms_mm) : json(nullptr);
+    result["rms_deg"] = ok ? number_json(solved.rms_deg) : json(nullptr);
+    result["sigma"] = ok ? pose_sigma_json(solved.x, solved.covariance_x) : json(nullptr);
     if (ok) {
-        result["covariance_pose"] = matrix_json(solved->covariance_x);
-        result["noise"] = {{"sigma_mm", solved->sigma_mm}, {"sigma_deg", solved->sigma_deg}};
+        result["covariance_pose"] = matrix_json(solved.covariance_x);
+        result["noise"] = {{"sigma_mm", solved.sigma_mm}, {"sigma_deg", solved.sigma_deg}};
     }
-    result["start"] = solved->start;
-    solution.report = std::move(solved->report);
-    solution.notices = std::move(solved->notices);
-    solution.degenerate = std::move(solved->degenerate);
+    result["start"] = solved.start;
+    solution.report = std::move(solved.report);
+    solution.notices = std::move(solved.notices);
+    solution.degenerate = std::move(solved.degenerate);
     finish_document(solution);
     return solution;
 }

@@ -15,20 +15,16 @@ namespace seamwright {
 using nlohmann::json;
 
 Expected<std::vector<LaserPair>> parse_laser_pairs(const json& data) {
-    auto list = json_array(data, "pairs", "");
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(data, "pairs", ""));
     std::vector<LaserPair> pairs;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& entry = (*list)[i];
         const std::string where = json_path("pairs", i);
         LaserPair pair;
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
-        auto pixel = json_vector2(entry, "pixel", where);
-        if (!pixel) return tl::unexpected(pixel.error());
-        auto laser = json_vector2(entry, "laser", where);
-        if (!laser) return tl::unexpected(laser.error());
-        pairs.push_back({*id, *pixel, *laser});
+        SEAM_TRY(auto id, entry_id(entry, i, where));
+        SEAM_TRY(auto pixel, json_vector2(entry, "pixel", where));
+        SEAM_TRY(auto laser, json_vector2(entry, "laser", where));
+        pairs.push_back({id, pixel, laser});
     }
     return pairs;
 }
@@ -36,26 +32,22 @@ Expected<std::vector<LaserPair>> parse_laser_pairs(const json& data) {
 namespace {
 
 Expected<CalibrationSolution> solve_laser_plane(const json& data, const ExcludedIds& exclude) {
-    auto camera_field = json_field(data, "camera", "");
-    if (!camera_field) return tl::unexpected(camera_field.error());
-    auto camera = parse_camera(**camera_field, "camera");
-    if (!camera) return tl::unexpected(camera.error());
-    auto pairs = parse_laser_pairs(data);
-    if (!pairs) return tl::unexpected(pairs.error());
-    auto solved = calibrate_laser_plane(*camera, *pairs, exclude);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto camera_field, json_field(data, "camera", ""));
+    SEAM_TRY(auto camera, parse_camera(*camera_field, "camera"));
+    SEAM_TRY(auto pairs, parse_laser_pairs(data));
+    SEAM_TRY(auto solved, calibrate_laser_plane(camera, pairs, exclude));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
-    if (known) solution.found = CameraAndLaser{*camera, solved->camera_from_laser, std::nullopt};
+    const bool known = solved.report.judgement.verdict != Verdict::undetermined;
+    if (known) solution.found = CameraAndLaser{camera, solved.camera_from_laser, std::nullopt};
     result["status"] = known ? "ok" : "undetermined";
-    result["camera"] = camera_json(*camera);
-    result["camera_from_laser"] = known ? pose_json(solved->camera_from_laser) : json(nullptr);
-    result["rms_px"] = known ? number_json(solved->rms_px) : json(nullptr);
-    result["sigma"] = known ? pose_sigma_json(solved->camera_from_laser, solved->covariance) : json(nullptr);
-    result["covariance_pose"] = known ? matrix_json(solved->covariance) : json(nullptr);
-    solution.report = std::move(solved->report);
+    result["camera"] = camera_json(camera);
+    result["camera_from_laser"] = known ? pose_json(solved.camera_from_laser) : json(nullptr);
+    result["rms_px"] = known ? number_json(solved.rms_px) : json(nullptr);
+    result["sigma"] = known ? pose_sigma_json(solved.camera_from_laser, solved.covariance) : json(nullptr);
+    result["covariance_pose"] = known ? matrix_json(solved.covariance) : json(nullptr);
+    solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;
 }

@@ -18,26 +18,22 @@ namespace {
 using nlohmann::json;
 
 Expected<CalibrationSolution> solve_lens(const json& data, const ExcludedIds& exclude) {
-    auto size = image_size_of(data, "");
-    if (!size) return tl::unexpected(size.error());
-    auto full = json_bool_or(data, "full", false, "");
-    if (!full) return tl::unexpected(full.error());
-    auto list = json_array(data, "lines", "");
-    if (!list) return tl::unexpected(list.error());
-    LensData lens{size->first, size->second, {}};
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
+    SEAM_TRY(auto size, image_size_of(data, ""));
+    SEAM_TRY(auto full, json_bool_or(data, "full", false, ""));
+    SEAM_TRY(auto list, json_array(data, "lines", ""));
+    LensData lens{size.first, size.second, {}};
+    for (std::size_t i = 0; i < list->size(); ++i) {
         const std::string where = json_path("lines", i);
-        if (!(**list)[i].is_array())
+        if (!(*list)[i].is_array())
             return input_error("this is not a list of points", where, "write [[u,v],..]");
         lens.lines.emplace_back();
-        for (std::size_t k = 0; k < (**list)[i].size(); ++k) {
-            auto point = as_numbers((**list)[i][k], 2, json_path(where, k));
-            if (!point) return tl::unexpected(point.error());
-            lens.lines.back().emplace_back((*point)[0], (*point)[1]);
+        for (std::size_t k = 0; k < (*list)[i].size(); ++k) {
+            SEAM_TRY(auto point, as_numbers((*list)[i][k], 2, json_path(where, k)));
+            lens.lines.back().emplace_back(point[0], point[1]);
         }
     }
     LensOptions options;
-    options.full = *full;
+    options.full = full;
     for (const auto& e : exclude) {
         int number = -1;
         const auto parsed = std::from_chars(e.data(), e.data() + e.size(), number);
@@ -45,23 +41,22 @@ Expected<CalibrationSolution> solve_lens(const json& data, const ExcludedIds& ex
             return input_error(Text("'{}' is no line number", e), "exclude", "lines count from 0");
         options.exclude.push_back(number);
     }
-    auto solved = calibrate_lens(lens, options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto solved, calibrate_lens(lens, options));
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
+    const bool known = solved.report.judgement.verdict != Verdict::undetermined;
     const auto given = [&](double v) { return known ? number_json(v) : json(nullptr); };
     result["status"] = known ? "ok" : "undetermined";
-    result["lens"] = known ? camera_json(solved->lens) : json(nullptr);
+    result["lens"] = known ? camera_json(solved.lens) : json(nullptr);
     result["centre_px"] =
-        known ? vector_json(Eigen::Vector2d(solved->lens.cx, solved->lens.cy)) : json(nullptr);
-    result["K1"] = given(solved->k1_px);
-    result["K2"] = given(solved->k2_px);
-    result["straightness_before_px"] = number_json(solved->straightness_before_px);
-    result["straightness_after_px"] = given(solved->straightness_after_px);
-    result["corner_shift_px"] = given(solved->corner_shift_px);
-    result["corner_sigma_px"] = number_json(solved->corner_sigma_px);
-    solution.report = std::move(solved->report);
+        known ? vector_json(Eigen::Vector2d(solved.lens.cx, solved.lens.cy)) : json(nullptr);
+    result["K1"] = given(solved.k1_px);
+    result["K2"] = given(solved.k2_px);
+    result["straightness_before_px"] = number_json(solved.straightness_before_px);
+    result["straightness_after_px"] = given(solved.straightness_after_px);
+    result["corner_shift_px"] = given(solved.corner_shift_px);
+    result["corner_sigma_px"] = number_json(solved.corner_sigma_px);
+    solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;
 }

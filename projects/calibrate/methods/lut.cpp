@@ -16,52 +16,48 @@ namespace {
 using nlohmann::json;
 
 Expected<CalibrationSolution> solve_lut(const json& data, const ExcludedIds& exclude) {
-    auto size = image_size_of(data, "");
-    if (!size) return tl::unexpected(size.error());
+    SEAM_TRY(auto size, image_size_of(data, ""));
     LookupTableOptions options;
     options.exclude = exclude;
     if (data.contains("step_px")) {
-        auto step = json_number(data, "step_px", "");
-        if (!step) return tl::unexpected(step.error());
-        if (!(*step > 0)) return input_error("the step is not above 0", "step_px", "give e.g. 8");
-        options.step_px = *step;
+        SEAM_TRY(auto step, json_number(data, "step_px", ""));
+        if (!(step > 0)) return input_error("the step is not above 0", "step_px", "give e.g. 8");
+        options.step_px = step;
     }
-    auto pairs = parse_laser_pairs(data);
-    if (!pairs) return tl::unexpected(pairs.error());
-    auto solved = calibrate_lookup_table(size->first, size->second, *pairs, options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto pairs, parse_laser_pairs(data));
+    SEAM_TRY(auto solved, calibrate_lookup_table(size.first, size.second, pairs, options));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
+    const bool known = solved.report.judgement.verdict != Verdict::undetermined;
     const auto given = [&](double v) { return known ? number_json(v) : json(nullptr); };
     result["status"] = known ? "ok" : "undetermined";
-    const LookupTable& t = solved->table;
+    const LookupTable& t = solved.table;
     result["table"] =
-        known ? json{{"u0", t.u0},           {"v0", t.v0},     {"step_u", t.step_u},    {"step_v", t.step_v},
-                     {"columns", t.columns}, {"rows", t.rows}, {"holes", solved->holes}}
+        known ? json{{"u0", t.u0},           {"v0", t.v0},     {"step_u", t.step_u},   {"step_v", t.step_v},
+                     {"columns", t.columns}, {"rows", t.rows}, {"holes", solved.holes}}
               : json(nullptr);
-    result["covered_share"] = given(solved->covered_share);
-    result["forward_rms_mm"] = given(solved->forward_rms_mm);
-    result["forward_max_mm"] = given(solved->forward_max_mm);
-    result["backward_rms_px"] = given(solved->backward_rms_px);
-    result["backward_max_px"] = given(solved->backward_max_px);
-    result["unsupported_pairs"] = known ? json(solved->unsupported_pairs) : json(nullptr);
-    result["noise_px"] = given(solved->noise_px);
-    result["noise_mm"] = given(solved->noise_mm);
-    result["interpolation_mm"] = given(solved->interpolation_mm);
-    result["sigma"] = known ? json{{"rms_mm", number_json(solved->map_sigma_mm)},
-                                   {"worst_mm", number_json(solved->map_sigma_worst_mm)}}
+    result["covered_share"] = given(solved.covered_share);
+    result["forward_rms_mm"] = given(solved.forward_rms_mm);
+    result["forward_max_mm"] = given(solved.forward_max_mm);
+    result["backward_rms_px"] = given(solved.backward_rms_px);
+    result["backward_max_px"] = given(solved.backward_max_px);
+    result["unsupported_pairs"] = known ? json(solved.unsupported_pairs) : json(nullptr);
+    result["noise_px"] = given(solved.noise_px);
+    result["noise_mm"] = given(solved.noise_mm);
+    result["interpolation_mm"] = given(solved.interpolation_mm);
+    result["sigma"] = known ? json{{"rms_mm", number_json(solved.map_sigma_mm)},
+                                   {"worst_mm", number_json(solved.map_sigma_worst_mm)}}
                             : json(nullptr);
     json wrong = json::array();
-    for (std::size_t i = 0; known && i < pairs->size(); ++i) {
-        const auto& pose = solved->report.poses[i];
+    for (std::size_t i = 0; known && i < pairs.size(); ++i) {
+        const auto& pose = solved.report.poses[i];
         if (!pose.used && pose.note != "excluded") wrong.push_back(pose.id);
     }
     result["wrong_pairs"] = std::move(wrong);
     result["table_file"] = nullptr;
-    if (known) solution.found = PixelTable{std::move(solved->table)};
-    solution.report = std::move(solved->report);
+    if (known) solution.found = PixelTable{std::move(solved.table)};
+    solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;
 }

@@ -30,7 +30,7 @@ Expected<void> set_setting(const CalibrationMethod& method, json& settings, cons
                            double value) {
     for (const MethodSetting& s : method.settings) {
         if (s.info.name != name) continue;
-        if (auto ok = validate({{name, value}}, {s.info}, method.id); !ok) return ok;
+        SEAM_OK(validate({{name, value}}, {s.info}, method.id));
         settings[json::json_pointer(s.pointer)] = s.info.decimals == 0 ? std::round(value) : value;
         return {};
     }
@@ -82,16 +82,14 @@ Expected<std::string> entry_id(const json& entry, std::size_t index, const std::
 }
 
 Expected<std::pair<int, int>> image_size_of(const json& data, const std::string& where) {
-    auto field = json_field(data, "size", where);
-    if (!field) return tl::unexpected(field.error());
+    SEAM_TRY(auto field, json_field(data, "size", where));
     const std::string at = json_path(where, "size");
-    auto size = as_numbers(**field, 2, at);
-    if (!size) return tl::unexpected(size.error());
+    SEAM_TRY(auto size, as_numbers(*field, 2, at));
     constexpr double kLargest = 1e5;
-    for (const double side : *size)
+    for (const double side : size)
         if (!(side >= 1 && side <= kLargest))
             return input_error("this is no image size", at, "give [width, height] in pixels");
-    return std::pair(static_cast<int>((*size)[0]), static_cast<int>((*size)[1]));
+    return std::pair(static_cast<int>(size[0]), static_cast<int>(size[1]));
 }
 
 }  // namespace seamwright

@@ -21,12 +21,11 @@ Expected<CalibrationSolution> solve_calibration(const CalibrationMethod& method,
                                                 const ExcludedIds& exclude) {
     if (!data.is_object())
         return input_error("the data is not a JSON object", "", Text("see calibrate {} --help", method.id));
-    const auto meant = with_usual_poses(method.poses, data);
-    if (!meant) return tl::unexpected(meant.error());
-    auto solution = method.solve(meant->data(), exclude);
+    SEAM_TRY(const auto meant, with_usual_poses(method.poses, data));
+    auto solution = method.solve(meant.data(), exclude);
     if (!solution) return solution;
     solution->document["method"] = method.id;
-    meant->put(solution->document);
+    meant.put(solution->document);
     return solution;
 }
 

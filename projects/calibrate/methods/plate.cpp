@@ -60,43 +60,36 @@ Expected<CalibrationSolution> solve_plate(const json& data, const ExcludedIds& e
     PlateOptions options;
     options.exclude = exclude;
     if (data.contains("sigma_mm") && !data["sigma_mm"].is_null()) {
-        auto sigma = json_number(data, "sigma_mm", "");
-        if (!sigma) return tl::unexpected(sigma.error());
-        options.sigma_mm = *sigma;
+        SEAM_TRY(auto sigma, json_number(data, "sigma_mm", ""));
+        options.sigma_mm = sigma;
     }
-    auto list = json_array(data, "points", "");
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(data, "points", ""));
     std::vector<PlatePoint> points;
     std::vector<Stand> stands;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& entry = (*list)[i];
         const std::string where = json_path("points", i);
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
+        SEAM_TRY(auto id, entry_id(entry, i, where));
         const auto point = [](const json& from, const std::string& name,
                               const std::string& at) -> Expected<PlatePoint> {
-            auto plate = json_vector3(from, "plate", at);
-            if (!plate) return tl::unexpected(plate.error());
-            auto world = json_vector3(from, "world", at);
-            if (!world) return tl::unexpected(world.error());
-            return PlatePoint{name, *plate, *world};
+            SEAM_TRY(auto plate, json_vector3(from, "plate", at));
+            SEAM_TRY(auto world, json_vector3(from, "world", at));
+            return PlatePoint{name, plate, world};
         };
         if (!entry.contains("points")) {
-            auto one = point(entry, *id, where);
-            if (!one) return tl::unexpected(one.error());
-            points.push_back(std::move(*one));
+            SEAM_TRY(auto one, point(entry, id, where));
+            points.push_back(std::move(one));
             continue;
         }
-        auto inner = json_array(entry, "points", where);
-        if (!inner) return tl::unexpected(inner.error());
-        if ((*inner)->empty()) return input_error("there is no point", json_path(where, "points"));
+        SEAM_TRY(auto inner, json_array(entry, "points", where));
+        if (inner->empty()) return input_error("there is no point", json_path(where, "points"));
         Stand stand;
-        stand.id = *id;
-        stand.used = std::erase(options.exclude, *id) == 0;
-        for (std::size_t k = 0; k < (*inner)->size(); ++k) {
-            auto one = point((**inner)[k], std::to_string(k + 1), json_path(json_path(where, "points"), k));
-            if (!one) return tl::unexpected(one.error());
-            stand.points.push_back(std::move(*one));
+        stand.id = id;
+        stand.used = std::erase(options.exclude, id) == 0;
+        for (std::size_t k = 0; k < inner->size(); ++k) {
+            SEAM_TRY(auto one,
+                     point((*inner)[k], std::to_string(k + 1), json_path(json_path(where, "points"), k)));
+            stand.points.push_back(std::move(one));
         }
         stands.push_back(std::move(stand));
     }

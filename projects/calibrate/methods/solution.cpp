@@ -168,9 +168,8 @@ bool holds(const json& document, const char* key) {
 }
 
 Expected<UncertainPose> uncertain_in(const json& holder, const char* key, const char* covariance) {
-    auto pose = parse_pose(holder.at(key), key);
-    if (!pose) return tl::unexpected(pose.error());
-    return UncertainPose{*pose, covariance_in(holder, covariance)};
+    SEAM_TRY(auto pose, parse_pose(holder.at(key), key));
+    return UncertainPose{pose, covariance_in(holder, covariance)};
 }
 
 Expected<CalibrationFinding> chains_in(const json& list) {
@@ -179,9 +178,8 @@ Expected<CalibrationFinding> chains_in(const json& list) {
         if (!one.is_object()) return input_error("this is no chain of a sensor", "sensors");
         SensorChains::Chain chain{word_or_none(one, "id"), std::nullopt, judgement_in(one)};
         if (holds(one, "reference_from_laser")) {
-            auto pose = uncertain_in(one, "reference_from_laser", "covariance");
-            if (!pose) return tl::unexpected(pose.error());
-            chain.reference_from_laser = *pose;
+            SEAM_TRY(auto pose, uncertain_in(one, "reference_from_laser", "covariance"));
+            chain.reference_from_laser = pose;
         }
         found.chains.push_back(std::move(chain));
     }
@@ -194,27 +192,24 @@ Expected<CalibrationFinding> finding_in(const json& document) {
         return chains_in(*sensors);
     if (holds(document, "camera")) {
         CameraAndLaser found;
-        auto camera = parse_camera(document["camera"], "camera");
-        if (!camera) return tl::unexpected(camera.error());
-        found.camera = *camera;
+        SEAM_TRY(auto camera, parse_camera(document["camera"], "camera"));
+        found.camera = camera;
         if (holds(document, "camera_from_laser")) {
-            auto laser = parse_pose(document["camera_from_laser"], "camera_from_laser");
-            if (!laser) return tl::unexpected(laser.error());
-            found.camera_from_laser = *laser;
+            SEAM_TRY(auto laser, parse_pose(document["camera_from_laser"], "camera_from_laser"));
+            found.camera_from_laser = laser;
         }
         if (holds(document, "hand_eye") && holds(document["hand_eye"], "flange_from_camera")) {
-            auto flange = uncertain_in(document["hand_eye"], "flange_from_camera", "covariance_pose");
-            if (!flange) return tl::unexpected(flange.error());
-            found.flange_from_camera = *flange;
+            SEAM_TRY(auto flange,
+                     uncertain_in(document["hand_eye"], "flange_from_camera", "covariance_pose"));
+            found.flange_from_camera = flange;
         }
         return found;
     }
     CalibrationFinding found;
     const auto take = [&](const char* key, auto finding) -> Expected<bool> {
         if (!holds(document, key)) return false;
-        auto pose = uncertain_in(document, key, "covariance_pose");
-        if (!pose) return tl::unexpected(pose.error());
-        found = finding(*pose);
+        SEAM_TRY(auto pose, uncertain_in(document, key, "covariance_pose"));
+        found = finding(pose);
         return true;
     };
     for (const auto& taken :
@@ -245,13 +240,12 @@ Expected<CalibrationSolution> solution_from_document(const json& document) {
     solution.degenerate = texts_in(document, "degenerate");
     if (const auto list = document.find("proposals"); list != document.end() && list->is_array())
         for (const json& p : *list) {
-            auto pose = parse_pose(p.is_object() ? p.value("base_from_flange", json()) : json(), "proposals");
-            if (!pose) return tl::unexpected(pose.error());
-            solution.proposals.push_back({text_in(p, "words"), *pose, number_or_none(p, "sigma_mm")});
+            SEAM_TRY(auto pose,
+                     parse_pose(p.is_object() ? p.value("base_from_flange", json()) : json(), "proposals"));
+            solution.proposals.push_back({text_in(p, "words"), pose, number_or_none(p, "sigma_mm")});
         }
-    auto found = finding_in(document);
-    if (!found) return tl::unexpected(found.error());
-    solution.found = std::move(*found);
+    SEAM_TRY(auto found, finding_in(document));
+    solution.found = std::move(found);
     solution.document = document;
     return solution;
 }

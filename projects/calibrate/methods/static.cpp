@@ -22,69 +22,56 @@ using nlohmann::json;
 Expected<UncertainPose> parse_link(const json& value, const std::string& where) {
     UncertainPose link;
     if (!value.is_object() || !value.contains("pose")) {
-        auto pose = parse_pose(value, where);
-        if (!pose) return tl::unexpected(pose.error());
-        link.pose = *pose;
+        SEAM_TRY(auto pose, parse_pose(value, where));
+        link.pose = pose;
         return link;
     }
-    if (auto ok = only_fields(value, {"pose", "covariance", "sigma_mm", "sigma_deg"}, where); !ok)
-        return tl::unexpected(ok.error());
-    auto pose = parse_pose(value["pose"], json_path(where, "pose"));
-    if (!pose) return tl::unexpected(pose.error());
-    link.pose = *pose;
+    SEAM_OK(only_fields(value, {"pose", "covariance", "sigma_mm", "sigma_deg"}, where));
+    SEAM_TRY(auto pose, parse_pose(value["pose"], json_path(where, "pose")));
+    link.pose = pose;
     if (value.contains("covariance")) {
         if (value.contains("sigma_mm") || value.contains("sigma_deg"))
             return input_error("covariance and sigma are both given", where, "give one of them");
-        auto rows = json_array(value, "covariance", where);
-        if (!rows) return tl::unexpected(rows.error());
+        SEAM_TRY(auto rows, json_array(value, "covariance", where));
         const std::string path = json_path(where, "covariance");
-        if ((*rows)->size() != 6) return input_error("the covariance has not six rows", path);
+        if (rows->size() != 6) return input_error("the covariance has not six rows", path);
         for (std::size_t i = 0; i < 6; ++i) {
-            auto row = as_numbers((**rows)[i], 6, json_path(path, i));
-            if (!row) return tl::unexpected(row.error());
+            SEAM_TRY(auto row, as_numbers((*rows)[i], 6, json_path(path, i)));
             for (std::size_t k = 0; k < 6; ++k)
-                link.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = (*row)[k];
+                link.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = row[k];
         }
         return link;
     }
-    auto mm = json_number_or(value, "sigma_mm", 0, where);
-    if (!mm) return tl::unexpected(mm.error());
-    auto deg = json_number_or(value, "sigma_deg", 0, where);
-    if (!deg) return tl::unexpected(deg.error());
-    if (*mm < 0 || *deg < 0) return input_error("a sigma is negative", where);
-    link.covariance.diagonal().head<3>().setConstant(*mm * *mm);
-    link.covariance.diagonal().tail<3>().setConstant(std::pow(rad_from_deg(*deg), 2));
+    SEAM_TRY(auto mm, json_number_or(value, "sigma_mm", 0, where));
+    SEAM_TRY(auto deg, json_number_or(value, "sigma_deg", 0, where));
+    if (mm < 0 || deg < 0) return input_error("a sigma is negative", where);
+    link.covariance.diagonal().head<3>().setConstant(mm * mm);
+    link.covariance.diagonal().tail<3>().setConstant(std::pow(rad_from_deg(deg), 2));
     return link;
 }
 
 Expected<UncertainPose> link_field(const json& entry, const std::string& key, const std::string& where) {
-    auto field = json_field(entry, key, where);
-    if (!field) return tl::unexpected(field.error());
-    return parse_link(**field, json_path(where, key));
+    SEAM_TRY(auto field, json_field(entry, key, where));
+    return parse_link(*field, json_path(where, key));
 }
 
 Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const std::string& where) {
     StaticSensor sensor;
-    auto id = entry_id(entry, index, where);
-    if (!id) return tl::unexpected(id.error());
-    sensor.id = *id;
-    auto plate = link_field(entry, "world_from_plate", where);
-    if (!plate) return tl::unexpected(plate.error());
-    sensor.world_from_plate = *plate;
+    SEAM_TRY(auto id, entry_id(entry, index, where));
+    sensor.id = id;
+    SEAM_TRY(auto plate, link_field(entry, "world_from_plate", where));
+    sensor.world_from_plate = plate;
     const bool inverted = entry.contains("camera_from_plate");
     if (inverted && entry.contains("plate_from_camera"))
         return input_error("plate_from_camera and camera_from_plate are both given", where,
                            "give one of them");
-    auto camera = link_field(entry, inverted ? "camera_from_plate" : "plate_from_camera", where);
-    if (!camera) return tl::unexpected(camera.error());
-    sensor.plate_from_camera = inverted ? inverse(*camera) : *camera;
-    auto laser = link_field(entry, "camera_from_laser", where);
-    if (!laser) return tl::unexpected(laser.error());
-    sensor.camera_from_laser = *laser;
+    SEAM_TRY(auto camera, link_field(entry, inverted ? "camera_from_plate" : "plate_from_camera", where));
+    sensor.plate_from_camera = inverted ? inverse(camera) : camera;
+    SEAM_TRY(auto laser, link_field(entry, "camera_from_laser", where));
+    sensor.camera_from_laser = laser;
     if (entry.contains("working_point")) {
-        auto point = json_vector3(entry, "working_point", where);
-        if (!point) return tl::unexpected(point.error());
-        sensor.working_point_mm = *point;
+        SEAM_TRY(auto point, json_vector3(entry, "working_point", where));
+        sensor.working_point_mm = point;
     }
     return sensor;
 }
@@ -92,36 +79,31 @@ Expected<StaticSensor> parse_sensor(const json& entry, std::size_t index, const 
 Expected<CalibrationSolution> solve_static(const json& data, const ExcludedIds& exclude) {
     std::vector<StaticSensor> sensors;
     if (data.contains("sensors")) {
-        auto list = json_array(data, "sensors", "");
-        if (!list) return tl::unexpected(list.error());
-        for (std::size_t i = 0; i < (*list)->size(); ++i) {
-            auto sensor = parse_sensor((**list)[i], i, json_path("sensors", i));
-            if (!sensor) return tl::unexpected(sensor.error());
-            sensors.push_back(std::move(*sensor));
+        SEAM_TRY(auto list, json_array(data, "sensors", ""));
+        for (std::size_t i = 0; i < list->size(); ++i) {
+            SEAM_TRY(auto sensor, parse_sensor((*list)[i], i, json_path("sensors", i)));
+            sensors.push_back(std::move(sensor));
         }
     } else {
-        auto sensor = parse_sensor(data, 0, "");
-        if (!sensor) return tl::unexpected(sensor.error());
-        sensors.push_back(std::move(*sensor));
+        SEAM_TRY(auto sensor, parse_sensor(data, 0, ""));
+        sensors.push_back(std::move(sensor));
     }
     StaticChainOptions options;
     options.exclude = exclude;
     if (data.contains("reference_from_world")) {
-        auto reference = link_field(data, "reference_from_world", "");
-        if (!reference) return tl::unexpected(reference.error());
-        options.reference_from_world = *reference;
+        SEAM_TRY(auto reference, link_field(data, "reference_from_world", ""));
+        options.reference_from_world = reference;
     }
-    auto solved = calibrate_static(sensors, options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto solved, calibrate_static(sensors, options));
 
     CalibrationSolution solution;
     json& result = solution.document;
     const char* frame = options.reference_from_world ? "reference_from_laser" : "world_from_laser";
     result["status"] = "ok";
-    put_judgement(solved->judgement, result);
+    put_judgement(solved.judgement, result);
     SensorChains found;
     json list = json::array();
-    for (const auto& s : solved->sensors) {
+    for (const auto& s : solved.sensors) {
         json one;
         one["id"] = s.id;
         one[frame] = pose_json(s.world_from_laser.pose);
@@ -141,7 +123,7 @@ Expected<CalibrationSolution> solve_static(const json& data, const ExcludedIds& 
     if (!data.contains("sensors")) result[frame] = list[0][frame];
     result["sensors"] = std::move(list);
     solution.found = std::move(found);
-    solution.report.judgement = solved->judgement;
+    solution.report.judgement = solved.judgement;
     return solution;
 }
 

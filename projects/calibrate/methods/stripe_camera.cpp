@@ -77,22 +77,20 @@ void judge_excluded(const StripeCameraResult& solved, const StripeObservation& o
 }
 
 Expected<CalibrationSolution> solve_stripe_camera(const json& data, const ExcludedIds& exclude) {
-    auto set = parse_stripe_data(data);
-    if (!set) return tl::unexpected(set.error());
-    const auto& observations = set->observations;
+    SEAM_TRY(auto set, parse_stripe_data(data));
+    const auto& observations = set.observations;
     StripeCameraOptions options;
     options.exclude = exclude;
-    auto solved = calibrate_stripe_camera(observations, set->spec, options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto solved, calibrate_stripe_camera(observations, set.spec, options));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool known = solved->report.judgement.verdict != Verdict::undetermined;
+    const bool known = solved.report.judgement.verdict != Verdict::undetermined;
     if (known) {
-        CameraAndLaser found{solved->camera, std::nullopt, std::nullopt};
-        if (solved->plane) found.camera_from_laser = solved->camera_from_laser;
-        if (solved->flange_from_camera)
-            found.flange_from_camera = {*solved->flange_from_camera, solved->flange_from_camera_covariance};
+        CameraAndLaser found{solved.camera, std::nullopt, std::nullopt};
+        if (solved.plane) found.camera_from_laser = solved.camera_from_laser;
+        if (solved.flange_from_camera)
+            found.flange_from_camera = {*solved.flange_from_camera, solved.flange_from_camera_covariance};
         solution.found = std::move(found);
     }
     result["status"] = known ? "ok" : "undetermined";
@@ -100,37 +98,37 @@ Expected<CalibrationSolution> solve_stripe_camera(const json& data, const Exclud
     result["poses"] = std::count_if(observations.begin(), observations.end(), [](const StripeObservation& o) {
         return o.base_from_flange.has_value();
     });
-    result["boards_found"] = solved->boards_found;
-    result["camera"] = known ? camera_json(solved->camera) : json(nullptr);
-    result["reprojection_rms_px"] = number_json(solved->rms_px);
-    const bool plane = known && solved->plane;
+    result["boards_found"] = solved.boards_found;
+    result["camera"] = known ? camera_json(solved.camera) : json(nullptr);
+    result["reprojection_rms_px"] = number_json(solved.rms_px);
+    const bool plane = known && solved.plane;
     result["laser_plane"] = json(nullptr);
     if (plane)
-        result["laser_plane"] = {{"normal", vector_json(solved->plane->normal)},
-                                 {"distance_mm", solved->plane_distance_mm},
-                                 {"sigma_deg", number_json(solved->plane_sigma_deg)},
-                                 {"sigma_mm", number_json(solved->plane_sigma_mm)}};
-    result["camera_from_laser"] = plane ? pose_json(solved->camera_from_laser) : json(nullptr);
-    result["on_plane_share"] = plane ? number_json(solved->on_plane_share) : json(nullptr);
-    result["on_plane_share_all_frames"] = plane ? number_json(solved->on_plane_share_all) : json(nullptr);
-    result["plane_rms_mm"] = plane ? number_json(solved->plane_rms_mm) : json(nullptr);
+        result["laser_plane"] = {{"normal", vector_json(solved.plane->normal)},
+                                 {"distance_mm", solved.plane_distance_mm},
+                                 {"sigma_deg", number_json(solved.plane_sigma_deg)},
+                                 {"sigma_mm", number_json(solved.plane_sigma_mm)}};
+    result["camera_from_laser"] = plane ? pose_json(solved.camera_from_laser) : json(nullptr);
+    result["on_plane_share"] = plane ? number_json(solved.on_plane_share) : json(nullptr);
+    result["on_plane_share_all_frames"] = plane ? number_json(solved.on_plane_share_all) : json(nullptr);
+    result["plane_rms_mm"] = plane ? number_json(solved.plane_rms_mm) : json(nullptr);
     result["hand_eye"] = json(nullptr);
-    if (known && solved->flange_from_camera)
+    if (known && solved.flange_from_camera)
         result["hand_eye"] = {
-            {"flange_from_camera", pose_json(*solved->flange_from_camera)},
-            {"base_from_target", pose_json(*solved->base_from_target)},
-            {"sigma", pose_sigma_json(*solved->flange_from_camera, solved->flange_from_camera_covariance)},
-            {"covariance_pose", matrix_json(solved->flange_from_camera_covariance)},
-            {"target_spread_mm", solved->target_spread_mm},
-            {"target_spread_max_mm", solved->target_spread_max_mm}};
+            {"flange_from_camera", pose_json(*solved.flange_from_camera)},
+            {"base_from_target", pose_json(*solved.base_from_target)},
+            {"sigma", pose_sigma_json(*solved.flange_from_camera, solved.flange_from_camera_covariance)},
+            {"covariance_pose", matrix_json(solved.flange_from_camera_covariance)},
+            {"target_spread_mm", solved.target_spread_mm},
+            {"target_spread_max_mm", solved.target_spread_max_mm}};
     static constexpr const char* shapes[] = {"rigid", "in-plane", "bowed"};
-    result["plate"] = {{"shape", shapes[static_cast<int>(solved->shape_freedom)]},
-                       {"stretch", solved->shape.stretch},
-                       {"shear", solved->shape.shear},
-                       {"bow_mm", vector_json(solved->shape.bow_mm)}};
+    result["plate"] = {{"shape", shapes[static_cast<int>(solved.shape_freedom)]},
+                       {"stretch", solved.shape.stretch},
+                       {"shear", solved.shape.shear},
+                       {"bow_mm", vector_json(solved.shape.bow_mm)}};
     json frames = json::array();
-    for (std::size_t i = 0; i < solved->frames.size(); ++i) {
-        const auto& f = solved->frames[i];
+    for (std::size_t i = 0; i < solved.frames.size(); ++i) {
+        const auto& f = solved.frames[i];
         frames.push_back(
             {{"id", f.id},
              {"board_found", f.board_found},
@@ -145,8 +143,8 @@ Expected<CalibrationSolution> solve_stripe_camera(const json& data, const Exclud
     result["frames"] = std::move(frames);
     for (std::size_t i = 0; known && i < observations.size(); ++i)
         if (std::count(exclude.begin(), exclude.end(), observations[i].id) > 0)
-            judge_excluded(*solved, observations[i], set->spec, solved->report.poses[i]);
-    solution.report = std::move(solved->report);
+            judge_excluded(solved, observations[i], set.spec, solved.report.poses[i]);
+    solution.report = std::move(solved.report);
     finish_document(solution);
     return solution;
 }
@@ -197,21 +195,19 @@ json stripe_camera_example() {
 
 // Camera and plate without the robot, once; the robot's poses then against where the camera saw the plate.
 Expected<ConventionFits> stripe_camera_conventions(const json& data, const ExcludedIds& exclude) {
-    auto set = parse_stripe_data(without_poses(stripe_camera_method().poses, data, nullptr));
-    if (!set) return tl::unexpected(set.error());
+    SEAM_TRY(auto set, parse_stripe_data(without_poses(stripe_camera_method().poses, data, nullptr)));
     StripeCameraOptions options;
     options.exclude = exclude;
-    const auto solved = calibrate_stripe_camera(set->observations, set->spec, options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(const auto solved, calibrate_stripe_camera(set.observations, set.spec, options));
     std::vector<HandEyePair> pairs;
     std::vector<std::size_t> number;  // of the pose in its list
     std::size_t poses = 0;
-    for (std::size_t i = 0; i < solved->frames.size(); ++i) {
+    for (std::size_t i = 0; i < solved.frames.size(); ++i) {
         const json& entry = data.at("frames").at(i);
         if (!entry.contains("base_from_flange") || entry["base_from_flange"].is_null()) continue;
         const std::size_t own = poses++;
-        if (!solved->frames[i].used) continue;
-        pairs.push_back({set->observations[i].id, Pose::Identity(), solved->frames[i].camera_from_target});
+        if (!solved.frames[i].used) continue;
+        pairs.push_back({set.observations[i].id, Pose::Identity(), solved.frames[i].camera_from_target});
         number.push_back(own);
     }
     PoseFit fit = [pairs = std::move(pairs),

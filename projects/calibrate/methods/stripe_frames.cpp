@@ -38,14 +38,12 @@ std::optional<fs::path> pose_file_beside(const fs::path& image) {
 
 Expected<std::vector<Eigen::Vector2d>> parse_pixels(const json& entry, const char* key,
                                                     const std::string& where) {
-    auto list = json_array(entry, key, where);
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(entry, key, where));
     std::vector<Eigen::Vector2d> pixels;
-    pixels.reserve((*list)->size());
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        auto uv = as_numbers((**list)[i], 2, json_path(json_path(where, key), i));
-        if (!uv) return tl::unexpected(uv.error());
-        pixels.emplace_back((*uv)[0], (*uv)[1]);
+    pixels.reserve(list->size());
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        SEAM_TRY(auto uv, as_numbers((*list)[i], 2, json_path(json_path(where, key), i)));
+        pixels.emplace_back(uv[0], uv[1]);
     }
     return pixels;
 }
@@ -58,28 +56,23 @@ json pixels_json(const std::vector<Eigen::Vector2d>& pixels) {
 
 Expected<FoundBoard> parse_found_board(const json& value, const BoardSpec& spec, const std::string& where) {
     FoundBoard board;
-    auto pixels = parse_pixels(value, "pixel", where);
-    if (!pixels) return tl::unexpected(pixels.error());
-    board.pixel = std::move(*pixels);
-    auto index = json_array(value, "index", where);
-    if (!index) return tl::unexpected(index.error());
-    for (std::size_t i = 0; i < (*index)->size(); ++i) {
-        auto number = as_number((**index)[i], json_path(json_path(where, "index"), i));
-        if (!number) return tl::unexpected(number.error());
-        if (*number < 0 || *number >= spec.columns * spec.rows || *number != std::floor(*number))
+    SEAM_TRY(auto pixels, parse_pixels(value, "pixel", where));
+    board.pixel = std::move(pixels);
+    SEAM_TRY(auto index, json_array(value, "index", where));
+    for (std::size_t i = 0; i < index->size(); ++i) {
+        SEAM_TRY(auto number, as_number((*index)[i], json_path(json_path(where, "index"), i)));
+        if (number < 0 || number >= spec.columns * spec.rows || number != std::floor(number))
             return input_error("this is no corner of the board", json_path(json_path(where, "index"), i));
-        const int k = static_cast<int>(*number);
+        const int k = static_cast<int>(number);
         board.index.push_back(k);
         board.object_mm.emplace_back(k % spec.columns * spec.pitch_mm, k / spec.columns * spec.pitch_mm, 0);
     }
     if (board.index.size() != board.pixel.size())
         return input_error("pixel and index have different lengths", where);
-    auto symmetry = json_number_or(value, "symmetry", 1, where);
-    if (!symmetry) return tl::unexpected(symmetry.error());
-    board.symmetry = *symmetry == 2 || *symmetry == 4 ? static_cast<int>(*symmetry) : 1;
-    auto detector = json_string_or(value, "detector", "", where);
-    if (!detector) return tl::unexpected(detector.error());
-    board.detector = *detector;
+    SEAM_TRY(auto symmetry, json_number_or(value, "symmetry", 1, where));
+    board.symmetry = symmetry == 2 || symmetry == 4 ? static_cast<int>(symmetry) : 1;
+    SEAM_TRY(auto detector, json_string_or(value, "detector", "", where));
+    board.detector = detector;
     return board;
 }
 
@@ -103,38 +96,31 @@ json stripe_frame_json(const StripeObservation& o) {
 Expected<StripeObservation> parse_stripe_frame(const json& entry, const BoardSpec& spec, std::size_t index,
                                                const std::string& where) {
     StripeObservation o;
-    auto id = entry_id(entry, index, where);
-    if (!id) return tl::unexpected(id.error());
-    o.id = *id;
-    auto size_field = json_field(entry, "size", where);
-    if (!size_field) return tl::unexpected(size_field.error());
-    auto size = as_numbers(**size_field, 2, json_path(where, "size"));
-    if (!size) return tl::unexpected(size.error());
-    if (!((*size)[0] >= 1 && (*size)[1] >= 1 && (*size)[0] <= 1e5 && (*size)[1] <= 1e5))
+    SEAM_TRY(auto id, entry_id(entry, index, where));
+    o.id = id;
+    SEAM_TRY(auto size_field, json_field(entry, "size", where));
+    SEAM_TRY(auto size, as_numbers(*size_field, 2, json_path(where, "size")));
+    if (!(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e5 && size[1] <= 1e5))
         return input_error("this is no image size", json_path(where, "size"),
                            "give [width, height] in pixels");
-    o.width = static_cast<int>((*size)[0]);
-    o.height = static_cast<int>((*size)[1]);
-    auto scan = json_string_or(entry, "scan", "rows", where);
-    if (!scan) return tl::unexpected(scan.error());
-    if (*scan != "rows" && *scan != "columns")
-        return input_error(Text("the scan '{}' is unknown", *scan), json_path(where, "scan"),
+    o.width = static_cast<int>(size[0]);
+    o.height = static_cast<int>(size[1]);
+    SEAM_TRY(auto scan, json_string_or(entry, "scan", "rows", where));
+    if (scan != "rows" && scan != "columns")
+        return input_error(Text("the scan '{}' is unknown", scan), json_path(where, "scan"),
                            "write rows or columns");
-    o.scan = *scan == "rows" ? ScanLines::rows : ScanLines::columns;
+    o.scan = scan == "rows" ? ScanLines::rows : ScanLines::columns;
     if (const auto it = entry.find("board"); it != entry.end() && !it->is_null()) {
-        auto board = parse_found_board(*it, spec, json_path(where, "board"));
-        if (!board) return tl::unexpected(board.error());
-        o.board = std::move(*board);
+        SEAM_TRY(auto board, parse_found_board(*it, spec, json_path(where, "board")));
+        o.board = std::move(board);
     }
     if (const auto it = entry.find("stripe"); it != entry.end() && !it->is_null()) {
-        auto stripe = parse_pixels(entry, "stripe", where);
-        if (!stripe) return tl::unexpected(stripe.error());
-        o.stripe = std::move(*stripe);
+        SEAM_TRY(auto stripe, parse_pixels(entry, "stripe", where));
+        o.stripe = std::move(stripe);
     }
     if (const auto it = entry.find("base_from_flange"); it != entry.end() && !it->is_null()) {
-        auto pose = parse_pose(*it, json_path(where, "base_from_flange"));
-        if (!pose) return tl::unexpected(pose.error());
-        o.base_from_flange = *pose;
+        SEAM_TRY(auto pose, parse_pose(*it, json_path(where, "base_from_flange")));
+        o.base_from_flange = pose;
     }
     return o;
 }
@@ -146,15 +132,13 @@ json board_json(const BoardSpec& spec) {
 Expected<BoardSpec> parse_board_json(const json& value, const std::string& where) {
     BoardSpec spec;
     for (auto [key, target] : {std::pair{"columns", &spec.columns}, std::pair{"rows", &spec.rows}}) {
-        auto number = json_number(value, key, where);
-        if (!number) return tl::unexpected(number.error());
-        if (!(*number >= 0 && *number <= 1000)) return input_error("this is no count", json_path(where, key));
-        *target = static_cast<int>(*number);
+        SEAM_TRY(auto number, json_number(value, key, where));
+        if (!(number >= 0 && number <= 1000)) return input_error("this is no count", json_path(where, key));
+        *target = static_cast<int>(number);
     }
-    auto pitch = json_number(value, "pitch_mm", where);
-    if (!pitch) return tl::unexpected(pitch.error());
-    spec.pitch_mm = *pitch;
-    if (auto ok = validate(spec); !ok) return tl::unexpected(ok.error());
+    SEAM_TRY(auto pitch, json_number(value, "pitch_mm", where));
+    spec.pitch_mm = pitch;
+    SEAM_OK(validate(spec));
     return spec;
 }
 
@@ -164,24 +148,21 @@ namespace {
 // does.
 using Stripe = std::pair<ScanLines, std::vector<Eigen::Vector2d>>;
 Expected<std::optional<Stripe>> stripe_in_colour(const fs::path& path) {
-    const auto choice = choose_channel(path);
-    if (!choice) return tl::unexpected(choice.error());
-    if (!choice->colour || choice->channel == ImageChannel::grey) return std::nullopt;
+    SEAM_TRY(const auto choice, choose_channel(path));
+    if (!choice.colour || choice.channel == ImageChannel::grey) return std::nullopt;
     Frame frame;
-    if (auto read = read_image_file(path, frame, 0, choice->channel); !read)
-        return tl::unexpected(read.error());
+    SEAM_OK(read_image_file(path, frame, 0, choice.channel));
     PeakOptions options;
-    const auto scan = guess_scan_lines(frame.image);
-    if (!scan) return tl::unexpected(scan.error());
-    options.scan = *scan;
+    SEAM_TRY(const auto scan, guess_scan_lines(frame.image));
+    options.scan = scan;
     StripePeaks peaks;
-    if (auto found = find_peaks(frame.image, options, peaks); !found) return tl::unexpected(found.error());
-    Stripe stripe{*scan, {}};
+    SEAM_OK(find_peaks(frame.image, options, peaks));
+    Stripe stripe{scan, {}};
     for (int line = 0; line < peaks.lines; ++line)
         for (int k = 0; k < peaks.count[static_cast<std::size_t>(line)]; ++k) {
             const auto i = static_cast<std::size_t>(peaks.index(line, k));
             if (!(peaks.flags[i] & StripePeaks::kTruncated))
-                stripe.second.push_back(pixel_of(*scan, line, peaks.position_px[i]));
+                stripe.second.push_back(pixel_of(scan, line, peaks.position_px[i]));
         }
     return stripe;
 }
@@ -214,53 +195,45 @@ Expected<StripeObservation> read_stripe_frame(const fs::path& path, const BoardS
 }
 
 Expected<StripeData> parse_stripe_data(const json& data) {
-    auto board = json_field(data, "board", "");
-    if (!board) return tl::unexpected(board.error());
-    auto spec = parse_board_json(**board, "board");
-    if (!spec) return tl::unexpected(spec.error());
-    auto list = json_array(data, "frames", "");
-    if (!list) return tl::unexpected(list.error());
-    StripeData set{*spec, {}};
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        auto o = parse_stripe_frame((**list)[i], *spec, i, json_path("frames", i));
-        if (!o) return tl::unexpected(o.error());
-        set.observations.push_back(std::move(*o));
+    SEAM_TRY(auto board, json_field(data, "board", ""));
+    SEAM_TRY(auto spec, parse_board_json(*board, "board"));
+    SEAM_TRY(auto list, json_array(data, "frames", ""));
+    StripeData set{spec, {}};
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        SEAM_TRY(auto o, parse_stripe_frame((*list)[i], spec, i, json_path("frames", i)));
+        set.observations.push_back(std::move(o));
     }
     return set;
 }
 
 // Poses of text files stay quaternions, as they are written there.
 Expected<json> stripe_folder_data(const BoardImages& images) {
-    auto spec = parse_board(images.board, images.pitch_mm, "chessboard");
-    if (!spec) return tl::unexpected(spec.error());
-    auto files = plate_images(images.folder, images.exclude);
-    if (!files) return tl::unexpected(files.error());
+    SEAM_TRY(auto spec, parse_board(images.board, images.pitch_mm, "chessboard"));
+    SEAM_TRY(auto files, plate_images(images.folder, images.exclude));
     json frames = json::array();
     BoardMiss miss;
     bool found = false;
-    for (const auto& path : *files) {
-        auto o = read_stripe_frame(path, *spec);
-        if (!o) return tl::unexpected(o.error());
-        json frame = stripe_frame_json(*o);
+    for (const auto& path : files) {
+        SEAM_TRY(auto o, read_stripe_frame(path, spec));
+        json frame = stripe_frame_json(o);
         if (!frames.empty() && frames.front()["size"] != frame["size"])
             return input_error("the images have different sizes", path.string(),
                                "give frames of one camera at one resolution");
         const auto file = pose_file_beside(path);
-        if (o->base_from_flange && file && file->extension() != ".json") {
-            const PoseNumbers n = write_pose(*o->base_from_flange, {.rotation = RotationReading::quat_wxyz});
+        if (o.base_from_flange && file && file->extension() != ".json") {
+            const PoseNumbers n = write_pose(*o.base_from_flange, {.rotation = RotationReading::quat_wxyz});
             frame["base_from_flange"] = {
                 {"xyz", {n.position.x(), n.position.y(), n.position.z()}},
                 {"quat_wxyz", {n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}}};
         }
         frames.push_back(std::move(frame));
-        found |= o->board.has_value();
-        if (o->miss.counted || o->miss.several) miss = o->miss;
-        if (images.progress)
-            images.progress(static_cast<int>(frames.size()), static_cast<int>(files->size()));
+        found |= o.board.has_value();
+        if (o.miss.counted || o.miss.several) miss = o.miss;
+        if (images.progress) images.progress(static_cast<int>(frames.size()), static_cast<int>(files.size()));
     }
     if (!found && (miss.counted || miss.several))
-        return input_error(why_missed(*spec, miss), images.folder, cure_of(miss));
-    return json{{"board", board_json(*spec)}, {"frames", std::move(frames)}};
+        return input_error(why_missed(spec, miss), images.folder, cure_of(miss));
+    return json{{"board", board_json(spec)}, {"frames", std::move(frames)}};
 }
 
 }  // namespace seamwright

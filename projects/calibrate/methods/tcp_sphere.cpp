@@ -23,20 +23,16 @@ using nlohmann::json;
 Expected<SphereObservation> parse_sphere_observation(const json& entry, std::size_t index,
                                                      const std::string& where) {
     SphereObservation observation;
-    auto id = entry_id(entry, index, where);
-    if (!id) return tl::unexpected(id.error());
-    observation.id = *id;
-    auto pose_field = json_field(entry, "base_from_flange", where);
-    if (!pose_field) return tl::unexpected(pose_field.error());
-    auto pose = parse_pose(**pose_field, json_path(where, "base_from_flange"));
-    if (!pose) return tl::unexpected(pose.error());
-    observation.base_from_flange = *pose;
-    auto profile = json_array(entry, "profile", where);
-    if (!profile) return tl::unexpected(profile.error());
+    SEAM_TRY(auto id, entry_id(entry, index, where));
+    observation.id = id;
+    SEAM_TRY(auto pose_field, json_field(entry, "base_from_flange", where));
+    SEAM_TRY(auto pose, parse_pose(*pose_field, json_path(where, "base_from_flange")));
+    observation.base_from_flange = pose;
+    SEAM_TRY(auto profile, json_array(entry, "profile", where));
     const std::string path = json_path(where, "profile");
     const double none = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t i = 0; i < (*profile)->size(); ++i) {
-        const json& point = (**profile)[i];
+    for (std::size_t i = 0; i < profile->size(); ++i) {
+        const json& point = (*profile)[i];
         double x = none, z = none;
         if (!point.is_null()) {
             if (!point.is_array() || point.size() != 2)
@@ -63,21 +59,17 @@ Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::
         return input_error("the sphere's radius is missing", "radius_mm",
                            "give it in millimetres, or null to solve for it");
     if (!data["radius_mm"].is_null()) {
-        auto radius = json_number(data, "radius_mm", "");
-        if (!radius) return tl::unexpected(radius.error());
-        options.radius_mm = *radius;
+        SEAM_TRY(auto radius, json_number(data, "radius_mm", ""));
+        options.radius_mm = radius;
     }
     if (const auto it = data.find("nominal_flange_from_sensor"); it != data.end() && !it->is_null()) {
-        auto nominal = parse_pose(*it, "nominal_flange_from_sensor");
-        if (!nominal) return tl::unexpected(nominal.error());
-        options.nominal_flange_from_sensor = *nominal;
+        SEAM_TRY(auto nominal, parse_pose(*it, "nominal_flange_from_sensor"));
+        options.nominal_flange_from_sensor = nominal;
     }
-    auto list = json_array(data, "observations", "");
-    if (!list) return tl::unexpected(list.error());
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        auto observation = parse_sphere_observation((**list)[i], i, json_path("observations", i));
-        if (!observation) return tl::unexpected(observation.error());
-        sphere.observations.push_back(std::move(*observation));
+    SEAM_TRY(auto list, json_array(data, "observations", ""));
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        SEAM_TRY(auto observation, parse_sphere_observation((*list)[i], i, json_path("observations", i)));
+        sphere.observations.push_back(std::move(observation));
     }
     return sphere;
 }
@@ -85,44 +77,42 @@ Expected<SphereData> parse_sphere_data(const json& data, const std::vector<std::
 namespace {
 
 Expected<CalibrationSolution> solve_tcp_sphere(const json& data, const ExcludedIds& exclude) {
-    auto sphere = parse_sphere_data(data, exclude);
-    if (!sphere) return tl::unexpected(sphere.error());
-    auto solved = calibrate_tcp_sphere(sphere->observations, sphere->options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto sphere, parse_sphere_data(data, exclude));
+    SEAM_TRY(auto solved, calibrate_tcp_sphere(sphere.observations, sphere.options));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool ok = solved->status == TcpSphereStatus::ok;
-    if (ok) solution.found = SensorOnFlange{{solved->flange_from_sensor, solved->covariance}};
-    result["status"] = std::string(name_of(solved->status));
-    result["flange_from_sensor"] = ok ? pose_json(solved->flange_from_sensor) : json(nullptr);
-    result["centre_base_mm"] = ok ? vector_json(solved->centre_base_mm) : json(nullptr);
-    result["radius_mm"] = ok ? json(solved->radius_mm) : json(nullptr);
-    result["rms_mm"] = ok ? number_json(solved->rms_mm) : json(nullptr);
-    result["noise_mm"] = ok ? number_json(solved->noise_mm) : json(nullptr);
+    const bool ok = solved.status == TcpSphereStatus::ok;
+    if (ok) solution.found = SensorOnFlange{{solved.flange_from_sensor, solved.covariance}};
+    result["status"] = std::string(name_of(solved.status));
+    result["flange_from_sensor"] = ok ? pose_json(solved.flange_from_sensor) : json(nullptr);
+    result["centre_base_mm"] = ok ? vector_json(solved.centre_base_mm) : json(nullptr);
+    result["radius_mm"] = ok ? json(solved.radius_mm) : json(nullptr);
+    result["rms_mm"] = ok ? number_json(solved.rms_mm) : json(nullptr);
+    result["noise_mm"] = ok ? number_json(solved.noise_mm) : json(nullptr);
     if (ok) {
-        json sigma = pose_sigma_json(solved->flange_from_sensor, solved->covariance);
-        const Eigen::Vector3d centre = solved->centre_covariance.diagonal().cwiseMax(0).cwiseSqrt();
+        json sigma = pose_sigma_json(solved.flange_from_sensor, solved.covariance);
+        const Eigen::Vector3d centre = solved.centre_covariance.diagonal().cwiseMax(0).cwiseSqrt();
         sigma["centre_mm"] = vector_json(centre);
-        sigma["radius_mm"] = solved->radius_sigma_mm;
-        sigma["working_mm"] = solved->working_sigma_mm;
+        sigma["radius_mm"] = solved.radius_sigma_mm;
+        sigma["working_mm"] = solved.working_sigma_mm;
         result["sigma"] = std::move(sigma);
-        result["covariance_pose"] = matrix_json(solved->covariance);
-        result["working_point_mm"] = vector_json(solved->working_point_mm);
+        result["covariance_pose"] = matrix_json(solved.covariance);
+        result["working_point_mm"] = vector_json(solved.working_point_mm);
     } else {
         result["sigma"] = nullptr;
     }
-    result["mirrored"] = std::string(name_of(solved->mirrored));
+    result["mirrored"] = std::string(name_of(solved.mirrored));
     json proposals = json::array();
-    for (const auto& p : solved->proposals)
+    for (const auto& p : solved.proposals)
         proposals.push_back({{"words", p.words},
                              {"base_from_flange", pose_json(p.base_from_flange)},
                              {"sigma_mm", number_json(p.sigma_mm)}});
     result["proposals"] = std::move(proposals);
-    solution.report = std::move(solved->report);
-    solution.notices = std::move(solved->notices);
-    solution.degenerate = std::move(solved->degenerate);
-    solution.proposals = std::move(solved->proposals);
+    solution.report = std::move(solved.report);
+    solution.notices = std::move(solved.notices);
+    solution.degenerate = std::move(solved.degenerate);
+    solution.proposals = std::move(solved.proposals);
     finish_document(solution);
     return solution;
 }
@@ -150,10 +140,10 @@ std::optional<ConventionFit> sphere_fit(SphereData& set, const std::vector<Pose>
 }
 
 Expected<ConventionFits> tcp_sphere_conventions(const json& data, const ExcludedIds& exclude) {
-    auto sphere = parse_sphere_data(
-        without_poses(tcp_sphere_method().poses, data, pose_json(Pose::Identity())), exclude);
-    if (!sphere) return tl::unexpected(sphere.error());
-    const auto set = std::make_shared<SphereData>(std::move(*sphere));
+    SEAM_TRY(auto sphere,
+             parse_sphere_data(without_poses(tcp_sphere_method().poses, data, pose_json(Pose::Identity())),
+                               exclude));
+    const auto set = std::make_shared<SphereData>(std::move(sphere));
     return ConventionFits{[set](const Lists& lists) { return sphere_fit(*set, lists[0], true); },
                           [set](const Lists& lists) { return sphere_fit(*set, lists[0], false); }};
 }

@@ -95,9 +95,7 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
     c.verdict = judgement.verdict;
     c.raw = {{"data", data}, {"exclude", exclude}};
     c.result = solution.document;
-    if (method.use == AnswerUse::sensor)
-        if (auto taken = std::visit(Take{method, solution, base, c}, solution.found); !taken)
-            return tl::unexpected(taken.error());
+    if (method.use == AnswerUse::sensor) SEAM_OK(std::visit(Take{method, solution, base, c}, solution.found));
     return c;
 }
 
@@ -163,9 +161,8 @@ Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSess
     if (!solution) return input_error("there is no solution yet", session.method().id, "solve first");
     std::vector<SensorAnswer> answers;
     if (const auto* found = std::get_if<SensorChains>(&solution->found)) {
-        auto chains = answers_of_chains(session, project, *found, solution->document);
-        if (!chains) return tl::unexpected(chains.error());
-        answers = std::move(*chains);
+        SEAM_TRY(auto chains, answers_of_chains(session, project, *found, solution->document));
+        answers = std::move(chains);
     } else {
         answers.push_back({session.sensor_id(), session.data(), *solution, session.exclude()});
     }
@@ -174,18 +171,17 @@ Expected<std::vector<Calibration>> calibrations_of_session(const CalibrationSess
     std::size_t number = project.calibrations.size();
     std::vector<Calibration> made;
     for (const SensorAnswer& answer : answers) {
-        auto c = calibration_of_answer(session, project, answer);
-        if (!c) return tl::unexpected(c.error());
-        c->created_utc = now;
+        SEAM_TRY(auto c, calibration_of_answer(session, project, answer));
+        c.created_utc = now;
         do {
-            c->id = fmt::format("{}-{}", session.method().id, ++number);
+            c.id = fmt::format("{}-{}", session.method().id, ++number);
         } while (std::any_of(project.calibrations.begin(), project.calibrations.end(),
-                             [&](const Calibration& other) { return other.id == c->id; }));
-        c->source = answers.size() > 1
-                        ? Text("one shot of {} sensors", answers.size())
-                        : Text("{} captures, {} for verification", session.solving_captures(), v.poses);
-        if (v.poses > 0 && session.method().keeps_back) c->result["verification"] = verification_json(v);
-        made.push_back(std::move(*c));
+                             [&](const Calibration& other) { return other.id == c.id; }));
+        c.source = answers.size() > 1
+                       ? Text("one shot of {} sensors", answers.size())
+                       : Text("{} captures, {} for verification", session.solving_captures(), v.poses);
+        if (v.poses > 0 && session.method().keeps_back) c.result["verification"] = verification_json(v);
+        made.push_back(std::move(c));
     }
     return made;
 }

@@ -45,13 +45,10 @@ Expected<Eigen::Vector2d> by_travel(json& settings, const SensorSetup& sensor, c
                               {"laser", pair_json(start)}};
         return start;
     }
-    auto field = json_field(*anchor, "base_from_flange", "anchor");
-    if (!field) return tl::unexpected(field.error());
-    auto from = parse_pose(**field, "anchor.base_from_flange");
-    if (!from) return tl::unexpected(from.error());
-    auto start = json_vector2(*anchor, "laser", "anchor");
-    if (!start) return tl::unexpected(start.error());
-    const Pose moved = (*from * x).inverse() * (*base_from_flange * x);
+    SEAM_TRY(auto field, json_field(*anchor, "base_from_flange", "anchor"));
+    SEAM_TRY(auto from, parse_pose(*field, "anchor.base_from_flange"));
+    SEAM_TRY(auto start, json_vector2(*anchor, "laser", "anchor"));
+    const Pose moved = (from * x).inverse() * (*base_from_flange * x);
     const double turned_deg = deg_from_rad(rotation_log(moved.linear()).norm());
     if (turned_deg > kTurnedDeg)
         return input_error(
@@ -60,7 +57,7 @@ Expected<Eigen::Vector2d> by_travel(json& settings, const SensorSetup& sensor, c
     if (std::abs(moved.translation().y()) > kAsideMm)
         return input_error(Text("the sensor was shifted by {:.1f} mm along its Y", moved.translation().y()),
                            where, "only shift it along its own X and Z");
-    return Eigen::Vector2d(*start - Eigen::Vector2d(moved.translation().x(), moved.translation().z()));
+    return Eigen::Vector2d(start - Eigen::Vector2d(moved.translation().x(), moved.translation().z()));
 }
 
 }  // namespace
@@ -68,9 +65,8 @@ Expected<Eigen::Vector2d> by_travel(json& settings, const SensorSetup& sensor, c
 Expected<json> apex_pair(json& settings, const SensorSetup& sensor, const Calibration* base,
                          const Frame& frame, const std::optional<Pose>& base_from_flange) {
     StripePeaks peaks;
-    auto points = stripe_points(frame.image, peaks);
-    if (!points) return tl::unexpected(points.error());
-    const auto seen = find_apex(*points);
+    SEAM_TRY(auto points, stripe_points(frame.image, peaks));
+    const auto seen = find_apex(points);
     if (!seen) return tl::unexpected(no_apex(sensor));
     Eigen::Vector2d laser;
     if (frame.profile.size() > 0) {
@@ -82,9 +78,8 @@ Expected<json> apex_pair(json& settings, const SensorSetup& sensor, const Calibr
         if (!measured) return tl::unexpected(no_apex(sensor));
         laser = measured->point;
     } else {
-        auto travelled = by_travel(settings, sensor, base, seen->point, base_from_flange);
-        if (!travelled) return tl::unexpected(travelled.error());
-        laser = *travelled;
+        SEAM_TRY(auto travelled, by_travel(settings, sensor, base, seen->point, base_from_flange));
+        laser = travelled;
     }
     return json{{"pixel", pair_json(seen->point)},
                 {"laser", pair_json(laser)},

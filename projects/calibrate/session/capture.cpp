@@ -55,8 +55,7 @@ Expected<json> sphere_entry(const json& settings, const SensorSetup& sensor, con
             reason, Text("sensor {}", sensor.id),
             base ? "bring the stripe onto the sphere" : "calibrate camera and laser plane first");
     Profile profile;
-    if (auto tracked = track_capture(capture, sensor.filter, profile); !tracked)
-        return tl::unexpected(tracked.error());
+    SEAM_OK(track_capture(capture, sensor.filter, profile));
     if (!find_circle_section(profile, sphere_limits(radius_of(settings))))
         return input_error("no circle of the sphere is seen in the profile", Text("sensor {}", sensor.id),
                            "bring the stripe onto the sphere, a little off its middle, and check its radius");
@@ -72,32 +71,29 @@ Error no_board(const BoardSpec& spec, const BoardMiss& miss, const Text& where) 
 }
 
 Expected<BoardSpec> board_of(const json& settings) {
-    auto field = json_field(settings, "board", "");
-    if (!field) return tl::unexpected(field.error());
-    return parse_board_json(**field, "board");
+    SEAM_TRY(auto field, json_field(settings, "board", ""));
+    return parse_board_json(*field, "board");
 }
 
 Expected<json> stripe_entry(const json& settings, const SensorSetup& sensor, const Frame& stripe,
                             const Frame* board, const std::optional<Pose>& base_from_flange) {
-    auto spec = board_of(settings);
-    if (!spec) return tl::unexpected(spec.error());
+    SEAM_TRY(auto spec, board_of(settings));
     StripeObservation o;
     if (board) {
         o.width = stripe.image.width;
         o.height = stripe.image.height;
         o.scan = ScanLines::columns;
-        BoardSearch search = find_board(board->image, *spec);
+        BoardSearch search = find_board(board->image, spec);
         o.board = std::move(search.board);
         o.miss = search.miss;
         StripePeaks peaks;
-        auto points = stripe_points(stripe.image, peaks);
-        if (!points) return tl::unexpected(points.error());
-        o.stripe = std::move(*points);
+        SEAM_TRY(auto points, stripe_points(stripe.image, peaks));
+        o.stripe = std::move(points);
     } else {
-        o = observe({"", stripe.image, base_from_flange}, *spec);
+        o = observe({"", stripe.image, base_from_flange}, spec);
     }
     o.base_from_flange = base_from_flange;
-    if (!o.board) return tl::unexpected(no_board(*spec, o.miss, Text("sensor {}", sensor.id)));
+    if (!o.board) return tl::unexpected(no_board(spec, o.miss, Text("sensor {}", sensor.id)));
     return stripe_frame_json(o);
 }
 
@@ -117,10 +113,9 @@ Expected<json> board_entry(const Text& where, const Calibration* base, const Boa
     if (!base_from_flange)
         return input_error("the robot's pose is missing", where,
                            "connect the robot, or put its pose file beside the image");
-    auto target = locate_target(base->model->camera, {"", board.object_mm, board.pixel});
-    if (!target) return tl::unexpected(target.error());
+    SEAM_TRY(auto target, locate_target(base->model->camera, {"", board.object_mm, board.pixel}));
     json entry{{"base_from_flange", pose_json(*base_from_flange)},
-               {"camera_from_target", pose_json(target->camera_from_target)}};
+               {"camera_from_target", pose_json(target.camera_from_target)}};
     note_outline(entry, *base, board, spec);
     return entry;
 }
@@ -199,11 +194,10 @@ Expected<void> note_size(json& settings, const SensorSetup& sensor, const Frame&
 }
 
 Expected<json> line_entry(json& settings, const SensorSetup& sensor, const Frame& frame) {
-    if (auto size = note_size(settings, sensor, frame); !size) return tl::unexpected(size.error());
+    SEAM_OK(note_size(settings, sensor, frame));
     StripePeaks peaks;
-    auto points = stripe_points(frame.image, peaks);
-    if (!points) return tl::unexpected(points.error());
-    const auto line = on_the_plate(std::move(*points));
+    SEAM_TRY(auto points, stripe_points(frame.image, peaks));
+    const auto line = on_the_plate(std::move(points));
     if (line.size() < kLeastLinePoints)
         return input_error(Text("only {} points of the stripe lie on one line", line.size()),
                            Text("sensor {}", sensor.id),
@@ -240,22 +234,20 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
         case CaptureKind::board_pose:
         case CaptureKind::board_points:
         case CaptureKind::board_chain: {
-            auto spec = board_of(settings);
-            if (!spec) return tl::unexpected(spec.error());
-            const auto found = find_board((board ? *board : stripe).image, *spec);
+            SEAM_TRY(auto spec, board_of(settings));
+            const auto found = find_board((board ? *board : stripe).image, spec);
             entry = method.capture == CaptureKind::board_pose
-                        ? board_entry(where, base, found, *spec, base_from_flange)
+                        ? board_entry(where, base, found, spec, base_from_flange)
                     : method.capture == CaptureKind::board_points
-                        ? plate_entry(where, base, found, *spec, base_from_flange)
-                        : chain_entry(taken.settings, where, base, found, *spec, base_from_flange);
+                        ? plate_entry(where, base, found, spec, base_from_flange)
+                        : chain_entry(taken.settings, where, base, found, spec, base_from_flange);
             break;
         }
         case CaptureKind::stripe_line:
             entry = line_entry(taken.settings, sensor, stripe);
             break;
         case CaptureKind::apex:
-            if (auto size = note_size(taken.settings, sensor, stripe); !size)
-                return tl::unexpected(size.error());
+            SEAM_OK(note_size(taken.settings, sensor, stripe));
             entry = apex_pair(taken.settings, sensor, base, stripe, base_from_flange);
             break;
         case CaptureKind::files:
@@ -274,40 +266,36 @@ namespace {
 
 Expected<ReadCaptures> read_json_captures(const CalibrationMethod& method, const json& settings,
                                           const std::filesystem::path& path) {
-    auto data = read_json_file(path);
-    if (!data) return tl::unexpected(data.error());
-    if (!data->is_object()) return input_error("the data is not a JSON object", path.string());
+    SEAM_TRY(auto data, read_json_file(path));
+    if (!data.is_object()) return input_error("the data is not a JSON object", path.string());
     ReadCaptures read;
     read.settings = settings;
     json entries;
     const bool chains = method.capture == CaptureKind::board_chain;
-    const bool single = chains && !data->contains(method.entries);
+    const bool single = chains && !data.contains(method.entries);
     constexpr const char* kReference = "reference_from_world";
     if (chains) read.settings.erase(kReference);  // those of a file end where the file says
     if (single) {
-        if (data->contains(kReference)) read.settings[kReference] = (*data)[kReference];
-        data->erase(kReference);
-        entries = json::array({*data});
+        if (data.contains(kReference)) read.settings[kReference] = data[kReference];
+        data.erase(kReference);
+        entries = json::array({data});
     } else {
-        auto list = json_array(*data, method.entries, path.string());
-        if (!list) return tl::unexpected(list.error());
-        entries = **list;
-        data->erase(method.entries);
-        read.settings.update(*data);
+        SEAM_TRY(auto list, json_array(data, method.entries, path.string()));
+        entries = *list;
+        data.erase(method.entries);
+        read.settings.update(data);
     }
     std::set<std::string> sensors;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         CalibrationCapture c;
         const json& entry = entries[i];
         if (entry.is_object()) {
-            auto id = entry_id(entry, i, json_path(method.entries, i));
-            if (!id) return tl::unexpected(id.error());
-            if (!single || entry.contains("id")) c.id = *id;
+            SEAM_TRY(auto id, entry_id(entry, i, json_path(method.entries, i)));
+            if (!single || entry.contains("id")) c.id = id;
             if (entry.contains("base_from_flange") && !entry["base_from_flange"].is_null()) {
-                auto pose = parse_pose(entry["base_from_flange"],
-                                       json_path(json_path(method.entries, i), "base_from_flange"));
-                if (!pose) return tl::unexpected(pose.error());
-                c.base_from_flange = *pose;
+                SEAM_TRY(auto pose, parse_pose(entry["base_from_flange"],
+                                               json_path(json_path(method.entries, i), "base_from_flange")));
+                c.base_from_flange = pose;
             }
         }
         c.entry = entry;
@@ -329,36 +317,33 @@ Expected<ReadCaptures> read_captures(const CalibrationMethod& method, const json
     if (!std::filesystem::is_directory(path, code)) return read_json_captures(method, settings, path);
     if (method.capture != CaptureKind::board_and_stripe && method.capture != CaptureKind::board_pose)
         return input_error("this method reads no images", path.string(), "give its JSON file");
-    auto spec = board_of(settings);
-    if (!spec) return tl::unexpected(spec.error());
-    auto images = plate_images(path, {});
-    if (!images) return tl::unexpected(images.error());
+    SEAM_TRY(auto spec, board_of(settings));
+    SEAM_TRY(auto images, plate_images(path, {}));
     ReadCaptures read;
     read.settings = settings;
     std::optional<std::pair<int, int>> size;
-    for (std::size_t i = 0; i < images->size(); ++i) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
         if (cancel.stop_requested()) return input_error(kCancelled, path.string());
-        const auto& image = (*images)[i];
-        auto o = read_stripe_frame(image, *spec);
-        if (!o) return tl::unexpected(o.error());
-        if (size && *size != std::pair(o->width, o->height))
+        const auto& image = images[i];
+        SEAM_TRY(auto o, read_stripe_frame(image, spec));
+        if (size && *size != std::pair(o.width, o.height))
             return input_error("the images have different sizes", image.string(),
                                "give frames of one camera at one resolution");
-        size = {o->width, o->height};
+        size = {o.width, o.height};
         CalibrationCapture c;
         c.id = image.stem().string();
         c.origin = c.picture = std::filesystem::absolute(image, code).string();
-        c.base_from_flange = o->base_from_flange;
+        c.base_from_flange = o.base_from_flange;
         if (method.capture == CaptureKind::board_and_stripe) {
-            c.entry = stripe_frame_json(*o);
+            c.entry = stripe_frame_json(o);
             read.captures.push_back(std::move(c));
-        } else if (auto entry = board_entry(c.id, base, {o->board, o->miss}, *spec, o->base_from_flange)) {
+        } else if (auto entry = board_entry(c.id, base, {o.board, o.miss}, spec, o.base_from_flange)) {
             c.entry = std::move(*entry);
             read.captures.push_back(std::move(c));
         } else {
             read.skipped.push_back(entry.error().text());
         }
-        if (progress) progress(static_cast<int>(i) + 1, static_cast<int>(images->size()));
+        if (progress) progress(static_cast<int>(i) + 1, static_cast<int>(images.size()));
     }
     if (read.captures.empty())
         return input_error(read.skipped.empty() ? Text("nothing was read") : read.skipped.front(),

@@ -48,18 +48,15 @@ Expected<CalibrationCapture> parse_capture(const json& data, const std::string& 
     CalibrationCapture c;
     for (auto [key, target] : {std::pair{"id", &c.id}, std::pair{"taken_utc", &c.taken_utc},
                                std::pair{"origin", &c.origin}, std::pair{"picture", &c.picture}}) {
-        auto text = json_string(data, key, where);
-        if (!text) return tl::unexpected(text.error());
-        *target = *text;
+        SEAM_TRY(auto text, json_string(data, key, where));
+        *target = text;
     }
     if (const auto it = data.find("base_from_flange"); it != data.end() && !it->is_null()) {
-        auto pose = parse_pose(*it, json_path(where, "base_from_flange"));
-        if (!pose) return tl::unexpected(pose.error());
-        c.base_from_flange = *pose;
+        SEAM_TRY(auto pose, parse_pose(*it, json_path(where, "base_from_flange")));
+        c.base_from_flange = pose;
     }
-    auto entry = json_field(data, "entry", where);
-    if (!entry) return tl::unexpected(entry.error());
-    c.entry = **entry;
+    SEAM_TRY(auto entry, json_field(data, "entry", where));
+    c.entry = *entry;
     return c;
 }
 
@@ -118,7 +115,7 @@ Expected<void> CalibrationSession::put_aside(const fs::path& project_file) {
 }
 
 Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const fs::path& to_project) {
-    if (auto aside = put_aside(to_project); !aside) return aside;
+    SEAM_OK(put_aside(to_project));
     std::error_code code;
     const fs::path from = folder_of(from_project), to = folder_of(to_project);
     if (!fs::exists(from, code)) return {};
@@ -145,7 +142,7 @@ Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_fi
     s.folder_ = session_folder(project_file, method, sensor_id);
     s.state_.settings = default_settings(*s.method_);
     if (exists(project_file, method, sensor_id)) {
-        if (auto ok = s.read(); !ok) return tl::unexpected(ok.error());
+        SEAM_OK(s.read());
     }
     return s;
 }
@@ -211,7 +208,7 @@ Expected<void> CalibrationSession::read() {
 
 Expected<void> CalibrationSession::write_list(const SessionState& state,
                                               const std::vector<std::string>& used_as) const {
-    if (auto ok = make_folder(folder_ / "captures"); !ok) return ok;
+    SEAM_OK(make_folder(folder_ / "captures"));
     return write_text_file(folder_ / "session.json", json{{"format", kFormat},
                                                           {"version", kVersion},
                                                           {"method", method_->id},
@@ -225,7 +222,7 @@ Expected<void> CalibrationSession::write_list(const SessionState& state,
 }
 
 Expected<void> CalibrationSession::set_state(SessionState state) {
-    if (auto ok = write_list(state, {}); !ok) return ok;
+    SEAM_OK(write_list(state, {}));
     state_ = std::move(state);
     used_as_.clear();
     return {};
@@ -269,7 +266,7 @@ Expected<std::string> CalibrationSession::add(CalibrationCapture capture, bool v
         capture.id = fmt::format("{}-{}", wanted, n);
     if (capture.taken_utc.empty()) capture.taken_utc = utc_now();
     if (capture.entry.is_object()) capture.entry["id"] = capture.id;
-    if (auto ok = make_folder(folder_ / "captures"); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(make_folder(folder_ / "captures"));
     if (auto ok = write_text_file(folder_ / "captures" / (file_name(capture.id) + ".json"),
                                   capture_json(capture).dump());
         !ok)
@@ -324,7 +321,7 @@ Expected<void> CalibrationSession::remove(const std::string& id) {
 
 Expected<void> CalibrationSession::set(const std::string& name, double value) {
     SessionState next = state_;
-    if (auto ok = set_setting(*method_, next.settings, name, value); !ok) return ok;
+    SEAM_OK(set_setting(*method_, next.settings, name, value));
     return set_state(std::move(next));
 }
 
@@ -378,8 +375,8 @@ Expected<void> CalibrationSession::take(const CalibrationSolution& solution,
     const json stored{{"result", solution.document},
                       {"settings", solved_from.settings},
                       {"captures", marks_json(solved_from)}};
-    if (auto ok = make_folder(folder_); !ok) return ok;
-    if (auto ok = write_text_file(folder_ / "result.json", stored.dump(1)); !ok) return ok;
+    SEAM_OK(make_folder(folder_));
+    SEAM_OK(write_text_file(folder_ / "result.json", stored.dump(1)));
     solution_ = solution;
     solved_from_ = solved_from;
     return {};
@@ -458,13 +455,13 @@ SessionStage CalibrationSession::stage() const {
 }
 
 Expected<void> CalibrationSession::set_used_as(std::vector<std::string> calibration_ids) {
-    if (auto ok = write_list(state_, calibration_ids); !ok) return ok;
+    SEAM_OK(write_list(state_, calibration_ids));
     used_as_ = std::move(calibration_ids);
     return {};
 }
 
 Expected<void> CalibrationSession::begin_anew() {
-    if (auto aside = rename_aside(folder_); !aside) return aside;
+    SEAM_OK(rename_aside(folder_));
     state_.captures.clear();
     last_number_ = 0;
     solution_.reset();

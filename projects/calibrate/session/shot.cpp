@@ -21,7 +21,7 @@ constexpr double kBrightShare = 0.6;  // of full scale: where the bright end of 
 constexpr int kExposures = 4;
 
 Expected<FramePtr> snap(ProfileSource& sensor, const std::stop_token& cancel) {
-    if (auto fired = sensor.trigger(""); !fired) return tl::unexpected(fired.error());
+    SEAM_OK(sensor.trigger(""));
     return next_frame(sensor, kShotFrame, cancel);
 }
 
@@ -58,7 +58,7 @@ Expected<FramePtr> board_picture(ProfileSource& sensor, const std::stop_token& c
     if (!laser_before) return tl::unexpected(laser_before.error());
     if (!exposure_before) return tl::unexpected(exposure_before.error());
     Expected<FramePtr> picture = FramePtr();
-    if (auto off = sensor.set("laser", 0); !off) return tl::unexpected(off.error());
+    SEAM_OK(sensor.set("laser", 0));
     double time_us = *exposure_before;
     for (int k = 0; k < kExposures; ++k) {
         picture = snap(sensor, cancel);
@@ -89,27 +89,22 @@ Expected<CalibrationShot> take_shot(Station& station, const std::string& sensor_
     if (!robot_id.empty() && !robot)
         return device_error("the robot is not connected", Text("robot {}", robot_id), "connect it");
     if (robot) {
-        auto at = robot->base_from_flange();
-        if (!at) return tl::unexpected(at.error());
-        shot.base_from_flange = *at;
+        SEAM_TRY(auto at, robot->base_from_flange());
+        shot.base_from_flange = at;
     }
-    auto by_software = SoftwareTriggered::begin(*sensor);
-    if (!by_software) return tl::unexpected(by_software.error());
+    SEAM_TRY(const auto by_software, SoftwareTriggered::begin(*sensor));
     StartedSensors started;
-    if (auto running = started.start(*sensor); !running) return tl::unexpected(running.error());
+    SEAM_OK(started.start(*sensor));
     if (board) {
-        auto picture = board_picture(*sensor, cancel);
-        if (!picture) return tl::unexpected(picture.error());
-        shot.board = std::move(*picture);
+        SEAM_TRY(auto picture, board_picture(*sensor, cancel));
+        shot.board = std::move(picture);
     }
-    auto stripe = snap(*sensor, cancel);
-    if (!stripe) return tl::unexpected(stripe.error());
-    shot.stripe = std::move(*stripe);
+    SEAM_TRY(auto stripe, snap(*sensor, cancel));
+    shot.stripe = std::move(stripe);
     if (robot) {
-        auto after = robot->base_from_flange();
-        if (!after) return tl::unexpected(after.error());
-        if (distance_mm(*after, *shot.base_from_flange) > kSameShotMm ||
-            angle_rad(*after, *shot.base_from_flange) > rad_from_deg(kSameShotDeg))
+        SEAM_TRY(auto after, robot->base_from_flange());
+        if (distance_mm(after, *shot.base_from_flange) > kSameShotMm ||
+            angle_rad(after, *shot.base_from_flange) > rad_from_deg(kSameShotDeg))
             return device_error("the robot moved while the picture was taken", Text("robot {}", robot_id),
                                 "let it stand still and capture again");
     }
@@ -199,9 +194,8 @@ Expected<void> add_captures(CalibrationSession& session, std::vector<Calibration
             return input_error("the chains before end in another reference", session.method().id,
                                "begin anew, or remove them");
     }
-    if (auto ok = session.set_settings(std::move(settings)); !ok) return ok;
-    for (CalibrationCapture& capture : captures)
-        if (auto id = session.add(std::move(capture), verification); !id) return tl::unexpected(id.error());
+    SEAM_OK(session.set_settings(std::move(settings)));
+    for (CalibrationCapture& capture : captures) SEAM_OK(session.add(std::move(capture), verification));
     return {};
 }
 

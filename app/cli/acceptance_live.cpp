@@ -6,10 +6,10 @@
 #include <iostream>
 
 #include "app/cli/signal_watch.h"
-#include "projects/acceptance/acceptance_json.h"
-#include "projects/acceptance/kept_offsets.h"
+#include "projects/acceptance/pages/acceptance_json.h"
 #include "projects/acceptance/simulated_parts.h"
-#include "projects/acceptance/stored_values.h"
+#include "projects/acceptance/study/kept_offsets.h"
+#include "projects/acceptance/study/stored_values.h"
 #include "projects/station/fields.h"
 
 namespace seamwright::cli {

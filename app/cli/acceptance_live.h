@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
-#include "projects/acceptance/live_study.h"
+#include "projects/acceptance/study/live_study.h"
 
 namespace seamwright::cli {
 

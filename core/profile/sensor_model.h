@@ -7,7 +7,7 @@
 
 #include "core/geometry/pose.h"
 #include "core/profile/profile.h"
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 
 namespace seamwright {
 

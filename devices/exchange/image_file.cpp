@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
 
 #if defined(__SANITIZE_THREAD__)

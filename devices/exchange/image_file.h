@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 #include "devices/frame.h"
 
 namespace seamwright {

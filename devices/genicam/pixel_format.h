@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 #include "devices/exchange/image_file.h"
 
 namespace seamwright {

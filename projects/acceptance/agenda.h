@@ -5,8 +5,8 @@
 
 #include <array>
 
-#include "projects/acceptance/live_study.h"
 #include "projects/acceptance/stored_acceptance.h"
+#include "projects/acceptance/study/live_study.h"
 
 namespace seamwright {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "projects/acceptance/acceptance_page.h"
-#include "projects/acceptance/device_studies.h"
-#include "projects/acceptance/stored_values.h"
+#include "projects/acceptance/equipment/device_studies.h"
+#include "projects/acceptance/pages/acceptance_page.h"
+#include "projects/acceptance/study/stored_values.h"
 
 namespace seamwright {
 namespace {

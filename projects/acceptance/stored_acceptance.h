@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "devices/quality/qdas.h"
-#include "projects/acceptance/measure_robot.h"
-#include "projects/acceptance/measure_trigger.h"
-#include "projects/acceptance/sensor_check.h"
-#include "projects/acceptance/studies.h"
+#include "projects/acceptance/equipment/measure_robot.h"
+#include "projects/acceptance/equipment/measure_trigger.h"
+#include "projects/acceptance/equipment/sensor_check.h"
+#include "projects/acceptance/study/studies.h"
 #include "projects/file/project_file.h"
 #include "projects/report/html.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/correction/path_blend.h"
+#include "core/correction/path/path_blend.h"
 #include "core/features/kinds/feature_registry.h"
 #include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/profile_cut.h"

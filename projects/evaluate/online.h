@@ -10,7 +10,7 @@
 // with. It is limited to `limit_mm`; a part that asks for more raises an alarm and does not count.
 //
 // Offline: the 12 spots measured once (experiment 3), four regions, the path corrected point by point
-// (core/correction/path_blend.h), laid without any further sensor.
+// (core/correction/path/path_blend.h), laid without any further sensor.
 //
 // Error of both: from the tool's point to the nearest point of the displaced, bent part's true contour,
 // across the contour and in height, every 2 mm of the path, robot repeatability included. The first

@@ -16,8 +16,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/acceptance/robot_study.h"
-#include "core/acceptance/trigger_study.h"
+#include "core/acceptance/equipment/robot_study.h"
+#include "core/acceptance/equipment/trigger_study.h"
 #include "core/alignment/alignment.h"
 #include "core/geometry/pose.h"
 #include "core/text.h"
@@ -105,7 +105,7 @@ struct TriggerPasses {
     std::map<std::string, double> replaced_jitter_mm;  // by spot
 };
 
-// A study of the measuring process that is made run by run (projects/acceptance/live_study.h): what is asked for.
+// A study of the measuring process that is made run by run (projects/acceptance/study/live_study.h): what is asked for.
 // What was done is in the runs, by the names of their parts; so it goes on where it stopped, whatever stopped it.
 struct StudyPlan {
     std::string study;  // "type1", ...

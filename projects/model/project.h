@@ -18,8 +18,8 @@
 #include "core/features/feature.h"
 #include "core/geometry/pose.h"
 #include "core/profile/filter.h"
-#include "core/profile/peaks.h"
 #include "core/profile/sensor_model.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 #include "projects/model/panel_job.h"
@@ -125,7 +125,7 @@ struct Region {
 // The one that acts; nullptr: none.
 const KeptOffset* acting_offset(const Region& region);
 
-// What the acceptance of the measuring process asks for (projects/acceptance/studies.h); the customer's, where he
+// What the acceptance of the measuring process asks for (projects/acceptance/study/studies.h); the customer's, where he
 // has a variant of his own. The defaults are AIAG MSA's and VDA 5's.
 struct AcceptanceRequirements {
     double tolerance_mm = 0;              // T = USL - LSL of the bead across its path; 0: not stated yet

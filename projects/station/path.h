@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/correction/path_blend.h"
+#include "core/correction/path/path_blend.h"
 #include "core/text.h"
 #include "devices/exchange/tables/path_csv.h"
 #include "projects/model/project.h"

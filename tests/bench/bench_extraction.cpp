@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 
 namespace seamwright {
 namespace {

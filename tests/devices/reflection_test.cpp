@@ -6,7 +6,7 @@
 #include "core/features/feature.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <map>
 
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {

@@ -141,10 +141,10 @@ TEST(Settings, TheDocumentIsThatOfTheTables) {
 // What check_settings() says is what a reader of every field says.
 TEST(Settings, AreCheckedAsTheyAreRead) {
     for (const char* text :
-         {"{}", R"({"port": 1})", R"({"port": 0})", R"({"port": 1.5})", R"({"port": "1"})", R"({"speed_mm_s": 20})",
-          R"({"mode": "fast"})", R"({"mode": "idle"})", R"({"loop": 1})", R"({"region": {"x": 10}})",
-          R"({"region": {"y": 1}})", R"({"region": 3})", R"({"other": 1})", R"({"retry_ms": 5})",
-          R"({"retry_ms": 5, "reconnect_ms": 6})", "[]", "3"}) {
+         {"{}", R"({"port": 1})", R"({"port": 0})", R"({"port": 1.5})", R"({"port": "1"})",
+          R"({"speed_mm_s": 20})", R"({"mode": "fast"})", R"({"mode": "idle"})", R"({"loop": 1})",
+          R"({"region": {"x": 10}})", R"({"region": {"y": 1}})", R"({"region": 3})", R"({"other": 1})",
+          R"({"retry_ms": 5})", R"({"retry_ms": 5, "reconnect_ms": 6})", "[]", "3"}) {
         const auto json = nlohmann::json::parse(text);
         const auto checked = check_settings(json, "settings", sample());
         const auto values = read(json);

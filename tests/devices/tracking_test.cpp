@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/profile/filter.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/simulated/cell.h"
 
 namespace seamwright {

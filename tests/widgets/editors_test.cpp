@@ -130,7 +130,8 @@ SettingTable example_settings() {
             yes_no("trigger", false, "by hardware"),
             formerly("retry_ms", whole("reconnect_ms", 100, 1, 1000, "back-off")),
             object("ramp", {number("speed_mm_s", 20, 1e-3, 1000, "of the ramp")}, "how a correction comes"),
-            list("range", nullptr, "of columns"), pose("tool", "that it tells")};
+            list("range", nullptr, "of columns"),
+            pose("tool", "that it tells")};
 }
 
 class SettingsForm : public testing::Test {
@@ -205,7 +206,8 @@ TEST_F(SettingsForm, ShowsWhatCounts) {
     editor.set_value({{"ramp", {{"speed_mm_s", 3}}}});
     EXPECT_TRUE(line("setting_ramp_speed_mm_s")->isVisible());
     // Whatever a file holds: nothing is thrown, nothing is lost.
-    for (const char* odd : {"[]", "null", "3", R"({"ramp": 3, "port": "x", "tool": [], "mode": 7, "trigger": {}})"}) {
+    for (const char* odd :
+         {"[]", "null", "3", R"({"ramp": 3, "port": "x", "tool": [], "mode": 7, "trigger": {}})"}) {
         const auto json = nlohmann::json::parse(odd);
         editor.set_value(json);
         if (json.is_object()) {

@@ -4,7 +4,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/quality/qdas.h"
 #include "devices/quality/study_csv.h"
-#include "projects/acceptance/kept_offsets.h"
+#include "projects/acceptance/study/kept_offsets.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {

@@ -19,8 +19,8 @@
 
 #include "core/features/feature.h"
 #include "core/profile/filter.h"
-#include "core/profile/peaks.h"
 #include "core/profile/sensor_model.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/profile_source.h"
 
 namespace seamwright {

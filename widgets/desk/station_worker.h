@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
-#include "projects/acceptance/live_study.h"
-#include "projects/acceptance/measure_robot.h"
-#include "projects/acceptance/measure_trigger.h"
+#include "projects/acceptance/equipment/measure_robot.h"
+#include "projects/acceptance/equipment/measure_trigger.h"
+#include "projects/acceptance/study/live_study.h"
 #include "projects/calibrate/session/shot.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
@@ -70,7 +70,7 @@ class StationWorker : public QObject {
     void zero_shift(int runs);
     // by_hand: place_part() asks before each displacement, answer_push() answers.
     void known_shift(ShiftBy by, const ShiftGrid& grid);
-    // Goes on with what was begun (projects/acceptance/live_study.h). place_study_part() asks before each part,
+    // Goes on with what was begun (projects/acceptance/study/live_study.h). place_study_part() asks before each part,
     // answer_push() answers; on a simulated cell the simulation puts them in.
     void measure_study(const LiveStudyOptions& options);
     // Measured, not kept: robot_studied(), trigger_studied() bring them.

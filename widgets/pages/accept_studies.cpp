@@ -3,8 +3,8 @@
 #include <QHeaderView>
 #include <cmath>
 
-#include "projects/acceptance/acceptance_page.h"
-#include "projects/acceptance/device_studies.h"
+#include "projects/acceptance/equipment/device_studies.h"
+#include "projects/acceptance/pages/acceptance_page.h"
 #include "projects/station/fields.h"
 #include "widgets/pages/accept_page.h"
 #include "widgets/shown_text.h"

@@ -11,7 +11,7 @@
 #include <array>
 #include <memory>
 
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 
 namespace seamwright {
 

@@ -8,8 +8,8 @@
 #include "app/cli/program_files.h"
 #include "app/cli/signal_watch.h"
 #include "devices/registry.h"
-#include "projects/acceptance/acceptance_page.h"
-#include "projects/acceptance/device_studies.h"
+#include "projects/acceptance/equipment/device_studies.h"
+#include "projects/acceptance/pages/acceptance_page.h"
 
 namespace seamwright::cli {
 namespace {

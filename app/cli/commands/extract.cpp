@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/cli/command.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/image_file.h"
 

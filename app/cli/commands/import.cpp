@@ -9,7 +9,7 @@
 #include "app/cli/command.h"
 #include "app/cli/feature_setting.h"
 #include "app/cli/pose_argument.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"

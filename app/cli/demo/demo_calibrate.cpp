@@ -8,10 +8,10 @@
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "core/calibration/stripe/stripe_camera.h"
 #include "core/profile/filter.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/input/stripe_line_points.h"
-#include "projects/calibrate/methods/target_views.h"
+#include "projects/calibrate/methods/example/target_views.h"
 #include "projects/station/acquire.h"
 
 namespace seamwright::cli {

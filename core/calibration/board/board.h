@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 #include "core/text.h"
 
 namespace seamwright {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 
 namespace seamwright::detail {
 

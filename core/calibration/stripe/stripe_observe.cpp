@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/calibration/stripe/stripe_camera.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 
 namespace seamwright {
 namespace {

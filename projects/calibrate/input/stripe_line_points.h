@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 
 namespace seamwright {
 

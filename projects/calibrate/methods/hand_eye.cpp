@@ -8,7 +8,7 @@
 #include "core/calibration/pose/hand_eye.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/hand_eye_json.h"
 #include "projects/calibrate/methods/methods.h"
 

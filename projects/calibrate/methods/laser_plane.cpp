@@ -5,10 +5,10 @@
 
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/camera_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/laser_pairs_json.h"
 #include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/solution/camera_json.h"
 
 namespace seamwright {
 

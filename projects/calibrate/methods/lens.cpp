@@ -8,9 +8,9 @@
 #include <charconv>
 
 #include "devices/exchange/json_fields.h"
-#include "projects/calibrate/methods/camera_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/solution/camera_json.h"
 
 namespace seamwright {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/calibration/table/lookup_table_calibration.h"
 #include "devices/exchange/json_fields.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/laser_pairs_json.h"
 #include "projects/calibrate/methods/methods.h"
 

@@ -13,7 +13,7 @@
 #include "core/parameter.h"
 #include "projects/calibrate/input/plate_images.h"
 #include "projects/calibrate/input/pose_lists.h"
-#include "projects/calibrate/methods/solution.h"
+#include "projects/calibrate/solution/solution.h"
 #include "projects/model/project.h"
 
 namespace seamwright {

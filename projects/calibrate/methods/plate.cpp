@@ -10,7 +10,7 @@
 #include "core/calibration/statistics.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {

@@ -11,7 +11,7 @@
 #include "core/calibration/pose/static_chain.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {

@@ -11,11 +11,11 @@
 #include "core/calibration/camera/camera.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/camera_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/hand_eye_json.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/calibrate/methods/stripe_frames.h"
+#include "projects/calibrate/solution/camera_json.h"
 #include "projects/file/stored_text.h"
 
 namespace seamwright {

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/geometry/pose_convention.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/exchange/image_file.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"

@@ -12,7 +12,7 @@
 #include "core/calibration/sphere/tcp_sphere.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/calibrate/methods/sphere_profile_json.h"
 

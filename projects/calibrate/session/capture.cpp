@@ -14,10 +14,10 @@
 #include "devices/exchange/pose_json.h"
 #include "projects/calibrate/input/plate_images.h"
 #include "projects/calibrate/input/stripe_line_points.h"
-#include "projects/calibrate/methods/camera_json.h"
 #include "projects/calibrate/methods/sphere_profile_json.h"
 #include "projects/calibrate/methods/stripe_frames.h"
 #include "projects/calibrate/session/apex_pair.h"
+#include "projects/calibrate/solution/camera_json.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 

@@ -1,7 +1,7 @@
 #include "projects/calibrate/session/guide.h"
 
 #include "devices/simulated/cell.h"
-#include "projects/calibrate/methods/target_views.h"
+#include "projects/calibrate/methods/example/target_views.h"
 
 namespace seamwright {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/acceptance/robot_study.h"
-#include "core/acceptance/trigger_study.h"
+#include "core/acceptance/equipment/robot_study.h"
+#include "core/acceptance/equipment/trigger_study.h"
 #include "core/geometry/pose.h"
 
 namespace seamwright {

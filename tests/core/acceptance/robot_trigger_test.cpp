@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/acceptance/robot_study.h"
-#include "core/acceptance/trigger_study.h"
+#include "core/acceptance/equipment/robot_study.h"
+#include "core/acceptance/equipment/trigger_study.h"
 #include "tests/core/acceptance/robot_trigger_data.h"
 
 namespace seamwright {

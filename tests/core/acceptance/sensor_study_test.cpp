@@ -1,6 +1,6 @@
 // A sensor against artefacts whose indices are known by symmetry.
 
-#include "core/acceptance/sensor_study.h"
+#include "core/acceptance/equipment/sensor_study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

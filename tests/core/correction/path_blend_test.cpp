@@ -1,6 +1,6 @@
 // Laws of the path's blend: uniform, continuous, independent of frame and direction, inverse pairs.
 
-#include "core/correction/path_blend.h"
+#include "core/correction/path/path_blend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

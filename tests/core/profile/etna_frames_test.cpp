@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 
 namespace seamwright {
 namespace {

@@ -1,9 +1,9 @@
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/profile/peaks_detail.h"
+#include "core/profile/stripe/peaks_detail.h"
 #include "tests/allocations.h"
 #include "tests/core/profile/stripe_frames.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/profile/stripe_image.h"
+#include "core/profile/stripe/stripe_image.h"
 
 namespace seamwright::testing {
 

@@ -12,7 +12,7 @@
 
 #include "core/features/feature.h"
 #include "core/features/kinds/feature_registry.h"
-#include "core/profile/peaks.h"
+#include "core/profile/stripe/peaks.h"
 #include "devices/gocator/gocator.h"
 #include "devices/net/socket.h"
 #include "devices/served/served_gocator.h"

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "projects/acceptance/acceptance_json.h"
-#include "projects/acceptance/acceptance_page.h"
-#include "projects/acceptance/stored_values.h"
+#include "projects/acceptance/pages/acceptance_json.h"
+#include "projects/acceptance/pages/acceptance_page.h"
+#include "projects/acceptance/study/stored_values.h"
 #include "tests/projects/sample_project.h"
 
 namespace seamwright {

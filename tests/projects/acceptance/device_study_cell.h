@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "projects/acceptance/measure_robot.h"
-#include "projects/acceptance/measure_trigger.h"
+#include "projects/acceptance/equipment/measure_robot.h"
+#include "projects/acceptance/equipment/measure_trigger.h"
 #include "projects/station/measure.h"
 #include "projects/station/teach.h"
 #include "tests/projects/door_project.h"

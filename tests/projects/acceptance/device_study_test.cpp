@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "projects/acceptance/device_studies.h"
+#include "projects/acceptance/equipment/device_studies.h"
 #include "tests/projects/acceptance/device_study_cell.h"
 
 namespace seamwright {

@@ -1,11 +1,11 @@
 // Offsets from a correlation: kept, switched, taken back, and acting on a run of the Station.
 
-#include "projects/acceptance/kept_offsets.h"
+#include "projects/acceptance/study/kept_offsets.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "projects/acceptance/stored_values.h"
+#include "projects/acceptance/study/stored_values.h"
 #include "projects/proof/replay.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"

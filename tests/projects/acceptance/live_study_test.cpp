@@ -1,6 +1,6 @@
 // Studies that are made run by run: what stops them, and how they go on.
 
-#include "projects/acceptance/live_study.h"
+#include "projects/acceptance/study/live_study.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <Eigen/LU>
 #include <csignal>
 
-#include "projects/acceptance/stored_values.h"
+#include "projects/acceptance/study/stored_values.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
 

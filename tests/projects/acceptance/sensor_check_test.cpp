@@ -1,6 +1,6 @@
 // The sensor check from files and from the profiles that a calibration keeps.
 
-#include "projects/acceptance/sensor_check.h"
+#include "projects/acceptance/equipment/sensor_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "devices/registry.h"
-#include "projects/calibrate/methods/target_views.h"
+#include "projects/calibrate/methods/example/target_views.h"
 #include "projects/calibrate/session/guide.h"
 #include "projects/station/measure.h"
 #include "tests/projects/door_project.h"

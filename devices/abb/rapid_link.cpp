@@ -8,6 +8,7 @@
 
 #include "devices/abb/rapid.h"
 #include "devices/abb/rapid_message.h"
+#include "devices/backoff.h"
 #include "devices/exchange/settings.h"
 #include "devices/host_time.h"
 #include "devices/net/socket.h"
@@ -44,7 +45,6 @@ Expected<LinkSettings> parse_link_settings(const nlohmann::json& json) {
     f.duration("reconnect_ms", s.reconnect);
     f.duration("reconnect_most_ms", s.reconnect_most);
     if (f.failed()) return tl::unexpected(f.error());
-    s.reconnect_most = std::max(s.reconnect_most, s.reconnect);
     return s;
 }
 
@@ -213,8 +213,7 @@ class AbbRapidLink final : public RobotLink {
         next_trigger_ = 0;
         // Longer and longer while nothing answers: who connects anew at once stands behind itself in the
         // queue.
-        wait_ = wait_.count() == 0 ? settings_.reconnect : std::min(wait_ * 2, settings_.reconnect_most);
-        not_before_ = Clock::now() + wait_;
+        back_off_.failed();
     }
     tl::unexpected<Error> broken(Text what) {
         drop();
@@ -230,17 +229,15 @@ class AbbRapidLink final : public RobotLink {
     // The first call after a loss waits for its turn at most as long as an answer may take.
     Expected<void> connected() {
         if (connection_) return {};
-        const auto turn = not_before_ - Clock::now();
+        const auto turn = back_off_.left();
         if (turn > settings_.timeout)
             return device_error(ErrorCode::silence,
-                                Text("{}: the next attempt to connect is in {} ms", kNoAnswer,
-                                     std::chrono::duration_cast<Milliseconds>(turn).count()),
+                                Text("{}: the next attempt to connect is in {} ms", kNoAnswer, turn.count()),
                                 where_);
         if (turn.count() > 0) std::this_thread::sleep_for(turn);
         auto connection = TcpConnection::connect(settings_.address, settings_.port, settings_.timeout);
         if (!connection) {
-            wait_ = std::min(std::max(wait_ * 2, settings_.reconnect), settings_.reconnect_most);
-            not_before_ = Clock::now() + wait_;
+            back_off_.failed();
             Error error = connection.error();
             error.where = where_;
             return tl::unexpected(error);
@@ -358,7 +355,7 @@ class AbbRapidLink final : public RobotLink {
             }
             if (message->number != request.number)
                 return broken(fmt::format("answer {} came to request {}", message->number, request.number));
-            wait_ = Milliseconds(0);  // it answers: the next loss begins with the shortest wait
+            back_off_.worked();  // it answers: the next loss begins with the shortest wait
             quiet_ns_ = host_now_ns();
             if (message->word == "NO")
                 return device_error(Text("the controller refuses {}: {}", request.word, message->line2),
@@ -385,8 +382,7 @@ class AbbRapidLink final : public RobotLink {
     SameRobot robot_;
     std::int64_t quiet_ns_ = 0;  // when nothing more was waiting to be heard; 0 = never
     Clock::time_point asked_{};
-    Milliseconds wait_{0};
-    Clock::time_point not_before_{};
+    Backoff back_off_{settings_.reconnect, settings_.reconnect_most};
 };
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "core/number_text.h"
+#include "devices/backoff.h"
 #include "devices/genicam/camera_features.h"
 #include "devices/genicam/frame_order.h"
 #include "devices/genicam/genicam.h"
@@ -154,8 +155,7 @@ class GenicamSource final : public ProfileSource {
     std::uint64_t unnumbered_ = 0;  // frames without a number since the last gap
     SourceCounters counters_;
     std::uint64_t before_underrun_ = 0, before_missing_ = 0, before_resent_ = 0;  // of streams that are over
-    Clock::time_point next_attempt_;
-    milliseconds backoff_{0};
+    Backoff back_off_{settings_.reconnect, settings_.reconnect_most};
     int attempts_ = 0;
     std::vector<std::future<void>> burials_;
 
@@ -276,7 +276,7 @@ Expected<void> GenicamSource::connect() {
         watched_ = address_;
     }
     attempts_ = 0;
-    backoff_ = milliseconds(0);
+    back_off_.worked();
     return {};
 }
 
@@ -308,16 +308,15 @@ void GenicamSource::bury() {
             release(camera);
         }));
     chunks_.reset();
-    next_attempt_ = Clock::now();
+    back_off_.try_now();
 }
 
 Expected<void> GenicamSource::reconnect(milliseconds most) {
-    if (Clock::now() < next_attempt_)
+    if (!back_off_.due())
         return device_error(ErrorCode::silence, Text("{}: the camera is gone", kNoAnswer),
                             settings_.camera_name(),
                             "check its power and cable; it is connected again by itself");
     ++attempts_;
-    backoff_ = backoff_.count() == 0 ? settings_.reconnect : std::min(2 * backoff_, settings_.reconnect_most);
     // Nobody there is found out quickly; opening would wait for every register.
     Expected<void> done;
     if (const auto there = address_.empty() ? Expected<DiscoveredCamera>()
@@ -329,7 +328,7 @@ Expected<void> GenicamSource::reconnect(milliseconds most) {
     if (done && running_) done = start_stream();
     if (!done) {
         if (camera_) bury();
-        next_attempt_ = Clock::now() + backoff_;
+        back_off_.failed();
         return done;
     }
     ++counters_.reconnects;
@@ -467,7 +466,7 @@ Expected<void> GenicamSource::start() {
     // A part waits: whatever attempts failed before, now is the next.
     // The camera may still hold our own lost connection for a moment.
     for (const auto until = Clock::now() + settings_.timeout;;) {
-        next_attempt_ = Clock::now();
+        back_off_.try_now();
         auto done = reconnect(settings_.timeout);
         if (done) break;
         if (!is_in_use(done.error()) || Clock::now() >= until) return done;

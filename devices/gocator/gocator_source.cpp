@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 
+#include "devices/backoff.h"
 #include "devices/exchange/settings.h"
 #include "devices/gocator/ascii_result.h"
 #include "devices/gocator/gdp_message.h"
@@ -83,7 +84,6 @@ Expected<Settings> settings_from(const nlohmann::json& json) {
     SEAM_OK(gocator::check_format(s.format));
     if (s.data_port == 0) s.data_port = s.ascii() ? gocator::kAsciiPort : gdp::kDataPort;
     s.start_timeout = std::max(s.timeout, s.start_timeout);
-    s.reconnect_most = std::max(s.reconnect, s.reconnect_most);
     return s;
 }
 
@@ -318,19 +318,18 @@ class GocatorSource final : public ProfileSource {
     }
 
     Expected<void> reconnect() {
-        if (Clock::now() < retry_at_)
+        if (!back_off_.due())
             return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
         auto made = connect();
         if (made) made = begin();
         if (!made) {
             lost();
-            backoff_ = std::min(std::max(2 * backoff_, s_.reconnect), s_.reconnect_most);
-            retry_at_ = Clock::now() + backoff_;
+            back_off_.failed();
             if (is_disconnect(made.error()) || is_silence(made.error()))
                 return device_error(ErrorCode::disconnected, kDisconnected, where(), kLookAtSensor);
             return made;
         }
-        backoff_ = Timeout(0);
+        back_off_.worked();
         const std::lock_guard lock(mutex_);
         ++counters_.reconnects;
         return {};
@@ -476,8 +475,8 @@ class GocatorSource final : public ProfileSource {
     Group group_;
     std::deque<FramePtr> ready_;
     std::uint64_t next_ = 0, offset_ = 0;  // sequence of the next frame; of the sensor's frame 0
-    Clock::time_point retry_at_{}, next_ping_{};
-    Timeout backoff_{0};
+    Clock::time_point next_ping_{};
+    Backoff back_off_{s_.reconnect, s_.reconnect_most};
     mutable std::mutex mutex_;               // what follows
     std::deque<std::string> waiting_spots_;  // of software triggers whose frames have not come
     SensorIdentity identity_;

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "devices/backoff.h"
 #include "devices/exchange/settings.h"
 #include "devices/host_time.h"
 #include "devices/kuka/kvp.h"
@@ -34,7 +35,7 @@ class KvpLink final : public RobotLink {
         : settings_(std::move(settings)),
           where_(fmt::format("{}:{}", settings_.address, settings_.port)),
           timeout_(settings_.timeout_ms),
-          back_off_(settings_.reconnect_ms) {}
+          back_off_(Timeout(settings_.reconnect_ms), Timeout(settings_.reconnect_most_ms)) {}
 
     Expected<RobotIdentity> identity() override {
         auto now = ask_identity();
@@ -277,18 +278,17 @@ class KvpLink final : public RobotLink {
 
     Expected<void> connected() {
         if (connection_ && connection_->is_open()) return {};
-        if (Clock::now() < not_before_)
+        if (!back_off_.due())
             return device_error(ErrorCode::disconnected,
                                 Text("{}, the next attempt is due soon", kDisconnected), where_,
                                 "check that KUKAVARPROXY runs on the controller");
         auto made =
             TcpConnection::connect(settings_.address, static_cast<std::uint16_t>(settings_.port), timeout_);
         if (!made) {
-            not_before_ = Clock::now() + back_off_;
-            back_off_ = std::min(2 * back_off_, Timeout(settings_.reconnect_most_ms));
+            back_off_.failed();
             return fail(made.error());
         }
-        back_off_ = Timeout(settings_.reconnect_ms);
+        back_off_.worked();
         stream_.clear();
         connection_.emplace(std::move(*made));
         robot_.connected_anew();
@@ -471,8 +471,7 @@ class KvpLink final : public RobotLink {
     const KvpSettings settings_;
     const std::string where_;
     const Timeout timeout_;
-    Timeout back_off_;
-    Clock::time_point not_before_{};
+    Backoff back_off_;
     std::optional<TcpConnection> connection_;
     std::string stream_;
     std::uint16_t last_id_ = 0;

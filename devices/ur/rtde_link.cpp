@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "devices/backoff.h"
 #include "devices/exchange/settings.h"
 #include "devices/host_time.h"
 #include "devices/net/socket.h"
@@ -61,7 +62,7 @@ class RtdeLink final : public RobotLink {
           where_(fmt::format("ur-rtde {}:{}", settings_.address, settings_.port)),
           timeout_(settings_.timeout_ms),
           dashboard_(settings_.address, static_cast<std::uint16_t>(settings_.dashboard_port), timeout_),
-          back_off_(settings_.reconnect_ms),
+          back_off_(Timeout(settings_.reconnect_ms), Timeout(settings_.reconnect_most_ms)),
           keeper_([this](const std::stop_token& stop) { keep(stop); }) {}
 
     Expected<RobotIdentity> identity() override {
@@ -410,7 +411,7 @@ class RtdeLink final : public RobotLink {
         // Whoever asks next learns that the connection was lost meanwhile, before another is made.
         if (lost_) return tl::unexpected(*std::exchange(lost_, std::nullopt));
         if (connection_ && connection_->is_open()) return {};
-        if (Clock::now() < not_before_)
+        if (!back_off_.due())
             return device_error(ErrorCode::disconnected,
                                 Text("{}, the next attempt is due soon", kDisconnected), where_,
                                 "check that the controller is on");
@@ -425,15 +426,14 @@ class RtdeLink final : public RobotLink {
             session_ = number_;
             last_request_.clear();
             if (auto ready = negotiate(Clock::now() + timeout_); ready) {
-                back_off_ = Timeout(settings_.reconnect_ms);
+                back_off_.worked();
                 robot_.connected_anew();
                 return {};
             } else {
                 made = tl::unexpected(ready.error());
             }
         }
-        not_before_ = Clock::now() + back_off_;
-        back_off_ = std::min(2 * back_off_, Timeout(settings_.reconnect_most_ms));
+        back_off_.failed();
         return fail(made.error());
     }
 
@@ -576,8 +576,7 @@ class RtdeLink final : public RobotLink {
     const std::string where_;
     const Timeout timeout_;
     ur::Dashboard dashboard_;
-    Timeout back_off_;
-    Clock::time_point not_before_{};
+    Backoff back_off_;
     std::optional<TcpConnection> connection_;
     std::string stream_, said_;
     int version_ = 2;

@@ -122,6 +122,9 @@ Expected<void> check_spot(std::size_t n, const SpotObservation& s, bool measured
         return input_error(kNoCovariance, where(n, s, "robot_covariance"),
                            "give six rows of translation (mm) and rotation vector (rad), symmetric and "
                            "without a negative variance");
+    if (s.reference_arrivals < 1)
+        return input_error(Text("the reference is the mean of {} arrivals", s.reference_arrivals),
+                           where(n, s, "reference_arrivals"), "give 1 or more");
     if (s.curve) {
         const ContourCurve& c = *s.curve;
         if (!c.x_coefficients.allFinite() || !c.z_coefficients.allFinite() ||

@@ -108,6 +108,7 @@ struct SpotObservation {
     std::optional<Eigen::Matrix2d> reference_covariance_mm2;  // of the reference's (x, z)
     // Of workobject_from_sensor as one arrival reaches it; tangent of pose.h.
     std::optional<Matrix6> robot_covariance;
+    int reference_arrivals = 1;  // independent ones that reference_mm is the mean of
 };
 
 // What one sensor errs by, the same at all of its spots; one standard deviation.

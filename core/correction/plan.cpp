@@ -117,6 +117,7 @@ SpotObservation spot_across(const Eigen::Vector3d& position, const Eigen::Vector
     s.sensor = like.sensor;
     s.reference_covariance_mm2 = like.reference_covariance_mm2;
     s.robot_covariance = like.robot_covariance;
+    s.reference_arrivals = like.reference_arrivals;
     s.workobject_from_sensor = make_pose(rotation_between(Eigen::Vector3d::UnitY(), edge), position);
     s.sigma_mm = sigma;
     return s;

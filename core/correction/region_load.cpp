@@ -51,7 +51,8 @@ LocalTerms local_terms(const SpotObservation& in, bool from_reference) {
         const bool travel = curved || in.weights.y() > 0;
         out.run = arrival_covariance(w, *in.robot_covariance,
                                      from_reference ? in.reference_mm : in.measured_mm, travel);
-        out.taught = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel);
+        out.taught = arrival_covariance(w, *in.robot_covariance, in.reference_mm, travel) /
+                     static_cast<double>(in.reference_arrivals);
         if (curved) {
             // An arrival further along the contour sees it where it runs on.
             Eigen::Matrix3d along = Eigen::Matrix3d::Identity();

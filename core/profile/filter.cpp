@@ -417,6 +417,10 @@ Expected<void> filter_profile(Profile& profile, const FilterOptions& options) {
     }
     w.first.push_back(int(w.candidates.size()));
     if (w.candidates.empty()) return {};
+    if (options.as_delivered) {
+        for (const auto& c : w.candidates) profile.segment[static_cast<std::size_t>(c.line)] = 0;
+        return {};
+    }
 
     const Model rough(estimate_scale(w, w.path, false, options), options);
     cheapest_sequence(w, rough);

@@ -32,6 +32,9 @@ struct FilterOptions {
     double initial_sigma = 0.15;  // sigma of ln spacing at the start of a segment
     int min_segment_points =
         4;  // shorter pieces are outliers; more than lookahead, or a burst would be a segment
+    // A finished profile counts as it was delivered: every return, as one segment. For sensors that filter by themselves.
+    // The candidates of an image are chosen by the model all the same.
+    bool as_delivered = false;
 };
 
 // MAP estimate of a spacing (3.6)-(3.7): argmax over s > 0 of

@@ -5,20 +5,18 @@
 #include <thread>
 
 #include "core/alignment/alignment.h"
-#include "core/correction/travel.h"
-#include "core/evaluation/statistics.h"
-#include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
+#include "core/profile/taught_profile.h"
 #include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/profile_cut.h"
 #include "devices/simulated/scene/swept_rim.h"
+#include "projects/station/teach.h"
 
 namespace seamwright::evaluation {
 namespace {
 
-constexpr int kRepeats = 100;          // measures that make the reference
-constexpr int kTemplateProfiles = 10;  // averaged to a template
-constexpr double kPassMm = 20, kPassStepMm = 0.5;
+constexpr double kPassMm = 20;
+constexpr double kSmallestSigmaMm = 1e-4;
 constexpr double kTemplateBeyondMm = 1, kTemplateReachMm = 40;  // outboard and inboard of the landmark
 
 void finish_cell(Cell& cell) {
@@ -72,114 +70,108 @@ Pose arrived(const Cell& cell, const Pose& taught, std::size_t n, bool in_motion
     return at * cell.sensor_from_believed[n].inverse();
 }
 
-void take_profile(const Cell& cell, const MeshTree& part, const Pose& part_from_sensor, bool matched,
-                  Random& random, Profile& profile) {
-    cut_profile(part, part_from_sensor, cell.optics, profile);
+void take_frame(const Cell& cell, const MeshTree& part, const Pose& part_from_sensor, Random& random,
+                Frame& frame) {
+    cut_profile(part, part_from_sensor, cell.optics, frame.profile);
     ++*cell.profiles;
-    add_noise(profile, cell.settings.noise_mm, random);
-    make_ready(profile, matched);
+    add_noise(frame.profile, cell.settings.noise_mm, random);
 }
 
-// Column by column, where all profiles have a point that the filter accepts.
-Profile averaged(const std::vector<Profile>& profiles) {
-    Profile mean = profiles.front();
-    for (std::size_t i = 0; i < mean.size(); ++i) {
-        bool all = true;
-        double x = 0, z = 0;
-        for (const Profile& p : profiles) {
-            all = all && p.segment[i] != kOutlier;
-            x += p.x_mm[i] / static_cast<double>(profiles.size());
-            z += p.z_mm[i] / static_cast<double>(profiles.size());
+// The sensor, robot and calibration that all methods share, and an untaught spot.
+Project project_of(const Cell& cell, const Method& method) {
+    const EvaluationSettings& s = cell.settings;
+    Project project;
+    RobotSetup& robot = project.robots.emplace_back();
+    robot.id = "R1";
+    robot.arrival_covariance.topLeftCorner<3, 3>().diagonal().setConstant(s.repeatability_mm *
+                                                                          s.repeatability_mm);
+    Region& all = project.regions.emplace_back();
+    all.id = "all";
+    for (std::size_t n = 0; n < cell.spots.size(); ++n) {
+        const std::string& id = cell.spots[n].id;
+        SensorSetup& sensor = project.sensors.emplace_back();
+        sensor.id = sensor.calibration_id = id;
+        sensor.filter.as_delivered = !method.matched;
+        Calibration& calibration = project.calibrations.emplace_back();
+        calibration.id = calibration.sensor_id = id;
+        calibration.covariance.diagonal() << Eigen::Vector3d::Constant(s.calibration_mm * s.calibration_mm),
+            Eigen::Vector3d::Constant(std::pow(rad_from_deg(s.calibration_deg), 2));
+        Spot& spot = project.spots.emplace_back();
+        spot.id = spot.sensor_id = id;
+        spot.robot_id = robot.id;
+        spot.base_from_flange = taught_pose(cell, method, n);
+        spot.entry_mm = spot.exit_mm = kPassMm;
+        spot.sigma_mm = kSmallestSigmaMm;  // everything that errs is stated by its source
+        spot.jitter_mm = cell.stated_jitter_mm;
+        spot.stop_at_trigger = !method.in_motion;
+        spot.feature.kind = "contour-end";
+        spot.feature.parameters = {{"side", 0.0}};
+        all.spot_ids.push_back(id);
+    }
+    return project;
+}
+
+// teach_spot() with the cell in the devices' place.
+Expected<seamwright::TaughtSpot> measured_reference(const Cell& cell, Project& project, std::size_t n,
+                                                    Random& random) {
+    const Spot& draft = project.spots[n];
+    SEAM_TRY(auto measurer, SpotMeasurer::make(project, draft.id));
+    const int arrivals = TeachOptions().repeats;
+    std::vector<SpotMeasurement> measurements;
+    std::vector<Profile> profiles;
+    Frame frame;
+    for (int a = 0; a < arrivals; ++a) {
+        const Pose at = arrived(cell, draft.base_from_flange, n, false, random);
+        for (int k = 0; k < kTaughtAnArrival; ++k) {
+            take_frame(cell, *cell.taught, at, random, frame);
+            measurements.push_back(measurer.measure(frame));
+            profiles.push_back(measurer.profile());
         }
-        mean.x_mm[i] = all ? x : std::nan("");
-        mean.z_mm[i] = all ? z : std::nan("");
     }
-    (void)filter_profile(mean, {});  // refuses only arrays of different length
-    return mean;
-}
-
-FeatureRecipe contour_end() {
-    FeatureRecipe recipe;
-    recipe.kind = "contour-end";
-    recipe.parameters = {{"side", 0.0}};
-    return recipe;
-}
-
-Expected<FeatureRecipe> template_recipe(const Cell& cell, const Pose& pose, std::size_t n, Random& random) {
-    SEAM_TRY(auto end, make_feature_finder(contour_end()));
-    std::vector<Profile> profiles(kTemplateProfiles);
-    for (Profile& p : profiles)
-        take_profile(cell, *cell.taught, arrived(cell, pose, n, false, random), true, random, p);
-    const Profile profile = averaged(profiles);
-    const Feature edge = end->find(profile);
-    if (edge.status != FeatureStatus::ok)
-        return input_error(Text("the contour's end is not found when teaching: {}", edge.message),
-                           Text("spot {}", cell.spots[n].id), "evaluate with less noise");
-    FeatureRecipe recipe;
-    recipe.kind = "template";
-    recipe.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
-    recipe.template_reference_mm = edge.point_mm;
-    Profile& piece = recipe.template_profile;
-    for (std::size_t i = 0; i < profile.size(); ++i) {
-        const double along = profile.x_mm[i] - edge.point_mm.x();
-        if (profile.segment[i] == kOutlier || along < -kTemplateBeyondMm || along > kTemplateReachMm)
-            continue;
-        piece.x_mm.push_back(profile.x_mm[i]);
-        piece.z_mm.push_back(profile.z_mm[i]);
-        piece.segment.push_back(profile.segment[i]);
+    auto taught = taught_from(draft, std::move(measurements), profiles, arrivals);
+    if (!taught) {
+        Error error = taught.error();
+        error.mend = "evaluate with less noise";
+        return tl::unexpected(std::move(error));
     }
-    return recipe;
+    project.spots[n] = taught->spot;
+    return taught;
 }
 
-Expected<TaughtSpot> teach(const Cell& cell, const Method& method, std::size_t n) {
+// As a person does: the contour's end first, then the piece around it as template with the end as landmark.
+Expected<TaughtSpot> teach(const Cell& cell, const Method& method, Project project, std::size_t n) {
     Random random(hash64(cell.settings.seed, 1000 * static_cast<std::uint64_t>(method.number) + n));
     TaughtSpot spot;
-    spot.observation.id = cell.spots[n].id;
-    const Pose pose = taught_pose(cell, method, n);
-    spot.observation.workobject_from_sensor = pose;
+    const Pose pose = spot.workobject_from_sensor = project.spots[n].base_from_flange;
     cut_profile(*cell.taught, pose * cell.sensor_from_believed[n].inverse(), cell.optics, spot.clean);
-    spot.recipe = contour_end();
+    SEAM_TRY(auto taught, measured_reference(cell, project, n, random));
     if (method.matched) {
-        SEAM_TRY(auto recipe, template_recipe(cell, pose, n, random));
-        spot.recipe = std::move(recipe);
+        const Eigen::Vector3d end = taught.spot.reference_mm;
+        FeatureRecipe& recipe = project.spots[n].feature;
+        recipe.kind = "template";
+        recipe.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
+        recipe.template_reference_mm = {end.x(), end.z()};
+        recipe.template_profile =
+            cut_out(taught.mean, end.x() - kTemplateBeyondMm, end.x() + kTemplateReachMm);
+        SEAM_TRY(taught, measured_reference(cell, project, n, random));
     }
-    SEAM_TRY(auto finder, make_feature_finder(spot.recipe));
-    std::vector<double> x, z;
-    Eigen::Matrix2d stated = Eigen::Matrix2d::Zero();
-    Profile profile;
-    for (int k = 0; k < kRepeats; ++k) {
-        take_profile(cell, *cell.taught, arrived(cell, pose, n, false, random), method.matched, random,
-                     profile);
-        const Feature f = finder->find(profile);
-        if (f.status != FeatureStatus::ok) continue;
-        x.push_back(f.point_mm.x());
-        z.push_back(f.point_mm.y());
-        stated += f.covariance_mm2;
-    }
-    const Summary in_x = summarise(x), in_z = summarise(z);
-    if (in_x.count < kRepeats / 2)
-        return input_error("the feature is not found when teaching", Text("spot {}", cell.spots[n].id),
-                           "evaluate with less noise");
-    spot.observation.reference_mm = {in_x.mean, 0, in_z.mean};
-    const double count = static_cast<double>(in_x.count);
-    const double robot = cell.settings.repeatability_mm * cell.settings.repeatability_mm;
-    spot.covariance_mm2 = (1 + 1 / count) * (stated / count + (robot + 1e-12) * Eigen::Matrix2d::Identity());
-    // Both coordinates share one sigma; the reference's own share is added.
-    spot.observation.sigma_mm =
-        std::max(1e-4, std::sqrt(0.5 * (in_x.variance + in_z.variance) * (1 + 1 / count)));
-    spot.landmark = pose * spot.observation.reference_mm;
+    spot.spread_mm = std::sqrt(0.5 * taught.spread_mm.squaredNorm());
+    spot.landmark = pose * taught.spot.reference_mm;
 
+    SEAM_TRY(auto measurer, SpotMeasurer::make(project, taught.spot.id));
     std::vector<TravelProfile> pass;
     std::vector<TravelPoint> points;
-    for (double y = -kPassMm; y <= kPassMm; y += kPassStepMm) {
+    Frame frame;
+    const double step = PassOptions().step_mm;
+    for (int k = -static_cast<int>(kPassMm / step); k * step <= kPassMm; ++k) {
         Pose at = pose;
-        at.translation() += y * pose.linear().col(1);
-        take_profile(cell, *cell.taught, arrived(cell, at, n, false, random), method.matched, random,
-                     profile);
-        const Feature f = finder->find(profile);
-        if (f.status == FeatureStatus::ok) points.push_back({y, f.point_mm.x(), f.point_mm.y()});
-        if (!method.matched) make_ready(profile, true);
-        pass.push_back({y, profile});
+        at.translation() += k * step * pose.linear().col(1);
+        take_frame(cell, *cell.taught, arrived(cell, at, n, false, random), random, frame);
+        const SpotMeasurement& m = measurer.measure(frame);
+        if (m.status == SpotStatus::measured)
+            points.push_back({k * step, m.feature.point_mm.x(), m.feature.point_mm.y()});
+        Profile& profile = pass.emplace_back(TravelProfile{k * step, measurer.profile()}).profile;
+        (void)filter_profile(profile, {});  // refuses only arrays of different length
     }
     AlignmentOptions alignment;
     alignment.jitter_mm = std::max(0.1, cell.settings.jitter_mm);
@@ -188,8 +180,9 @@ Expected<TaughtSpot> teach(const Cell& cell, const Method& method, std::size_t n
     spot.yaw_deg = frozen.yaw_deg;
     if (method.matched) {
         SEAM_TRY(auto curve, fit_contour_curve(points));
-        spot.observation.curve = curve;
+        project.spots[n].curve = curve;
     }
+    spot.spot = project.spots[n];
     return spot;
 }
 
@@ -243,70 +236,48 @@ Cell curved_cell(const EvaluationSettings& settings, double radius_mm, std::atom
     return swept_cell(settings, std::move(spots), radii, profiles);
 }
 
-Expected<std::vector<TaughtSpot>> teach_all(const Cell& cell, const Method& method) {
-    std::vector<TaughtSpot> spots(cell.spots.size());
-    std::vector<std::optional<Error>> errors(spots.size());
-    spread_out(cell.settings.jobs, spots.size(), [&] {
+Expected<TaughtCell> teach_all(const Cell& cell, const Method& method) {
+    TaughtCell taught{project_of(cell, method), std::vector<TaughtSpot>(cell.spots.size())};
+    std::vector<std::optional<Error>> errors(cell.spots.size());
+    spread_out(cell.settings.jobs, cell.spots.size(), [&] {
         return [&](std::size_t n) {
-            if (auto spot = teach(cell, method, n))
-                spots[n] = std::move(*spot);
+            if (auto spot = teach(cell, method, taught.project, n))
+                taught.spots[n] = std::move(*spot);
             else
                 errors[n] = spot.error();
         };
     });
     for (const auto& e : errors)
         if (e) return tl::unexpected(*e);
-    return spots;
+    for (std::size_t n = 0; n < taught.spots.size(); ++n) taught.project.spots[n] = taught.spots[n].spot;
+    return taught;
 }
 
-Finders make_finders(const std::vector<TaughtSpot>& spots) {
-    Finders finders;
-    for (const TaughtSpot& s : spots) finders.push_back(std::move(*make_feature_finder(s.recipe)));
-    return finders;
+Measurers make_measurers(const TaughtCell& taught) {
+    Measurers measurers;
+    for (const TaughtSpot& s : taught.spots)
+        measurers.push_back(std::move(*SpotMeasurer::make(taught.project, s.spot.id)));
+    return measurers;
 }
 
-void make_ready(Profile& profile, bool matched) {
-    if (matched) {
-        (void)filter_profile(profile, {});  // refuses only arrays of different length
-        return;
-    }
-    profile.segment.assign(profile.size(), 0);
-    for (std::size_t i = 0; i < profile.size(); ++i)
-        if (!std::isfinite(profile.z_mm[i])) profile.segment[i] = kOutlier;
+const SpotMeasurement& measure_spot(const Cell& cell, const Method& method, const TaughtSpot& spot,
+                                    std::size_t n, SpotMeasurer& measurer, const Pose& truth, Random& random,
+                                    Frame& frame) {
+    const Pose at = arrived(cell, spot.workobject_from_sensor, n, method.in_motion, random);
+    take_frame(cell, *cell.measured, truth.inverse() * at, random, frame);
+    return measurer.measure(frame);
 }
 
-SpotObservation observation_of(const Method& method, const TaughtSpot& spot, const Feature& feature) {
-    SpotObservation o = spot.observation;
-    o.measured_mm = {feature.point_mm.x(), 0, feature.point_mm.y()};
-    if (method.matched) o.covariance_mm2 = spot.covariance_mm2;
-    return o;
+SpotObservation observation_of(const TaughtSpot& spot, const SpotMeasurement& measurement) {
+    return observation(spot.spot, Pose::Identity(), Pose::Identity(), measurement);
 }
 
-std::optional<SpotObservation> measure_spot(const Cell& cell, const Method& method, const TaughtSpot& spot,
-                                            std::size_t n, const FeatureFinder& finder, const Pose& truth,
-                                            Random& random, Profile& profile) {
-    const Pose at = arrived(cell, spot.observation.workobject_from_sensor, n, method.in_motion, random);
-    take_profile(cell, *cell.measured, truth.inverse() * at, method.matched, random, profile);
-    const Feature f = finder.find(profile);
-    if (f.status != FeatureStatus::ok) return std::nullopt;
-    return observation_of(method, spot, f);
-}
-
-std::optional<RegionCorrection> correct(const Cell& cell, const Method& method,
-                                        std::vector<SpotObservation> observed) {
-    if (observed.empty()) return std::nullopt;
-    if (method.matched && method.in_motion && cell.stated_jitter_mm > 0) {
-        CorrectionOptions all;  // which spot is wrong is judged when the jitter's share is known
-        all.reject_outliers = false;
-        const auto first = solve_region(observed, all);
-        if (!first || first->status != CorrectionStatus::ok) return std::nullopt;
-        for (SpotObservation& o : observed)
-            *o.covariance_mm2 +=
-                travel_covariance(o, first->displacement, cell.stated_jitter_mm / std::sqrt(3.0));
-    }
-    const auto solved = solve_region(observed, {});
-    if (!solved || solved->status != CorrectionStatus::ok) return std::nullopt;
-    return *solved;
+std::optional<RegionCorrection> correct(const Project& project,
+                                        std::span<const SpotMeasurement> measurements) {
+    const std::vector<RegionRecord> records = correct_regions(project, measurements);
+    if (!records.front().correction || records.front().correction->status != CorrectionStatus::ok)
+        return std::nullopt;
+    return *records.front().correction;
 }
 
 void spread_out(int jobs, std::size_t count,

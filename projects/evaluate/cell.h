@@ -1,22 +1,23 @@
 #pragma once
-// The simulated cell of the evaluation: spots on a part, taught and measured by the functions of a run
-// (filter_profile, the feature's finder, fit_contour_curve, solve_region) on profiles cut from the part's
-// mesh with noise per point (devices/simulated/scene/profile_cut.h). Read-only once made; any number of threads.
+// The simulated cell of the evaluation: spots on a part, taught (taught_from, fit_contour_curve) and measured
+// (SpotMeasurer, correct_regions) by the functions of the Station, on profiles cut from the part's mesh with noise per
+// point (devices/simulated/scene/profile_cut.h). Read-only once made; any number of threads.
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "core/correction/correction.h"
 #include "core/error.h"
-#include "core/features/feature.h"
+#include "devices/frame.h"
 #include "devices/simulated/scene/mesh.h"
 #include "devices/simulated/scene/random.h"
 #include "devices/simulated/scene/renderer.h"
+#include "projects/station/measure.h"
 
 namespace seamwright::evaluation {
 
@@ -70,38 +71,37 @@ Cell straight_cell(const EvaluationSettings& settings, std::atomic<std::size_t>&
 Cell curved_cell(const EvaluationSettings& settings, double radius_mm, std::atomic<std::size_t>& profiles);
 
 struct TaughtSpot {
-    // Without measured_mm. sigma_mm: of a measure, from the spread when teaching.
-    SpotObservation observation;
-    // Matching methods: of a measure against the reference. The finder's own, mean over the teaching, the
-    // robot's repeatability and the reference's share.
-    Eigen::Matrix2d covariance_mm2 = Eigen::Matrix2d::Zero();
-    FeatureRecipe recipe;
+    Spot spot;
+    Pose workobject_from_sensor = Pose::Identity();
     Eigen::Vector3d landmark = Eigen::Vector3d::Zero();  // work object
+    double spread_mm = 0;                                // of a measure when teaching, rms of x and z
     Profile clean;                                       // of the undisplaced part, without noise
     bool flagged = false;                                // the frozen-contour check says "drifting"
     double yaw_deg = 0;                                  // as it found
 };
-using Finders = std::vector<std::unique_ptr<FeatureFinder>>;
+
+// What teaching leaves, as the desk would keep it: work object = base, flange = sensor as believed, every spot with a
+// sensor of its own, since the calibration errors are; one region of all spots.
+struct TaughtCell {
+    Project project;
+    std::vector<TaughtSpot> spots;  // in the project's order
+};
+using Measurers = std::vector<SpotMeasurer>;
 
 // Error: a spot's feature is not found.
-Expected<std::vector<TaughtSpot>> teach_all(const Cell& cell, const Method& method);
-Finders make_finders(const std::vector<TaughtSpot>& spots);
+Expected<TaughtCell> teach_all(const Cell& cell, const Method& method);
+Measurers make_measurers(const TaughtCell& taught);
 
-// One measure of spot `n` on the measured part displaced by `truth`; none when the feature is not found.
-// `profile` is a buffer.
-std::optional<SpotObservation> measure_spot(const Cell& cell, const Method& method, const TaughtSpot& spot,
-                                            std::size_t n, const FeatureFinder& finder, const Pose& truth,
-                                            Random& random, Profile& profile);
-// What a feature found at the spot says.
-SpotObservation observation_of(const Method& method, const TaughtSpot& spot, const Feature& feature);
-// Marks the segments: filter_profile with a matching method, else every point counts.
-void make_ready(Profile& profile, bool matched);
+// Spot `n` measured on the measured part displaced by `truth`. `frame` is a buffer; the answer stays until the
+// measurer's next.
+const SpotMeasurement& measure_spot(const Cell& cell, const Method& method, const TaughtSpot& spot,
+                                    std::size_t n, SpotMeasurer& measurer, const Pose& truth, Random& random,
+                                    Frame& frame);
+SpotObservation observation_of(const TaughtSpot& spot, const SpotMeasurement& measurement);
 
-// One region of all observed spots. With a matching method in motion a second solution follows, in which
-// every spot's covariance holds what the unreported jitter does to the displaced contour
-// (core/correction/travel.h). None when refused.
-std::optional<RegionCorrection> correct(const Cell& cell, const Method& method,
-                                        std::vector<SpotObservation> observed);
+// The project's first region. None when refused.
+std::optional<RegionCorrection> correct(const Project& project,
+                                        std::span<const SpotMeasurement> measurements);
 
 // Runs `work(i)` for all i < count on the cell's threads, each with a worker of its own; results lie where
 // the index says, so that they do not depend on the number of threads.

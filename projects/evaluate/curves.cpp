@@ -34,8 +34,8 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
                                        std::atomic<std::size_t>& profiles) {
     const Cell cell = curved_cell(settings, radius_mm, profiles);
     const Method method{3, "curved contour", true, false, false};
-    SEAM_TRY(auto taught, teach_all(cell, method));
-    const std::vector<TaughtSpot>& spots = taught;
+    SEAM_TRY(const auto taught, teach_all(cell, method));
+    const std::vector<TaughtSpot>& spots = taught.spots;
 
     CurvedContour out;
     out.radius_mm = radius_mm;
@@ -47,8 +47,8 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
         std::vector<double> squares;  // of the learnt one; per spot
     };
     spread_out(settings.jobs, out.steps.size(), [&] {
-        return [&, finders = std::make_shared<Finders>(make_finders(spots)),
-                profile = std::make_shared<Profile>()](std::size_t i) {
+        return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
+                frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(hash64(settings.seed, static_cast<std::uint64_t>(radius_mm)), i);
             CurveStep& step = out.steps[i];
             const double e = step.displacement_mm;
@@ -62,13 +62,15 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
             for (int k = 0; k < kRepeatsPerPlace; ++k) {
                 std::vector<SpotObservation> observed;
                 for (std::size_t n = 0; n < spots.size(); ++n) {
-                    auto o = measure_spot(cell, method, spots[n], n, *(*finders)[n], truth, random, *profile);
-                    if (!o) continue;
-                    sums.across[0][n] += across_mm(*o, truth, false) / kRepeatsPerPlace;
-                    const double learnt = across_mm(*o, truth, true);
+                    const SpotMeasurement& m =
+                        measure_spot(cell, method, spots[n], n, (*measurers)[n], truth, random, *frame);
+                    if (m.status != SpotStatus::measured) continue;
+                    SpotObservation o = observation_of(spots[n], m);
+                    sums.across[0][n] += across_mm(o, truth, false) / kRepeatsPerPlace;
+                    const double learnt = across_mm(o, truth, true);
                     sums.across[1][n] += learnt / kRepeatsPerPlace;
                     sums.squares[n] += learnt * learnt / kRepeatsPerPlace;
-                    observed.push_back(std::move(*o));
+                    observed.push_back(std::move(o));
                 }
                 for (const std::size_t way : {1, 0}) {  // learnt first: the curve is dropped for the other
                     if (way == 0)
@@ -88,11 +90,11 @@ Expected<CurvedContour> curved_contour(const EvaluationSettings& settings, doubl
             int along = 0;
             double variance = 0;  // of the sum over the spots
             for (std::size_t n = 0; n < spots.size(); ++n) {
-                const Pose& w = spots[n].observation.workobject_from_sensor;
+                const Pose& w = spots[n].workobject_from_sensor;
                 if (std::abs(w.linear()(0, 1)) < 0.5) continue;  // its contour runs along Y
                 ++along;
                 // A contour that bends towards +X at its sensor comes nearer when it slides.
-                const double sense = spots[n].observation.curve->x_coefficients[1] >= 0 ? -1 : 1;
+                const double sense = spots[n].spot.curve->x_coefficients[1] >= 0 ? -1 : 1;
                 step.straight_mm += sense * sums.across[0][n];
                 step.learnt_mm += sense * sums.across[1][n];
                 variance +=

@@ -56,26 +56,25 @@ void judge(const std::vector<TaughtSpot>& spots, const RegionCorrection& solved,
     }
 }
 
-void run_trial(const Cell& cell, const Method& method, const std::vector<TaughtSpot>& spots,
-               const Finders& finders, const Pose& truth, Random& random, Profile& profile,
-               EvaluationTrial& trial) {
-    std::vector<SpotObservation> observed;
-    for (std::size_t n = 0; n < spots.size(); ++n)
-        if (auto o = measure_spot(cell, method, spots[n], n, *finders[n], truth, random, profile))
-            observed.push_back(std::move(*o));
-    if (const auto solved = correct(cell, method, std::move(observed))) judge(spots, *solved, truth, trial);
+void run_trial(const Cell& cell, const Method& method, const TaughtCell& taught, Measurers& measurers,
+               const Pose& truth, Random& random, Frame& frame, EvaluationTrial& trial) {
+    std::vector<SpotMeasurement> measurements;
+    for (std::size_t n = 0; n < taught.spots.size(); ++n)
+        measurements.push_back(
+            measure_spot(cell, method, taught.spots[n], n, measurers[n], truth, random, frame));
+    if (const auto solved = correct(taught.project, measurements)) judge(taught.spots, *solved, truth, trial);
 }
 
-void run_column(const Cell& cell, const Method& method, const std::vector<TaughtSpot>& spots, int column,
+void run_column(const Cell& cell, const Method& method, const TaughtCell& taught, int column,
                 std::vector<EvaluationTrial>& trials) {
     trials.assign(3 * kSteps, {});
     spread_out(cell.settings.jobs, trials.size(), [&] {
-        return [&, finders = std::make_shared<Finders>(make_finders(spots)),
-                profile = std::make_shared<Profile>()](std::size_t i) {
+        return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
+                frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(
                 hash64(cell.settings.seed, 100 + static_cast<std::uint64_t>(10 * method.number + column)), i);
             const Pose truth = grid_displacement(column, i, trials[i].displacement);
-            run_trial(cell, method, spots, *finders, truth, random, *profile, trials[i]);
+            run_trial(cell, method, taught, *measurers, truth, random, *frame, trials[i]);
         };
     });
 }
@@ -146,22 +145,20 @@ void summarise_experiment(ExperimentResult& r) {
     }
 }
 
-Expected<ExperimentResult> run_experiment(const Cell& cell, const Method& method,
-                                          std::vector<TaughtSpot>& spots) {
+Expected<ExperimentResult> run_experiment(const Cell& cell, const Method& method, TaughtCell& taught) {
     ExperimentResult result;
     result.method = method;
-    SEAM_TRY(auto taught, teach_all(cell, method));
-    spots = std::move(taught);
+    SEAM_TRY(taught, teach_all(cell, method));
     double variance = 0;
-    for (const TaughtSpot& s : spots) {
+    for (const TaughtSpot& s : taught.spots) {
         result.flagged += s.flagged;
         result.worst_yaw_deg = std::max(result.worst_yaw_deg, std::abs(s.yaw_deg));
-        variance += s.observation.sigma_mm * s.observation.sigma_mm / static_cast<double>(spots.size());
+        variance += s.spread_mm * s.spread_mm / static_cast<double>(taught.spots.size());
     }
-    result.spots = static_cast<int>(spots.size());
+    result.spots = static_cast<int>(taught.spots.size());
     result.sigma_mm = std::sqrt(variance);
     for (int column = 0; column < 3; ++column)
-        run_column(cell, method, spots, column, result.trials[static_cast<std::size_t>(column)]);
+        run_column(cell, method, taught, column, result.trials[static_cast<std::size_t>(column)]);
     summarise_experiment(result);
     return result;
 }
@@ -169,7 +166,7 @@ Expected<ExperimentResult> run_experiment(const Cell& cell, const Method& method
 // The part of the clean profile that the template covers, with normals from neighbours.
 Eigen::Matrix2d bound_of(const TaughtSpot& spot, double noise_mm) {
     std::vector<Eigen::Vector2d> points, normals;
-    const Profile& piece = spot.recipe.template_profile;
+    const Profile& piece = spot.spot.feature.template_profile;
     const auto [from, to] = std::minmax_element(piece.x_mm.begin(), piece.x_mm.end());
     for (std::size_t i = 1; i + 1 < spot.clean.size(); ++i) {
         const auto at = [&](std::size_t k) {
@@ -180,7 +177,7 @@ Eigen::Matrix2d bound_of(const TaughtSpot& spot, double noise_mm) {
         points.push_back(p);
         normals.push_back(Eigen::Vector2d(-step.y(), step.x()).normalized());
     }
-    return landmark_bound(points, normals, spot.recipe.template_reference_mm, noise_mm);
+    return landmark_bound(points, normals, spot.spot.feature.template_reference_mm, noise_mm);
 }
 
 struct Spread6 {
@@ -199,30 +196,29 @@ struct Spread6 {
 
 // Sensor noise alone on the part in its place. The scatter is taken about its mean: the taught reference's
 // own error is common to all trials.
-void noise_alone(const Cell& cell, const Method& method, const std::vector<TaughtSpot>& spots,
-                 StraightTrials& out) {
-    std::vector<SpotObservation> taught;
+void noise_alone(const Cell& cell, const TaughtCell& taught, StraightTrials& out) {
+    const std::vector<TaughtSpot>& spots = taught.spots;
+    std::vector<SpotObservation> as_taught;
     std::vector<Eigen::Matrix2d> bounds;
     for (const TaughtSpot& s : spots) {
-        taught.push_back(s.observation);
+        as_taught.push_back(observation_of(s, {}));
         bounds.push_back(bound_of(s, cell.settings.noise_mm));
     }
     const auto count = static_cast<std::size_t>(out.trials);
     std::vector<std::optional<Vector6>> found(count), found_one_sigma(count);
     std::vector<std::vector<Eigen::Vector2d>> points(count);
     spread_out(cell.settings.jobs, count, [&] {
-        return [&, finders = std::make_shared<Finders>(make_finders(spots)),
-                profile = std::make_shared<Profile>()](std::size_t i) {
+        return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
+                frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(hash64(cell.settings.seed, 7), i);
             std::vector<SpotObservation> observed;
             for (std::size_t n = 0; n < spots.size(); ++n) {
-                *profile = spots[n].clean;
-                add_noise(*profile, cell.settings.noise_mm, random);
-                make_ready(*profile, true);
+                frame->profile = spots[n].clean;
+                add_noise(frame->profile, cell.settings.noise_mm, random);
                 ++*cell.profiles;
-                const Feature f = (*finders)[n]->find(*profile);
-                points[i].push_back(f.point_mm);
-                if (f.status == FeatureStatus::ok) observed.push_back(observation_of(method, spots[n], f));
+                const SpotMeasurement& m = (*measurers)[n].measure(*frame);
+                points[i].push_back(m.feature.point_mm);
+                if (m.status == SpotStatus::measured) observed.push_back(observation_of(spots[n], m));
             }
             CorrectionOptions all;
             all.reject_outliers = false;
@@ -242,11 +238,11 @@ void noise_alone(const Cell& cell, const Method& method, const std::vector<Taugh
     Spread6 spread, one_sigma;
     spread.finish(found);
     one_sigma.finish(found_one_sigma);
-    out.bound_mm = std::sqrt(mean_square_at_spots(taught, displacement_bound(taught, bounds)));
-    out.found_mm = std::sqrt(mean_square_at_spots(taught, spread.covariance));
+    out.bound_mm = std::sqrt(mean_square_at_spots(as_taught, displacement_bound(as_taught, bounds)));
+    out.found_mm = std::sqrt(mean_square_at_spots(as_taught, spread.covariance));
     out.efficiency = std::pow(out.bound_mm / out.found_mm, 2);
     out.efficiency_one_sigma =
-        out.bound_mm * out.bound_mm / mean_square_at_spots(taught, one_sigma.covariance);
+        out.bound_mm * out.bound_mm / mean_square_at_spots(as_taught, one_sigma.covariance);
     for (std::size_t n = 0; n < spots.size(); ++n) {
         std::vector<double> x, z;
         for (const auto& p : points) {
@@ -260,12 +256,11 @@ void noise_alone(const Cell& cell, const Method& method, const std::vector<Taugh
 }
 
 // Everything but deformation and calibration error, at random displacements.
-double displaced_nees(const Cell& cell, const Method& method, const std::vector<TaughtSpot>& spots,
-                      StraightTrials& out) {
+double displaced_nees(const Cell& cell, const Method& method, const TaughtCell& taught, StraightTrials& out) {
     std::vector<EvaluationTrial> trials(static_cast<std::size_t>(out.trials));
     spread_out(cell.settings.jobs, trials.size(), [&] {
-        return [&, finders = std::make_shared<Finders>(make_finders(spots)),
-                profile = std::make_shared<Profile>()](std::size_t i) {
+        return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
+                frame = std::make_shared<Frame>()](std::size_t i) {
             Random random(hash64(cell.settings.seed, method.in_motion ? 8 : 9), i);
             const auto part = [&](double reach) {
                 const double x = random.uniform(-reach, reach), y = random.uniform(-reach, reach),
@@ -273,7 +268,7 @@ double displaced_nees(const Cell& cell, const Method& method, const std::vector<
                 return Eigen::Vector3d(x, y, z);
             };
             const Eigen::Vector3d move = part(10), turn = part(rad_from_deg(1));
-            run_trial(cell, method, spots, *finders, turned_about_middle(move, turn), random, *profile,
+            run_trial(cell, method, taught, *measurers, turned_about_middle(move, turn), random, *frame,
                       trials[i]);
         };
     });
@@ -293,8 +288,7 @@ struct Source {
 // Each source alone, with spots taught with all of them. Measures without noise still leave what the learnt
 // curve and the template do not say about a displaced curved contour.
 Expected<std::vector<BudgetLine>> error_budget(const EvaluationSettings& s, const Method& method,
-                                               const std::vector<TaughtSpot>& spots,
-                                               std::atomic<std::size_t>& profiles) {
+                                               const TaughtCell& taught, std::atomic<std::size_t>& profiles) {
     std::vector<BudgetLine> lines;
     double nothing = 0, squares = 0;
     for (const Source& source :
@@ -317,10 +311,10 @@ Expected<std::vector<BudgetLine>> error_budget(const EvaluationSettings& s, cons
             EvaluationSettings teaching = s;
             teaching.calibration_mm = alone.calibration_mm;
             teaching.calibration_deg = alone.calibration_deg;
-            SEAM_TRY(auto taught, teach_all(door_cell(teaching, profiles), method));
-            run_column(cell, method, taught, 2, trials);
+            SEAM_TRY(const auto erring, teach_all(door_cell(teaching, profiles), method));
+            run_column(cell, method, erring, 2, trials);
         } else {
-            run_column(cell, method, spots, 2, trials);
+            run_column(cell, method, taught, 2, trials);
         }
         BudgetLine line{source.name, summary_of(trials).three_sigma, stated_three_sigma(trials), 0};
         if (lines.empty()) nothing = line.three_sigma_mm;
@@ -345,22 +339,24 @@ Expected<StraightTrials> straight_trials(const EvaluationSettings& settings,
     Cell cell = straight_cell(settings, profiles);
     Method method = kMethods[2];
     // The model of a straight contour: what the teaching pass found beside it is noise.
-    const auto taught = [&] {
-        auto spots = teach_all(cell, method);
-        if (spots)
-            for (TaughtSpot& s : *spots) s.observation.curve.reset();
-        return spots;
+    const auto teach = [&] {
+        auto cells = teach_all(cell, method);
+        if (cells)
+            for (std::size_t n = 0; n < cells->spots.size(); ++n) {
+                cells->spots[n].spot.curve.reset();
+                cells->project.spots[n].curve.reset();
+            }
+        return cells;
     };
     cell.settings.repeatability_mm = 0;
-    auto spots = taught();
-    if (!spots) return tl::unexpected(spots.error());
-    noise_alone(cell, method, *spots, out);
+    SEAM_TRY(const auto steady, teach());
+    noise_alone(cell, steady, out);
     cell.settings.repeatability_mm = settings.repeatability_mm;
-    spots = taught();
-    if (!spots) return tl::unexpected(spots.error());
-    out.nees_in_motion = displaced_nees(cell, method, *spots, out);
+    SEAM_TRY(auto taught, teach());
+    out.nees_in_motion = displaced_nees(cell, method, taught, out);
     method.in_motion = false;
-    out.nees_still = displaced_nees(cell, method, *spots, out);
+    for (Spot& s : taught.project.spots) s.stop_at_trigger = true;
+    out.nees_still = displaced_nees(cell, method, taught, out);
     return out;
 }
 
@@ -376,12 +372,12 @@ Expected<EvaluationResult> evaluate(const EvaluationSettings& settings,
     for (const Method& method : kMethods) {
         if (settings.experiment != 0 && settings.experiment != method.number) continue;
         progress(fmt::format("experiment {}: {}", method.number, method.name));
-        std::vector<TaughtSpot> spots;
-        SEAM_TRY(auto result, run_experiment(door, method, spots));
+        TaughtCell taught;
+        SEAM_TRY(auto result, run_experiment(door, method, taught));
         out.experiments.push_back(std::move(result));
         if (!method.matched) continue;
         progress("error budget");
-        SEAM_TRY(auto budget, error_budget(out.settings, method, spots, profiles));
+        SEAM_TRY(auto budget, error_budget(out.settings, method, taught, profiles));
         out.budget = std::move(budget);
         progress("straight contours: Cramer-Rao bound and NEES");
         SEAM_TRY(auto straight, straight_trials(out.settings, profiles));

@@ -5,6 +5,7 @@
 
 #include "core/correction/path/path_blend.h"
 #include "core/features/kinds/feature_registry.h"
+#include "core/profile/filter.h"
 #include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/profile_cut.h"
 
@@ -137,7 +138,7 @@ Eigen::Vector2d known(const std::vector<Measure>& measures, std::size_t& first, 
 struct World {
     Cell cell;
     Method method;
-    std::vector<TaughtSpot> spots;
+    TaughtCell taught;  // with a region for every side of the door
     FeatureRecipe recipe;
     Reference measured{{}}, exact{{}};  // as the pass found it; without noise
     double point_sigma_mm = 0;          // of a measure, from the pass
@@ -150,7 +151,7 @@ std::optional<Eigen::Vector2d> measure_at(const World& w, const MeshTree& mesh, 
     cut_profile(mesh, part_from_sensor, w.cell.optics, profile);
     ++*w.cell.profiles;
     if (noise_mm > 0) add_noise(profile, noise_mm, random);
-    make_ready(profile, true);
+    (void)filter_profile(profile, {});  // refuses only arrays of different length
     const Feature f = finder.find(profile);
     if (f.status != FeatureStatus::ok) return std::nullopt;
     return f.point_mm;
@@ -278,29 +279,23 @@ PartErrors run_online(const World& w, const OnlineWay& way, const Part& part, co
 PartErrors run_offline(const World& w, const Part& part, const MeshTree& mesh, Random& random) {
     const EvaluationSettings& s = w.cell.settings;
     PartErrors out;
-    Profile profile;
+    Frame frame;
     Cell cell = w.cell;
     cell.measured = std::shared_ptr<MeshTree>(const_cast<MeshTree*>(&mesh), [](MeshTree*) {});
-    std::vector<SpotObservation> observed;
-    for (std::size_t n = 0; n < w.spots.size(); ++n) {
-        const auto finder = std::move(*make_feature_finder(w.spots[n].recipe));
-        if (auto o = measure_spot(cell, w.method, w.spots[n], n, *finder, part.truth, random, profile))
-            observed.push_back(std::move(*o));
-    }
+    std::vector<SpotMeasurement> measurements;
+    Measurers measurers = make_measurers(w.taught);
+    for (std::size_t n = 0; n < measurers.size(); ++n)
+        measurements.push_back(
+            measure_spot(cell, w.method, w.taught.spots[n], n, measurers[n], part.truth, random, frame));
     std::vector<PathRegion> regions;
     std::vector<std::string> names;
-    for (const DoorRegion& door : default_door_regions()) {
-        std::vector<SpotObservation> own;
-        for (const SpotObservation& o : observed)
-            if (std::find(door.spot_ids.begin(), door.spot_ids.end(), o.id) != door.spot_ids.end())
-                own.push_back(o);
-        const auto solved = correct(cell, w.method, own);
-        if (!solved) {
+    for (const RegionRecord& side : correct_regions(w.taught.project, measurements)) {
+        if (!side.correction || side.correction->status != CorrectionStatus::ok) {
             out.alarm = true;
             return out;
         }
-        regions.push_back({solved->displacement, solved->covariance});
-        names.push_back(door.id);
+        regions.push_back({side.correction->displacement, side.correction->covariance});
+        names.push_back(side.region_id);
     }
     std::vector<PathPoint> path;
     for (double arc = 0; arc < door_edge_length_mm(); arc += kPathStepMm) {
@@ -345,9 +340,13 @@ Expected<OnlineExperiment> online_experiment(const EvaluationSettings& settings,
                                              std::atomic<std::size_t>& profiles) {
     World w;
     w.cell = door_cell(settings, profiles);
-    SEAM_TRY(auto spots, teach_all(w.cell, w.method));
-    w.spots = std::move(spots);
-    w.recipe = w.spots.front().recipe;  // the rim's section is the same all along
+    SEAM_TRY(w.taught, teach_all(w.cell, w.method));
+    w.recipe = w.taught.spots.front().spot.feature;  // the rim's section is the same all along
+    w.taught.project.regions.clear();
+    for (const DoorRegion& side : default_door_regions()) {
+        w.taught.project.regions.emplace_back().id = side.id;
+        w.taught.project.regions.back().spot_ids = side.spot_ids;
+    }
     TriangleMesh mesh = door_mesh();
     w.box = mesh.box();
     SEAM_OK(teach_pass(w));

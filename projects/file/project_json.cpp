@@ -122,6 +122,7 @@ void describe(A& a, FilterOptions& v) {
     a("average", v.average);
     a("initial_sigma", v.initial_sigma);
     a("min_segment_points", v.min_segment_points);
+    if (A::reading || v.as_delivered) a("as_delivered", v.as_delivered);
 }
 template <class A>
 void describe(A& a, CameraModel& v) {
@@ -303,6 +304,7 @@ void describe(A& a, Spot& v) {
     if (A::reading || !v.via.empty()) a("via", v.via);
     a("feature", v.feature);
     a("reference_mm", v.reference_mm);
+    if (A::reading || v.reference_arrivals != 1) a("reference_arrivals", v.reference_arrivals);
     if (a.options().profiles) a("reference_profile", v.reference_profile);
     a("weights", v.weights);
     a("sigma_mm", v.sigma_mm);

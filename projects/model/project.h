@@ -90,6 +90,7 @@ struct Spot {
     bool stop_at_trigger = false;
     FeatureRecipe feature;
     Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // sensor frame
+    int reference_arrivals = 1;                              // of the robot, that reference_mm is the mean of
     Profile reference_profile;
     Eigen::Vector3d weights = {1, 0, 1};
     double sigma_mm = 0.05;

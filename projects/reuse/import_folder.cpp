@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 
+#include "core/profile/taught_profile.h"
 #include "core/profile/units.h"
 #include "devices/registry.h"
 #include "devices/replay/recording.h"
@@ -41,24 +43,17 @@ SensorModel pixel_model(int width, int height, ScanLines scan) {
     return model;
 }
 
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
 // The taught profile of a template: what the filter leaves of the piece.
 Expected<void> cut_template(const FolderImport& options, const Profile& taught, Spot& spot) {
-    Profile piece;
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    const auto inside = [&](double x) {
-        return !options.piece_x_mm || (x >= options.piece_x_mm->x() && x <= options.piece_x_mm->y());
-    };
-    for (std::size_t i = 0; i < taught.size(); ++i) {
-        if (taught.segment[i] == kOutlier || !inside(taught.x_mm[i])) continue;
-        piece.x_mm.push_back(taught.x_mm[i]);
-        piece.z_mm.push_back(taught.z_mm[i]);
-        if (!taught.intensity.empty()) piece.intensity.push_back(taught.intensity[i]);
-        piece.segment.push_back(taught.segment[i]);
-        sum += Eigen::Vector2d(taught.x_mm[i], taught.z_mm[i]);
-    }
+    Profile piece = options.piece_x_mm ? cut_out(taught, options.piece_x_mm->x(), options.piece_x_mm->y())
+                                       : cut_out(taught, -kAnywhere, kAnywhere);
     if (piece.size() < 3)
         return input_error(Text("the piece holds {} points of the taught profile", piece.size()),
                            Text("spot {}", spot.id), "give --piece X0,X1 where the contour is");
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < piece.size(); ++i) sum += Eigen::Vector2d(piece.x_mm[i], piece.z_mm[i]);
     spot.feature.template_reference_mm =
         options.template_reference_mm.value_or(sum / static_cast<double>(piece.size()));
     spot.feature.template_profile = std::move(piece);

@@ -156,6 +156,7 @@ void add_repeating(const Project& project, const Spot& spot, const Calibration& 
     const Pose& flange_from_sensor = calibration.flange_from_sensor;
     const Matrix6 in_base = covariance_of_product(spot.base_from_flange, robot->arrival_covariance,
                                                   flange_from_sensor, Matrix6::Zero());
+    o.reference_arrivals = std::max(1, spot.reference_arrivals);
     o.robot_covariance = covariance_of_product(project.part.base_from_workobject.inverse(), Matrix6::Zero(),
                                                spot.base_from_flange * flange_from_sensor, in_base);
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/median.h"
+#include "core/profile/taught_profile.h"
 #include "projects/station/acquire.h"
 #include "projects/station/measure.h"
 
@@ -62,32 +64,42 @@ Expected<void> measure_standing(Station& station, const Spot& spot, std::span<co
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options) {
     if (options.repeats < 1 || options.repeats > 1000)
         return usage_error(Text("{} repeats", options.repeats), Text("spot {}", draft.id), "give 1 to 1000");
-    TaughtSpot taught;
-    taught.spot = draft;
+    std::vector<SpotMeasurement> measurements;
     std::vector<Profile> profiles;
     // Standing still: the reference is free of trigger jitter.
-    auto measured = measure_standing(
-        station, draft,
-        std::vector<Standing>(static_cast<std::size_t>(options.repeats), Standing{draft.base_from_flange}),
-        options.cancel, options.progress,
-        [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
-            taught.measurements.push_back(m);
-            profiles.push_back(measurer.profile());
-        });
-    if (!measured) return tl::unexpected(measured.error());
+    const bool anew = calibration_of(station.project(), draft) && draft.entry_mm > 0;
+    std::vector<Standing> stands;
+    for (int k = 0; k < options.repeats; ++k) {
+        if (anew && k > 0)
+            stands.push_back({measuring_move(draft, flange_from_sensor(station, draft)).entry, 0});
+        stands.push_back({draft.base_from_flange, kTaughtAnArrival});
+    }
+    SEAM_OK(measure_standing(station, draft, stands, options.cancel, options.progress,
+                             [&](std::size_t, const SpotMeasurer& measurer, const SpotMeasurement& m) {
+                                 measurements.push_back(m);
+                                 profiles.push_back(measurer.profile());
+                             }));
+    return taught_from(draft, std::move(measurements), profiles, anew ? options.repeats : 1);
+}
 
+Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement> measurements,
+                                 std::span<const Profile> profiles, int arrivals) {
+    TaughtSpot taught;
+    taught.spot = draft;
+    taught.measurements = std::move(measurements);
+    const std::size_t count = taught.measurements.size();
     std::vector<std::size_t> found;
     Text reason;
-    for (std::size_t i = 0; i < taught.measurements.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         if (taught.measurements[i].status == SpotStatus::measured)
             found.push_back(i);
         else
             reason = taught.measurements[i].message;
     }
-    if (2 * found.size() < taught.measurements.size())
-        return input_error(Text("the feature was found in {} of {} measurements ({})", found.size(),
-                                options.repeats, reason),
-                           Text("spot {}", draft.id), "choose another feature or move the sensor");
+    if (2 * found.size() < count)
+        return input_error(
+            Text("the feature was found in {} of {} measurements ({})", found.size(), count, reason),
+            Text("spot {}", draft.id), "choose another feature or move the sensor");
 
     // A reflection that took the feature once must not pull the reference: what lies far from the median is
     // left out.
@@ -105,9 +117,9 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
     std::vector<std::size_t> kept;
     for (std::size_t i : found)
         if (((point(i) - middle).cwiseAbs().array() <= limit.array()).all()) kept.push_back(i);
-    taught.left_out = static_cast<int>(taught.measurements.size() - kept.size());
-    if (2 * kept.size() < taught.measurements.size())
-        return input_error(Text("only {} of {} measurements agree", kept.size(), options.repeats),
+    taught.left_out = static_cast<int>(count - kept.size());
+    if (2 * kept.size() < count)
+        return input_error(Text("only {} of {} measurements agree", kept.size(), count),
                            Text("spot {}", draft.id),
                            "choose another feature, shield reflections or move the sensor");
     Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
@@ -120,6 +132,13 @@ Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const Teach
         return (point(i) - mean).squaredNorm() < (point(k) - mean).squaredNorm();
     });
     taught.spot.reference_profile = profiles[*typical];
+    // An arrival counts where one of its measurements does; those of a robot that stands still are one.
+    std::set<std::size_t> reached;
+    for (std::size_t i : kept) reached.insert(i * static_cast<std::size_t>(arrivals) / count);
+    taught.spot.reference_arrivals = static_cast<int>(reached.size());
+    std::vector<Profile> good;
+    for (std::size_t i : kept) good.push_back(profiles[i]);
+    taught.mean = mean_profile(good);
     return taught;
 }
 
@@ -136,6 +155,7 @@ bool measured_alike(const Spot& a, const Spot& b) {
 Spot with_reference_of(const Spot& before, Spot after) {
     if (measured_alike(before, after)) return after;
     after.reference_profile = {};
+    after.reference_arrivals = 1;
     after.curve.reset();
     return after;
 }

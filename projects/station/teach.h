@@ -30,25 +30,36 @@ Expected<void> measure_standing(Station& station, const Spot& spot, std::span<co
                                 const std::function<void(std::size_t stand, const SpotMeasurer& measurer,
                                                          const SpotMeasurement& measurement)>& visit);
 
+// Of the reference at every arrival.
+inline constexpr int kTaughtAnArrival = 2;
+
 struct TeachOptions {
-    int repeats = 5;  // measurements of the reference, 1 to 1000
+    // Arrivals, 1 to 1000: each comes anew from the spot's entry, as in a run, so that the robot's scatter averages out of the
+    // reference. Without a calibration, or an entry, the robot stands still all the time, which is one arrival.
+    int repeats = 5;
     std::stop_token cancel;
     std::function<void(const RunProgress&)> progress;
 };
 
-// `spot` comes back with reference_mm (mean of the measurements, y = 0) and reference_profile (the first
-// one's).
+// `spot` comes back with reference_mm (mean of the measurements, y = 0), reference_arrivals and reference_profile (the one's
+// whose point is the most typical).
 struct TaughtSpot {
     Spot spot;
     std::vector<SpotMeasurement> measurements;            // all, in order
     int left_out = 0;                                     // not found, or far from the others
     Eigen::Vector2d spread_mm = Eigen::Vector2d::Zero();  // standard deviation of x and z; 0 for a single one
+    Profile mean;                                         // of what was not left out, for a template
 };
 
-// Measures `draft` (its recipe, sensor and pose) `repeats` times. Error: not connected, a device, cancelled,
-// or the feature was found, or agreed, in fewer than half of the measurements; the sentence carries the last
-// reason.
+// Goes to `draft` (its recipe, sensor and pose) `repeats` times and measures kTaughtAnArrival times each. Error: not connected, a
+// device, cancelled, or taught_from()'s.
 Expected<TaughtSpot> teach_spot(Station& station, const Spot& draft, const TeachOptions& options);
+
+// What measurements of `draft` and their profiles (as many, filtered) make of it, kTaughtAnArrival an arrival and
+// `arrivals` of them independent. Error: the feature was found, or agreed, in fewer than half of the measurements;
+// the sentence carries the last reason.
+Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement> measurements,
+                                 std::span<const Profile> profiles, int arrivals);
 
 // Whether what was measured with `a` holds for `b`: sensor, robot, feature, and the pose within a micrometre
 // and 0.0001 degree (what a pose loses on its way through a text).

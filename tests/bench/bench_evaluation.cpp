@@ -25,28 +25,26 @@ struct Taught {
     std::atomic<std::size_t> profiles{0};
     Method method;
     Cell cell;
-    std::vector<TaughtSpot> spots;
+    TaughtCell taught;
 
     Taught() : cell(door_cell({}, profiles)) {
         cell.settings.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-        auto taught = teach_all(cell, method);
-        if (taught) spots = std::move(*taught);
+        if (auto cells = teach_all(cell, method)) taught = std::move(*cells);
     }
     // Runs without a correction.
     int run(int jobs) const {
         std::atomic<int> refused{0};
         spread_out(jobs, kRuns, [&] {
-            return [&, finders = std::make_shared<Finders>(make_finders(spots)),
-                    profile = std::make_shared<Profile>()](std::size_t i) {
+            return [&, measurers = std::make_shared<Measurers>(make_measurers(taught)),
+                    frame = std::make_shared<Frame>()](std::size_t i) {
                 Random random(5, i);
                 const Eigen::Vector3d move = 5 * random.normal3();
                 const Pose truth = make_pose(Eigen::Matrix3d::Identity(), move);
-                std::vector<SpotObservation> observed;
-                for (std::size_t n = 0; n < spots.size(); ++n)
-                    if (auto o =
-                            measure_spot(cell, method, spots[n], n, *(*finders)[n], truth, random, *profile))
-                        observed.push_back(std::move(*o));
-                if (!correct(cell, method, std::move(observed))) ++refused;
+                std::vector<SpotMeasurement> measurements;
+                for (std::size_t n = 0; n < taught.spots.size(); ++n)
+                    measurements.push_back(measure_spot(cell, method, taught.spots[n], n, (*measurers)[n],
+                                                        truth, random, *frame));
+                if (!correct(taught.project, measurements)) ++refused;
             };
         });
         return refused;
@@ -60,7 +58,7 @@ const Taught& taught() {
 
 void runs_per_second(benchmark::State& state) {
     const Taught& t = taught();
-    if (t.spots.empty()) {
+    if (t.taught.spots.empty()) {
         state.SkipWithError("the spots cannot be taught");
         return;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/features/kinds/feature_registry.h"
+#include "core/profile/taught_profile.h"
 #include "devices/registry.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
@@ -12,26 +13,6 @@
 #include "widgets/words.h"
 
 namespace seamwright {
-namespace {
-
-// The accepted points of a profile within a range of x.
-Profile cut_out(const Profile& profile, const QRectF& window) {
-    Profile piece;
-    for (std::size_t i = 0; i < profile.size(); ++i) {
-        if (profile.filtered() && profile.segment[i] == kOutlier) continue;
-        const double x = profile.x_mm[i], z = profile.z_mm[i];
-        if (!(x >= window.left() && x <= window.right() && z >= window.top() && z <= window.bottom()))
-            continue;
-        piece.x_mm.push_back(x);
-        piece.z_mm.push_back(z);
-        if (!profile.intensity.empty()) piece.intensity.push_back(profile.intensity[i]);
-        if (profile.filtered()) piece.segment.push_back(profile.segment[i]);
-    }
-    return piece;
-}
-
-}  // namespace
-
 TeachPage::TeachPage(Desk& desk, const Views& views)
     : StepPage(desk, views, Step::teach,
                tr("Jog the sensor over the contour, take the pose, point at the feature, measure its "
@@ -478,7 +459,11 @@ void TeachPage::take_template(const QRectF& window) {
     const Spot* s = spot();
     if (!s || s->feature.kind != "template") return;
     const auto snapshot = desk_.live().latest(s->sensor_id);
-    const Profile piece = snapshot ? cut_out(snapshot->profile, window) : Profile();
+    const Profile piece = snapshot
+                              ? cut_out(snapshot->profile,
+                                        Eigen::AlignedBox2d(Eigen::Vector2d(window.left(), window.top()),
+                                                            Eigen::Vector2d(window.right(), window.bottom())))
+                              : Profile();
     if (piece.size() < 20) {
         done(input_error("the window holds fewer than 20 points of the contour", Text("spot {}", s->id),
                          "drag a larger one"));

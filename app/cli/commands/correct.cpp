@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <set>
 
 #include "app/cli/command.h"
@@ -49,11 +50,11 @@ Expected<Eigen::Matrix2d> read_covariance(const json& rows, const std::string& p
 }
 
 Expected<SpotObservation> read_spot(const json& spot, const std::string& path, bool needs_measured) {
-    if (auto known =
-            only_fields(spot,
-                        {"id", "workobject_from_sensor", "reference", "measured", "weights", "sigma_mm",
-                         "covariance_mm2", "sensor", "reference_covariance_mm2", "robot_covariance"},
-                        path);
+    if (auto known = only_fields(
+            spot,
+            {"id", "workobject_from_sensor", "reference", "measured", "weights", "sigma_mm", "covariance_mm2",
+             "sensor", "reference_covariance_mm2", "robot_covariance", "reference_arrivals"},
+            path);
         !known)
         return tl::unexpected(known.error());
     SpotObservation s;
@@ -93,6 +94,11 @@ Expected<SpotObservation> read_spot(const json& spot, const std::string& path, b
         SEAM_TRY(auto covariance, read_pose_covariance(*c, json_path(path, "robot_covariance")));
         s.robot_covariance = covariance;
     }
+    SEAM_TRY(const double arrivals, json_number_or(spot, "reference_arrivals", 1, path));
+    if (!(arrivals >= 1 && arrivals <= 1e6) || arrivals != std::floor(arrivals))
+        return input_error("no number of arrivals", json_path(path, "reference_arrivals"),
+                           "give how many arrivals of the robot the reference is the mean of, 1 or more");
+    s.reference_arrivals = static_cast<int>(arrivals);
     return s;
 }
 
@@ -205,7 +211,9 @@ void add_correct(CommandLine& line) {
         "}\n"
         "  What errs the same again, all optional: spots \"sensor\":\"A\", "
         "\"reference_covariance_mm2\":2x2,\n"
-        "  \"robot_covariance\":6x6 (one arrival), and \"sensors\":{\"A\":{\"hand_eye_covariance\":6x6,\n"
+        "  \"robot_covariance\":6x6 (one arrival), \"reference_arrivals\":n (that the reference is the mean "
+        "of),\n"
+        "  and \"sensors\":{\"A\":{\"hand_eye_covariance\":6x6,\n"
         "  \"scale_sigma\":[kx,kz],\"shear_sigma\":s}}; 6x6 of translation (mm) and rotation vector (rad).");
     auto file = std::make_shared<std::string>();
     command->add_option("job", *file, "The job (JSON)")->required()->type_name("JOB.json");

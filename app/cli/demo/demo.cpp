@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 
+#include "core/profile/taught_profile.h"
 #include "devices/cell_server.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
@@ -22,9 +23,7 @@ namespace seamwright::cli {
 namespace {
 
 constexpr double kCurveTravelMm = 20;
-constexpr int kEdgeRepeats = 3;        // of the edge that the template is cut at: any one will do
-constexpr int kMostPresses = 3;        // of a person who teaches a spot
-constexpr int kReferenceRepeats = 10;  // each with an arrival of its own: the robot's scatter averages out
+constexpr int kMostPresses = 3;  // of a person who teaches a spot
 constexpr double kPassStepMm = 4;
 constexpr const char* kSensor = "A";
 constexpr const char* kRobot = "R1";
@@ -80,20 +79,6 @@ std::string frame_name(const std::string& region_id) {
     return "BASE_" + region_id;
 }
 
-// The piece of contour around the hem that is taught as template, in the sensor frame.
-Profile cut_out(const Profile& profile, double from_mm, double to_mm) {
-    Profile piece;
-    for (std::size_t i = 0; i < profile.size(); ++i) {
-        if (!(profile.x_mm[i] >= from_mm && profile.x_mm[i] <= to_mm) || profile.segment[i] == kOutlier)
-            continue;
-        piece.x_mm.push_back(profile.x_mm[i]);
-        piece.z_mm.push_back(profile.z_mm[i]);
-        if (!profile.intensity.empty()) piece.intensity.push_back(profile.intensity[i]);
-        piece.segment.push_back(profile.segment[i]);
-    }
-    return piece;
-}
-
 // A person presses again where reflections have spoiled the measurements; what stays so is told.
 Expected<TaughtSpot> teach_again(Station& station, const Spot& spot, const TeachOptions& options) {
     for (int presses = 1;; ++presses) {
@@ -116,15 +101,13 @@ Expected<DemoTaughtSpot> teach(Station& station, const Pose& base_from_flange, c
     spot.jitter_mm = 3;
     spot.feature.kind = "contour-end";
     spot.feature.parameters = {{"side", 0.0}};
-    TeachOptions repeated;
-    repeated.repeats = kEdgeRepeats;
+    const TeachOptions repeated;
     SEAM_TRY(auto edge, teach_again(station, spot, repeated));
     const double x = edge.spot.reference_mm.x(), z = edge.spot.reference_mm.z();
     spot.feature.kind = "template";
     spot.feature.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
-    spot.feature.template_profile = cut_out(edge.spot.reference_profile, x - 1, x + 40);
+    spot.feature.template_profile = cut_out(edge.mean, x - 1, x + 40);
     spot.feature.template_reference_mm = {x, z};
-    repeated.repeats = kReferenceRepeats;
     SEAM_TRY(auto taught, teach_again(station, spot, repeated));
     spot = taught.spot;
     PassOptions passing;

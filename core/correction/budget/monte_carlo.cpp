@@ -96,7 +96,9 @@ std::vector<SpotObservation>& CorrectionDraws::next() {
         const Sensor& sensor = roots.sensor < 0 ? perfect : sensors_[static_cast<std::size_t>(roots.sensor)];
         const Pose& w = b.spot.workobject_from_sensor;
         SpotObservation& o = drawn_[n];
-        o.reference_mm = read(b, sensor, arrived(w, roots.arrival), Pose::Identity()) +
+        const Matrix6 mean_arrival =
+            roots.arrival / std::sqrt(static_cast<double>(b.spot.reference_arrivals));
+        o.reference_mm = read(b, sensor, arrived(w, mean_arrival), Pose::Identity()) +
                          scattered(roots.reference, b.reference_degrees);
         Pose there = w;
         if (b.half_window_mm > 0) {

@@ -69,6 +69,31 @@ TEST(Nuisance, PriorsOfZeroChangeNotABit) {
     }
 }
 
+// A reference that is the mean of n arrivals errs by the n-th part of one arrival's variance; the run still arrives once.
+TEST(Nuisance, TheMeanOfManyArrivalsLeavesTheShareOfOne) {
+    Rng rng(11);
+    auto spots = door(rng, 8, {900, -400, 250});
+    measure(spots, Pose::Identity());
+    for (SpotObservation& s : spots) {
+        s.sigma_mm = 0.02;
+        s.robot_covariance = Matrix6::Zero();
+        s.robot_covariance->topLeftCorner<3, 3>().diagonal().setConstant(0.03 * 0.03);
+    }
+    const auto solve = [&](int arrivals) {
+        for (SpotObservation& s : spots) s.reference_arrivals = arrivals;
+        const auto solved = solve_region(spots, {});
+        EXPECT_TRUE(solved) << solved.error().sentence();
+        return *solved;
+    };
+    const RegionCorrection one = solve(1), four = solve(4);
+    EXPECT_LT((four.covariance_systematic - one.covariance_systematic / 4).norm(),
+              1e-6 * one.covariance_systematic.norm());
+    EXPECT_LT((four.covariance_random - one.covariance_random).norm(), 1e-6 * one.covariance_random.norm());
+    EXPECT_GT(one.covariance_systematic(0, 0), 0);
+    spots[2].reference_arrivals = 0;
+    EXPECT_FALSE(solve_region(spots, {}));
+}
+
 // A sensor whose errors are known to be tiny gives the answer of one without, by another way.
 TEST(Nuisance, PriorsOfNearlyZeroChangeNearlyNothing) {
     Rng rng(2);

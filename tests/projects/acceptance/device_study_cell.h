@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/profile/taught_profile.h"
 #include "projects/acceptance/equipment/measure_robot.h"
 #include "projects/acceptance/equipment/measure_trigger.h"
 #include "projects/station/measure.h"
@@ -47,16 +48,9 @@ class StudyCell {
         const auto edge = teach_spot(station_, spot, {});
         ASSERT_TRUE(edge) << edge.error().sentence();
         const double x = edge->spot.reference_mm.x(), z = edge->spot.reference_mm.z();
-        const Profile& seen = edge->spot.reference_profile;
         spot.feature.kind = "template";
         spot.feature.parameters = {{"window_dx_mm", 20}, {"window_dz_mm", 20}, {"window_dphi_deg", 5}};
-        spot.feature.template_profile = {};
-        for (std::size_t i = 0; i < seen.size(); ++i) {
-            if (!(seen.x_mm[i] >= x - 1 && seen.x_mm[i] <= x + 40) || seen.segment[i] == kOutlier) continue;
-            spot.feature.template_profile.x_mm.push_back(seen.x_mm[i]);
-            spot.feature.template_profile.z_mm.push_back(seen.z_mm[i]);
-            spot.feature.template_profile.segment.push_back(seen.segment[i]);
-        }
+        spot.feature.template_profile = cut_out(edge->mean, x - 1, x + 40);
         spot.feature.template_reference_mm = {x, z};
         ASSERT_TRUE(station_.edit(project));
     }

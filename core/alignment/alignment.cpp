@@ -32,6 +32,11 @@ constexpr int kReferencesTried = 2;
 constexpr double kReach_mm = 2.0;
 // Rotations below this are not worth a word, degrees.
 constexpr double kLeastTurn_deg = 0.02;
+// A straight profile that slides so far along an axis says nothing about it.
+constexpr double kSlidesAlong = 0.1;
+constexpr double kStraight_per_mm = 1e-9;
+// The best and the worst of the profiles are taken at this share.
+constexpr double kBestShare = 0.1;
 
 struct Registered {
     Eigen::Vector2d shift = Eigen::Vector2d::Zero();
@@ -260,6 +265,222 @@ double rise(const PolynomialFit& f, double y, double from, double to) {
     return s * (c[1] + s * (c[2] + s * c[3])) + slope * (y - s);
 }
 
+Expected<void> check_pass(std::span<const TravelProfile> pass, const AlignmentOptions& options) {
+    if (pass.empty())
+        return input_error("there are no profiles", "alignment pass", "record the pass from entry to exit");
+    for (const double v : {options.jitter_mm, options.tolerance_mm, options.window_mm}) {
+        if (!(v > 0) || !std::isfinite(v))
+            return input_error("jitter, tolerance and window must be positive numbers", "alignment options",
+                               "give millimetres above 0");
+    }
+    if (options.reference_mm && !options.reference_mm->allFinite())
+        return input_error("the reference point is not finite", "alignment options",
+                           "give x and z in millimetres");
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        if (pass[i].profile.x_mm.size() != pass[i].profile.z_mm.size())
+            return input_error("x and z have different numbers of points", Text("profile {} of the pass", i),
+                               "give one x and one z a point");
+    }
+    return {};
+}
+
+// Profiles within the window, the trigger's neighbours first.
+std::vector<std::size_t> outwards_from_trigger(std::span<const TravelProfile> pass, double window_mm) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < pass.size(); ++i)
+        if (std::abs(pass[i].travel_mm) <= window_mm) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
+        return std::abs(pass[a].travel_mm) < std::abs(pass[b].travel_mm);
+    });
+    return order;
+}
+
+// A straight profile slides on itself: when most say so, all are judged across their common direction, which is
+// answered; else it is zero and those that slide do not count.
+Eigen::Vector2d common_sliding(std::vector<Registered>& found) {
+    Eigen::Vector2d along = Eigen::Vector2d::Zero();
+    std::size_t registered = 0, sliding = 0;
+    for (const Registered& r : found) {
+        registered += r.ok;
+        if (!r.ok || r.slides.isZero()) continue;
+        ++sliding;
+        along += r.slides.dot(along) < 0 ? Eigen::Vector2d(-r.slides) : r.slides;
+    }
+    if (2 * sliding > registered) {
+        along.normalize();
+        for (Registered& r : found) r.shift -= along * along.dot(r.shift);
+        return along;
+    }
+    for (Registered& r : found) r.ok = r.ok && r.slides.isZero();
+    return Eigen::Vector2d::Zero();
+}
+
+// How the contour moves in the profile along the travel.
+struct Drift {
+    std::vector<double> travel_mm, dx_mm, dz_mm, dphi_deg;
+    PolynomialFit x, z, phi;
+    double from = 0, to = 0;  // travel that was seen, the trigger included
+    Eigen::Vector2d along = Eigen::Vector2d::Zero();
+
+    void add(const TravelOffset& o) {
+        travel_mm.push_back(o.travel_mm);
+        dx_mm.push_back(o.dx_mm);
+        dz_mm.push_back(o.dz_mm);
+        dphi_deg.push_back(o.dphi_deg);
+    }
+    // False: too little was seen.
+    bool fit() {
+        if (travel_mm.size() < static_cast<std::size_t>(kFewestProfiles)) return false;
+        const auto [low, high] = std::minmax_element(travel_mm.begin(), travel_mm.end());
+        from = std::min(0.0, *low), to = std::max(0.0, *high);
+        if (*high - *low < kShortestTravel_mm) return false;
+        x = fit_lowest_order(travel_mm, dx_mm, 1, 3);
+        z = fit_lowest_order(travel_mm, dz_mm, 1, 3);
+        phi = fit_lowest_order(travel_mm, dphi_deg, 1, 1);
+        return x.ok && z.ok && phi.ok;
+    }
+    // The farthest that the contour stands off within the jitter; after a turn that takes `share` of the slopes away.
+    double farthest(double jitter_mm, double share = 0) const {
+        constexpr int kSteps = 50;
+        double most = 0;
+        for (int k = -kSteps; k <= kSteps; ++k) {
+            const double at = jitter_mm * k / kSteps;
+            most = std::max(most, std::hypot(rise(x, at, from, to) - share * x.coefficient[1] * at,
+                                             rise(z, at, from, to) - share * z.coefficient[1] * at));
+        }
+        return most;
+    }
+};
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Angles, their sigmas, the cure and the contour's radius.
+void state_direction(const Drift& drift, double jitter_mm, AlignmentResult& result) {
+    const double sx = drift.x.coefficient[1], sz = drift.z.coefficient[1];
+    result.dx_mm_per_mm = sx;
+    result.dz_mm_per_mm = sz;
+    result.yaw_deg = deg_from_rad(std::atan(sx));
+    result.pitch_deg = deg_from_rad(std::atan(sz));
+    result.roll_deg = drift.phi.coefficient[1] * jitter_mm;
+    result.sigma_yaw_deg = deg_from_rad(drift.x.coefficient_sigma[1] / (1 + sx * sx));
+    result.sigma_pitch_deg = deg_from_rad(drift.z.coefficient_sigma[1] / (1 + sz * sz));
+    if (std::abs(drift.along.x()) > kSlidesAlong) result.sigma_yaw_deg = kInfinity;
+    if (std::abs(drift.along.y()) > kSlidesAlong) result.sigma_pitch_deg = kInfinity;
+    // R_z(a) R_x(b) takes the sensor's Y to the contour's direction (sx, 1, sz).
+    const double a = -std::atan(sx);
+    result.cure_about_z_deg = deg_from_rad(a);
+    result.cure_about_x_deg = deg_from_rad(std::atan(sz * std::cos(a)));
+
+    const auto bend = [](const PolynomialFit& f) {
+        return std::abs(f.coefficient[2]) > kSignificant * f.coefficient_sigma[2] ? 2 * f.coefficient[2]
+                                                                                  : 0.0;
+    };
+    const Eigen::Vector3d tangent(sx, 1, sz), second(bend(drift.x), 0, bend(drift.z));
+    const double curvature = tangent.cross(second).norm() / std::pow(tangent.norm(), 3);
+    result.radius_mm = curvature > kStraight_per_mm ? 1 / curvature : kInfinity;
+}
+
+void state_error(const Drift& drift, double jitter_mm, AlignmentResult& result) {
+    result.expected_error_mm = drift.farthest(jitter_mm);
+    result.expected_error_sigma_mm =
+        jitter_mm * std::hypot(drift.x.coefficient_sigma[1], drift.z.coefficient_sigma[1]);
+    if (!std::isfinite(result.sigma_yaw_deg) || !std::isfinite(result.sigma_pitch_deg))
+        result.expected_error_sigma_mm = kInfinity;
+    for (std::size_t k = 0; k < 3; ++k) {
+        result.curve.x_coefficients[static_cast<Eigen::Index>(k)] = drift.x.coefficient[k + 1];
+        result.curve.z_coefficients[static_cast<Eigen::Index>(k)] = drift.z.coefficient[k + 1];
+    }
+    result.curve.valid_from_mm = drift.from;
+    result.curve.valid_to_mm = drift.to;
+}
+
+// Noise is what the best registered profiles keep; the rest of the worst within the jitter is change of shape. True: the
+// contour does not stay the same, whatever its size.
+bool state_shape(const Reference& best, std::span<const TravelProfile> pass, const AlignmentOptions& options,
+                 AlignmentResult& result) {
+    std::vector<double> all_rms, near_rms, near_share;
+    for (std::size_t i = 0; i < pass.size(); ++i) {
+        const Registered& f = best.found[i];
+        if (!f.ok) continue;
+        all_rms.push_back(f.rms);
+        if (std::abs(pass[i].travel_mm) > options.jitter_mm) continue;
+        near_rms.push_back(f.rms);
+        near_share.push_back(f.share);
+    }
+    if (near_rms.empty()) near_rms = all_rms;
+    const double noise = quantile(all_rms, kBestShare), worst = quantile(near_rms, 1 - kBestShare);
+    const Eigen::Vector2d point =
+        options.reference_mm ? *options.reference_mm : centroid(pass[best.index].profile);
+    result.shape_change_mm = std::max(std::sqrt(std::max(0.0, worst * worst - noise * noise)),
+                                      growth_mm(best, pass, point, options.jitter_mm));
+    // One profile alone is a profile gone wrong.
+    return near_share.size() > 1 &&
+           quantile(near_share, std::max(kBestShare, 1.0 / double(near_share.size() - 1))) < kSteadyShare;
+}
+
+AlignmentStatus judged(const AlignmentResult& result, double tolerance_mm, bool changes) {
+    const double error = result.expected_error_mm, two_sigma = 2 * result.expected_error_sigma_mm;
+    // Too uncertain to tell: within two sigma it may be either, and two sigma are more than the tolerance.
+    const bool unsure = two_sigma > tolerance_mm;
+    const bool seen_to_drift =
+        error > tolerance_mm && (!unsure || result.sliding || error - two_sigma > tolerance_mm);
+    return seen_to_drift ? AlignmentStatus::drifting
+           : unsure      ? AlignmentStatus::undetermined
+           : changes     ? AlignmentStatus::shape_changes
+                         : AlignmentStatus::frozen;
+}
+
+// By which rotation the sensor's travel follows the contour; empty: by none worth a word.
+Text turn_advised(const AlignmentResult& result) {
+    const double z = result.cure_about_z_deg, x = result.cure_about_x_deg;
+    const bool about_z = std::abs(z) > kLeastTurn_deg, about_x = std::abs(x) > kLeastTurn_deg;
+    if (!about_z && !about_x) return {};
+    const Text how =
+        about_z && about_x
+            ? Text(
+                  "about the sensor's own Z axis by {:+.2f} degrees, then about its turned X axis by "
+                  "{:+.2f} degrees",
+                  z, x)
+        : about_z ? Text("about the sensor's own Z axis by {:+.2f} degrees", z)
+                  : Text("about the sensor's own X axis by {:+.2f} degrees", x);
+    return Text(
+        "rotate the sensor at the trigger position, about the reference point and together with "
+        "its travel, {}",
+        how);
+}
+
+Text cure_of(const AlignmentResult& result, const Drift& drift, const AlignmentOptions& options,
+             bool changes) {
+    Text cure;
+    const auto say = [&](const Text& sentence) {
+        if (!sentence.empty()) cure = joined(cure, "; ", sentence);
+    };
+    if (result.status == AlignmentStatus::drifting) {
+        say(turn_advised(result));
+        // What the bend alone costs cannot be turned away.
+        if (const double rest = drift.farthest(options.jitter_mm, 1); rest > options.tolerance_mm)
+            say(
+                Text("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
+                     "within the jitter: let "
+                     "the correction use the contour curve, or trigger more exactly",
+                     result.radius_mm, rest));
+    }
+    if (result.status == AlignmentStatus::undetermined && !result.sliding)
+        say(
+            Text("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
+                 "record the pass "
+                 "again with more profiles or less noise",
+                 result.expected_error_mm, result.expected_error_sigma_mm));
+    if (changes)
+        say("the profile changes its shape along the travel: teach the spot where the contour stays the "
+            "same");
+    if (result.sliding)
+        say(Text(
+            "the profile is a straight line along ({:.2f}, {:.2f}) in x, z: drift along it cannot be seen",
+            drift.along.x(), drift.along.y()));
+    return cure;
+}
+
 }  // namespace
 
 std::string_view to_string(AlignmentStatus status) {
@@ -280,33 +501,10 @@ std::string_view to_string(AlignmentStatus status) {
 
 Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
                                           const AlignmentOptions& options) {
-    if (pass.empty())
-        return input_error("there are no profiles", "alignment pass", "record the pass from entry to exit");
-    for (const double v : {options.jitter_mm, options.tolerance_mm, options.window_mm}) {
-        if (!(v > 0) || !std::isfinite(v))
-            return input_error("jitter, tolerance and window must be positive numbers", "alignment options",
-                               "give millimetres above 0");
-    }
-    if (options.reference_mm && !options.reference_mm->allFinite())
-        return input_error("the reference point is not finite", "alignment options",
-                           "give x and z in millimetres");
-    for (std::size_t i = 0; i < pass.size(); ++i) {
-        if (pass[i].profile.x_mm.size() != pass[i].profile.z_mm.size())
-            return input_error("x and z have different numbers of points", Text("profile {} of the pass", i),
-                               "give one x and one z a point");
-    }
+    SEAM_OK(check_pass(pass, options));
     AlignmentResult result;
     result.offsets.resize(pass.size());
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < pass.size(); ++i) {
-        result.offsets[i].travel_mm = pass[i].travel_mm;
-        if (std::abs(pass[i].travel_mm) <= options.window_mm) order.push_back(i);
-    }
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
-        return std::abs(pass[a].travel_mm) < std::abs(pass[b].travel_mm);
-    });
-
-    std::optional<Reference> best = choose_reference(pass, order, options.reference_mm);
+    for (std::size_t i = 0; i < pass.size(); ++i) result.offsets[i].travel_mm = pass[i].travel_mm;
     const auto too_few = [&](std::size_t enough) {
         result.status = AlignmentStatus::not_enough_profiles;
         result.cure = Text(
@@ -315,167 +513,27 @@ Expected<AlignmentResult> check_alignment(std::span<const TravelProfile> pass,
             enough, pass.size(), options.window_mm, kFewestProfiles + 1, kShortestTravel_mm);
         return result;
     };
+    std::optional<Reference> best =
+        choose_reference(pass, outwards_from_trigger(pass, options.window_mm), options.reference_mm);
     if (!best) return too_few(0);
-    const std::size_t trigger = best->index;
-    std::vector<Registered>& found = best->found;
 
-    // A straight profile slides on itself: when most say so, all are judged across their common direction
-    // only.
-    Eigen::Vector2d along = Eigen::Vector2d::Zero();
-    std::size_t registered = 0, sliding = 0;
-    for (const Registered& r : found) {
-        registered += r.ok;
-        if (!r.ok || r.slides.isZero()) continue;
-        ++sliding;
-        along += r.slides.dot(along) < 0 ? Eigen::Vector2d(-r.slides) : r.slides;
-    }
-    if (2 * sliding > registered) {
-        result.sliding = true;
-        along.normalize();
-        for (Registered& r : found) r.shift -= along * along.dot(r.shift);
-    } else {
-        for (Registered& r : found) r.ok = r.ok && r.slides.isZero();
-    }
-    std::vector<double> y, dx, dz, phi;
+    Drift drift;
+    drift.along = common_sliding(best->found);
+    result.sliding = !drift.along.isZero();
+    result.offsets[best->index].ok = true;
     for (std::size_t i = 0; i < pass.size(); ++i) {
-        const Registered& r = found[i];
-        TravelOffset& o = result.offsets[i];
-        if (i == trigger) o.ok = true;
+        const Registered& r = best->found[i];
         if (!r.ok) continue;
-        o = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
-        y.push_back(o.travel_mm);
-        dx.push_back(o.dx_mm);
-        dz.push_back(o.dz_mm);
-        phi.push_back(o.dphi_deg);
+        result.offsets[i] = {pass[i].travel_mm, r.shift.x(), r.shift.y(), deg_from_rad(r.phi), r.rms, true};
+        drift.add(result.offsets[i]);
     }
-    if (y.size() < static_cast<std::size_t>(kFewestProfiles)) return too_few(y.size() + 1);
-    const auto [low, high] = std::minmax_element(y.begin(), y.end());
-    const double from = std::min(0.0, *low), to = std::max(0.0, *high);
-    if (*high - *low < kShortestTravel_mm) return too_few(y.size() + 1);
-    const PolynomialFit fx = fit_lowest_order(y, dx, 1, 3), fz = fit_lowest_order(y, dz, 1, 3),
-                        fp = fit_lowest_order(y, phi, 1, 1);
-    if (!fx.ok || !fz.ok || !fp.ok) return too_few(y.size() + 1);
-
-    const double sx = fx.coefficient[1], sz = fz.coefficient[1];
-    result.dx_mm_per_mm = sx;
-    result.dz_mm_per_mm = sz;
-    result.yaw_deg = deg_from_rad(std::atan(sx));
-    result.pitch_deg = deg_from_rad(std::atan(sz));
-    result.roll_deg = fp.coefficient[1] * options.jitter_mm;
-    result.sigma_yaw_deg = deg_from_rad(fx.coefficient_sigma[1] / (1 + sx * sx));
-    result.sigma_pitch_deg = deg_from_rad(fz.coefficient_sigma[1] / (1 + sz * sz));
-    const double infinity = std::numeric_limits<double>::infinity();
-    if (result.sliding) {
-        if (std::abs(along.x()) > 0.1) result.sigma_yaw_deg = infinity;
-        if (std::abs(along.y()) > 0.1) result.sigma_pitch_deg = infinity;
-    }
-    // R_z(a) R_x(b) takes the sensor's Y to the contour's direction (sx, 1, sz).
-    const double a = -std::atan(sx);
-    result.cure_about_z_deg = deg_from_rad(a);
-    result.cure_about_x_deg = deg_from_rad(std::atan(sz * std::cos(a)));
-
-    const auto bend = [](const PolynomialFit& f) {
-        return std::abs(f.coefficient[2]) > kSignificant * f.coefficient_sigma[2] ? 2 * f.coefficient[2]
-                                                                                  : 0.0;
-    };
-    const Eigen::Vector3d tangent(sx, 1, sz), second(bend(fx), 0, bend(fz));
-    const double curvature = tangent.cross(second).norm() / std::pow(tangent.norm(), 3);
-    result.radius_mm = curvature > 1e-9 ? 1 / curvature : infinity;
-
-    for (int k = -50; k <= 50; ++k) {
-        const double at = options.jitter_mm * k / 50.0;
-        result.expected_error_mm =
-            std::max(result.expected_error_mm, std::hypot(rise(fx, at, from, to), rise(fz, at, from, to)));
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        result.curve.x_coefficients[static_cast<Eigen::Index>(k)] = fx.coefficient[k + 1];
-        result.curve.z_coefficients[static_cast<Eigen::Index>(k)] = fz.coefficient[k + 1];
-    }
-    result.expected_error_sigma_mm =
-        options.jitter_mm * std::hypot(fx.coefficient_sigma[1], fz.coefficient_sigma[1]);
-    if (!std::isfinite(result.sigma_yaw_deg) || !std::isfinite(result.sigma_pitch_deg))
-        result.expected_error_sigma_mm = infinity;
-    result.curve.valid_from_mm = from;
-    result.curve.valid_to_mm = to;
-
-    // Noise is what the best registered profiles keep; the rest of the worst within the jitter is change of
-    // shape.
-    std::vector<double> all_rms, near_rms, near_share;
-    for (std::size_t i = 0; i < pass.size(); ++i) {
-        if (!found[i].ok) continue;
-        all_rms.push_back(found[i].rms);
-        if (std::abs(pass[i].travel_mm) > options.jitter_mm) continue;
-        near_rms.push_back(found[i].rms);
-        near_share.push_back(found[i].share);
-    }
-    if (near_rms.empty()) near_rms = all_rms;
-    const double noise = quantile(all_rms, 0.1), worst = quantile(near_rms, 0.9);
-    const Eigen::Vector2d point =
-        options.reference_mm ? *options.reference_mm : centroid(pass[trigger].profile);
-    result.shape_change_mm = std::max(std::sqrt(std::max(0.0, worst * worst - noise * noise)),
-                                      growth_mm(*best, pass, point, options.jitter_mm));
-    // One profile alone is a profile gone wrong.
-    const bool share_lost =
-        near_share.size() > 1 &&
-        quantile(near_share, std::max(0.1, 1.0 / double(near_share.size() - 1))) < kSteadyShare;
-
-    const bool drifts = result.expected_error_mm > options.tolerance_mm;
-    const bool changes = result.shape_change_mm > options.tolerance_mm || share_lost;
-    // Too uncertain to tell: within two sigma it may be either, and two sigma are more than the tolerance.
-    const bool unsure = 2 * result.expected_error_sigma_mm > options.tolerance_mm;
-    const bool seen_to_drift =
-        drifts && (!unsure || result.sliding ||
-                   result.expected_error_mm - 2 * result.expected_error_sigma_mm > options.tolerance_mm);
-    result.status = seen_to_drift ? AlignmentStatus::drifting
-                    : unsure      ? AlignmentStatus::undetermined
-                    : changes     ? AlignmentStatus::shape_changes
-                                  : AlignmentStatus::frozen;
-    const auto say = [&](const Text& sentence) { result.cure = joined(result.cure, "; ", sentence); };
-    if (result.status == AlignmentStatus::drifting) {
-        // What the bend alone costs cannot be turned away.
-        double rest = 0;
-        for (int k = -50; k <= 50; ++k) {
-            const double at = options.jitter_mm * k / 50.0;
-            rest = std::max(rest,
-                            std::hypot(rise(fx, at, from, to) - sx * at, rise(fz, at, from, to) - sz * at));
-        }
-        const double z = result.cure_about_z_deg, x = result.cure_about_x_deg;
-        const bool about_z = std::abs(z) > kLeastTurn_deg, about_x = std::abs(x) > kLeastTurn_deg;
-        const auto turn = [&](const Text& how) {
-            say(
-                Text("rotate the sensor at the trigger position, about the reference point and together with "
-                     "its travel, {}",
-                     how));
-        };
-        if (about_z && about_x)
-            turn(
-                Text("about the sensor's own Z axis by {:+.2f} degrees, then about its turned X axis by "
-                     "{:+.2f} degrees",
-                     z, x));
-        else if (about_z)
-            turn(Text("about the sensor's own Z axis by {:+.2f} degrees", z));
-        else if (about_x)
-            turn(Text("about the sensor's own X axis by {:+.2f} degrees", x));
-        if (rest > options.tolerance_mm)
-            say(
-                Text("the contour bends with a radius of {:.0f} mm, which alone costs {:.3f} mm "
-                     "within the jitter: let "
-                     "the correction use the contour curve, or trigger more exactly",
-                     result.radius_mm, rest));
-    }
-    if (result.status == AlignmentStatus::undetermined && !result.sliding)
-        say(
-            Text("the drift is not known well enough to tell: {:.3f} mm with a sigma of {:.3f} mm; "
-                 "record the pass "
-                 "again with more profiles or less noise",
-                 result.expected_error_mm, result.expected_error_sigma_mm));
-    if (changes)
-        say("the profile changes its shape along the travel: teach the spot where the contour stays the "
-            "same");
-    if (result.sliding)
-        say(Text(
-            "the profile is a straight line along ({:.2f}, {:.2f}) in x, z: drift along it cannot be seen",
-            along.x(), along.y()));
+    if (!drift.fit()) return too_few(drift.travel_mm.size() + 1);
+    state_direction(drift, options.jitter_mm, result);
+    state_error(drift, options.jitter_mm, result);
+    const bool lost = state_shape(*best, pass, options, result);
+    const bool changes = lost || result.shape_change_mm > options.tolerance_mm;
+    result.status = judged(result, options.tolerance_mm, changes);
+    result.cure = cure_of(result, drift, options, changes);
     return result;
 }
 

@@ -13,11 +13,34 @@
 #include "widgets/words.h"
 
 namespace seamwright {
+
 TeachPage::TeachPage(Desk& desk, const Views& views)
     : StepPage(desk, views, Step::teach,
                tr("Jog the sensor over the contour, take the pose, point at the feature, measure its "
                   "reference.")) {
-    tree_ = new SpotTree(desk);
+    make_list();
+    inspector_ = new QWidget;
+    auto* in = new QVBoxLayout(inspector_);
+    in->setContentsMargins(0, 0, 0, 0);
+    box().addWidget(inspector_);
+    make_switches(*in);
+    make_pose(*in);
+    make_via_points(*in);
+    make_devices(*in);
+    make_feature(*in);
+    make_reference(*in);
+    make_fields(*in);
+    box().addStretch(1);
+    listen_to_profile();
+    connect(&desk_.worker(), &StationWorker::taught, this,
+            [this](const std::shared_ptr<const TaughtSpot>& taught) { take_reference(*taught); });
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
+    });
+}
+
+void TeachPage::make_list() {
+    tree_ = new SpotTree(desk_);
     box().addWidget(tree_);
     duplicate_ = make_button("duplicate_spot", "copy", tr("Duplicate"), tr("The same spot once more"),
                              [this] { duplicate_spot(); });
@@ -38,11 +61,9 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
                               [this] { add_spot(); }),
                   duplicate_, rename_}));
     box().addLayout(make_row({up_, down_, remove_}));
+}
 
-    inspector_ = new QWidget;
-    auto* in = new QVBoxLayout(inspector_);
-    in->setContentsMargins(0, 0, 0, 0);
-    box().addWidget(inspector_);
+void TeachPage::make_switches(QVBoxLayout& in) {
     enabled_ = new QCheckBox(tr("Enabled"));
     enabled_->setObjectName("spot_enabled");
     enabled_->setToolTip(tr("A disabled spot is not measured"));
@@ -59,7 +80,7 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         s.required = on;
         done(desk_.edit(s, tr("required")));
     });
-    in->addLayout(make_row({enabled_, required_}));
+    in.addLayout(make_row({enabled_, required_}));
     stop_ = new QCheckBox(tr("Stand still at the trigger"));
     stop_->setObjectName("spot_stop");
     stop_->setToolTip(
@@ -72,15 +93,17 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         s.stop_at_trigger = on;
         done(desk_.edit(s, tr("stand still at the trigger")));
     });
-    in->addLayout(make_row({stop_}));
+    in.addLayout(make_row({stop_}));
+}
 
-    in->addWidget(make_heading(tr("Pose of the flange at the trigger")));
+void TeachPage::make_pose(QVBoxLayout& in) {
+    in.addWidget(make_heading(tr("Pose of the flange at the trigger")));
     pose_ = new PoseEditor;
     pose_->setObjectName("spot_pose");
     pose_->setAccessibleName(tr("Pose of the flange at the trigger"));
     pose_->setToolTip(
         tr("base_from_flange, in the notation of the robot's brand; paste a whole pose into any field"));
-    in->addWidget(pose_);
+    in.addWidget(pose_);
     connect(pose_, &PoseEditor::committed, this, [this] {
         if (!spot()) return;
         Spot s = *spot();
@@ -94,9 +117,11 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
                           if (spot())
                               desk_.worker().jog_simulated(spot()->robot_id, spot()->base_from_flange);
                       });
-    in->addLayout(make_row({take_, go_}));
+    in.addLayout(make_row({take_, go_}));
+}
 
-    in->addWidget(make_heading(tr("Via points")));
+void TeachPage::make_via_points(QVBoxLayout& in) {
+    in.addWidget(make_heading(tr("Via points")));
     via_ = new QListWidget;
     via_->setObjectName("spot_via");
     via_->setAccessibleName(tr("Via points"));
@@ -104,7 +129,7 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         tr("Passed in this order on the way from the spot before. Write the robot's program anew after a "
            "change."));
     via_->setMaximumHeight(3 * style::kTargetPx);
-    in->addWidget(via_);
+    in.addWidget(via_);
     add_via_ = make_button("add_via", "add", tr("Add here"),
                            tr("The pose where the robot stands now, behind the selected via point"),
                            [this] { add_via(); });
@@ -116,16 +141,18 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
                                   s.via.erase(s.via.begin() + row);
                                   done(desk_.edit(s, tr("via points")));
                               });
-    in->addLayout(make_row({add_via_, remove_via_}));
+    in.addLayout(make_row({add_via_, remove_via_}));
     connect(via_, &QListWidget::currentRowChanged, this,
             [this](int row) { remove_via_->setEnabled(row >= 0); });
+}
 
+void TeachPage::make_devices(QVBoxLayout& in) {
     sensor_ = new QComboBox;
     sensor_->setObjectName("spot_sensor");
-    add_field(*in, tr("Sensor"), sensor_, tr("The sensor that looks at the spot"));
+    add_field(in, tr("Sensor"), sensor_, tr("The sensor that looks at the spot"));
     robot_ = new QComboBox;
     robot_->setObjectName("spot_robot");
-    add_field(*in, tr("Robot"), robot_, tr("The robot that carries the sensor"));
+    add_field(in, tr("Robot"), robot_, tr("The robot that carries the sensor"));
     connect(sensor_, &QComboBox::textActivated, this, [this](const QString& id) {
         if (!spot()) return;
         Spot s = *spot();
@@ -138,17 +165,19 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         s.robot_id = id.toStdString();
         change(s, tr("robot"));
     });
+}
 
-    in->addWidget(make_heading(tr("Feature of the contour")));
+void TeachPage::make_feature(QVBoxLayout& in) {
+    in.addWidget(make_heading(tr("Feature of the contour")));
     kind_ = new QComboBox;
     kind_->setObjectName("feature_kind");
     for (const FeatureKind& k : feature_kinds())
         kind_->addItem(shown_word(k.name), QString::fromStdString(std::string(k.name)));
-    add_field(*in, tr("Kind"), kind_, tr("Which point of the contour is measured"));
+    add_field(in, tr("Kind"), kind_, tr("Which point of the contour is measured"));
     connect(kind_, &QComboBox::activated, this,
             [this](int row) { set_kind(kind_->itemData(row).toString()); });
     kind_help_ = make_text({});
-    in->addWidget(kind_help_);
+    in.addWidget(kind_help_);
     pick_ = make_button("pick", "pick", tr("Point at it"),
                         tr("Click the contour in the live profile, where the feature is"), [this] {
                             views_.profile->set_tool(ProfilePlot::Tool::inspect);
@@ -169,34 +198,38 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
                              views_.raise(views_.profile);
                              views_.profile->setFocus();
                          });
-    in->addLayout(make_row({pick_, window_}));
-    in->addLayout(make_row({click_}));
+    in.addLayout(make_row({pick_, window_}));
+    in.addLayout(make_row({click_}));
     parameters_ = new QVBoxLayout;
-    in->addLayout(parameters_);
+    in.addLayout(parameters_);
+}
 
-    in->addWidget(make_heading(tr("Reference")));
+void TeachPage::make_reference(QVBoxLayout& in) {
+    in.addWidget(make_heading(tr("Reference")));
     reference_ = make_text({});
     reference_->setObjectName("reference");
-    in->addWidget(reference_);
+    in.addWidget(reference_);
     repeats_ = new QSpinBox;
     repeats_->setObjectName("repeats");
     repeats_->setRange(1, 1000);
-    repeats_->setValue(5);
-    add_field(*in, tr("Repeats"), repeats_, tr("How often the reference is measured"));
+    repeats_->setValue(TeachOptions().repeats);
+    add_field(in, tr("Repeats"), repeats_, tr("How often the reference is measured"));
     measure_ =
         make_button("measure_reference", "measure", tr("Measure reference"),
                     tr("The robot stands still at the spot and measures; mean and spread are shown"), [this] {
                         if (spot()) desk_.worker().teach(*spot(), repeats_->value());
                     });
-    in->addLayout(make_row({measure_}));
-    in->addWidget(make_progress());
+    in.addLayout(make_row({measure_}));
+    in.addWidget(make_progress());
     spread_ = make_text({});
     spread_->setObjectName("spread");
-    in->addWidget(spread_);
+    in.addWidget(spread_);
+}
 
-    in->addWidget(make_heading(tr("Pass, weights and noise")));
+void TeachPage::make_fields(QVBoxLayout& in) {
+    in.addWidget(make_heading(tr("Pass, weights and noise")));
     fields_ = new QVBoxLayout;
-    in->addLayout(fields_);
+    in.addLayout(fields_);
     for (const Field<Spot>& f : spot_fields()) {
         auto* editor = new ParameterEditor(f.info);
         connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
@@ -205,8 +238,9 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
         field_editors_.push_back(editor);
         fields_->addWidget(editor);
     }
-    box().addStretch(1);
+}
 
+void TeachPage::listen_to_profile() {
     connect(views_.profile, &ProfilePlot::point_picked, this, [this](const QPointF& p) {
         if (isVisible()) picked(p);
     });
@@ -220,36 +254,34 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
             s.feature.template_reference_mm = {p.x(), p.y()};
         }
         s.reference_mm = {p.x(), 0, p.y()};
+        s.reference_arrivals = 1;
         done(desk_.edit(s, tr("reference point")));
         views_.profile->set_tool(ProfilePlot::Tool::inspect);
     });
-    connect(
-        &desk_.worker(), &StationWorker::taught, this,
-        [this](const std::shared_ptr<const TaughtSpot>& taught) {
-            const Spot* s = find_spot(desk_.project(), taught->spot.id);
-            if (!s) return;
-            if (!measured_alike(*s, taught->spot)) {
-                done(input_error("it was changed while its reference was measured", Text("spot {}", s->id),
-                                 "measure the reference again"));
-                return;
-            }
-            // Only what was measured: weights and limits may have been edited meanwhile. The curve of an
-            // earlier pass was about the old reference.
-            Spot after = *s;
-            after.reference_mm = taught->spot.reference_mm;
-            after.reference_profile = taught->spot.reference_profile;
-            after.curve.reset();
-            if (done(desk_.edit(after, tr("reference")))) {
-                spread_of_ = after;
-                spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
-                                     .arg(taught->measurements.size())
-                                     .arg(number(taught->spread_mm.x(), 4), number(taught->spread_mm.y(), 4))
-                                     .arg(taught->left_out));
-            }
-        });
-    connect(&desk_, &Desk::station_changed, this, [this] {
-        if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
-    });
+}
+
+void TeachPage::take_reference(const TaughtSpot& taught) {
+    const Spot* s = find_spot(desk_.project(), taught.spot.id);
+    if (!s) return;
+    if (!measured_alike(*s, taught.spot)) {
+        done(input_error("it was changed while its reference was measured", Text("spot {}", s->id),
+                         "measure the reference again"));
+        return;
+    }
+    // Only what was measured: weights and limits may have been edited meanwhile. The curve of an
+    // earlier pass was about the old reference.
+    Spot after = *s;
+    after.reference_mm = taught.spot.reference_mm;
+    after.reference_profile = taught.spot.reference_profile;
+    after.reference_arrivals = taught.spot.reference_arrivals;
+    after.curve.reset();
+    if (done(desk_.edit(after, tr("reference")))) {
+        spread_of_ = after;
+        spread_->setText(tr("Spread of %1 measurements: x %2 mm, z %3 mm (1 sigma); %4 left out")
+                             .arg(taught.measurements.size())
+                             .arg(number(taught.spread_mm.x(), 4), number(taught.spread_mm.y(), 4))
+                             .arg(taught.left_out));
+    }
 }
 
 void TeachPage::entered() {

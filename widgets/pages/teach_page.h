@@ -25,6 +25,17 @@ class TeachPage : public StepPage {
     void hideEvent(QHideEvent* event) override;
 
   private:
+    void make_list();
+    void make_switches(QVBoxLayout& in);
+    void make_pose(QVBoxLayout& in);
+    void make_via_points(QVBoxLayout& in);
+    void make_devices(QVBoxLayout& in);
+    void make_feature(QVBoxLayout& in);
+    void make_reference(QVBoxLayout& in);
+    void make_fields(QVBoxLayout& in);
+    void listen_to_profile();
+    void take_reference(const TaughtSpot& taught);
+
     const Spot* spot() const;
     // What was measured with another pose, sensor, robot or feature goes with the edit.
     bool change(const Spot& after, const QString& what);

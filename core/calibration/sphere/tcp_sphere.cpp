@@ -10,6 +10,7 @@
 
 #include "core/calibration/pose_set.h"
 #include "core/calibration/sphere/tcp_sphere_advice.h"
+#include "core/calibration/sphere/tcp_sphere_settle.h"
 #include "core/calibration/sphere/tcp_sphere_solve.h"
 #include "core/calibration/statistics.h"
 #include "core/median.h"
@@ -20,7 +21,6 @@ namespace {
 using namespace tcp_sphere;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kFewestSections = 4;  // three numbers a profile against nine unknowns, and one to check with
 constexpr double kNoiseFloor_mm =
     0.02;  // no sensor on a robot is better; keeps noise-free data from looking sure
 constexpr double kUndeterminedSigma_mm = 2.0;             // a direction weaker than this is not determined
@@ -86,134 +86,6 @@ Expected<void> check_input(const std::vector<SphereObservation>& observations,
         return input_error(Text("a radius of {:.3g} mm looks like metres", *options.radius_mm), "radius_mm",
                            "give it in millimetres (times 1000)");
     return {};
-}
-
-double point_squares(const Section& section, const Model& model) {
-    const Eigen::Vector3d s = centre_in_sensor(section, model);
-    double sum = 0;
-    for (size_t i = 0; i < section.x.size(); ++i) {
-        const double dx = section.x[i] - s.x(), dz = section.z[i] - s.z();
-        const double e = std::sqrt(dx * dx + s.y() * s.y() + dz * dz) - model.radius;
-        sum += e * e;
-    }
-    return sum;
-}
-
-double section_rms(const Section& section, const Model& model) {
-    return section.x.empty() ? kNaN : std::sqrt(point_squares(section, model) / section.count());
-}
-
-size_t used_count(const std::vector<Section>& sections) {
-    return static_cast<size_t>(
-        std::count_if(sections.begin(), sections.end(), [](const Section& s) { return s.used; }));
-}
-
-// Profiles that contradict the sphere which the others agree on (they show something else, or their pose is
-// wrong) stop being used, the worst first. Returns whether the set has changed.
-bool leave_out_contradictions(std::vector<Section>& sections, const Model& model) {
-    std::vector<double> rms;
-    for (const auto& section : sections)
-        if (section.used) rms.push_back(section_rms(section, model));
-    const double limit = std::max(6 * median(rms), 0.15);
-    Section* worst = nullptr;
-    double worst_rms = limit;
-    for (auto& section : sections) {
-        if (!section.used) continue;
-        const double value = section_rms(section, model);
-        if (value > worst_rms) {
-            worst_rms = value;
-            worst = &section;
-        }
-    }
-    if (worst == nullptr || used_count(sections) <= static_cast<size_t>(kFewestSections)) return false;
-    worst->used = false;
-    return true;
-}
-
-// One wrong pose bends least squares towards itself, so its own residual shows little: leave each out in
-// turn. The one whose absence explains the disagreement (F test of its three numbers, guarded against picking
-// the largest of many) and which the others then miss by more than 0.15 mm stops being used.
-bool leave_out_wrong_pose(std::vector<Section>& sections, const Model& model, bool radius_free) {
-    const size_t used = used_count(sections);
-    const double unknowns = radius_free ? 10 : 9;
-    const double redundancy = 3.0 * static_cast<double>(used - 1) - unknowns;
-    if (redundancy < 3) return false;
-    double all = 0, own = 0, points = 0;
-    for (const auto& section : sections) {
-        if (!section.used) continue;
-        all += disagreement(section, model) / section.count();
-        own += section.own_squares;
-        points += section.count();
-    }
-    const double mean_count = points / static_cast<double>(used);
-    const double floor = own / points / mean_count * redundancy;
-    Section* suspect = nullptr;
-    double least = all;
-    Model model_without = model;
-    for (auto& section : sections) {
-        if (!section.used) continue;
-        section.used = false;
-        Model candidate = model;
-        const double rest =
-            solve_reduced(sections, candidate, radius_free, std::numeric_limits<double>::infinity(), 20) *
-            static_cast<double>(used - 1);
-        section.used = true;
-        if (rest < least) {
-            least = rest;
-            suspect = &section;
-            model_without = candidate;
-        }
-    }
-    if (suspect == nullptr) return false;
-    const double f = (all - least) / 3 / (std::max(least, floor) / redundancy);
-    if (f < outlier_limit(redundancy) || section_rms(*suspect, model_without) < 0.15) return false;
-    suspect->used = false;
-    return true;
-}
-
-// A profile in which something else was taken for the sphere: look again, only near where the sphere must be.
-void look_again(Section& section, const Model& model, const CircleSectionLimits& limits) {
-    const Eigen::Vector3d s = centre_in_sensor(section, model);
-    if (std::abs(s.y()) > 0.98 * model.radius) return;
-    Profile near = *section.profile;
-    for (size_t i = 0; i < near.size(); ++i) {
-        const double dx = near.x_mm[i] - s.x(), dz = near.z_mm[i] - s.z();
-        const double e = std::sqrt(dx * dx + s.y() * s.y() + dz * dz) - model.radius;
-        if (!(std::abs(e) < 0.5)) near.z_mm[i] = kNaN;
-    }
-    const auto circle = find_circle_section(near, limits);
-    if (!circle) return;
-    Section again = section;
-    take_inliers(again, *circle);
-    if (section_rms(again, model) < 0.15) {
-        take_inliers(section, *circle);
-        section.used = true;
-    }
-}
-
-// Rounds of: common sphere without the contradicting profiles, exact on the statistics.
-void settle(std::vector<Section>& sections, Model& model, bool radius_free, const CircleSectionLimits& limits,
-            const std::vector<bool>& excluded) {
-    const auto drop = [&] {
-        for (size_t round = 0; round < sections.size(); ++round) {
-            solve_reduced(sections, model, radius_free, std::numeric_limits<double>::infinity(), 40);
-            if (!leave_out_contradictions(sections, model) &&
-                !leave_out_wrong_pose(sections, model, radius_free))
-                break;
-        }
-    };
-    // The robust start has already decided who agrees: begin from its residuals, or one gross profile would
-    // bend the least squares before it can be seen.
-    while (leave_out_contradictions(sections, model)) {
-    }
-    drop();
-    bool changed = false;
-    for (size_t i = 0; i < sections.size(); ++i) {
-        if (sections[i].used || excluded[sections[i].observation]) continue;
-        look_again(sections[i], model, limits);
-        changed = changed || sections[i].used;
-    }
-    if (changed) drop();
 }
 
 MirroredAxis judge_axes(const std::vector<Section>& sections,
@@ -366,6 +238,138 @@ void write_statistics(const Model& model, const Matrix10& covariance, bool radiu
     state_covariance(report, covariance.topLeftCorner(n, n));
 }
 
+// The sphere's cut in every profile that shows one.
+std::vector<Section> find_sections(const std::vector<SphereObservation>& observations,
+                                   const std::vector<bool>& excluded, const CircleSectionLimits& limits) {
+    std::vector<Section> sections;
+    for (size_t i = 0; i < observations.size(); ++i) {
+        const auto circle = find_circle_section(observations[i].profile, limits);
+        if (!circle) continue;
+        Section section;
+        section.observation = i;
+        section.flange_from_base = observations[i].base_from_flange.inverse();
+        section.profile = &observations[i].profile;
+        section.used = !excluded[i];
+        take_inliers(section, *circle);
+        sections.push_back(std::move(section));
+    }
+    return sections;
+}
+
+CircleSectionLimits section_limits(const std::optional<double>& radius_mm) {
+    CircleSectionLimits limits;
+    if (radius_mm) {
+        limits.largest_radius_mm = 1.01 * *radius_mm + 0.1;
+        limits.smallest_radius_mm = 0.12 * *radius_mm;
+    }
+    return limits;
+}
+
+// Of the cuts in use. Rims of other things can be rounder than the sphere is large: the second largest bounds the radius.
+double second_largest_radius(const std::vector<Section>& sections) {
+    std::vector<double> radii;
+    for (const Section& s : sections)
+        if (s.used) radii.push_back(s.circle.radius_mm);
+    std::sort(radii.begin(), radii.end());
+    return radii[radii.size() - 2];
+}
+
+// Does another, different solution fit about as well?
+bool has_rival(const std::vector<Section>& sections, const std::vector<Start>& starts, const Model& model,
+               bool radius_free, double mean_disagreement, double redundancy) {
+    constexpr double kOtherPlace_rad = 0.02, kOtherPlace_mm = 5, kAlike_mm = 0.02;
+    double cost = std::numeric_limits<double>::infinity();
+    for (size_t k = 1; k < starts.size(); ++k) {
+        Model other = starts[k].model;
+        const double found =
+            solve_reduced(sections, other, radius_free, std::numeric_limits<double>::infinity(), 60);
+        if (angle_rad(other.flange_from_sensor, model.flange_from_sensor) > kOtherPlace_rad ||
+            distance_mm(other.flange_from_sensor, model.flange_from_sensor) > kOtherPlace_mm)
+            cost = std::min(cost, found);
+    }
+    return cost < std::max(mean_disagreement * (1 + 60 / std::max(1.0, redundancy)), kAlike_mm * kAlike_mm);
+}
+
+// Sandwich for the points' noise; the poses' own error is added when they disagree by more (see tcp_sphere.h).
+Matrix10 covariance_of(const std::vector<Section>& sections, const Model& model, const System& system,
+                       const Matrix10& inverse, const NoiseLevels& noise, bool radius_free) {
+    const int unknowns = radius_free ? 10 : 9;
+    if (!noise.poses_disagree)
+        return inverse * system.meat * inverse * (system.count / std::max(1.0, system.count - unknowns));
+    const double student = student_quantile(0.975, noise.redundancy) / 1.959964;
+    return student * student *
+           (inverse * noise.point_variance +
+            covariance_of_centres(sections, model, inverse, noise.centre_variance));
+}
+
+// The radius that the profiles fit much better than the given one; NaN: none.
+double better_radius(const std::vector<Section>& sections, const Model& model, double mean_disagreement) {
+    Model free_model = model;
+    const double free_cost =
+        solve_reduced(sections, free_model, true, std::numeric_limits<double>::infinity(), 100);
+    return free_cost < 0.2 * mean_disagreement && std::abs(free_model.radius - model.radius) > 0.05
+               ? free_model.radius
+               : kNaN;
+}
+
+struct SphereFit {
+    double used = 0;  // poses
+    bool few_agree = false;
+    double better_radius = kNaN, radius = 0;
+};
+
+Judgement judge_sphere(const SphereFit& fit, TcpSphereResult& result) {
+    const double three_sigma = 3 * result.working_sigma_mm;
+    const double hold_out = result.report.hold_out.rms_mm;
+    // With less than six poses left a wrong one among them still fits; leaving it out shows it.
+    const double hold_out_limit = fit.used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
+    const bool bad_fit = result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit;
+    result.fits = !std::isfinite(fit.better_radius) && !fit.few_agree && !bad_fit;
+    if (std::isfinite(fit.better_radius))
+        return {Verdict::poor,
+                Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
+                     fit.better_radius, fit.radius),
+                "check the radius (was the diameter given?)"};
+    if (fit.few_agree)
+        return {Verdict::poor, "most profiles contradict the solution found from the others",
+                "check the robot poses and that the sphere did not move"};
+    if (bad_fit)
+        return {Verdict::poor,
+                Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
+                     result.rms_mm, hold_out),
+                "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
+    const Text more = result.proposals.empty()
+                          ? Text("take more poses")
+                          : Text("take more poses, first: {}", result.proposals.front().words);
+    if (three_sigma > kUsableTcp_mm)
+        return {Verdict::poor, Text("three sigma at the working distance are {:.2f} mm", three_sigma), more};
+    if (three_sigma > kGoodTcp_mm)
+        return {Verdict::usable,
+                Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}", three_sigma,
+                     kGoodTcp_mm),
+                more};
+    if (fit.used < kTcpSphereFewestPoses)
+        return {Verdict::usable, Text("only {:.0f} of the poses could be used", fit.used),
+                "take more poses that show the sphere"};
+    return {Verdict::good, Text("three sigma at the working distance are {:.3f} mm", three_sigma), ""};
+}
+
+// What the poses leave open, or cannot decide between.
+Judgement undetermined_sphere(const TcpSphereResult& result, bool weak) {
+    if (!weak)
+        return {Verdict::undetermined,
+                "two different sensor positions explain these profiles about equally well",
+                "take more poses in other orientations and with the sphere elsewhere in the view"};
+    Judgement judgement{Verdict::undetermined,
+                        result.degenerate.empty()
+                            ? Text("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
+                            : result.degenerate.front(),
+                        {}};
+    if (!result.proposals.empty())
+        judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
+    return judgement;
+}
+
 }  // namespace
 
 std::string_view name_of(TcpSphereStatus status) {
@@ -400,61 +404,39 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     for (size_t i = 0; i < observations.size(); ++i)
         excluded[i] = std::find(options.exclude.begin(), options.exclude.end(), observations[i].id) !=
                       options.exclude.end();
-
-    CircleSectionLimits limits;
-    if (!radius_free) {
-        limits.largest_radius_mm = 1.01 * *options.radius_mm + 0.1;
-        limits.smallest_radius_mm = 0.12 * *options.radius_mm;
-    }
+    const CircleSectionLimits limits = section_limits(options.radius_mm);
     TcpSphereResult result;
-    std::vector<Section> sections;
-    std::vector<double> radii;
-    for (size_t i = 0; i < observations.size(); ++i) {
-        const auto circle = find_circle_section(observations[i].profile, limits);
-        if (!circle) continue;
-        Section section;
-        section.observation = i;
-        section.flange_from_base = observations[i].base_from_flange.inverse();
-        section.profile = &observations[i].profile;
-        section.used = !excluded[i];
-        take_inliers(section, *circle);
-        if (section.used) radii.push_back(circle->radius_mm);
-        sections.push_back(std::move(section));
-    }
-    auto& judgement = result.report.judgement;
-    if (static_cast<int>(radii.size()) < kFewestSections) {
-        result.status = TcpSphereStatus::not_converged;
+    std::vector<Section> sections = find_sections(observations, excluded, limits);
+    const auto refused = [&](TcpSphereStatus status, Judgement judgement) {
+        result.status = status;
         write_poses(observations, sections, excluded, nullptr, result.report);
-        judgement = {Verdict::undetermined, Text("the sphere was found in {} profiles only", radii.size()),
-                     radius_free ? "let the laser cut the sphere in every pose"
-                                 : "let the laser cut the sphere in every pose, and check its radius"};
+        result.report.judgement = std::move(judgement);
         return result;
-    }
-
-    // Rims of other things can be rounder than the sphere is large: the second largest cut bounds the radius.
-    std::sort(radii.begin(), radii.end());
-    const double radius = options.radius_mm.value_or(radii[radii.size() - 2]);
-    const auto starts = global_start(sections, radius, radius_free, options.thorough);
-    if (starts.empty()) {
-        result.status = TcpSphereStatus::not_converged;
-        write_poses(observations, sections, excluded, nullptr, result.report);
-        judgement = {Verdict::undetermined, "no sphere common to the profiles was found",
-                     "record the poses again"};
-        return result;
-    }
+    };
     const size_t candidates = used_count(sections);
+    if (static_cast<int>(candidates) < kFewestSections)
+        return refused(TcpSphereStatus::not_converged,
+                       {Verdict::undetermined, Text("the sphere was found in {} profiles only", candidates),
+                        radius_free ? "let the laser cut the sphere in every pose"
+                                    : "let the laser cut the sphere in every pose, and check its radius"});
+    const double radius = options.radius_mm.value_or(second_largest_radius(sections));
+    const auto starts = global_start(sections, radius, radius_free, options.thorough);
+    if (starts.empty())
+        return refused(
+            TcpSphereStatus::not_converged,
+            {Verdict::undetermined, "no sphere common to the profiles was found", "record the poses again"});
     Model model = starts.front().model;
     settle(sections, model, radius_free, limits, excluded);
     solve_points(sections, model, radius_free);
 
-    double used = 0;
+    double used = 0, between = 0;
     for (const auto& section : sections) {
         if (!section.used) continue;
         used += 1;
         result.working_point_mm += centre_in_sensor(section, model);
+        between += disagreement(section, model);
     }
     result.working_point_mm /= used;
-    const int unknowns = radius_free ? 10 : 9;
     const System system = accumulate(sections, model, true);
     result.rms_mm = std::sqrt(system.squares / system.count);
     const Determination known =
@@ -463,127 +445,41 @@ Expected<TcpSphereResult> calibrate_tcp_sphere(const std::vector<SphereObservati
     result.noise_mm = std::sqrt(noise.point_variance);
     const double floor_sigma = std::max({result.rms_mm, result.noise_mm, kNoiseFloor_mm});
     result.weakest_sigma_mm = floor_sigma * known.weakest;
-
-    // Does another, different solution fit about as well?
-    double second_cost = std::numeric_limits<double>::infinity();
-    double between = 0;
-    for (const auto& section : sections)
-        if (section.used) between += disagreement(section, model);
-    const double first_mean = between / system.count;
+    const double mean_disagreement = between / system.count;
     result.poses_freedom = noise.redundancy;
     result.poses_variance_mm2 = between / std::max(1.0, noise.redundancy);
-    for (size_t k = 1; k < starts.size(); ++k) {
-        Model other = starts[k].model;
-        const double cost =
-            solve_reduced(sections, other, radius_free, std::numeric_limits<double>::infinity(), 60);
-        const bool different = angle_rad(other.flange_from_sensor, model.flange_from_sensor) > 0.02 ||
-                               distance_mm(other.flange_from_sensor, model.flange_from_sensor) > 5;
-        if (different) second_cost = std::min(second_cost, cost);
-    }
-    const double rival_limit = std::max(first_mean * (1 + 60 / std::max(1.0, noise.redundancy)), 0.02 * 0.02);
-    const bool ambiguous = second_cost < rival_limit;
+    const bool ambiguous =
+        has_rival(sections, starts, model, radius_free, mean_disagreement, noise.redundancy);
 
     result.degenerate = degenerate_pose_words(sections, model, radius_free);
     const bool weak = !(result.weakest_sigma_mm < kUndeterminedSigma_mm);
     if (options.thorough && (weak || result.weakest_sigma_mm * 3 > kUsableTcp_mm || used < 9))
         result.proposals = propose_poses(sections, model, system.information, result.working_point_mm,
                                          radius_free, floor_sigma, weak ? 3 : 1);
-    if (weak || ambiguous) {
-        result.status = TcpSphereStatus::undetermined;
-        write_poses(observations, sections, excluded, nullptr, result.report);
-        judgement.verdict = Verdict::undetermined;
-        if (weak) {
-            judgement.reason =
-                result.degenerate.empty()
-                    ? Text("the poses leave a direction open to {:.3g} mm", result.weakest_sigma_mm)
-                    : result.degenerate.front();
-            if (!result.proposals.empty())
-                judgement.cure = Text("take more poses, first: {}", result.proposals.front().words);
-        } else {
-            judgement.reason = "two different sensor positions explain these profiles about equally well";
-            judgement.cure =
-                "take more poses in other orientations and with the sphere elsewhere in the view";
-        }
-        return result;
-    }
-    if (!weak && result.weakest_sigma_mm * 3 < kUsableTcp_mm) result.degenerate.clear();
+    if (weak || ambiguous) return refused(TcpSphereStatus::undetermined, undetermined_sphere(result, weak));
+    if (result.weakest_sigma_mm * 3 < kUsableTcp_mm) result.degenerate.clear();
 
     result.status = TcpSphereStatus::ok;
     result.flange_from_sensor = model.flange_from_sensor;
     result.centre_base_mm = model.centre_base;
     result.radius_mm = model.radius;
-    // Sandwich for the points' noise; the poses' own error is added when they disagree by more (see
-    // tcp_sphere.h).
-    Matrix10 covariance =
-        known.inverse * system.meat * known.inverse * (system.count / std::max(1.0, system.count - unknowns));
-    if (noise.poses_disagree) {
-        const double student = student_quantile(0.975, noise.redundancy) / 1.959964;
-        covariance = student * student *
-                     (known.inverse * noise.point_variance +
-                      covariance_of_centres(sections, model, known.inverse, noise.centre_variance));
-    }
-    write_statistics(model, covariance, radius_free, result);
+    write_statistics(model, covariance_of(sections, model, system, known.inverse, noise, radius_free),
+                     radius_free, result);
     write_poses(observations, sections, excluded, &model, result.report);
     if (options.thorough) result.report.hold_out = verify(sections, model, radius_free);
     result.mirrored = judge_axes(sections, observations, options, model, result.notices);
-
-    // Verdict.
-    const double three_sigma = 3 * result.working_sigma_mm;
-    const double hold_out = result.report.hold_out.rms_mm;
-    const std::string rejected = left_out(result.report.poses);
-    if (!rejected.empty()) result.notices.push_back(Text("not used: {}", rejected));
+    if (const std::string rejected = left_out(result.report.poses); !rejected.empty())
+        result.notices.push_back(Text("not used: {}", rejected));
     if (noise.poses_disagree)
         result.notices.push_back(
             Text("the poses disagree by {:.1f} times the sensor's own noise: the robot's poses are "
                  "less exact than the "
                  "profiles, and the stated sigma counts that in",
                  std::sqrt(noise.ratio)));
-    double free_radius = kNaN;
-    if (!radius_free && noise.poses_disagree && result.rms_mm > 0.1) {
-        Model free_model = model;
-        const double fixed_cost = between / system.count;
-        const double free_cost =
-            solve_reduced(sections, free_model, true, std::numeric_limits<double>::infinity(), 100);
-        if (free_cost < 0.2 * fixed_cost && std::abs(free_model.radius - model.radius) > 0.05)
-            free_radius = free_model.radius;
-    }
-    // With less than six poses left a wrong one among them still fits; leaving it out shows it.
-    const double hold_out_limit = used < kTcpSphereFewestPoses ? 0.3 : 2 * kPoorFit_mm;
-    const bool few_agree = used < 0.5 * static_cast<double>(candidates);
-    const bool bad_fit = result.rms_mm > kPoorFit_mm || hold_out > hold_out_limit;
-    result.fits = !std::isfinite(free_radius) && !few_agree && !bad_fit;
-    if (std::isfinite(free_radius)) {
-        judgement = {Verdict::poor,
-                     Text("the profiles fit a radius of {:.3f} mm much better than the given {:.3f} mm",
-                          free_radius, model.radius),
-                     "check the radius (was the diameter given?)"};
-    } else if (few_agree) {
-        judgement = {Verdict::poor, "most profiles contradict the solution found from the others",
-                     "check the robot poses and that the sphere did not move"};
-    } else if (bad_fit) {
-        judgement = {Verdict::poor,
-                     Text("the profiles do not fit one sphere: rms {:.2f} mm, {:.2f} mm on poses not used",
-                          result.rms_mm, hold_out),
-                     "check radius, robot poses, tool frame of the robot and that the sphere did not move"};
-    } else if (three_sigma > kUsableTcp_mm) {
-        judgement = {Verdict::poor, Text("three sigma at the working distance are {:.2f} mm", three_sigma),
-                     result.proposals.empty()
-                         ? Text("take more poses")
-                         : Text("take more poses, first: {}", result.proposals.front().words)};
-    } else if (three_sigma > kGoodTcp_mm) {
-        judgement = {Verdict::usable,
-                     Text("three sigma at the working distance are {:.2f} mm, good is {:.1f}", three_sigma,
-                          kGoodTcp_mm),
-                     result.proposals.empty()
-                         ? Text("take more poses")
-                         : Text("take more poses, first: {}", result.proposals.front().words)};
-    } else if (used < kTcpSphereFewestPoses) {
-        judgement = {Verdict::usable, Text("only {:.0f} of the poses could be used", used),
-                     "take more poses that show the sphere"};
-    } else {
-        judgement = {Verdict::good, Text("three sigma at the working distance are {:.3f} mm", three_sigma),
-                     ""};
-    }
+    SphereFit fit{used, used < 0.5 * static_cast<double>(candidates), kNaN, model.radius};
+    if (!radius_free && noise.poses_disagree && result.rms_mm > 0.1)
+        fit.better_radius = better_radius(sections, model, mean_disagreement);
+    result.report.judgement = judge_sphere(fit, result);
     return result;
 }
 

@@ -27,6 +27,13 @@ namespace {
 
 constexpr std::int64_t kMostNodes = 16'000'000;
 constexpr std::size_t kMostPairs = 100'000;
+constexpr int kFewestPairs = 6;      // to begin with
+constexpr int kFewestToCompare = 9;  // to tell a wrong one
+constexpr double kOnALine = 0.01;    // flatness()
+constexpr double kPoorFit_px = 3;
+constexpr int kManyPairs = 25;
+constexpr const char* kSpreadPairs =
+    "measure 25 or more positions over the whole field of view, near and far";
 
 // Spread across the main direction relative to along it; 0: all on one line.
 double flatness(const std::vector<Vector2d>& points) {
@@ -124,10 +131,8 @@ void describe(const SmoothMap& map, const LookupTable& t, const Vector2d& middle
     finish_statistics(report);
 }
 
-}  // namespace
-
-Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const std::vector<LaserPair>& pairs,
-                                                   const LookupTableOptions& options) {
+Expected<void> check_request(int width, int height, const std::vector<LaserPair>& pairs,
+                             const LookupTableOptions& options) {
     if (width < 16 || height < 16 || width > 100000 || height > 100000)
         return input_error(Text("an image of {}x{} pixels is not possible", width, height), "size",
                            "give [width, height] in pixels");
@@ -143,14 +148,8 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
     std::vector<std::string> ids;
     for (const auto& p : pairs) ids.push_back(p.id);
     SEAM_OK(check_ids(ids, options.exclude, "pairs"));
-    LookupTableResult result;
-    auto& report = result.report;
-    std::vector<std::string> excluded = options.exclude;
-    std::sort(excluded.begin(), excluded.end());
-    std::vector<char> allowed(pairs.size(), 1);
     double extent = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const auto& p = pairs[i];
+    for (const auto& p : pairs) {
         const std::string where = "pairs[" + p.id + "]";
         if (!p.pixel.allFinite() || !p.laser_mm.allFinite() || p.laser_mm.norm() > 1e6)
             return input_error("the pair is not made of finite numbers", where, "leave it out");
@@ -158,91 +157,119 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
             return input_error(Text("the pixel ({:.1f}, {:.1f}) lies outside the image of {}x{}", p.pixel.x(),
                                     p.pixel.y(), width, height),
                                where, "check the size and the order [u, v]");
-        allowed[i] = !std::binary_search(excluded.begin(), excluded.end(), p.id);
-        report.poses.emplace_back();
-        report.poses.back().id = p.id;
-        report.poses.back().used = allowed[i];
-        if (!allowed[i]) report.poses.back().note = "excluded";
         extent = std::max(extent, (p.laser_mm - pairs[0].laser_mm).norm());
     }
-    const auto count = std::count(allowed.begin(), allowed.end(), 1);
-    if (count < 6)
+    std::vector<std::string> excluded = options.exclude;
+    std::sort(excluded.begin(), excluded.end());
+    const auto left_out = std::count_if(pairs.begin(), pairs.end(), [&](const LaserPair& p) {
+        return std::binary_search(excluded.begin(), excluded.end(), p.id);
+    });
+    const auto count = static_cast<std::ptrdiff_t>(pairs.size()) - left_out;
+    if (count < kFewestPairs)
         return input_error(Text("{} pairs are too few, at least 6 are needed", count), "pairs",
                            "measure 25 or more positions over the whole field of view");
-    SEAM_OK(check_span_millimetres(extent, "pairs"));
+    return check_span_millimetres(extent, "pairs");
+}
 
-    const char* spread = "measure 25 or more positions over the whole field of view, near and far";
-    const auto undetermined = [&](Text reason) {
-        result.table = {};
-        report.parameters.clear();
-        report.covariance.resize(0, 0);
-        report.correlations.clear();
-        report.judgement = {Verdict::undetermined, std::move(reason), spread};
-        return result;
-    };
-    const Samples all = chosen(pairs, allowed);
-    if (!(flatness(all.pixel) > 0.01)) return undetermined("the pixels lie on one line of the image");
-    if (!(flatness(all.laser) > 0.01)) return undetermined("the targets lie on one line of the laser plane");
-    if (count < 9) return undetermined(Text("{} pairs cannot tell a wrong one from the others", count));
+// Every pair in the report; which ones may be used.
+std::vector<char> begin_report(const std::vector<LaserPair>& pairs, std::vector<std::string> excluded,
+                               CalibrationReport& report) {
+    std::sort(excluded.begin(), excluded.end());
+    std::vector<char> allowed;
+    for (const auto& p : pairs) {
+        allowed.push_back(!std::binary_search(excluded.begin(), excluded.end(), p.id));
+        report.poses.emplace_back();
+        report.poses.back().id = p.id;
+        report.poses.back().used = allowed.back();
+        if (!allowed.back()) report.poses.back().note = "excluded";
+    }
+    return allowed;
+}
+
+// The smooth map through the pairs that agree.
+struct Fitted {
     SmoothMap map;
     std::vector<char> used;
-    if (!fit_without_wrong(pairs, allowed, used, map))
-        return undetermined("no smooth map explains the pairs");
-    const Samples s = chosen(pairs, used);
-    const auto n = static_cast<double>(s.pixel.size());
-    if (3 * n < 2 * static_cast<double>(count))
-        return undetermined(Text("the largest set of pairs that agree has {} of {}", s.pixel.size(), count));
-    if (!(flatness(s.pixel) > 0.01) || !(flatness(s.laser) > 0.01))
-        return undetermined("the pairs that agree lie on one line");
-    const Support support(s.pixel);
+    Samples samples;
+    double count() const { return static_cast<double>(samples.pixel.size()); }
+};
 
+// The reason why there is none; empty: there is.
+Text fit_agreeing(const std::vector<LaserPair>& pairs, const std::vector<char>& allowed, Fitted& fitted) {
+    const auto count = std::count(allowed.begin(), allowed.end(), 1);
+    const Samples all = chosen(pairs, allowed);
+    if (!(flatness(all.pixel) > kOnALine)) return "the pixels lie on one line of the image";
+    if (!(flatness(all.laser) > kOnALine)) return "the targets lie on one line of the laser plane";
+    if (count < kFewestToCompare) return Text("{} pairs cannot tell a wrong one from the others", count);
+    if (!fit_without_wrong(pairs, allowed, fitted.used, fitted.map))
+        return "no smooth map explains the pairs";
+    fitted.samples = chosen(pairs, fitted.used);
+    const Samples& s = fitted.samples;
+    if (3 * fitted.count() < 2 * static_cast<double>(count))
+        return Text("the largest set of pairs that agree has {} of {}", s.pixel.size(), count);
+    if (!(flatness(s.pixel) > kOnALine) || !(flatness(s.laser) > kOnALine))
+        return "the pairs that agree lie on one line";
+    return {};
+}
+
+void state_noise(const Fitted& fitted, LookupTableResult& result) {
     double square_px = 0, square_mm = 0;
-    for (const auto& p : s.pixel) {
-        const Matrix2d plane = map.homography_slope(p) * map.noise() * map.homography_slope(p).transpose();
-        const Matrix2d inverse = map.slope(p).inverse();
-        square_px += 0.5 * (inverse * plane * inverse.transpose()).trace() / n;
-        square_mm += plane.trace() / n;
+    for (const auto& p : fitted.samples.pixel) {
+        const Matrix2d carry = fitted.map.homography_slope(p);
+        const Matrix2d plane = carry * fitted.map.noise() * carry.transpose();
+        const Matrix2d inverse = fitted.map.slope(p).inverse();
+        square_px += 0.5 * (inverse * plane * inverse.transpose()).trace() / fitted.count();
+        square_mm += plane.trace() / fitted.count();
     }
     result.noise_px = std::sqrt(square_px);
     result.noise_mm = std::sqrt(square_mm);
-    result.degree = map.degree();
-    result.effective_parameters = map.effective();
+    result.degree = fitted.map.degree();
+    result.effective_parameters = fitted.map.effective();
+}
 
-    const auto interpolation = [&](double step) {
-        double sum = 0;
-        int cells = 0;
-        const auto stride = std::max<std::size_t>(1, s.pixel.size() / 400);
-        for (std::size_t i = 0; i < s.pixel.size(); i += stride) {
-            const double e = table_error_mm(map, s.pixel[i] - Vector2d(step, step) / 2, step);
-            if (std::isfinite(e)) sum += e * e, ++cells;
-        }
-        return cells ? std::sqrt(sum / cells) : 0.0;
-    };
-    double step = fine;
-    if (step == 0) {
-        for (const double candidate : {32.0, 16.0, 8.0, 4.0, 2.0}) {
-            if (step > 0 && (width / candidate) * (height / candidate) > 400000) break;
-            step = candidate;
-            if (candidate <= 0.5 * support.spacing &&
-                interpolation(candidate) <= std::max(0.2 * result.noise_mm, 1e-6))
-                break;
-        }
+// What cells of this size err by between their nodes, at some of the pairs.
+double interpolation_mm(const Fitted& fitted, double step) {
+    constexpr std::size_t kPlaces = 400;
+    const auto& pixels = fitted.samples.pixel;
+    double sum = 0;
+    int cells = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += std::max<std::size_t>(1, pixels.size() / kPlaces)) {
+        const double e = table_error_mm(fitted.map, pixels[i] - Vector2d(step, step) / 2, step);
+        if (std::isfinite(e)) sum += e * e, ++cells;
     }
-    result.interpolation_mm = interpolation(step);
-    int folded = 0;
-    result.table = build_table(map, support, s.pixel, width, height, step, folded);
+    return cells ? std::sqrt(sum / cells) : 0.0;
+}
+
+// The largest cells that err by far less than the noise and are no larger than the pairs lie apart.
+double suitable_step(const Fitted& fitted, const Support& support, int width, int height, double noise_mm) {
+    constexpr double kMostCells = 400000, kShareOfNoise = 0.2, kExact_mm = 1e-6;
+    double step = 0;
+    for (const double candidate : {32.0, 16.0, 8.0, 4.0, 2.0}) {
+        if (step > 0 && (width / candidate) * (height / candidate) > kMostCells) break;
+        step = candidate;
+        if (candidate <= 0.5 * support.spacing &&
+            interpolation_mm(fitted, candidate) <= std::max(kShareOfNoise * noise_mm, kExact_mm))
+            break;
+    }
+    return step;
+}
+
+// Holes, how much of the image is covered, and what the map is known to there.
+void state_cover(const SmoothMap& map, LookupTableResult& result) {
+    constexpr std::size_t kPlaces = 4000;
     const LookupTable& table = result.table;
     std::size_t filled = 0, rows = 0;
     double variance = 0, worst_variance = 0;
-    const auto stride = std::max<std::size_t>(1, table.x_mm.size() / 4000);
+    const auto stride = std::max<std::size_t>(1, table.x_mm.size() / kPlaces);
+    const auto columns = static_cast<std::size_t>(table.columns);
     for (std::size_t k = 0; k < table.x_mm.size(); ++k) {
         if (std::isnan(table.x_mm[k])) {
             ++result.holes;
             continue;
         }
         if (filled++ % stride != 0) continue;
-        const Vector2d p(static_cast<double>(k % static_cast<std::size_t>(table.columns)) * step,
-                         static_cast<double>(k / static_cast<std::size_t>(table.columns)) * step);
+        const Vector2d p(static_cast<double>(k % columns) * table.step_u,
+                         static_cast<double>(k / columns) * table.step_v);
         const Matrix2d carry = map.homography_slope(p);
         const double v = map.spread_row(p).squaredNorm() * (carry * map.noise() * carry.transpose()).trace();
         variance += v;
@@ -254,26 +281,30 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
         result.map_sigma_mm = std::sqrt(variance / static_cast<double>(rows));
         result.map_sigma_worst_mm = std::sqrt(worst_variance);
     }
+}
 
+// How the finished table meets the pairs, there and back. False: it supports none of them.
+bool state_pairs(const std::vector<LaserPair>& pairs, const std::vector<char>& allowed, const Fitted& fitted,
+                 LookupTableResult& result) {
     double forward = 0, backward = 0;
     int supported = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        auto& pose = report.poses[i];
-        pose.used = used[i];
-        const auto xz = table.at(pairs[i].pixel);
-        const Vector2d e = (xz ? *xz : map.at(pairs[i].pixel)) - pairs[i].laser_mm;
+        auto& pose = result.report.poses[i];
+        pose.used = fitted.used[i];
+        const auto xz = result.table.at(pairs[i].pixel);
+        const Vector2d e = (xz ? *xz : fitted.map.at(pairs[i].pixel)) - pairs[i].laser_mm;
         if (e.allFinite()) {
             pose.rms_mm = e.norm();
-            const double px = (map.slope(pairs[i].pixel).inverse() * e).norm();
+            const double px = (fitted.map.slope(pairs[i].pixel).inverse() * e).norm();
             if (std::isfinite(px)) pose.rms_px = px;
         }
-        if (allowed[i] && !used[i]) {
+        if (allowed[i] && !fitted.used[i]) {
             pose.note = "contradicts the pairs around it and was left out";
             continue;
         }
-        if (!used[i]) continue;
+        if (!fitted.used[i]) continue;
         // The noise of an edge pair may have it land just outside the table's cells.
-        const auto back = pixel_in_table(table, pairs[i].laser_mm, pairs[i].pixel);
+        const auto back = pixel_in_table(result.table, pairs[i].laser_mm, pairs[i].pixel);
         if (!xz) {
             ++result.unsupported_pairs;
             pose.note = "beside a hole of the table";
@@ -288,53 +319,89 @@ Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const 
         backward += px * px;
         result.backward_max_px = std::max(result.backward_max_px, px);
     }
-    if (supported == 0) return undetermined("the pairs are too far apart to fill one cell of the table");
+    if (supported == 0) return false;
     result.forward_rms_mm = std::sqrt(forward / supported);
     result.backward_rms_px = std::sqrt(backward / supported);
-    report.hold_out = leave_out(pairs, used, map);
-    Vector2d middle = Vector2d::Zero();
-    for (const auto& p : s.pixel) middle += p / n;
-    describe(map, table, middle, report);
+    return true;
+}
 
+Judgement judged(const LookupTableResult& result, double count, int folded, const Text& wrong,
+                 int wrong_count) {
+    const double hold_px = result.report.hold_out.rms_px / std::sqrt(2.0);  // per coordinate, as noise_px
+    if (result.noise_px > kPoorFit_px || hold_px > kPoorFit_px)
+        return {Verdict::poor,
+                Text("the pairs fit to {:.1f} px only",
+                     std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
+                "check that pixels and laser points belong together"};
+    if (folded > 0)
+        return {Verdict::poor, Text("the map folds over in {} cells", folded),
+                "measure more positions there, or check the pairs nearby"};
+    if (wrong_count > 0)
+        return {Verdict::usable,
+                wrong_count == 1 ? Text("the pair {} contradicts the others and was left out", wrong)
+                                 : Text("the pairs {} contradict the others and were left out", wrong),
+                "measure again there"};
+    if (count < kManyPairs) return {Verdict::usable, Text("{:.0f} pairs are few", count), kSpreadPairs};
+    if (result.covered_share < 0.5)
+        return {Verdict::usable, Text("the table covers {:.0f} % of the image", 100 * result.covered_share),
+                "measure positions in the rest of the image, if the sensor is to see there"};
+    if (hold_px > std::max(1.6 * result.noise_px, 0.05))
+        return {Verdict::usable,
+                Text("between the pairs the map is off by {:.2f} px, at them by {:.2f}", hold_px,
+                     result.noise_px),
+                "measure positions closer together"};
+    return {
+        Verdict::good,
+        Text("{:.0f} pairs fit to {:.3f} mm ({:.2f} px), the map is known to "
+             "{:.3f} mm over {:.0f} % of the image",
+             count, result.forward_rms_mm, result.noise_px, result.map_sigma_mm, 100 * result.covered_share),
+        ""};
+}
+
+// The first few by name.
+Text names_of_wrong(const std::vector<LaserPair>& pairs, const std::vector<char>& allowed,
+                    const std::vector<char>& used, int& count) {
+    constexpr int kNamed = 8;
     Text wrong;
-    int wrong_count = 0;
+    count = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (allowed[i] && !used[i] && ++wrong_count <= 8) wrong = joined(wrong, ", ", pairs[i].id);
-    if (wrong_count > 8) wrong = Text("{} and {} more", wrong, wrong_count - 8);
-    const double hold_px = report.hold_out.rms_px / std::sqrt(2.0);  // per coordinate, as noise_px
-    if (result.noise_px > 3 || hold_px > 3)
-        report.judgement = {
-            Verdict::poor,
-            Text("the pairs fit to {:.1f} px only",
-                 std::isfinite(hold_px) ? std::max(hold_px, result.noise_px) : result.noise_px),
-            "check that pixels and laser points belong together"};
-    else if (folded > 0)
-        report.judgement = {Verdict::poor, Text("the map folds over in {} cells", folded),
-                            "measure more positions there, or check the pairs nearby"};
-    else if (wrong_count > 0)
-        report.judgement = {Verdict::usable,
-                            wrong_count == 1
-                                ? Text("the pair {} contradicts the others and was left out", wrong)
-                                : Text("the pairs {} contradict the others and were left out", wrong),
-                            "measure again there"};
-    else if (n < 25)
-        report.judgement = {Verdict::usable, Text("{:.0f} pairs are few", n), spread};
-    else if (result.covered_share < 0.5)
-        report.judgement = {Verdict::usable,
-                            Text("the table covers {:.0f} % of the image", 100 * result.covered_share),
-                            "measure positions in the rest of the image, if the sensor is to see there"};
-    else if (hold_px > std::max(1.6 * result.noise_px, 0.05))
-        report.judgement = {Verdict::usable,
-                            Text("between the pairs the map is off by {:.2f} px, at them by {:.2f}", hold_px,
-                                 result.noise_px),
-                            "measure positions closer together"};
-    else
-        report.judgement = {
-            Verdict::good,
-            Text("{:.0f} pairs fit to {:.3f} mm ({:.2f} px), the map is known to "
-                 "{:.3f} mm over {:.0f} % of the image",
-                 n, result.forward_rms_mm, result.noise_px, result.map_sigma_mm, 100 * result.covered_share),
-            ""};
+        if (allowed[i] && !used[i] && ++count <= kNamed) wrong = joined(wrong, ", ", pairs[i].id);
+    return count > kNamed ? Text("{} and {} more", wrong, count - kNamed) : wrong;
+}
+
+}  // namespace
+
+Expected<LookupTableResult> calibrate_lookup_table(int width, int height, const std::vector<LaserPair>& pairs,
+                                                   const LookupTableOptions& options) {
+    SEAM_OK(check_request(width, height, pairs, options));
+    LookupTableResult result;
+    auto& report = result.report;
+    const std::vector<char> allowed = begin_report(pairs, options.exclude, report);
+    const auto undetermined = [&](Text reason) {
+        result.table = {};
+        report.judgement = {Verdict::undetermined, std::move(reason), kSpreadPairs};
+        return result;
+    };
+    Fitted fitted;
+    if (Text reason = fit_agreeing(pairs, allowed, fitted); !reason.empty()) return undetermined(reason);
+    const auto& pixels = fitted.samples.pixel;
+    const Support support(pixels);
+    state_noise(fitted, result);
+    const double step = options.step_px != 0 ? options.step_px
+                                             : suitable_step(fitted, support, width, height, result.noise_mm);
+    result.interpolation_mm = interpolation_mm(fitted, step);
+    int folded = 0;
+    result.table = build_table(fitted.map, support, pixels, width, height, step, folded);
+    state_cover(fitted.map, result);
+    if (!state_pairs(pairs, allowed, fitted, result))
+        return undetermined("the pairs are too far apart to fill one cell of the table");
+    report.hold_out = leave_out(pairs, fitted.used, fitted.map);
+    Vector2d middle = Vector2d::Zero();
+    for (const auto& p : pixels) middle += p / fitted.count();
+    describe(fitted.map, result.table, middle, report);
+    int wrong_count = 0;
+    const Text wrong = names_of_wrong(pairs, allowed, fitted.used, wrong_count);
+    report.judgement = judged(result, fitted.count(), folded, wrong, wrong_count);
     return result;
 }
 

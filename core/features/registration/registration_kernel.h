@@ -148,6 +148,40 @@ struct ContourMatcher::Impl {
     void follow(Finish& finish, Support& support, double sigma) const;
     // By how much the cost of the second must exceed that of the first to be told from it.
     static double telling_difference(const Support& first);
+    // Noise across the contour of `matches` as a function of its inclination: variance = level + slope * nz^2. A
+    // triangulation sensor is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn
+    // contour may be noisy alike in all directions. Level and slope come from a regression of the squared
+    // residuals.
+    struct AcrossNoise {
+        double mean_square = 0, level = 0, slope = 0;
+        // Relative to the mean; the template, recorded with the same kind of sensor, is taken to behave alike.
+        double relative(const ContourModel::Edge& edge) const {
+            constexpr double kLeast = 0.02;
+            return mean_square > 0 ? std::max((level + slope * edge.tx * edge.tx) / mean_square, kLeast)
+                                   : 1.0;
+        }
+    };
+    AcrossNoise across_noise() const;
+    // Of the linearisation about a pose: what the matches know, how much of it the template's own noise only seems to
+    // fix, and the covariance of the gradient.
+    struct NormalEquations {
+        Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), tilt = Eigen::Matrix3d::Zero(),
+                        gradient = Eigen::Matrix3d::Zero();
+    };
+    NormalEquations normal_equations(const AcrossNoise& noise, const Finish& finish, double gate) const;
+    void add_template_noise(NormalEquations& normal) const;  // from `influence`
+    void add_jumps_and_walls(NormalEquations& normal, double sigma) const;
+    // The least determined direction (a twist), what is seen of it beyond the template's noise, and whether that may be
+    // chance.
+    struct Weakest {
+        Eigen::Vector3d twist, scaled;  // scaled: its farthest parts move by 1 mm per unit of length
+        double seen = 0;
+        bool unsure = false;
+    };
+    Weakest weakest(const NormalEquations& normal, const AcrossNoise& noise) const;
+    // Of the twist; `apart`: a direction that the points hold, not the slopes, with its variance.
+    Eigen::Matrix3d twist_covariance(const NormalEquations& normal, const Weakest& weak,
+                                     const Held& apart) const;
     Registration conclude(const Finish& finish, const Support& support, double sigma) const;
 
     // False: fewer points than the least within reach of the window.

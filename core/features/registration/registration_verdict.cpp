@@ -17,7 +17,156 @@ constexpr double kSmallestInformationShare = 0.35;
 // Slopes worth fewer points than this may be chance.
 constexpr double kFewPoints = 10;
 
+// Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of it).
+constexpr double kBesideTemplate = 1.5, kFillsGate = 0.45;
+
 }  // namespace
+
+ContourMatcher::Impl::AcrossNoise ContourMatcher::Impl::across_noise() const {
+    constexpr double kLeastSpread = 1e-3;  // of the inclinations, to tell a slope
+    const auto n = static_cast<double>(matches.size());
+    double s1 = 0, s2 = 0, sr = 0, rss = 0;
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const double nz2 = edge.tx * edge.tx, r2 = m.foot.residual * m.foot.residual;
+        s1 += nz2;
+        s2 += nz2 * nz2;
+        sr += nz2 * r2;
+        rss += r2;
+    }
+    const double mean_nz2 = s1 / n, spread_nz2 = s2 / n - mean_nz2 * mean_nz2;
+    AcrossNoise noise;
+    noise.mean_square = rss / n;
+    noise.slope = spread_nz2 > kLeastSpread ? (sr / n - mean_nz2 * noise.mean_square) / spread_nz2 : 0;
+    noise.slope = std::clamp(noise.slope, 0.0, mean_nz2 > 0 ? noise.mean_square / mean_nz2 : 0.0);
+    noise.level = noise.mean_square - noise.slope * mean_nz2;
+    return noise;
+}
+
+ContourMatcher::Impl::NormalEquations ContourMatcher::Impl::normal_equations(const AcrossNoise& noise,
+                                                                             const Finish& finish,
+                                                                             double gate) const {
+    const auto n = static_cast<double>(matches.size());
+    const double template_variance = model.sigma_mm() * model.sigma_mm();
+    // How every template point's noise enters the gradient: polynomials over windows of points, as difference
+    // arrays.
+    const auto points = static_cast<double>(model.x().size());
+    influence.assign(model.x().size() + 1,
+                     {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+    const double middle = 0.5 * points;
+    double value_variance = 0, relative_sum = 0;
+    NormalEquations normal;
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const RegistrationRow row = registration_row(edge, m.foot.u);
+        const double level = noise.relative(edge);
+        normal.information.noalias() += row.across * row.across.transpose();
+        normal.gradient.noalias() += level * row.across * row.across.transpose();
+        relative_sum += level;
+        const ContourModel::Weights w = model.weights(edge, m.foot.u);
+        normal.tilt.noalias() += w.slope_variance * level * row.along * row.along.transpose();
+        value_variance += w.value_variance * level;
+        // a0 + a1 (k - c) + a2 (k - c)^2 as a polynomial in k - middle.
+        const double c = edge.centre - middle;
+        const double size = std::sqrt(level);
+        const std::array<double, 3> poly{w.a0 - w.a1 * c + w.a2 * c * c, w.a1 - 2 * w.a2 * c, w.a2};
+        for (int j = 0; j < 3; ++j) {
+            influence[edge.first][j] += size * poly[j] * row.across;
+            influence[edge.first + edge.count][j] -= size * poly[j] * row.across;
+        }
+    }
+    collect_jumps(finish.pose, gate);
+    // residual^2 = scene noise^2 + template noise^2 * (variance of its fitted value)
+    constexpr double kLeastOfScene = 0.05;
+    const double rss = noise.mean_square * n;
+    const double scene_variance =
+        std::max(rss / std::max(1.0, n - 3) - template_variance * value_variance / n,
+                 kLeastOfScene * noise.mean_square);
+    normal.gradient *= scene_variance * n / relative_sum;
+    add_template_noise(normal);
+    add_jumps_and_walls(normal, finish.sigma);
+    // Directions that only the template's own noise seems to fix are not fixed.
+    normal.tilt *= template_variance;
+    return normal;
+}
+
+void ContourMatcher::Impl::add_template_noise(NormalEquations& normal) const {
+    const double template_variance = model.sigma_mm() * model.sigma_mm();
+    const double middle = 0.5 * static_cast<double>(model.x().size());
+    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
+                                       Eigen::Vector3d::Zero()};
+    for (std::size_t k = 0; k < model.x().size(); ++k) {
+        for (int j = 0; j < 3; ++j) sum[j] += influence[k][j];
+        const double t = static_cast<double>(k) - middle;
+        const Eigen::Vector3d g = sum[0] + t * sum[1] + t * t * sum[2];
+        normal.gradient.noalias() += template_variance * g * g.transpose();
+    }
+}
+
+void ContourMatcher::Impl::add_jumps_and_walls(NormalEquations& normal, double sigma) const {
+    for (const JumpMatch& j : jump_matches) {
+        const double weight = std::max(sigma * sigma, 1e-10) / j.variance;
+        normal.information.noalias() += weight * j.row * j.row.transpose();
+        normal.gradient.noalias() += weight * weight * j.variance * j.row * j.row.transpose();
+    }
+    // A wall's place in the template is known to a pitch, alike for all scene points on it.
+    wall_gradient.assign(model.edges().size(), Eigen::Vector3d::Zero());
+    for (const Match& m : matches)
+        if (model.edges()[m.foot.edge].wall)
+            wall_gradient[m.foot.edge] += registration_row(model.edges()[m.foot.edge], m.foot.u).across;
+    const double pitch_variance = model.pitch().along_x * model.pitch().along_x / 12;
+    for (std::size_t e = 0; e < model.edges().size(); ++e)
+        if (model.edges()[e].wall && !sampled_wall(e))
+            normal.gradient.noalias() += pitch_variance * wall_gradient[e] * wall_gradient[e].transpose();
+}
+
+ContourMatcher::Impl::Weakest ContourMatcher::Impl::weakest(const NormalEquations& normal,
+                                                            const AcrossNoise& noise) const {
+    const Eigen::Vector3d scale(1, 1, 2 / model.extent_mm());
+    const Eigen::Matrix3d scaled = scale.asDiagonal() * normal.information * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
+    Weakest weak;
+    weak.scaled = eigen.eigenvectors().col(0);
+    weak.twist = scale.cwiseProduct(weak.scaled);
+    const double all = eigen.eigenvalues()[0], false_part = weak.twist.dot(normal.tilt * weak.twist);
+    weak.seen = all - false_part;
+    // Points on the same fitted piece share its slope's error.
+    const double template_variance = model.sigma_mm() * model.sigma_mm();
+    const double per_window = model.pitch().along_x / scene.pitch.along_x;
+    double scatter = 0;
+    for (const Match& m : matches) {
+        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
+        const double part = template_variance * noise.relative(edge) *
+                            model.weights(edge, m.foot.u).slope_variance *
+                            std::pow(registration_row(edge, m.foot.u).along.dot(weak.twist), 2);
+        scatter += 2 * part * part * std::max(1.0, edge.count * per_window);
+    }
+    weak.unsure = weak.seen < static_cast<double>(matches.size()) * kStraight_rad * kStraight_rad +
+                                  4 * std::sqrt(scatter) + 0.5 * false_part;
+    return weak;
+}
+
+Eigen::Matrix3d ContourMatcher::Impl::twist_covariance(const NormalEquations& normal, const Weakest& weak,
+                                                       const Held& apart) const {
+    const Eigen::Vector3d scale(1, 1, 2 / model.extent_mm());
+    const Eigen::Matrix3d usable = normal.information - normal.tilt;
+    // Held by the points, not by the slopes: the rest is solved without this direction.
+    const Eigen::Matrix3d rest =
+        Eigen::Matrix3d::Identity() -
+        (apart.held ? 1.0 : 0.0) * Eigen::Matrix3d(weak.scaled * weak.scaled.transpose());
+    const Eigen::Matrix3d s = rest * scale.asDiagonal() * usable * scale.asDiagonal() * rest;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> e(s);
+    // An undetermined direction gets a very large variance, finite so that callers can keep computing.
+    const double least = 1e-9 * std::max(e.eigenvalues()[2], 1e-12);
+    const Eigen::Vector3d inverse = e.eigenvalues().cwiseMax(least).cwiseInverse();
+    const Eigen::Matrix3d inv = scale.asDiagonal() *
+                                (e.eigenvectors() * inverse.asDiagonal() * e.eigenvectors().transpose()) *
+                                scale.asDiagonal();
+    const Eigen::Matrix3d solved = scale.asDiagonal() * rest * scale.cwiseInverse().asDiagonal() * inv;
+    Eigen::Matrix3d covariance = solved * normal.gradient * solved.transpose();
+    if (apart.held) covariance += apart.variance * weak.twist * weak.twist.transpose();
+    return covariance;
+}
 
 Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& rating, double sigma) const {
     Registration result;
@@ -32,133 +181,27 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     set_pose();
     result.inlier_share = rating.share;
     result.iterations = iterations;
-
     collect(pose, rating.gate, 1);
     drop_sparse_walls();
-    const auto n = static_cast<double>(matches.size());
     result.inliers = static_cast<int>(matches.size());
     if (matches.size() < static_cast<std::size_t>(kFewestRegistrationPoints)) {
         result.status = RegistrationStatus::no_match;
         return result;
     }
-    // Linearisation, in the template's frame: shift (x, z), turn about the centroid.
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), tilt = Eigen::Matrix3d::Zero();
-    double rss = 0;
-    // Noise across the contour as a function of its inclination: variance = level + slope * nz^2. A
-    // triangulation sensor is noisy in z at given x, so a steep flank is quieter across than a flat; a drawn
-    // contour may be noisy alike in all directions. Level and slope come from a regression of the squared
-    // residuals.
-    double s1 = 0, s2 = 0, sr = 0;
-    for (const Match& m : matches) {
-        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
-        const double nz2 = edge.tx * edge.tx, r2 = m.foot.residual * m.foot.residual;
-        s1 += nz2;
-        s2 += nz2 * nz2;
-        sr += nz2 * r2;
-        rss += r2;
-    }
-    const double mean_nz2 = s1 / n, spread_nz2 = s2 / n - mean_nz2 * mean_nz2;
-    const double mean_r2 = rss / n;
-    double noise_slope = spread_nz2 > 1e-3 ? (sr / n - mean_nz2 * mean_r2) / spread_nz2 : 0;
-    noise_slope = std::clamp(noise_slope, 0.0, mean_nz2 > 0 ? mean_r2 / mean_nz2 : 0.0);
-    const double noise_level = mean_r2 - noise_slope * mean_nz2;
-    // Relative to the mean; the template, recorded with the same kind of sensor, is taken to behave alike.
-    const auto relative = [&](const ContourModel::Edge& edge) {
-        return mean_r2 > 0 ? std::max((noise_level + noise_slope * edge.tx * edge.tx) / mean_r2, 0.02) : 1.0;
-    };
-
-    const double template_variance = model.sigma_mm() * model.sigma_mm();
-    // How every template point's noise enters the gradient: polynomials over windows of points, as difference
-    // arrays.
-    const int points = static_cast<int>(model.x().size());
-    influence.assign(static_cast<std::size_t>(points) + 1,
-                     {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
-    const double middle = 0.5 * points;
-    double value_variance = 0, relative_sum = 0;
-    Eigen::Matrix3d gradient_covariance = Eigen::Matrix3d::Zero();
-    for (const Match& m : matches) {
-        const ContourModel::Edge& edge = model.edges()[m.foot.edge];
-        const RegistrationRow row = registration_row(edge, m.foot.u);
-        const double level = relative(edge);
-        information.noalias() += row.across * row.across.transpose();
-        gradient_covariance.noalias() += level * row.across * row.across.transpose();
-        relative_sum += level;
-        const ContourModel::Weights w = model.weights(edge, m.foot.u);
-        tilt.noalias() += w.slope_variance * level * row.along * row.along.transpose();
-        value_variance += w.value_variance * level;
-        // a0 + a1 (k - c) + a2 (k - c)^2 as a polynomial in k - middle.
-        const double c = edge.centre - middle;
-        const double size = std::sqrt(level);
-        const std::array<double, 3> poly{w.a0 - w.a1 * c + w.a2 * c * c, w.a1 - 2 * w.a2 * c, w.a2};
-        for (int j = 0; j < 3; ++j) {
-            influence[edge.first][j] += size * poly[j] * row.across;
-            influence[edge.first + edge.count][j] -= size * poly[j] * row.across;
-        }
-    }
-    result.rms_mm = std::sqrt(mean_r2);
+    const AcrossNoise noise = across_noise();
+    result.rms_mm = std::sqrt(noise.mean_square);
     result.noise_mm = std::max(std::hypot(scene.sigma_mm, model.sigma_mm()), 0.1 * model.pitch().distance);
-    collect_jumps(pose, rating.gate);
-    // residual^2 = scene noise^2 + template noise^2 * (variance of its fitted value)
-    const double scene_variance =
-        std::max(rss / std::max(1.0, n - 3) - template_variance * value_variance / n, 0.05 * mean_r2);
-    gradient_covariance *= scene_variance * n / relative_sum;
-    std::array<Eigen::Vector3d, 3> sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
-                                       Eigen::Vector3d::Zero()};
-    for (int k = 0; k < points; ++k) {
-        for (int j = 0; j < 3; ++j) sum[j] += influence[k][j];
-        const double t = k - middle;
-        const Eigen::Vector3d g = sum[0] + t * sum[1] + t * t * sum[2];
-        gradient_covariance.noalias() += template_variance * g * g.transpose();
-    }
-
-    for (const JumpMatch& j : jump_matches) {
-        const double weight = std::max(found.sigma * found.sigma, 1e-10) / j.variance;
-        information.noalias() += weight * j.row * j.row.transpose();
-        gradient_covariance.noalias() += weight * weight * j.variance * j.row * j.row.transpose();
-    }
-    // A wall's place in the template is known to a pitch, alike for all scene points on it.
-    wall_gradient.assign(model.edges().size(), Eigen::Vector3d::Zero());
-    for (const Match& m : matches)
-        if (model.edges()[m.foot.edge].wall)
-            wall_gradient[m.foot.edge] += registration_row(model.edges()[m.foot.edge], m.foot.u).across;
-    for (std::size_t e = 0; e < model.edges().size(); ++e)
-        if (model.edges()[e].wall && !sampled_wall(e))
-            gradient_covariance.noalias() += model.pitch().along_x * model.pitch().along_x / 12 *
-                                             wall_gradient[e] * wall_gradient[e].transpose();
-
-    // Directions that only the template's own noise seems to fix are not fixed: take its share out.
-    tilt *= template_variance;
-    const double half = 0.5 * model.extent_mm();
-    const Eigen::Vector3d scale(1, 1, 1 / half);
-    const Eigen::Matrix3d scaled = scale.asDiagonal() * information * scale.asDiagonal();
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scaled);
-    const Eigen::Vector3d weak = scale.cwiseProduct(eigen.eigenvectors().col(0));
-    const double seen = eigen.eigenvalues()[0];
-    const double false_part = weak.dot(tilt * weak);
-    // Points on the same fitted piece share its slope's error.
-    const double per_window = model.pitch().along_x / scene.pitch.along_x;
-    auto weak_scatter = [&](const Eigen::Vector3d& v) {
-        double scatter = 0;
-        for (const Match& m : matches) {
-            const ContourModel::Edge& edge = model.edges()[m.foot.edge];
-            const double part = template_variance * relative(edge) *
-                                model.weights(edge, m.foot.u).slope_variance *
-                                std::pow(registration_row(edge, m.foot.u).along.dot(v), 2);
-            scatter += 2 * part * part * std::max(1.0, edge.count * per_window);
-        }
-        return scatter;
-    };
-    const bool unsure = seen - false_part < n * kStraight_rad * kStraight_rad +
-                                                4 * std::sqrt(weak_scatter(weak)) + 0.5 * false_part;
+    const NormalEquations normal = normal_equations(noise, found, rating.gate);
+    const Weakest weak = weakest(normal, noise);
 
     // Where the slopes leave it open, what the points say about a small motion along the direction decides.
-    const bool open = unsure || !directions[0].determined;
+    const bool open = weak.unsure || !directions[0].determined;
+    const bool thin = jump_matches.empty() && weak.seen < kFewPoints;
     Held place;
-    const bool thin = jump_matches.empty() && seen - false_part < kFewPoints;
-    if (open || thin) place = held(found, rating, sigma, weak);
+    if (open || thin) place = held(found, rating, sigma, weak.twist);
     const bool sliding = (open || thin) && !place.held;
     place.held = place.held && open;
-    if (place.held) pose = moved_along(pose, weak, place.shift);
+    if (place.held) pose = moved_along(pose, weak.twist, place.shift);
     const Eigen::Vector2d turned = set_pose();
     const Eigen::Matrix2d r =
         (Eigen::Matrix2d() << pose.cosine, -pose.sine, pose.sine, pose.cosine).finished();
@@ -167,31 +210,9 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     // d = centroid motion + o - R o, so a turn moves d by -(dR/dphi) o.
     to_scene(0, 2) = turned.y();
     to_scene(1, 2) = -turned.x();
+    result.covariance = to_scene * twist_covariance(normal, weak, place) * to_scene.transpose();
 
-    Eigen::Matrix3d usable = information - tilt;
-    Eigen::Matrix3d covariance;
-    {
-        const Eigen::Vector3d w = eigen.eigenvectors().col(0);
-        // Held by the points, not by the slopes: the rest is solved without this direction.
-        const Eigen::Matrix3d rest =
-            Eigen::Matrix3d::Identity() - (place.held ? 1.0 : 0.0) * Eigen::Matrix3d(w * w.transpose());
-        const Eigen::Matrix3d s = rest * scale.asDiagonal() * usable * scale.asDiagonal() * rest;
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> e(s);
-        // An undetermined direction gets a very large variance, finite so that callers can keep computing.
-        const double least = 1e-9 * std::max(e.eigenvalues()[2], 1e-12);
-        const Eigen::Vector3d inverse = e.eigenvalues().cwiseMax(least).cwiseInverse();
-        const Eigen::Matrix3d inv = scale.asDiagonal() *
-                                    (e.eigenvectors() * inverse.asDiagonal() * e.eigenvectors().transpose()) *
-                                    scale.asDiagonal();
-        const Eigen::Matrix3d solved = scale.asDiagonal() * rest * scale.cwiseInverse().asDiagonal() * inv;
-        covariance = solved * gradient_covariance * solved.transpose();
-        if (place.held) covariance += place.variance * weak * weak.transpose();
-    }
-    result.covariance = to_scene * covariance * to_scene.transpose();
-
-    // Random points: as many beside the template as on it, and residuals that fill the gate evenly (0.58 of
-    // it).
-    const bool scatter = rating.off > 1.5 * rating.on || result.rms_mm > 0.45 * rating.gate;
+    const bool scatter = rating.off > kBesideTemplate * rating.on || result.rms_mm > kFillsGate * rating.gate;
     // What fixes a direction must be there, or it is not known in it, however well the rest fits. Where most
     // of it is hidden, what is left must hold the direction.
     int unmet = 0, least = 0;
@@ -205,11 +226,12 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
         result.status = RegistrationStatus::no_match;
     } else if (sliding || unmet > 0) {
         result.status = RegistrationStatus::sliding;
-        const Eigen::Vector3d free = sliding ? weak : directions[least].twist;
+        const Eigen::Vector3d free = sliding ? weak.twist : directions[least].twist;
         result.covariance +=
             kUndetermined_mm * kUndetermined_mm * (to_scene * free) * (to_scene * free).transpose();
-        Eigen::Vector2d q = reference - o;
+        const Eigen::Vector2d q = reference - o;
         Eigen::Vector2d motion(free.x() - free.z() * q.y(), free.y() + free.z() * q.x());
+        const double half = 0.5 * model.extent_mm();
         if (!(motion.norm() > 0.1 * free.head<2>().norm() + 0.1 * std::abs(free.z()) * half))
             motion = free.head<2>();
         motion = r * motion;

@@ -113,7 +113,8 @@ class RobotLink {
     // What became of confirm(corrected). `taken` with a driver that has no such handshake: nothing waits
     // there.
     virtual Expected<Permission> permission();
-    // Teaching: goes to `base_from_flange` and stands still there. An Error unless the driver can move.
+    // Teaching: goes to `base_from_flange` and stands still there. An Error unless can_move().
+    virtual bool can_move() const { return false; }
     virtual Expected<void> move_to(const Pose& base_from_flange);
     // What the link has to tell since the last call beside its answers, a sentence each: peers that it
     // refused.

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/studio/about.h"
 #include "app/studio/command_palette.h"
 #include "app/studio/event_list.h"
 #include "app/studio/reuse_dialogs.h"
@@ -26,6 +27,7 @@
 #include "devices/exchange/json_fields.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/exchange.h"
+#include "widgets/jog/jog_panel.h"
 #include "widgets/pages/accept_page.h"
 #include "widgets/pages/align_page.h"
 #include "widgets/pages/calibrate_page.h"
@@ -43,7 +45,7 @@ namespace seamwright {
 namespace {
 
 constexpr int kPageWidth = 440;
-constexpr int kLayoutVersion = 1;
+constexpr int kLayoutVersion = 2;
 constexpr int kDevices_ms = 250;
 constexpr std::chrono::milliseconds kRobotStale{3000};
 constexpr int kNextMargin_px = 64;  // icon and padding of the next-step button
@@ -238,6 +240,8 @@ void MainWindow::make_actions() {
             show_step(Step::run);
             run_page_->measure(true);
         }));
+    run->addAction(action("jog", "robot", tr("Move the robot by hand"), QKeySequence("F8"),
+                          [this] { views_.raise(views_.jog); }));
     run->addAction(action("cancel_work", "stop", tr("Cancel the measuring"), QKeySequence("Ctrl+."),
                           [this] { desk_.worker().cancel(); }));
 
@@ -278,6 +282,10 @@ void MainWindow::make_actions() {
                });
     view->addAction(language);
     view->addAction(theme);
+
+    auto* help = menuBar()->addMenu(tr("&Help"));
+    help->addAction(palette_action);
+    help->addAction(action("about", "", tr("About Seamwright"), {}, [this] { show_about(this); }));
 
     auto* bar = addToolBar(tr("Tools"));
     bar->setObjectName("tools");
@@ -330,10 +338,16 @@ void MainWindow::make_docks() {
     QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), views_.residuals);
     QDockWidget* trend = add_dock("dock_charts", tr("Charts"), charts);
     QDockWidget* events = add_dock("dock_events", tr("Events"), new EventList(desk_));
+    auto* jog_scroll = new QScrollArea;
+    jog_scroll->setWidgetResizable(true);
+    jog_scroll->setFrameShape(QFrame::NoFrame);
+    views_.jog = new JogPanel(desk_);
+    jog_scroll->setWidget(views_.jog);
+    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), jog_scroll);
     addDockWidget(Qt::RightDockWidgetArea, profile);
     tabifyDockWidget(profile, camera);
     addDockWidget(Qt::RightDockWidgetArea, scene);
-    for (QDockWidget* d : {align, residuals, trend, events}) tabifyDockWidget(scene, d);
+    for (QDockWidget* d : {align, residuals, trend, events, jog}) tabifyDockWidget(scene, d);
     profile->raise();
     scene->raise();
     views_.raise = [this](QWidget* view) {

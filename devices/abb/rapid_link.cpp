@@ -163,6 +163,7 @@ class AbbRapidLink final : public RobotLink {
                                   fmt::join(answer.fields, " ")));
     }
 
+    bool can_move() const override { return true; }
     Expected<void> move_to(const Pose& base_from_flange) override {
         Message request{0, "MOVE", {}, {}, {}};
         SEAM_OK(put_pose(request, base_from_flange));

@@ -126,6 +126,7 @@ class RecordedRobot final : public RobotLink {
         }
         return permission;
     }
+    bool can_move() const override { return robot_->can_move(); }
     Expected<void> move_to(const Pose& base_from_flange) override {
         return robot_->move_to(base_from_flange);
     }

@@ -76,6 +76,7 @@ class CyclicLink : public RobotLink {
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override;
     Expected<void> confirm(PartVerdict verdict, const std::string& text) override;
     Expected<Permission> permission() override;
+    bool can_move() const override { return measuring_ && measuring_->can_move(); }
     Expected<void> move_to(const Pose& base_from_flange) override;
     std::vector<Text> take_notices() override;
 

@@ -116,6 +116,7 @@ class EkiLink final : public RobotLink {
         return confirmed_ ? Permission::given : Permission::none;
     }
 
+    bool can_move() const override { return true; }
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
         SEAM_TRY(auto from, this->base_from_flange());

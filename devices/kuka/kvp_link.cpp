@@ -213,6 +213,7 @@ class KvpLink final : public RobotLink {
         return released ? Permission::given : Permission::none;
     }
 
+    bool can_move() const override { return true; }
     Expected<void> move_to(const Pose& base_from_flange) override {
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);
         SEAM_OK(same_robot());

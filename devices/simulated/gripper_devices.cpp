@@ -145,6 +145,7 @@ class GripperRobot final : public RobotLink {
     Expected<void> write_frame(const std::string& name, const Pose& base_from_frame) override {
         return cell_->write_frame(name, base_from_frame);
     }
+    bool can_move() const override { return true; }
     Expected<void> move_to(const Pose& base_from_flange) override {
         SEAM_OK(check_ready());
         if (!base_from_flange.matrix().allFinite())

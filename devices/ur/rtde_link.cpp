@@ -214,6 +214,7 @@ class RtdeLink final : public RobotLink {
         return Permission::none;
     }
 
+    bool can_move() const override { return true; }
     Expected<void> move_to(const Pose& base_from_flange) override {
         const std::lock_guard lock(mutex_);
         if (!base_from_flange.matrix().allFinite()) return input_error("the pose is not finite", where_);

@@ -2,6 +2,21 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE">
 <context>
+    <name>About</name>
+    <message>
+        <source>About Seamwright</source>
+        <translation>Über Seamwright</translation>
+    </message>
+    <message>
+        <source>Robot path correction with laser-stripe sensors: calibrate, teach, align, prove, run.</source>
+        <translation>Bahnkorrektur für Roboter mit Laser-Lichtschnitt-Sensoren: kalibrieren, einlernen, ausrichten, nachweisen, fahren.</translation>
+    </message>
+    <message>
+        <source>Built on these libraries, and their licences:</source>
+        <translation>Gebaut auf diesen Bibliotheken, und ihre Lizenzen:</translation>
+    </message>
+</context>
+<context>
     <name>Checklist</name>
     <message>
         <source>measure the next part</source>
@@ -1967,6 +1982,26 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>refused: %1</source>
         <translation>abgelehnt: %1</translation>
     </message>
+    <message>
+        <source>Search cameras</source>
+        <translation>Kameras suchen</translation>
+    </message>
+    <message>
+        <source>Asks all networks of this computer for cameras; one of them is taken by a click</source>
+        <translation>Fragt alle Netze dieses Rechners nach Kameras; eine davon wird mit einem Klick übernommen</translation>
+    </message>
+    <message>
+        <source>%1 %2, serial %3, at %4</source>
+        <translation>%1 %2, Seriennummer %3, unter %4</translation>
+    </message>
+    <message>
+        <source>No camera has answered: check power, cable and the network&apos;s address</source>
+        <translation>Keine Kamera hat geantwortet: Strom, Kabel und die Adresse des Netzes prüfen</translation>
+    </message>
+    <message>
+        <source>camera</source>
+        <translation>Kamera</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::CommandPalette</name>
@@ -2608,6 +2643,137 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     </message>
 </context>
 <context>
+    <name>seamwright::JogPanel</name>
+    <message>
+        <source>Robot</source>
+        <translation>Roboter</translation>
+    </message>
+    <message>
+        <source>The robot that is moved</source>
+        <translation>Der Roboter, der bewegt wird</translation>
+    </message>
+    <message>
+        <source>Somebody stands beside the robot</source>
+        <translation>Jemand steht beim Roboter</translation>
+    </message>
+    <message>
+        <source>A real robot moves from here only after this was said; asked again after every connection</source>
+        <translation>Ein wirklicher Roboter bewegt sich von hier erst, wenn das bestätigt ist; nach jedem Verbinden wird neu gefragt</translation>
+    </message>
+    <message>
+        <source>Sensor (X along the laser, Z height)</source>
+        <translation>Sensor (X längs des Lasers, Z Höhe)</translation>
+    </message>
+    <message>
+        <source>Flange</source>
+        <translation>Flansch</translation>
+    </message>
+    <message>
+        <source>Robot&apos;s base</source>
+        <translation>Roboterbasis</translation>
+    </message>
+    <message>
+        <source>Axes of</source>
+        <translation>Achsen von</translation>
+    </message>
+    <message>
+        <source>Along and about whose axes the keys move</source>
+        <translation>Längs und um wessen Achsen die Tasten bewegen</translation>
+    </message>
+    <message>
+        <source>One step a press</source>
+        <translation>Ein Schritt je Druck</translation>
+    </message>
+    <message>
+        <source>As long as pressed</source>
+        <translation>Solange gedrückt</translation>
+    </message>
+    <message>
+        <source>Way</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>What one press of a key does</source>
+        <translation>Was ein Druck auf eine Taste tut</translation>
+    </message>
+    <message>
+        <source>%1 mm, %2 degrees</source>
+        <translation>%1 mm, %2 Grad</translation>
+    </message>
+    <message>
+        <source>Step</source>
+        <translation>Schritt</translation>
+    </message>
+    <message>
+        <source>How far one press moves and turns</source>
+        <translation>Wie weit ein Druck bewegt und dreht</translation>
+    </message>
+    <message>
+        <source> mm/s</source>
+        <translation> mm/s</translation>
+    </message>
+    <message>
+        <source>Speed</source>
+        <translation>Geschwindigkeit</translation>
+    </message>
+    <message>
+        <source>While a key is pressed; turns go at a fifth of it in degrees a second</source>
+        <translation>Solange eine Taste gedrückt ist; Drehungen mit einem Fünftel davon in Grad je Sekunde</translation>
+    </message>
+    <message>
+        <source>along X</source>
+        <translation>längs X</translation>
+    </message>
+    <message>
+        <source>along Y</source>
+        <translation>längs Y</translation>
+    </message>
+    <message>
+        <source>along Z</source>
+        <translation>längs Z</translation>
+    </message>
+    <message>
+        <source>about X</source>
+        <translation>um X</translation>
+    </message>
+    <message>
+        <source>about Y</source>
+        <translation>um Y</translation>
+    </message>
+    <message>
+        <source>about Z</source>
+        <translation>um Z</translation>
+    </message>
+    <message>
+        <source>back</source>
+        <translation>zurück</translation>
+    </message>
+    <message>
+        <source>ahead</source>
+        <translation>vor</translation>
+    </message>
+    <message>
+        <source>The project has no robot yet.</source>
+        <translation>Das Projekt hat noch keinen Roboter.</translation>
+    </message>
+    <message>
+        <source>Connect the devices first.</source>
+        <translation>Zuerst die Geräte verbinden.</translation>
+    </message>
+    <message>
+        <source>The robot does not answer.</source>
+        <translation>Der Roboter antwortet nicht.</translation>
+    </message>
+    <message>
+        <source>This robot is not moved from here: jog it at its own panel.</source>
+        <translation>Dieser Roboter wird nicht von hier bewegt: am eigenen Bediengerät verfahren.</translation>
+    </message>
+    <message>
+        <source>Flange: X %1  Y %2  Z %3 mm, A %4  B %5  C %6 degrees</source>
+        <translation>Flansch: X %1  Y %2  Z %3 mm, A %4  B %5  C %6 Grad</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::MainWindow</name>
     <message>
         <source>autosaved %1</source>
@@ -2976,6 +3142,22 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
     <message>
         <source>robot %1 no answer since %2 s</source>
         <translation>Roboter %1 keine Antwort seit %2 s</translation>
+    </message>
+    <message>
+        <source>Move the robot by hand</source>
+        <translation>Roboter von Hand bewegen</translation>
+    </message>
+    <message>
+        <source>&amp;Help</source>
+        <translation>&amp;Hilfe</translation>
+    </message>
+    <message>
+        <source>About Seamwright</source>
+        <translation>Über Seamwright</translation>
+    </message>
+    <message>
+        <source>Jog</source>
+        <translation>Verfahren</translation>
     </message>
 </context>
 <context>
@@ -4436,6 +4618,18 @@ ausgelassen</translation>
         <source>The trigger was not measured.</source>
         <translation>Der Trigger wurde nicht gemessen.</translation>
     </message>
+    <message>
+        <source>Searching cameras</source>
+        <translation>Kameras werden gesucht</translation>
+    </message>
+    <message>
+        <source>The robot is not connected.</source>
+        <translation>Der Roboter ist nicht verbunden.</translation>
+    </message>
+    <message>
+        <source>The robot does not tell where it stands.</source>
+        <translation>Der Roboter sagt nicht, wo er steht.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StepPage</name>
@@ -4788,6 +4982,14 @@ und %1 weitere</translation>
     <message>
         <source>stand still at the trigger</source>
         <translation>am Trigger stehen bleiben</translation>
+    </message>
+    <message>
+        <source>Jog</source>
+        <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>Move the robot by hand (F8)</source>
+        <translation>Roboter von Hand bewegen (F8)</translation>
     </message>
 </context>
 <context>

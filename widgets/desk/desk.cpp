@@ -574,6 +574,14 @@ Expected<void> Desk::place_simulated_part(const Pose& displacement, double bend_
 
 // ------------------------------------------------------------------------------------------ what is known
 
+void Desk::note_pose(const std::string& robot_id, const Pose& base_from_flange) {
+    auto state = std::make_shared<StationState>(*state_);
+    for (RobotState& r : state->robots)
+        if (r.id == robot_id) r.base_from_flange = base_from_flange;
+    state_ = std::move(state);
+    emit station_changed();
+}
+
 void Desk::take_identities(const StationState& state) {
     bool news = false;
     for (const SensorState& s : state.sensors)

@@ -90,6 +90,8 @@ class Desk : public QObject {
 
     // --- what else is known
     const StationState& station() const { return *state_; }
+    // Where a robot that was moved by hand stands, before the next state tells it.
+    void note_pose(const std::string& robot_id, const Pose& base_from_flange);
     const std::vector<CheckItem>& checks() const { return checks_; }
     const StepStates& steps() const { return steps_; }
     const Facts& facts() const { return facts_; }

@@ -34,6 +34,7 @@ void StationWorker::open(const std::filesystem::path& file, const Project& proje
     cancel();
     const std::lock_guard lock(mutex_);
     queue_.clear();
+    jog_request_.reset();
     newest_project_.reset();
     open_request_.emplace(file, project);
     close_request_ = false;
@@ -65,6 +66,7 @@ bool StationWorker::busy() const {
 
 void StationWorker::cancel() {
     const std::lock_guard lock(mutex_);
+    jog_request_.reset();
     cancel_.request_stop();
     for (Request& waiting : queue_) waiting.cancel.request_stop();
     push_answer_ = false;
@@ -255,6 +257,38 @@ void StationWorker::jog_simulated(const std::string& robot_id, const Pose& base_
     });
 }
 
+void StationWorker::search_cameras() {
+    post(tr("Searching cameras"), [this](Station&, const std::stop_token&) {
+        emit cameras_found(std::make_shared<const std::vector<DiscoveredCamera>>(discover_cameras()));
+    });
+}
+
+void StationWorker::jog(const std::string& robot_id, const Pose& base_from_flange) {
+    const std::lock_guard lock(mutex_);
+    if (busy_ || !queue_.empty()) return;
+    jog_request_ = JogRequest{robot_id, base_from_flange};
+    wake_.notify_all();
+}
+
+void StationWorker::stop_jog() {
+    const std::lock_guard lock(mutex_);
+    jog_request_.reset();
+}
+
+void StationWorker::move_by_hand(Station& station, const JogRequest& request) {
+    RobotLink* robot = station.robot(request.robot_id);
+    if (!robot)
+        return emit jogged(request.robot_id, request.base_from_flange, tr("The robot is not connected."));
+    auto moved = robot->move_to(request.base_from_flange);
+    const auto at = robot->base_from_flange();
+    QString trouble;
+    if (!moved)
+        trouble = shown_error(tr("The robot was not moved."), moved.error());
+    else if (!at)
+        trouble = shown_error(tr("The robot does not tell where it stands."), at.error());
+    emit jogged(request.robot_id, at ? *at : request.base_from_flange, trouble);
+}
+
 void StationWorker::set_sensor_parameter(const std::string& sensor_id, const std::string& name,
                                          double value) {
     post(tr("Setting the sensor"), [=, this](Station& station, const std::stop_token&) {
@@ -290,6 +324,7 @@ void StationWorker::publish(Station& station) {
         RobotState r;
         r.id = setup.id;
         r.identity = setup.identity;
+        r.can_move = robot->can_move();
         if (auto mode = robot->mode())
             r.mode = *mode;
         else
@@ -323,10 +358,11 @@ void StationWorker::work(const std::stop_token& stop) {
     auto next_state = Clock::now();
     while (!stop.stop_requested()) {
         Request request;
+        std::optional<JogRequest> by_hand;
         {
             std::unique_lock lock(mutex_);
             wake_.wait_until(lock, stop, next_state, [&] {
-                return open_request_ || close_request_ || !queue_.empty() || newest_project_;
+                return open_request_ || close_request_ || !queue_.empty() || newest_project_ || jog_request_;
             });
             if (stop.stop_requested()) break;
             if (open_request_ || close_request_) {
@@ -364,6 +400,8 @@ void StationWorker::work(const std::stop_token& stop) {
                 cancel_ = request.cancel;
                 busy_ = true;
             }
+            if (!request.task) by_hand = std::exchange(jog_request_, std::nullopt);
+            jog_request_.reset();
         }
         if (!station_) {
             if (request.task) {
@@ -387,6 +425,7 @@ void StationWorker::work(const std::stop_token& stop) {
             continue;
         }
         start_live(*station_);
+        if (by_hand) move_by_hand(*station_, *by_hand);
         if (Clock::now() >= next_state) {
             if (station_->connected()) publish(*station_);
             next_state = Clock::now() + kRobotPeriod;

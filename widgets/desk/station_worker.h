@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
+#include "devices/genicam/genicam.h"
 #include "projects/acceptance/equipment/measure_robot.h"
 #include "projects/acceptance/equipment/measure_trigger.h"
 #include "projects/acceptance/study/live_study.h"
@@ -34,7 +35,8 @@ struct RobotState {
     RobotIdentity identity;
     RobotMode mode = RobotMode::unknown;
     std::optional<Pose> base_from_flange;
-    Text trouble;  // why it does not answer
+    bool can_move = false;  // from here (RobotLink::can_move)
+    Text trouble;           // why it does not answer
 };
 
 struct StationState {
@@ -82,6 +84,11 @@ class StationWorker : public QObject {
     // for the surroundings; one sensor after another. An empty robot_id asks no robot.
     void take_shots(const std::vector<std::string>& sensor_ids, const std::string& robot_id, bool board);
     void jog_simulated(const std::string& robot_id, const Pose& base_from_flange);  // other drivers refuse
+    // By hand, step by step, beside the live picture: the newest place asked for counts, those before it are passed over;
+    // dropped while something else runs. Any robot that can move from here. jogged() tells what became of it.
+    void jog(const std::string& robot_id, const Pose& base_from_flange);
+    void stop_jog();        // what was asked for and not begun
+    void search_cameras();  // on all networks; cameras_found() brings them
     void set_sensor_parameter(const std::string& sensor_id, const std::string& name, double value);
     void answer_push(bool yes);  // to confirm_push
     void cancel();               // what runs and what waits; connecting and setting are done nevertheless
@@ -92,6 +99,8 @@ class StationWorker : public QObject {
     void busy_changed(bool busy, QString what);
     void progressed(int done, int total, QString text);
     void failed(QString sentence);
+    // Where it stands now. `trouble` is empty when it went well.
+    void jogged(std::string robot_id, seamwright::Pose base_from_flange, QString trouble);
     void measured(std::shared_ptr<const seamwright::RunRecord> run);
     void confirm_push(std::shared_ptr<const seamwright::RunRecord> judged);
     void place_part(QString name, seamwright::Pose base_from_shiftedbase);
@@ -99,6 +108,7 @@ class StationWorker : public QObject {
     void studied(std::shared_ptr<const seamwright::StudyProgress> progress);
     void robot_studied(std::shared_ptr<const seamwright::MeasuredRobot> robot);
     void trigger_studied(std::shared_ptr<const seamwright::MeasuredTrigger> trigger);
+    void cameras_found(std::shared_ptr<const std::vector<seamwright::DiscoveredCamera>> cameras);
     void proven();  // an evidence has come into the file
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
@@ -127,6 +137,12 @@ class StationWorker : public QObject {
         std::stop_source cancel;
     };
     std::deque<Request> queue_;
+    struct JogRequest {
+        std::string robot_id;
+        Pose base_from_flange = Pose::Identity();
+    };
+    void move_by_hand(Station& station, const JogRequest& request);
+    std::optional<JogRequest> jog_request_;
     std::unique_ptr<Project> newest_project_;
     std::optional<std::pair<std::filesystem::path, Project>> open_request_;
     bool close_request_ = false, busy_ = false, opened_ = false;

@@ -4,6 +4,7 @@
 
 #include <QFileDialog>
 #include <QInputDialog>
+#include <QMenu>
 
 #include "devices/exchange/json_fields.h"
 #include "devices/registry.h"
@@ -18,6 +19,7 @@
 namespace seamwright {
 namespace {
 constexpr int kSensorRole = Qt::UserRole;
+constexpr const char* kCameraDriver = "genicam";
 constexpr std::array kModes{RobotMode::unknown, RobotMode::manual_reduced, RobotMode::manual_full,
                             RobotMode::automatic, RobotMode::external};
 }  // namespace
@@ -50,7 +52,14 @@ CellPage::CellPage(Desk& desk, const Views& views)
                                           [this] { add_device(true); }),
                               make_button("add_robot", "robot", tr("Add robot"), tr("A further robot"),
                                           [this] { add_device(false); })}));
-    box().addLayout(make_row({rename_, remove_}));
+    search_ =
+        make_button("search_cameras", "search", tr("Search cameras"),
+                    tr("Asks all networks of this computer for cameras; one of them is taken by a click"),
+                    [this] { desk_.worker().search_cameras(); });
+    connect(&desk_.worker(), &StationWorker::cameras_found, this, [this](const auto& found) {
+        if (isVisible()) offer_cameras(*found);
+    });
+    box().addLayout(make_row({search_, rename_, remove_}));
     answers_ = make_text({});
     box().addWidget(answers_);
 
@@ -330,14 +339,18 @@ void CellPage::show_parameters() {
     }
 }
 
+std::string CellPage::free_sensor_id() const {
+    for (char letter = 'A'; letter <= 'Z'; ++letter)
+        if (!find_sensor(desk_.project(), std::string(1, letter))) return std::string(1, letter);
+    return desk_.free_id<SensorSetup>("A");
+}
+
 void CellPage::add_device(bool sensor) {
     std::string id;
     bool ok = false;
     if (sensor) {
         SensorSetup s;
-        for (char letter = 'A'; letter <= 'Z' && id.empty(); ++letter)
-            if (!find_sensor(desk_.project(), std::string(1, letter))) id = std::string(1, letter);
-        s.id = id;
+        s.id = id = free_sensor_id();
         s.driver = "simulated";
         ok = done(desk_.add(s));
     } else {
@@ -356,6 +369,40 @@ void CellPage::add_device(bool sensor) {
             devices_->item(row, 0)->data(kSensorRole).toBool() == sensor)
             devices_->setCurrentCell(row, 0);
     driver_->setFocus();
+}
+
+void CellPage::offer_cameras(const std::vector<DiscoveredCamera>& found) {
+    auto* menu = new QMenu(this);
+    menu->setObjectName("cameras");
+    menu->setAttribute(Qt::WA_DeleteOnClose);
+    for (const DiscoveredCamera& c : found)
+        menu->addAction(tr("%1 %2, serial %3, at %4")
+                            .arg(QString::fromStdString(c.vendor), QString::fromStdString(c.model),
+                                 QString::fromStdString(c.serial), QString::fromStdString(c.address)),
+                        this, [this, c] { take_camera(c); });
+    if (found.empty())
+        menu->addAction(tr("No camera has answered: check power, cable and the network's address"))
+            ->setEnabled(false);
+    menu->popup(search_->mapToGlobal(QPoint(0, search_->height())));
+}
+
+// For the chosen sensor, where it is a camera without an address; else as a new sensor.
+void CellPage::take_camera(const DiscoveredCamera& camera) {
+    const SensorSetup* chosen_sensor = sensor_chosen() ? find_sensor(desk_.project(), chosen()) : nullptr;
+    const bool free = chosen_sensor && chosen_sensor->driver == kCameraDriver &&
+                      !chosen_sensor->settings.contains("address") &&
+                      !chosen_sensor->settings.contains("serial");
+    SensorSetup sensor;
+    if (free) {
+        sensor = *chosen_sensor;
+    } else {
+        sensor.id = free_sensor_id();
+        sensor.driver = kCameraDriver;
+    }
+    // A camera on a bus has no address; its serial names it.
+    const bool network = !camera.address.empty() && camera.protocol != "USB3Vision";
+    sensor.settings[network ? "address" : "serial"] = network ? camera.address : camera.serial;
+    done(free ? desk_.edit(sensor, tr("camera")) : desk_.add(sensor));
 }
 
 void CellPage::remove_device() {

@@ -5,6 +5,7 @@
 #include <QLineEdit>
 #include <QPlainTextEdit>
 
+#include "devices/genicam/genicam.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
 #include "widgets/editors/settings_editor.h"
@@ -31,11 +32,14 @@ class CellPage : public StepPage {
     void show_parameters();
     void import_part();
     void place_part();
+    void offer_cameras(const std::vector<DiscoveredCamera>& found);
+    void take_camera(const DiscoveredCamera& camera);
+    std::string free_sensor_id() const;
     bool sensor_chosen() const;
     std::string chosen() const;
 
     QTableWidget* devices_;
-    QPushButton *connect_, *disconnect_, *remove_, *rename_, *apply_, *place_, *as_text_;
+    QPushButton *connect_, *disconnect_, *remove_, *rename_, *apply_, *place_, *as_text_, *search_;
     QComboBox *driver_, *mode_, *unit_;
     SettingsEditor* form_;
     QPlainTextEdit* settings_;  // the same as text

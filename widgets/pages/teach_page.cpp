@@ -117,7 +117,9 @@ void TeachPage::make_pose(QVBoxLayout& in) {
                           if (spot())
                               desk_.worker().jog_simulated(spot()->robot_id, spot()->base_from_flange);
                       });
-    in.addLayout(make_row({take_, go_}));
+    in.addLayout(make_row({take_, go_,
+                           make_button("open_jog", "robot", tr("Jog"), tr("Move the robot by hand (F8)"),
+                                       [this] { views_.raise(views_.jog); })}));
 }
 
 void TeachPage::make_via_points(QVBoxLayout& in) {

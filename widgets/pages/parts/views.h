@@ -30,6 +30,7 @@ struct Views {
     TrendChart* trend = nullptr;
     Histogram* histogram = nullptr;
     ResidualBars* residuals = nullptr;
+    QWidget* jog = nullptr;
     std::function<void(QWidget*)> raise;  // brings the view's dock to the front
 };
 

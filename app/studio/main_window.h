@@ -45,7 +45,14 @@ class MainWindow : public QMainWindow {
   private:
     QAction* action(const QString& name, const QString& icon_name, const QString& text,
                     const QKeySequence& keys, const std::function<void()>& run);
-    void make_actions();
+    void make_actions();  // main_window_actions.cpp
+    void make_file_menu();
+    void make_edit_menu();
+    void make_steps_menu();
+    void make_measure_menu();
+    void make_view_menu();
+    void make_help_menu();
+    void make_bar();
     void make_docks();
     void make_central();
     void make_status();
@@ -79,6 +86,7 @@ class MainWindow : public QMainWindow {
     QLabel* trouble_text_ = nullptr;
     QLabel *sensors_ = nullptr, *robots_ = nullptr, *push_ = nullptr, *events_ = nullptr, *saved_ = nullptr;
     QMenu* recent_ = nullptr;
+    QList<QAction*> in_bar_;  // beside the menus: save, undo, redo, all actions, language, theme
     QList<QDockWidget*> docks_;
     QByteArray before_full_;
     QDockWidget* full_ = nullptr;

@@ -203,10 +203,8 @@ void MainWindow::make_central() {
     pages_->setMinimumWidth(kPageWidth);
     run_page_ = new RunPage(desk_, views_);
     auto* prove = new ProvePage(desk_, views_);
-    connect(prove, &ProvePage::step_wanted, this, &MainWindow::show_step);
     connect(prove, &ProvePage::report_wanted, this, &MainWindow::make_report);
     auto* accept = new AcceptPage(desk_, views_);
-    connect(accept, &AcceptPage::step_wanted, this, &MainWindow::show_step);
     connect(accept, &AcceptPage::told, this, &MainWindow::tell_done);
     const std::initializer_list<StepPage*> pages{new CellPage(desk_, views_),
                                                  new CalibratePage(desk_, views_),
@@ -217,6 +215,7 @@ void MainWindow::make_central() {
                                                  accept,
                                                  run_page_};
     for (StepPage* page : pages) {
+        connect(page, &StepPage::step_wanted, this, &MainWindow::show_step);
         auto* scroll = new QScrollArea;
         scroll->setWidgetResizable(true);
         scroll->setFrameShape(QFrame::NoFrame);

@@ -4454,6 +4454,89 @@ ausgelassen</translation>
     </message>
 </context>
 <context>
+    <name>seamwright::SpotHead</name>
+    <message>
+        <source>Go there</source>
+        <translation>Dorthin fahren</translation>
+    </message>
+    <message>
+        <source>Moves the simulated robot to the spot</source>
+        <translation>Fährt den simulierten Roboter zur Messstelle</translation>
+    </message>
+    <message>
+        <source>What comes next of this spot</source>
+        <translation>Was an dieser Messstelle als Nächstes kommt</translation>
+    </message>
+    <message>
+        <source>Spot %1</source>
+        <translation>Messstelle %1</translation>
+    </message>
+    <message>
+        <source>No spot</source>
+        <translation>Keine Messstelle</translation>
+    </message>
+    <message>
+        <source>Jog the sensor over the contour, then add a spot there.</source>
+        <translation>Den Sensor über die Kontur fahren, dann dort eine Messstelle anlegen.</translation>
+    </message>
+    <message>
+        <source>Add spot</source>
+        <translation>Messstelle hinzufügen</translation>
+    </message>
+    <message>
+        <source>Choose one in the list.</source>
+        <translation>Eine in der Liste wählen.</translation>
+    </message>
+    <message>
+        <source>First spot</source>
+        <translation>Erste Messstelle</translation>
+    </message>
+    <message>
+        <source>Drag a window over the contour in the live profile: it becomes the template.</source>
+        <translation>Im Live-Profil ein Fenster über die Kontur ziehen: es wird zur Vorlage.</translation>
+    </message>
+    <message>
+        <source>Drag template</source>
+        <translation>Vorlage ziehen</translation>
+    </message>
+    <message>
+        <source>Its reference is not measured yet.</source>
+        <translation>Ihre Referenz ist noch nicht gemessen.</translation>
+    </message>
+    <message>
+        <source>Its reference is not measured yet: connect the devices first.</source>
+        <translation>Ihre Referenz ist noch nicht gemessen: zuerst die Geräte verbinden.</translation>
+    </message>
+    <message>
+        <source>Measure reference</source>
+        <translation>Referenz messen</translation>
+    </message>
+    <message>
+        <source>Its reference is measured, its pass is not.</source>
+        <translation>Ihre Referenz ist gemessen, ihre Überfahrt nicht.</translation>
+    </message>
+    <message>
+        <source>Run entry -&gt; exit</source>
+        <translation>Fahren: Einfahrt -&gt; Ausfahrt</translation>
+    </message>
+    <message>
+        <source>Taught and aligned.</source>
+        <translation>Eingelernt und ausgerichtet.</translation>
+    </message>
+    <message>
+        <source>Next: spot %1</source>
+        <translation>Weiter: Messstelle %1</translation>
+    </message>
+    <message>
+        <source>All spots are taught and aligned.</source>
+        <translation>Alle Messstellen sind eingelernt und ausgerichtet.</translation>
+    </message>
+    <message>
+        <source>Next: regions</source>
+        <translation>Weiter: Regionen</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::SpotTree</name>
     <message>
         <source>Spots and regions</source>

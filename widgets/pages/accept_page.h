@@ -21,7 +21,6 @@ class AcceptPage : public StepPage {
     AcceptPage(Desk& desk, const Views& views);
 
   signals:
-    void step_wanted(seamwright::Step step);
     void told(QString sentence);  // of what was done
 
   protected:

@@ -14,6 +14,11 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
                tr("While the robot passes the spot along the contour, the profile should stand still. Then "
                   "trigger "
                   "jitter does no harm.")) {
+    QVBoxLayout& head = make_head();
+    spot_head_ = new SpotHead(desk);
+    head.addWidget(spot_head_);
+    head.addWidget(make_progress());
+    connect(spot_head_, &SpotHead::wanted, this, &AlignPage::do_deed);
     tree_ = new SpotTree(desk);
     box().addWidget(tree_);
     const auto spin = [this](const QString& name, double low, double high, double value, int decimals,
@@ -34,7 +39,6 @@ AlignPage::AlignPage(Desk& desk, const Views& views)
                          tr("The robot goes along the contour and stops at every step; nothing is written"),
                          [this] { start(); });
     box().addLayout(make_row({start_}));
-    box().addWidget(make_progress());
     verdict_ = make_text({});
     verdict_->setObjectName("align_verdict");
     QFont font = verdict_->font();
@@ -83,12 +87,30 @@ bool AlignPage::here() const {
 
 void AlignPage::refresh() {
     tree_->refresh();
+    spot_head_->refresh();
     start_->setEnabled(spot() && desk_.station().connected);
     if (pass_ && !here()) {
         pass_.reset();
         views_.align->clear();
     }
     show_result();
+}
+
+void AlignPage::do_deed(SpotDeed deed) {
+    switch (deed) {
+        case SpotDeed::add:
+        case SpotDeed::piece:
+        case SpotDeed::reference:
+            return emit step_wanted(Step::teach);
+        case SpotDeed::choose:
+            return desk_.selection().select_spot(desk_.project().spots.front().id);
+        case SpotDeed::pass:
+            return start();
+        case SpotDeed::next_spot:
+            return desk_.selection().select_spot(next_undone(desk_.project(), desk_.selection().spot())->id);
+        case SpotDeed::next_step:
+            return emit step_wanted(Step::regions);
+    }
 }
 
 void AlignPage::start() {

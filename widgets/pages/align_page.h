@@ -3,6 +3,7 @@
 
 #include <QDoubleSpinBox>
 
+#include "widgets/pages/parts/spot_head.h"
 #include "widgets/pages/parts/spot_tree.h"
 #include "widgets/pages/parts/step_page.h"
 
@@ -20,12 +21,14 @@ class AlignPage : public StepPage {
   private:
     const Spot* spot() const;
     bool here() const;  // the pass is one of the chosen spot as it stands
+    void do_deed(SpotDeed deed);
     void start();
     void judge(double jitter_mm);
     void show_result();
     void accept();
     void adopt();
 
+    SpotHead* spot_head_;
     SpotTree* tree_;
     QDoubleSpinBox *step_, *tolerance_;
     QPushButton *start_, *accept_, *adopt_;

@@ -17,7 +17,6 @@ class ProvePage : public StepPage {
     ProvePage(Desk& desk, const Views& views);
 
   signals:
-    void step_wanted(seamwright::Step step);
     void report_wanted();
 
   protected:

@@ -91,16 +91,6 @@ Tone tone_of(RunStatus status) {
 RunPage::RunPage(Desk& desk, const Views& views)
     : StepPage(desk, views, Step::run,
                tr("Measure the part, look at the result, push the corrected frames.")) {
-    part_ = new QLineEdit;
-    part_->setObjectName("part_id");
-    part_->setPlaceholderText(tr("run number"));
-    add_field(box(), tr("Part"), part_,
-              tr("Identity of the part that stands there; empty: the run's number"));
-    images_ = new QCheckBox(tr("Keep raw images"));
-    images_->setObjectName("keep_images");
-    images_->setToolTip(tr("Camera images are stored with the run, beside the profiles"));
-    images_->setMinimumHeight(style::kTargetPx);
-    box().addWidget(images_);
     measure_ =
         make_button("measure", "measure", tr("Measure"),
                     tr("Measures and judges; nothing is written to the robot"), [this] { measure(false); });
@@ -113,9 +103,22 @@ RunPage::RunPage(Desk& desk, const Views& views)
         font.setBold(true);
         b->setFont(font);
     }
-    box().addLayout(make_row({measure_, measure_push_}));
-    box().addWidget(make_progress());
-
+    QVBoxLayout& head = make_head();
+    head.addLayout(make_row({measure_, measure_push_}));
+    head.addWidget(make_progress());
+    verdict_ = make_text({});
+    verdict_->setObjectName("run_verdict");
+    head.addWidget(verdict_);
+    part_ = new QLineEdit;
+    part_->setObjectName("part_id");
+    part_->setPlaceholderText(tr("run number"));
+    add_field(box(), tr("Part"), part_,
+              tr("Identity of the part that stands there; empty: the run's number"));
+    images_ = new QCheckBox(tr("Keep raw images"));
+    images_->setObjectName("keep_images");
+    images_->setToolTip(tr("Camera images are stored with the run, beside the profiles"));
+    images_->setMinimumHeight(style::kTargetPx);
+    box().addWidget(images_);
     confirm_ = new QWidget;
     confirm_->setObjectName("confirm");
     auto* ask_box = new QVBoxLayout(confirm_);
@@ -137,9 +140,6 @@ RunPage::RunPage(Desk& desk, const Views& views)
     confirm_->hide();
     box().addWidget(confirm_);
 
-    verdict_ = make_text({});
-    verdict_->setObjectName("run_verdict");
-    box().addWidget(verdict_);
     gate_ = make_text({});
     gate_->setObjectName("gate");
     box().addWidget(gate_);

@@ -18,6 +18,7 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
     : StepPage(desk, views, Step::teach,
                tr("Jog the sensor over the contour, take the pose, point at the feature, measure its "
                   "reference.")) {
+    make_fixed_head();
     make_list();
     inspector_ = new QWidget;
     auto* in = new QVBoxLayout(inspector_);
@@ -37,6 +38,33 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
     });
+}
+
+void TeachPage::make_fixed_head() {
+    QVBoxLayout& head = make_head();
+    spot_head_ = new SpotHead(desk_);
+    head.addWidget(spot_head_);
+    head.addWidget(make_progress());
+    connect(spot_head_, &SpotHead::wanted, this, &TeachPage::do_deed);
+}
+
+void TeachPage::do_deed(SpotDeed deed) {
+    switch (deed) {
+        case SpotDeed::add:
+            return add_spot();
+        case SpotDeed::choose:
+            return desk_.selection().select_spot(desk_.project().spots.front().id);
+        case SpotDeed::piece:
+            return window_->click();
+        case SpotDeed::reference:
+            return measure_->click();
+        case SpotDeed::pass:
+            return emit step_wanted(Step::align);
+        case SpotDeed::next_spot:
+            return desk_.selection().select_spot(next_undone(desk_.project(), desk_.selection().spot())->id);
+        case SpotDeed::next_step:
+            return emit step_wanted(Step::regions);
+    }
 }
 
 void TeachPage::make_list() {
@@ -222,7 +250,6 @@ void TeachPage::make_reference(QVBoxLayout& in) {
                         if (spot()) desk_.worker().teach(*spot(), repeats_->value());
                     });
     in.addLayout(make_row({measure_}));
-    in.addWidget(make_progress());
     spread_ = make_text({});
     spread_->setObjectName("spread");
     in.addWidget(spread_);
@@ -302,6 +329,7 @@ const Spot* TeachPage::spot() const {
 
 void TeachPage::refresh() {
     tree_->refresh();
+    spot_head_->refresh();
     const Spot* s = spot();
     const bool connected = desk_.station().connected;
     inspector_->setVisible(s != nullptr);

@@ -9,6 +9,7 @@
 
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/editors/pose_editor.h"
+#include "widgets/pages/parts/spot_head.h"
 #include "widgets/pages/parts/spot_tree.h"
 #include "widgets/pages/parts/step_page.h"
 
@@ -25,6 +26,8 @@ class TeachPage : public StepPage {
     void hideEvent(QHideEvent* event) override;
 
   private:
+    void make_fixed_head();
+    void do_deed(SpotDeed deed);
     void make_list();
     void make_switches(QVBoxLayout& in);
     void make_pose(QVBoxLayout& in);
@@ -50,6 +53,7 @@ class TeachPage : public StepPage {
     void take_template(const QRectF& window_mm);
     void show_parameters(const Spot& spot);
 
+    SpotHead* spot_head_;
     SpotTree* tree_;
     QPushButton *duplicate_, *rename_, *up_, *down_, *remove_, *take_, *go_, *measure_;
     QPushButton *pick_, *window_, *click_;

@@ -22,6 +22,7 @@ class StepPage : public QWidget {
     QWidget* head() const { return head_; }
 
   signals:
+    void step_wanted(seamwright::Step step);
     void run_shown(std::shared_ptr<const seamwright::RunRecord> run);  // a page shows this run: for the scene
 
   protected:

@@ -1,0 +1,119 @@
+#include "widgets/pages/parts/spot_head.h"
+
+#include <QHBoxLayout>
+#include <algorithm>
+
+#include "devices/registry.h"
+#include "projects/station/measure.h"
+#include "widgets/pages/parts/form.h"
+#include "widgets/style.h"
+
+namespace seamwright {
+namespace {
+
+bool is_done(const Spot& s) {
+    return !s.enabled || (s.reference_profile.size() > 0 && (s.curve || s.stop_at_trigger));
+}
+
+}  // namespace
+
+SpotDeed next_deed(const Project& project, const std::string& spot_id) {
+    if (project.spots.empty()) return SpotDeed::add;
+    const Spot* s = find_spot(project, spot_id);
+    if (!s) return SpotDeed::choose;
+    if (!is_done(*s)) {
+        if (s->feature.kind == "template" && s->feature.template_profile.size() == 0) return SpotDeed::piece;
+        return s->reference_profile.size() == 0 ? SpotDeed::reference : SpotDeed::pass;
+    }
+    return next_undone(project, spot_id) ? SpotDeed::next_spot : SpotDeed::next_step;
+}
+
+const Spot* next_undone(const Project& project, const std::string& spot_id) {
+    const auto at = std::find_if(project.spots.begin(), project.spots.end(),
+                                 [&](const Spot& s) { return s.id == spot_id; });
+    const auto missing = [](const Spot& s) { return !is_done(s); };
+    auto found = std::find_if(at == project.spots.end() ? at : std::next(at), project.spots.end(), missing);
+    if (found == project.spots.end()) found = std::find_if(project.spots.begin(), at, missing);
+    return found == at || found == project.spots.end() ? nullptr : &*found;
+}
+
+SpotHead::SpotHead(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
+    auto* row = new QHBoxLayout(this);
+    row->setContentsMargins(0, 0, 0, 0);
+    auto* words = new QVBoxLayout;
+    name_ = make_heading({});
+    name_->setObjectName("head_spot");
+    state_ = make_text({});
+    state_->setObjectName("head_state");
+    words->addWidget(name_);
+    words->addWidget(state_);
+    row->addLayout(words, 1);
+    go_ =
+        make_button("head_go", "shift", tr("Go there"), tr("Moves the simulated robot to the spot"), [this] {
+            if (const Spot* s = find_spot(desk_.project(), desk_.selection().spot()))
+                desk_.worker().jog_simulated(s->robot_id, s->base_from_flange);
+        });
+    row->addWidget(go_);
+    deed_ = make_button("head_deed", "next", {}, tr("What comes next of this spot"),
+                        [this] { emit wanted(shown_); });
+    row->addWidget(deed_);
+    connect(&desk_, &Desk::station_changed, this, [this] {
+        if (isVisible()) refresh();
+    });
+    connect(&desk_.worker(), &StationWorker::busy_changed, this, [this] {
+        if (isVisible()) refresh();
+    });
+}
+
+void SpotHead::refresh() {
+    const Project& project = desk_.project();
+    const Spot* s = find_spot(project, desk_.selection().spot());
+    const RobotSetup* robot = s ? find_robot(project, s->robot_id) : nullptr;
+    const bool connected = desk_.station().connected, busy = desk_.worker().busy();
+    go_->setVisible(robot && is_simulated_cell(robot->driver));
+    go_->setEnabled(connected && !busy);
+    shown_ = next_deed(project, desk_.selection().spot());
+    name_->setText(s ? tr("Spot %1").arg(QString::fromStdString(s->id)) : tr("No spot"));
+    bool may = !busy;
+    switch (shown_) {
+        case SpotDeed::add:
+            state_->setText(tr("Jog the sensor over the contour, then add a spot there."));
+            deed_->setText(tr("Add spot"));
+            may = may && connected;
+            break;
+        case SpotDeed::choose:
+            state_->setText(tr("Choose one in the list."));
+            deed_->setText(tr("First spot"));
+            break;
+        case SpotDeed::piece:
+            state_->setText(
+                tr("Drag a window over the contour in the live profile: it becomes the template."));
+            deed_->setText(tr("Drag template"));
+            may = may && connected;
+            break;
+        case SpotDeed::reference:
+            state_->setText(connected ? tr("Its reference is not measured yet.")
+                                      : tr("Its reference is not measured yet: connect the devices first."));
+            deed_->setText(tr("Measure reference"));
+            may = may && connected;
+            break;
+        case SpotDeed::pass:
+            state_->setText(tr("Its reference is measured, its pass is not."));
+            deed_->setText(tr("Run entry -> exit"));
+            may = may && connected;
+            break;
+        case SpotDeed::next_spot:
+            state_->setText(tr("Taught and aligned."));
+            deed_->setText(
+                tr("Next: spot %1")
+                    .arg(QString::fromStdString(next_undone(project, desk_.selection().spot())->id)));
+            break;
+        case SpotDeed::next_step:
+            state_->setText(tr("All spots are taught and aligned."));
+            deed_->setText(tr("Next: regions"));
+            break;
+    }
+    deed_->setEnabled(may);
+}
+
+}  // namespace seamwright

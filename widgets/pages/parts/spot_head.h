@@ -1,0 +1,44 @@
+#pragma once
+// What stands above the pages of a spot and does not scroll: which spot, what is done of it, and the one deed that comes next.
+
+#include <QLabel>
+#include <QPushButton>
+#include <QWidget>
+
+#include "projects/model/project.h"
+#include "widgets/desk/desk.h"
+
+namespace seamwright {
+
+enum class SpotDeed {
+    add,        // there is no spot yet
+    choose,     // none is selected
+    piece,      // the template's piece of contour
+    reference,  // to be measured
+    pass,       // to be recorded and accepted
+    next_spot,  // another one that is not done
+    next_step   // all spots are done
+};
+
+// Of the spot with this id (none: empty) as the project stands.
+SpotDeed next_deed(const Project& project, const std::string& spot_id);
+// The first spot after it, in the project's order and round again, of which something is missing; nullptr: none.
+const Spot* next_undone(const Project& project, const std::string& spot_id);
+
+class SpotHead : public QWidget {
+    Q_OBJECT
+  public:
+    explicit SpotHead(Desk& desk, QWidget* parent = nullptr);
+    void refresh();
+
+  signals:
+    void wanted(seamwright::SpotDeed deed);
+
+  private:
+    Desk& desk_;
+    QLabel *name_, *state_;
+    QPushButton *deed_, *go_;
+    SpotDeed shown_ = SpotDeed::add;
+};
+
+}  // namespace seamwright

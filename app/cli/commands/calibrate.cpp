@@ -24,8 +24,8 @@ namespace {
 using nlohmann::json;
 
 struct CalibrateArguments {
-    std::string data, board, pattern = "chessboard", report, project, sensor, table, example;
-    double pitch_mm = 0;
+    BoardWords board;
+    std::string data, report, project, sensor, table, example;
     ExcludedIds exclude;
     bool detect_convention = false;
     std::vector<std::string> pose_convention;  // "CODE" or "LIST=CODE"
@@ -53,10 +53,9 @@ Expected<Given> read_data(const CalibrationMethod& method, const CalibrateArgume
     const bool file = std::filesystem::is_regular_file(a.data) || a.data.ends_with(".json");
     const bool images = method.data_of_images && !file;
     if (images) {
-        if (a.board.empty() || !(a.pitch_mm > 0))
+        if (a.board.counts.empty() || !(a.board.pitch_mm > 0))
             return usage_error("images of a plate need --board COLUMNSxROWS and --pitch-mm", where(method));
-        SEAM_TRY(auto data,
-                 method.data_of_images({a.data, a.board, a.pitch_mm, a.pattern, a.exclude, show_progress}));
+        SEAM_TRY(auto data, method.data_of_images({a.data, a.board, a.exclude, show_progress}));
         given = {std::move(data), {}};
     } else {
         SEAM_TRY(auto data, read_json_file(a.data));
@@ -242,14 +241,23 @@ Expected<Answer> calibrate(const CalibrationMethod& method, const CalibrateArgum
     return answer;
 }
 
-void add_image_options(CLI::App& command, const CalibrationMethod& method, CalibrateArguments& a) {
-    command.add_option("--board", a.board, "Inner corners (chessboard), dots (circles) or squares (charuco)")
+void add_image_options(CLI::App& command, CalibrateArguments& a) {
+    command
+        .add_option("--board", a.board.counts,
+                    "Inner corners (chessboard), dots (circles), squares (charuco) or tags (aprilgrid)")
         ->type_name("7x6");
-    command.add_option("--pitch-mm", a.pitch_mm, "Pitch of the board");
-    if (!method.chessboard_only)
-        command.add_option("--pattern", a.pattern, "chessboard, circles or charuco")
-            ->check(CLI::IsMember({"chessboard", "circles", "charuco"}))
-            ->capture_default_str();
+    command.add_option("--pitch-mm", a.board.pitch_mm, "Pitch of the board");
+    command.add_option("--pattern", a.board.pattern, "chessboard, circles, charuco or aprilgrid")
+        ->check(CLI::IsMember({"chessboard", "circles", "charuco", "aprilgrid"}))
+        ->capture_default_str();
+    command.add_option("--marker-mm", a.board.marker_mm,
+                       "Edge of a marker (charuco; else found from the pictures) or a tag (aprilgrid)");
+    command.add_option("--dictionary", a.board.dictionary,
+                       "Of the markers, by OpenCV's name, e.g. 5x5_100; else the family that fits is found");
+    command
+        .add_option("--legacy-pattern", a.board.legacy,
+                    "yes: charuco of an even number of rows as OpenCV drew it before 4.6; else what fits")
+        ->check(CLI::IsMember({"yes", "no"}));
 }
 
 void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& method) {
@@ -288,7 +296,7 @@ void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& met
             ->type_name("[LIST=]CODE");
     if (method.table)
         command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
-    if (images) add_image_options(*command, method, *a);
+    if (images) add_image_options(*command, *a);
     if (method.capture != CaptureKind::files) add_live_options(*command, method, a->live);
     line.on(command, [&method, a] { return calibrate(method, *a); });
 }

@@ -23,11 +23,78 @@ Expected<void> validate(const BoardSpec& spec) {
     if (spec.pitch_mm > 1000)
         return input_error("a pitch beyond one metre looks like micrometres", "pitch_mm",
                            "give the pitch in millimetres");
-    if (spec.pattern == BoardPattern::charuco && spec.marker_mm != 0 &&
-        !(spec.marker_mm > 0 && spec.marker_mm < spec.pitch_mm))
+    if (spec.pattern == BoardPattern::aprilgrid && spec.marker_mm == 0)
+        return input_error("the size of the tags is not given", "marker_mm",
+                           "give the edge of a tag in millimetres beside the pitch from tag to tag");
+    if ((spec.pattern == BoardPattern::charuco || spec.pattern == BoardPattern::aprilgrid) &&
+        spec.marker_mm != 0 && !(spec.marker_mm > 0 && spec.marker_mm < spec.pitch_mm))
         return input_error("the marker must be smaller than its square", "marker_mm",
                            "give e.g. 0.75 of the pitch");
     return {};
+}
+
+namespace {
+
+// In OpenCV's order: its numbers are the places.
+constexpr const char* kDictionaries[] = {
+    "4x4_50",        "4x4_100",        "4x4_250",       "4x4_1000", "5x5_50",         "5x5_100",
+    "5x5_250",       "5x5_1000",       "6x6_50",        "6x6_100",  "6x6_250",        "6x6_1000",
+    "7x7_50",        "7x7_100",        "7x7_250",       "7x7_1000", "aruco_original", "apriltag_16h5",
+    "apriltag_25h9", "apriltag_36h10", "apriltag_36h11"};
+
+}  // namespace
+
+std::string_view name_of(BoardPattern pattern) {
+    switch (pattern) {
+        case BoardPattern::chessboard:
+            return "chessboard";
+        case BoardPattern::circles:
+            return "circles";
+        case BoardPattern::charuco:
+            return "charuco";
+        case BoardPattern::aprilgrid:
+            return "aprilgrid";
+    }
+    return "chessboard";
+}
+
+std::optional<BoardPattern> board_pattern_named(const std::string& name) {
+    for (const BoardPattern p :
+         {BoardPattern::chessboard, BoardPattern::circles, BoardPattern::charuco, BoardPattern::aprilgrid})
+        if (name == name_of(p)) return p;
+    return std::nullopt;
+}
+
+int board_columns(const BoardSpec& spec) {
+    return spec.pattern == BoardPattern::charuco     ? spec.columns - 1
+           : spec.pattern == BoardPattern::aprilgrid ? 2 * spec.columns
+                                                     : spec.columns;
+}
+
+int board_rows(const BoardSpec& spec) {
+    return spec.pattern == BoardPattern::charuco     ? spec.rows - 1
+           : spec.pattern == BoardPattern::aprilgrid ? 2 * spec.rows
+                                                     : spec.rows;
+}
+
+Eigen::Vector3d board_point(const BoardSpec& spec, int index) {
+    const int column = index % board_columns(spec), row = index / board_columns(spec);
+    if (spec.pattern != BoardPattern::aprilgrid) return {column * spec.pitch_mm, row * spec.pitch_mm, 0};
+    const auto along = [&](int k) { return k / 2 * spec.pitch_mm + k % 2 * spec.marker_mm; };
+    return {along(column), along(row), 0};
+}
+
+std::optional<int> dictionary_named(const std::string& name) {
+    std::string plain;
+    for (const char c : name) plain += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    if (plain.rfind("dict_", 0) == 0) plain.erase(0, 5);
+    const auto at = std::find(std::begin(kDictionaries), std::end(kDictionaries), plain);
+    if (at == std::end(kDictionaries)) return std::nullopt;
+    return static_cast<int>(at - std::begin(kDictionaries));
+}
+
+std::vector<std::string> dictionary_names() {
+    return {std::begin(kDictionaries), std::end(kDictionaries)};
 }
 
 namespace detail {
@@ -117,8 +184,11 @@ BoardSearch find_board(const StripeImage& image, const BoardSpec& spec) {
                                         image.full_scale(), spec);
         }
         const cv::Mat grey = detail::grey_of(image);
+        const int type = image.bytes_per_pixel() == 1 ? CV_8UC1 : CV_16UC1;
+        const cv::Mat full(image.height, image.width, type, const_cast<std::byte*>(image.pixels),
+                           image.row_bytes);
         found.board = spec.pattern == BoardPattern::circles ? detail::find_circles(grey, spec)
-                                                            : detail::find_charuco(grey, spec);
+                                                            : detail::find_marker_board(full, grey, spec);
     } catch (const cv::Exception&) {
         // OpenCV refuses some degenerate images by exception: there is no board in them.
     }
@@ -165,8 +235,9 @@ std::vector<Eigen::Vector2d> outline(const FoundBoard& board, const BoardSpec& s
     for (const auto& p : board.object_mm) flat.push_back(p.head<2>());
     const auto h = homography_dlt(flat, board.pixel);
     if (!h) return {};
-    const double m = spec.pattern == BoardPattern::charuco ? 0 : spec.pitch_mm;
-    const double w = (spec.columns - 1) * spec.pitch_mm, t = (spec.rows - 1) * spec.pitch_mm;
+    const double m = spec.pattern == BoardPattern::aprilgrid ? 0 : spec.pitch_mm;
+    const Eigen::Vector3d last = board_point(spec, board_columns(spec) * board_rows(spec) - 1);
+    const double w = last.x(), t = last.y();
     std::vector<Eigen::Vector2d> out;
     for (const auto& corner : {Eigen::Vector2d(-m, -m), Eigen::Vector2d(w + m, -m),
                                Eigen::Vector2d(w + m, t + m), Eigen::Vector2d(-m, t + m)})

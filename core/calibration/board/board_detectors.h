@@ -1,5 +1,5 @@
 #pragma once
-// The detectors behind find_board for circle grids and ChArUco, on OpenCV images. Private to core/calibration/board.
+// The detectors behind find_board for circle grids and boards with markers, on OpenCV images. Private to core/calibration/board.
 
 #include <opencv2/core.hpp>
 #include <optional>
@@ -18,6 +18,8 @@ cv::Mat without_stripe(const cv::Mat& grey, const cv::Mat& stripe);
 cv::Mat stretched(const cv::Mat& grey, const cv::Mat& ignore, double gamma);
 
 std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spec);
-std::optional<FoundBoard> find_charuco(const cv::Mat& grey, const BoardSpec& spec);
+// ChArUco and AprilGrid: OpenCV reads the markers of `grey` (8 bit), which predict where the corners are; these are measured in
+// `full`, the picture as taken (8 or 16 bit), as those of a chessboard are (board_saddles.h).
+std::optional<FoundBoard> find_marker_board(const cv::Mat& full, const cv::Mat& grey, const BoardSpec& spec);
 
 }  // namespace seamwright::detail

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <deque>
 #include <map>
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/calibration/board/board_detectors.h"
@@ -293,41 +292,6 @@ std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spe
             });
             if (auto board = as_board(dots, placed, spec)) return board;
         }
-    }
-    return std::nullopt;
-}
-
-std::optional<FoundBoard> find_charuco(const cv::Mat& grey, const BoardSpec& spec) {
-    const auto dictionary = cv::aruco::getPredefinedDictionary(spec.dictionary);
-    const double marker = spec.marker_mm > 0 ? spec.marker_mm : 0.75 * spec.pitch_mm;
-    const auto board = cv::aruco::CharucoBoard::create(
-        spec.columns, spec.rows, static_cast<float>(spec.pitch_mm), static_cast<float>(marker), dictionary);
-    const cv::Mat stripe = stripe_mask(grey);
-    cv::Mat wide;
-    cv::dilate(stripe, wide, cv::getStructuringElement(cv::MORPH_ELLIPSE, {15, 15}));
-    for (const cv::Mat& image : {grey, stretched(without_stripe(grey, stripe), wide, 1.0)}) {
-        std::vector<std::vector<cv::Point2f>> markers, rejected;
-        std::vector<int> ids;
-        cv::aruco::detectMarkers(image, cv::makePtr<cv::aruco::Dictionary>(*dictionary), markers, ids,
-                                 cv::aruco::DetectorParameters::create(), rejected);
-        if (ids.size() < 4) continue;
-        std::vector<cv::Point2f> corners;
-        std::vector<int> corner_ids;
-        cv::aruco::interpolateCornersCharuco(markers, ids, image, board, corners, corner_ids);
-        if (corners.size() < 6) continue;
-        FoundBoard found;
-        found.detector = "ChArUco";
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            // OpenCV's rows count upwards; ours downwards, so that z points into the plate.
-            const auto& p = board->chessboardCorners[static_cast<std::size_t>(corner_ids[i])];
-            const double x = p.x - spec.pitch_mm, y = (spec.rows - 1) * spec.pitch_mm - p.y;
-            const int c = static_cast<int>(std::lround(x / spec.pitch_mm)),
-                      r = static_cast<int>(std::lround(y / spec.pitch_mm));
-            found.index.push_back(r * (spec.columns - 1) + c);
-            found.pixel.emplace_back(corners[i].x, corners[i].y);
-            found.object_mm.emplace_back(x, y, 0);
-        }
-        return found;
     }
     return std::nullopt;
 }

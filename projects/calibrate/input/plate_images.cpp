@@ -10,8 +10,9 @@ namespace seamwright {
 
 namespace fs = std::filesystem;
 
-Expected<BoardSpec> parse_board(const std::string& counts, double pitch_mm, const std::string& pattern) {
+Expected<BoardSpec> parse_board(const BoardWords& words) {
     BoardSpec spec;
+    const std::string& counts = words.counts;
     const auto bad = [&] {
         return usage_error(Text("'{}' is no board", counts), "--board", "write columns x rows, e.g. 7x6");
     };
@@ -23,16 +24,21 @@ Expected<BoardSpec> parse_board(const std::string& counts, double pitch_mm, cons
     if (first.ec != std::errc() || second.ec != std::errc() || first.ptr != text + x ||
         second.ptr != text + counts.size())
         return bad();
-    spec.pitch_mm = pitch_mm;
-    if (pattern == "chessboard")
-        spec.pattern = BoardPattern::chessboard;
-    else if (pattern == "circles")
-        spec.pattern = BoardPattern::circles;
-    else if (pattern == "charuco")
-        spec.pattern = BoardPattern::charuco;
-    else
-        return usage_error(Text("the pattern '{}' is unknown", pattern), "--pattern",
-                           "write chessboard, circles or charuco");
+    spec.pitch_mm = words.pitch_mm;
+    const auto pattern = board_pattern_named(words.pattern);
+    if (!pattern)
+        return usage_error(Text("the pattern '{}' is unknown", words.pattern), "--pattern",
+                           "write chessboard, circles, charuco or aprilgrid");
+    spec.pattern = *pattern;
+    spec.marker_mm = words.marker_mm;
+    if (!words.dictionary.empty()) {
+        const auto dictionary = dictionary_named(words.dictionary);
+        if (!dictionary)
+            return usage_error(Text("the dictionary '{}' is unknown", words.dictionary), "--dictionary",
+                               "write one of OpenCV's, e.g. 4x4_50, 5x5_100 or apriltag_36h11");
+        spec.dictionary = *dictionary;
+    }
+    if (!words.legacy.empty()) spec.legacy = words.legacy == "yes";
     SEAM_OK(validate(spec));
     return spec;
 }

@@ -78,7 +78,7 @@ Expected<CalibrationSolution> solve_camera(const json& written, const ExcludedId
 }
 
 Expected<json> camera_images(const BoardImages& images) {
-    SEAM_TRY(auto spec, parse_board(images.board, images.pitch_mm, images.pattern));
+    SEAM_TRY(auto spec, parse_board(images.board));
     SEAM_TRY(auto files, plate_images(images.folder, images.exclude));
     CameraData data;
     json missed = json::array();
@@ -107,7 +107,7 @@ Expected<json> camera_images(const BoardImages& images) {
     if (data.views.empty() && (miss.counted || miss.several))
         return input_error(why_missed(spec, miss), images.folder, cure_of(miss));
     if (data.views.empty())
-        return input_error(Text("no board of {} points was found in any of {} images", images.board,
+        return input_error(Text("no board of {} points was found in any of {} images", images.board.counts,
                                 std::to_string(files.size())),
                            images.folder, "check --board, --pattern, light and focus");
     json views = json::array();

@@ -64,9 +64,7 @@ enum class SetUpDrawing {
 // A folder of images of a board, as a person points at it.
 struct BoardImages {
     std::string folder;
-    std::string board;  // "7x6"
-    double pitch_mm = 0;
-    std::string pattern = "chessboard";
+    BoardWords board;
     ExcludedIds exclude;         // names without extension; they are not even read
     ReadProgress progress = {};  // may be empty
 };
@@ -92,7 +90,6 @@ struct CalibrationMethod {
     Expected<CalibrationSolution> (*solve)(const nlohmann::json& data, const ExcludedIds& exclude) = nullptr;
     // The data that a folder of images holds; absent: the method takes no images.
     Expected<nlohmann::json> (*data_of_images)(const BoardImages& images) = nullptr;
-    bool chessboard_only = false;  // of the images' patterns
     // Its data leave a residual that a convention of poses shows in; absent: they do not.
     Expected<ConventionFits> (*convention_fits)(const nlohmann::json& data,
                                                 const ExcludedIds& exclude) = nullptr;

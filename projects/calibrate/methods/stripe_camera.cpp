@@ -233,7 +233,6 @@ CalibrationMethod stripe_camera_method() {
     m.poses = {{"frames", kRobotPose}};
     m.solve = solve_stripe_camera;
     m.data_of_images = stripe_folder_data;
-    m.chessboard_only = true;
     m.convention_fits = stripe_camera_conventions;
     m.entries = "frames";
     m.capture = CaptureKind::board_and_stripe;

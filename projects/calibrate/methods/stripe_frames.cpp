@@ -61,11 +61,11 @@ Expected<FoundBoard> parse_found_board(const json& value, const BoardSpec& spec,
     SEAM_TRY(auto index, json_array(value, "index", where));
     for (std::size_t i = 0; i < index->size(); ++i) {
         SEAM_TRY(auto number, as_number((*index)[i], json_path(json_path(where, "index"), i)));
-        if (number < 0 || number >= spec.columns * spec.rows || number != std::floor(number))
+        if (number < 0 || number >= board_columns(spec) * board_rows(spec) || number != std::floor(number))
             return input_error("this is no corner of the board", json_path(json_path(where, "index"), i));
         const int k = static_cast<int>(number);
         board.index.push_back(k);
-        board.object_mm.emplace_back(k % spec.columns * spec.pitch_mm, k / spec.columns * spec.pitch_mm, 0);
+        board.object_mm.push_back(board_point(spec, k));
     }
     if (board.index.size() != board.pixel.size())
         return input_error("pixel and index have different lengths", where);
@@ -126,7 +126,13 @@ Expected<StripeObservation> parse_stripe_frame(const json& entry, const BoardSpe
 }
 
 json board_json(const BoardSpec& spec) {
-    return {{"columns", spec.columns}, {"rows", spec.rows}, {"pitch_mm", spec.pitch_mm}};
+    json board = {{"columns", spec.columns}, {"rows", spec.rows}, {"pitch_mm", spec.pitch_mm}};
+    if (spec.pattern != BoardPattern::chessboard) board["pattern"] = name_of(spec.pattern);
+    if (spec.marker_mm > 0) board["marker_mm"] = spec.marker_mm;
+    if (spec.dictionary >= 0)
+        board["dictionary"] = dictionary_names()[static_cast<std::size_t>(spec.dictionary)];
+    if (spec.legacy) board["legacy"] = *spec.legacy;
+    return board;
 }
 
 Expected<BoardSpec> parse_board_json(const json& value, const std::string& where) {
@@ -138,6 +144,25 @@ Expected<BoardSpec> parse_board_json(const json& value, const std::string& where
     }
     SEAM_TRY(auto pitch, json_number(value, "pitch_mm", where));
     spec.pitch_mm = pitch;
+    SEAM_TRY(const auto pattern, json_string_or(value, "pattern", "chessboard", where));
+    const auto named = board_pattern_named(pattern);
+    if (!named)
+        return input_error(Text("the pattern '{}' is unknown", pattern), json_path(where, "pattern"),
+                           "write chessboard, circles, charuco or aprilgrid");
+    spec.pattern = *named;
+    SEAM_TRY(spec.marker_mm, json_number_or(value, "marker_mm", 0, where));
+    SEAM_TRY(const auto dictionary, json_string_or(value, "dictionary", "", where));
+    if (!dictionary.empty()) {
+        const auto number = dictionary_named(dictionary);
+        if (!number)
+            return input_error(Text("the dictionary '{}' is unknown", dictionary),
+                               json_path(where, "dictionary"),
+                               "write one of OpenCV's, e.g. 4x4_50, 5x5_100 or apriltag_36h11");
+        spec.dictionary = *number;
+    }
+    if (value.contains("legacy")) {
+        SEAM_TRY(spec.legacy, json_bool_or(value, "legacy", false, where));
+    }
     SEAM_OK(validate(spec));
     return spec;
 }
@@ -208,7 +233,7 @@ Expected<StripeData> parse_stripe_data(const json& data) {
 
 // Poses of text files stay quaternions, as they are written there.
 Expected<json> stripe_folder_data(const BoardImages& images) {
-    SEAM_TRY(auto spec, parse_board(images.board, images.pitch_mm, "chessboard"));
+    SEAM_TRY(auto spec, parse_board(images.board));
     SEAM_TRY(auto files, plate_images(images.folder, images.exclude));
     json frames = json::array();
     BoardMiss miss;

@@ -3,7 +3,7 @@
 // solved as often as poses are left out and taken in again.
 //
 // Data of `calibrate stripe-camera DATA.json`:
-//   {"board":{"columns","rows","pitch_mm"},
+//   {"board":{"columns","rows","pitch_mm","pattern"?,"marker_mm"?,"dictionary"?,"legacy"?},
 //    "frames":[{"id"?,"size":[w,h],"scan":"rows"|"columns","board":{"pixel":[[u,v],..],"index":[row * columns
 //    + column],
 //               "symmetry","detector"} or null,"stripe":[[u,v],..],"base_from_flange":POSE or null}]}

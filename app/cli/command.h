@@ -63,6 +63,7 @@ void add_proof(CommandLine& line);  // zero-shift, known-shift
 void add_budget(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
+void add_statistics(CommandLine& line);
 void add_device_studies(CommandLine& line);  // measure-robot, measure-trigger
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);

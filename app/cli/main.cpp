@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     add_budget(line);
     add_hand_over(line);
     add_acceptance(line);
+    add_statistics(line);
     add_device_studies(line);
     add_replay(line);
     add_correct(line);

@@ -65,6 +65,7 @@ std::string ewma_plot(const Characteristic& c, Language language) {
         Series s = row_of("limits", limit, language);
         s.mark = Mark::dashed;
         s.colour = colour::kAmber;
+        if (side > 0) s.name.clear();  // once in the legend
         plot.series.push_back(std::move(s));
     }
     Series beyond{Text("alarm").in(language), {}, {}, Mark::crosses, colour::kVermilion};

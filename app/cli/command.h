@@ -58,11 +58,13 @@ void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, mirror
 void add_import(CommandLine& line);
 void add_run(CommandLine& line);
+void add_service(CommandLine& line);
 void add_record(CommandLine& line);
 void add_proof(CommandLine& line);  // zero-shift, known-shift
 void add_budget(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
+void add_statistics(CommandLine& line);
 void add_device_studies(CommandLine& line);  // measure-robot, measure-trigger
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);

@@ -7,11 +7,13 @@ int main(int argc, char** argv) {
     add_project_commands(line);
     add_import(line);
     add_run(line);
+    add_service(line);
     add_record(line);
     add_proof(line);
     add_budget(line);
     add_hand_over(line);
     add_acceptance(line);
+    add_statistics(line);
     add_device_studies(line);
     add_replay(line);
     add_correct(line);

@@ -37,34 +37,48 @@ std::string qdas_time(const std::string& utc) {
 }  // namespace
 
 std::string dfq_text(const QdasStudy& study) {
+    return dfq_text(std::vector{study});
+}
+
+std::string dfq_text(const std::vector<QdasStudy>& characteristics) {
     std::string out;
-    const auto put = [&](const char* key, const std::string& text) {
+    if (characteristics.empty()) return out;
+    const auto put = [&](const std::string& key, const std::string& text) {
         if (!text.empty()) out += fmt::format("{} {}\r\n", key, text);
     };
-    const auto mm = [&](double value) { return fmt::format("{:.{}f}", value, study.decimals); };
-    put("K0100", "1");
-    put("K1001", ansi(study.part_number, 30));
-    put("K1002", ansi(study.part_name, 80));
-    put("K1081", ansi(study.machine_number, 24));
-    put("K1082", ansi(study.machine_name, 40));
-    put("K2001/1", ansi(study.characteristic_number, 20));
-    put("K2002/1", ansi(study.characteristic_name, 80));
-    put("K2004/1", "0");
-    put("K2022/1", std::to_string(study.decimals));
-    put("K2101/1", mm(study.nominal_mm));
-    put("K2110/1", mm(study.lower_mm));
-    put("K2111/1", mm(study.upper_mm));
-    put("K2120/1", "1");
-    put("K2121/1", "1");
-    put("K2142/1", "mm");
-    put("K2401/1", ansi(study.gauge_number, 40));
-    put("K2402/1", ansi(study.gauge_name, 40));
-    for (const StudyValue& v : study.values) {
-        put("K0001/1", mm(v.value_mm));
-        put("K0002/1", "0");
-        put("K0004/1", qdas_time(v.utc));
-        put("K0006/1", ansi(v.rehang, 14));
-        put("K0014/1", ansi(v.part, 40));
+    const QdasStudy& part = characteristics.front();
+    put("K0100", std::to_string(characteristics.size()));
+    put("K1001", ansi(part.part_number, 30));
+    put("K1002", ansi(part.part_name, 80));
+    put("K1081", ansi(part.machine_number, 24));
+    put("K1082", ansi(part.machine_name, 40));
+    std::size_t number = 0;
+    for (const QdasStudy& study : characteristics) {
+        const auto of = [at = ++number](const char* key) { return fmt::format("{}/{}", key, at); };
+        const auto mm = [&](double value) { return fmt::format("{:.{}f}", value, study.decimals); };
+        put(of("K2001"), ansi(study.characteristic_number, 20));
+        put(of("K2002"), ansi(study.characteristic_name, 80));
+        put(of("K2004"), "0");
+        put(of("K2022"), std::to_string(study.decimals));
+        put(of("K2101"), mm(study.nominal_mm));
+        put(of("K2110"), mm(study.lower_mm));
+        put(of("K2111"), mm(study.upper_mm));
+        put(of("K2120"), "1");
+        put(of("K2121"), "1");
+        put(of("K2142"), ansi(study.unit, 20));
+        put(of("K2401"), ansi(part.gauge_number, 40));
+        put(of("K2402"), ansi(part.gauge_name, 40));
+    }
+    number = 0;
+    for (const QdasStudy& study : characteristics) {
+        const auto of = [at = ++number](const char* key) { return fmt::format("{}/{}", key, at); };
+        for (const StudyValue& v : study.values) {
+            put(of("K0001"), fmt::format("{:.{}f}", v.value_mm, study.decimals));
+            put(of("K0002"), "0");
+            put(of("K0004"), qdas_time(v.utc));
+            put(of("K0006"), ansi(v.rehang, 14));
+            put(of("K0014"), ansi(v.part, 40));
+        }
     }
     return out;
 }

@@ -22,10 +22,13 @@ struct QdasStudy {
     std::string gauge_number, gauge_name;
     std::string characteristic_number, characteristic_name;
     double nominal_mm = 0, lower_mm = 0, upper_mm = 0;
+    std::string unit = "mm";  // of nominal, limits and values
     int decimals = 4;
     std::vector<StudyValue> values;  // written in this order
 };
 
 std::string dfq_text(const QdasStudy& study);
+// Several characteristics of one part, numbered from 1: part, machine and gauge are the first one's. Empty: no text.
+std::string dfq_text(const std::vector<QdasStudy>& characteristics);
 
 }  // namespace seamwright

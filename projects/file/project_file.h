@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "core/text.h"
+#include "projects/file/run_values.h"
 #include "projects/model/evidence.h"
 #include "projects/model/project.h"
 #include "projects/model/run.h"
@@ -118,6 +119,8 @@ class ProjectFile {
     Expected<std::int64_t> append_event(const EventRecord& event);
 
     Expected<std::vector<RunSummary>> runs() const;
+    // The numbers of many runs, oldest first, without loading any.
+    Expected<std::vector<RunValues>> run_values(const RunValuesWanted& wanted = {}) const;
     // `with_captures` false leaves out the raw data.
     Expected<RunRecord> load_run(std::int64_t number, bool with_captures = true) const;
     // The project as it was when the run was made, without mesh and calibration raw data.

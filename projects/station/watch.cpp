@@ -63,6 +63,7 @@ class Watch {
 
     Expected<WatchCounts> run() {
         while (!ended()) {
+            alive();
             if (!station_.connected()) {
                 SEAM_TRY(auto connected, connect());
                 if (!connected) continue;
@@ -81,6 +82,10 @@ class Watch {
         return options_.cancel.stop_requested() || (options_.parts > 0 && counts_.parts >= options_.parts);
     }
 
+    void alive() {
+        if (options_.alive) options_.alive();
+    }
+
     void tell(WatchLevel level, WatchHappening happening, Text text) {
         if (!options_.tell) return;
         options_.tell({utc_now(), level, std::move(happening), std::move(text), state_, counts_});
@@ -90,6 +95,7 @@ class Watch {
         const auto until = std::chrono::steady_clock::now() + retry_;
         retry_ = std::min(2 * retry_, options_.retry_longest);
         while (!options_.cancel.stop_requested()) {
+            alive();
             const auto left = until - std::chrono::steady_clock::now();
             if (left <= left.zero()) break;
             std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(kCancelSlice, left));
@@ -211,6 +217,7 @@ class Watch {
         run.hold = kHoldForEver;
         run.part_over = [&] { return part_called(); };
         run.progress = [&](const RunProgress& p) {
+            alive();
             tell(WatchLevel::info, watched::SpotDone{p.done, p.total}, p.text);
         };
         const auto begun = std::chrono::steady_clock::now();
@@ -235,6 +242,7 @@ class Watch {
     // Whether the line calls for the next part while the last one is still to be taken; kept for the next
     // round.
     bool part_called() {
+        alive();
         for (const RobotSetup& setup : station_.project().robots) {
             if (called_) return true;
             if (RobotLink* robot = station_.robot(setup.id))

@@ -83,6 +83,8 @@ struct WatchOptions {
     std::stop_token
         cancel;  // heard within kCancelSlice; a part in the middle ends as cancelled, the robot is told
     std::function<void(const WatchEvent&)> tell;  // on the watching thread
+    // The same, several times a second while it waits, and at every step of a run: what a watchdog asks for.
+    std::function<void()> alive;
 };
 
 // Connects the station where it is not. Ends by `cancel` or after `parts`. Error: the file cannot be written,

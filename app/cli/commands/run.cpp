@@ -15,6 +15,7 @@
 #include "app/cli/result_json.h"
 #include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
+#include "app/cli/watch_outputs.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "projects/proof/replay.h"
@@ -34,6 +35,7 @@ struct RunArguments {
     std::string log, record;
     std::int64_t parts = 0, keep_runs = 0;
     double start_expiry_s = 10;
+    WatchOutputArguments outputs;
 };
 
 // One line on the screen: rewritten in place at a terminal, one a change elsewhere.
@@ -128,10 +130,13 @@ Expected<Answer> watch_project(const RunArguments& a) {
     options.cancel = stop_on_signal();
     SEAM_TRY(auto recorder, open_recorder(a.record, {.images = true}));
     station.record_to(recorder);
+    SEAM_TRY(auto outputs, WatchOutputs::open(a.outputs, station, a.push));
+    options.alive = [&] { outputs.alive(); };
     bool proven = false;
     Expected<void> proof;
     options.tell = [&](const WatchEvent& e) {
         print_status(e);
+        outputs.tell(e);
         if (log) log->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
         // The first good part proves it; one a part would only fill the file.
         const auto* run = std::get_if<watched::RunDone>(&e.happening);
@@ -273,6 +278,7 @@ void add_run(CommandLine& line) {
     command->add_option("--log", a->log, "With --watch: one JSON object an event, rotated at 10 MiB")
         ->needs(watching)
         ->type_name("FILE");
+    add_watch_outputs(command, watching, a->outputs);
     part->excludes(watching);
     hold->excludes(watching);
     line.on(command, [a] { return a->watch ? watch_project(*a) : run(*a); });

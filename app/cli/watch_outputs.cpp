@@ -1,0 +1,126 @@
+#include "app/cli/watch_outputs.h"
+
+#include <fmt/format.h>
+
+#include "app/cli/service_manager.h"
+#include "devices/capture/capture.h"
+#include "devices/exchange/files.h"
+
+namespace seamwright::cli {
+namespace {
+
+constexpr const char* kProgram = "Seamwright " SEAMWRIGHT_VERSION;
+
+Expected<std::unique_ptr<ShiftReports>> open_reports(const WatchOutputArguments& a,
+                                                     const std::filesystem::path& file) {
+    if (a.report_every.empty()) return std::unique_ptr<ShiftReports>();
+    ShiftReportOptions options;
+    auto every = seconds_argument(a.report_every, "--report-every");
+    if (!every) return tl::unexpected(every.error());
+    options.every_s = *every;
+    // Hours and minutes as a time of some day.
+    const auto first = utc_seconds("1970-01-01T" + a.report_from + ":00Z");
+    if (!first || a.report_from.size() != 5)
+        return usage_error(Text("\"{}\" is no time of the day", a.report_from), "--report-from",
+                           "write 06:00");
+    options.first_s = *first;
+    options.file = file;
+    options.folder = a.report_to;
+    options.language = *language_from(a.language);
+    options.program = kProgram;
+    options.written = [](const std::filesystem::path& path) {
+        fmt::print(stderr, "{} report {}\n", utc_now(), path.string());
+    };
+    options.failed = [](const Error& error) {
+        fmt::print(stderr, "{} no report: {}\n", utc_now(), error.sentence());
+    };
+    return std::make_unique<ShiftReports>(std::move(options));
+}
+
+// The first line of the file: what stands on a command line everybody on the computer can read.
+Expected<std::string> read_token(const std::string& path) {
+    if (path.empty()) return std::string();
+    auto text = read_text_file(path);
+    if (!text) return tl::unexpected(text.error());
+    std::string token = text->substr(0, text->find('\n'));
+    while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
+    return token;
+}
+
+}  // namespace
+
+void add_watch_outputs(CLI::App* command, CLI::Option* watching, WatchOutputArguments& a) {
+    auto* to = command
+                   ->add_option("--to", a.report_to,
+                                "With --report-every: the folder that the reports are written to")
+                   ->type_name("DIR");
+    auto* every =
+        command
+            ->add_option("--report-every", a.report_every,
+                         "With --watch: statistics of every such span of time as HTML and JSON, 8h for "
+                         "a shift")
+            ->needs(watching)
+            ->needs(to);
+    to->needs(every);
+    command->add_option("--report-from", a.report_from, "Local time at which a shift begins")
+        ->needs(every)
+        ->capture_default_str();
+    auto* status = command
+                       ->add_option("--status", a.status,
+                                    "With --watch: a read-only page of what happens, at this address; also "
+                                    "/api/state, /api/parts, /api/alarms (JSON), /metrics (Prometheus)")
+                       ->needs(watching)
+                       ->type_name("127.0.0.1:8080");
+    command
+        ->add_option(
+            "--status-token", a.status_token,
+            "A file with the token that the status page asks for; needed where its address is not of "
+            "this computer")
+        ->needs(status)
+        ->type_name("FILE");
+    command->add_option("--report-language", a.language, "en or de, of reports and status page")
+        ->needs(watching)
+        ->check(CLI::IsMember({"en", "de"}))
+        ->capture_default_str();
+}
+
+Expected<WatchOutputs> WatchOutputs::open(const WatchOutputArguments& a, Station& station, bool push) {
+    WatchOutputs out;
+    if (!a.status.empty()) {
+        auto token = read_token(a.status_token);
+        if (!token) return tl::unexpected(token.error());
+        if (!a.status_token.empty() && token->empty())
+            return usage_error("the first line of the file is empty", a.status_token,
+                               "write the token into it");
+        out.board_ = std::make_unique<StatusBoard>(station.project().name, kProgram, push);
+        auto server = StatusServer::start(*out.board_, {a.status, *token, *language_from(a.language)});
+        if (!server) return tl::unexpected(server.error());
+        out.server_ = std::make_unique<StatusServer>(std::move(*server));
+        fmt::print(stderr, "status page: http://{}:{}/\n", a.status.substr(0, a.status.rfind(':')),
+                   out.server_->port());
+    }
+    auto reports = open_reports(a, station.file().path());
+    if (!reports) return tl::unexpected(reports.error());
+    out.reports_ = std::move(*reports);
+    return out;
+}
+
+void WatchOutputs::tell(const WatchEvent& event) {
+    if (board_) board_->take(event);
+    if (std::holds_alternative<watched::SpotDone>(event.happening)) return;
+    std::string line = event.text.english();
+    for (char& c : line)
+        if (c == '\n') c = ' ';  // one assignment a line
+    tell_service_manager("STATUS=" + line);
+    if (std::holds_alternative<watched::Stopped>(event.happening)) tell_service_manager("STOPPING=1");
+}
+
+void WatchOutputs::alive() {
+    const auto now = std::chrono::steady_clock::now();
+    if (told_ == std::chrono::steady_clock::time_point{}) tell_service_manager("READY=1");
+    if (now - told_ < std::chrono::seconds(1)) return;
+    told_ = now;
+    tell_service_manager("WATCHDOG=1");
+}
+
+}  // namespace seamwright::cli

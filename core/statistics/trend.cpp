@@ -1,0 +1,75 @@
+#include "core/statistics/trend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/acceptance/distributions.h"
+
+namespace seamwright {
+namespace {
+
+std::optional<Crossing> crossing_of(const Trend& t, const ProcessLimits& limits) {
+    const bool up = t.slope_per_day > 0;
+    const std::optional<double>& limit = up ? limits.upper : limits.lower;
+    if (!limit) return std::nullopt;
+    const double furthest = kTrendAhead * t.span_days;
+    const double way = *limit - t.level;
+    const double fast = up ? t.slope_limits.high : t.slope_limits.low;
+    const double slow = up ? t.slope_limits.low : t.slope_limits.high;
+    Crossing c{up, *limit, way / t.slope_per_day, way / fast, way / slow};
+    if (c.days > furthest) return std::nullopt;
+    // Beyond already, the steeper line left the limits later.
+    if (c.days < 0) std::swap(c.earliest_days, *c.latest_days);
+    if (*c.latest_days > furthest) c.latest_days.reset();
+    return c;
+}
+
+}  // namespace
+
+Expected<std::optional<Trend>> trend_of(std::span<const double> days, std::span<const double> values,
+                                        const ProcessLimits& limits) {
+    if (days.size() != values.size())
+        return input_error(Text("{} times and {} values", days.size(), values.size()), "trend");
+    for (std::size_t i = 0; i < days.size(); ++i) {
+        if (!std::isfinite(days[i]) || !std::isfinite(values[i]))
+            return input_error("a value or its time is not finite", "trend");
+        if (i > 0 && days[i] < days[i - 1]) return input_error("the times go back", "trend");
+    }
+    if (days.size() < kTrendValues || !(days.back() > days.front())) return std::optional<Trend>();
+    Trend t;
+    t.n = static_cast<int>(days.size());
+    t.span_days = days.back() - days.front();
+    const double n = t.n;
+    double at = 0, mean = 0;
+    for (std::size_t i = 0; i < days.size(); ++i) {
+        at += (days[i] - days.back()) / n;
+        mean += values[i] / n;
+    }
+    double xx = 0, xy = 0;
+    for (std::size_t i = 0; i < days.size(); ++i) {
+        const double x = days[i] - days.back() - at;
+        xx += x * x;
+        xy += x * (values[i] - mean);
+    }
+    t.slope_per_day = xy / xx;
+    t.level = mean - t.slope_per_day * at;
+    std::vector<double> residuals;
+    double squares = 0;
+    for (std::size_t i = 0; i < days.size(); ++i) {
+        residuals.push_back(values[i] - t.level - t.slope_per_day * (days[i] - days.back()));
+        squares += residuals.back() * residuals.back();
+    }
+    t.residual_s = std::sqrt(squares / (n - 2));
+    t.correlation = lag1_correlation(residuals);
+    const double r = std::clamp(t.correlation, 0.0, 0.99);
+    const double by = t_quantile(n - 2, 0.975) * t.residual_s / std::sqrt(xx) * std::sqrt((1 + r) / (1 - r));
+    t.slope_limits = {t.slope_per_day - by, t.slope_per_day + by};
+    // A scatter that is rounding alone is no slope.
+    t.significant = !t.slope_limits.contains(0) &&
+                    std::abs(t.slope_per_day) * t.span_days > 1e-12 * std::max(1.0, std::abs(t.level));
+    if (t.significant) t.crossing = crossing_of(t, limits);
+    return std::optional(t);
+}
+
+}  // namespace seamwright

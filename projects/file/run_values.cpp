@@ -1,0 +1,177 @@
+#include "projects/file/run_values.h"
+
+#include <unordered_map>
+
+#include "devices/exchange/pose_json.h"
+#include "projects/file/project_file_detail.h"
+#include "projects/file/row_checksum.h"
+#include "projects/file/stored_text.h"
+
+namespace seamwright {
+namespace {
+
+constexpr const char* kWhichRuns = "started_utc >= ?1 AND (?2 = '' OR started_utc < ?2)";
+
+class ValuesReader {
+  public:
+    ValuesReader(Database& db, const RunValuesWanted& wanted) : db_(db), wanted_(wanted) {}
+
+    Expected<std::vector<RunValues>> read() {
+        for (const char* table : {"runs", "run_regions", "run_panels"})
+            if (auto sound = check_rows(db_, table); !sound) return tl::unexpected(sound.error());
+        const auto regions = [&](Statement& row) { return region(row); };
+        const auto panels = [&](Statement& row) { return panel(row); };
+        const auto spots = [&](Statement& row) { return spot(row); };
+        for (Expected<void> done :
+             {query(
+                  "SELECT number, part_id, started_utc, finished_utc, push, status, setup FROM runs WHERE {} "
+                  "ORDER BY number",
+                  [&](Statement& row) { return run(row); }),
+              query("SELECT run, region_id, run_regions.gate_passed, "
+                    "ifnull(json_extract(body, '$.correction.status'), ''), "
+                    "ifnull(json_extract(body, '$.correction.workobject_from_movedworkobject'), ''), "
+                    "CASE run_regions.gate_passed WHEN 1 THEN '[]' "
+                    "ELSE ifnull(json_extract(body, '$.refusals'), '[]') END "
+                    "FROM run_regions JOIN runs ON run = number WHERE {} ORDER BY run, position",
+                    regions),
+              query("SELECT run, job_id, run_panels.gate_passed, "
+                    "ifnull(json_extract(body, '$.before'), '[]'), ifnull(json_extract(body, '$.after'), "
+                    "'[]'), ifnull(json_extract(body, '$.refusals'), '[]') "
+                    "FROM run_panels JOIN runs ON run = number WHERE {} ORDER BY run",
+                    panels),
+              query("SELECT run, spot_id, run_spots.status FROM run_spots JOIN runs ON run = number "
+                    "WHERE run_spots.status <> 'measured' AND {} ORDER BY run, position",
+                    spots)})
+            if (!done) return tl::unexpected(done.error());
+        return std::move(runs_);
+    }
+
+  private:
+    template <class Read>
+    Expected<void> query(const char* sql, const Read& read) {
+        auto s = db_.prepare(fmt::format(fmt::runtime(sql), kWhichRuns));
+        if (!s) return tl::unexpected(s.error());
+        s->bind(1, wanted_.since_utc);
+        s->bind(2, wanted_.until_utc);
+        return for_each_row(*s, read);
+    }
+
+    Expected<void> wrong(std::int64_t number) const {
+        return file_error("an entry of the project file cannot be read",
+                          Text("{}: run {}", db_.path(), number));
+    }
+
+    Expected<void> run(Statement& row) {
+        RunValues r;
+        r.number = row.integer(0);
+        r.part_id = row.text(1);
+        r.started_utc = row.text(2);
+        r.finished_utc = row.text(3);
+        r.push = row.integer(4) != 0;
+        const auto status = run_status_from(row.text(5));
+        if (!status) return wrong(r.number);
+        r.status = *status;
+        r.setup = row.integer(6);
+        at_.emplace(r.number, runs_.size());
+        runs_.push_back(std::move(r));
+        return {};
+    }
+
+    // Another process may have appended runs since the first query: those are left to the next reading.
+    RunValues* run_of(std::int64_t number) {
+        const auto at = at_.find(number);
+        return at == at_.end() ? nullptr : &runs_[at->second];
+    }
+
+    std::optional<std::vector<Text>> refusals(const std::string& stored) const {
+        const auto list = parse_json(stored, "refusals");
+        if (!list || !list->is_array()) return std::nullopt;
+        std::vector<Text> out;
+        for (const auto& item : *list) {
+            auto text = text_from_json(item);
+            if (!text) return std::nullopt;
+            out.push_back(std::move(*text));
+        }
+        return out;
+    }
+
+    Expected<void> region(Statement& row) {
+        RunValues* of = run_of(row.integer(0));
+        if (!of) return {};
+        RegionValue r;
+        r.region_id = row.text(1);
+        r.gate_passed = row.integer(2) != 0;
+        const std::string status = row.text(3), pose = row.text(4);
+        if (auto said = refusals(row.text(5)))
+            r.refusals = std::move(*said);
+        else
+            return wrong(of->number);
+        if (!status.empty()) {
+            for (const CorrectionStatus s : {CorrectionStatus::ok, CorrectionStatus::under_determined,
+                                             CorrectionStatus::over_limit, CorrectionStatus::not_converged})
+                if (to_string(s) == status) r.status = s;
+            if (!r.status) return wrong(of->number);
+        }
+        if (r.status == CorrectionStatus::ok || r.status == CorrectionStatus::over_limit) {
+            const auto document = parse_json(pose, "displacement");
+            auto parsed = document ? parse_pose(*document, "displacement")
+                                   : Expected<Pose>(tl::unexpected(document.error()));
+            if (!parsed) return wrong(of->number);
+            r.workobject_from_movedworkobject = *parsed;
+        }
+        of->regions.push_back(std::move(r));
+        return {};
+    }
+
+    static bool places(const std::string& stored, std::vector<PlaceValue>& out) {
+        const auto list = parse_json(stored, "places");
+        if (!list || !list->is_array()) return false;
+        for (const auto& item : *list) {
+            auto place = from_json_document<PanelMeasurement>(item, "place", kResult.archive);
+            if (!place) return false;
+            if (place->status == SpotStatus::measured)
+                out.push_back({place->place_id, place->gap_mm, place->flush_mm});
+        }
+        return true;
+    }
+
+    Expected<void> panel(Statement& row) {
+        RunValues* of = run_of(row.integer(0));
+        if (!of) return {};
+        PanelValue p;
+        p.job_id = row.text(1);
+        p.gate_passed = row.integer(2) != 0;
+        auto said = refusals(row.text(5));
+        if (!places(row.text(3), p.before) || !places(row.text(4), p.after) || !said)
+            return wrong(of->number);
+        p.refusals = std::move(*said);
+        of->panel = std::move(p);
+        return {};
+    }
+
+    Expected<void> spot(Statement& row) {
+        RunValues* of = run_of(row.integer(0));
+        if (!of) return {};
+        const std::string id = row.text(1), status = row.text(2);
+        for (const SpotStatus s : {SpotStatus::not_measured, SpotStatus::damaged_frame, SpotStatus::no_stripe,
+                                   SpotStatus::no_calibration, SpotStatus::no_feature})
+            if (to_string(s) == status) {
+                of->not_measured.emplace_back(id, s);
+                return {};
+            }
+        return wrong(of->number);
+    }
+
+    Database& db_;
+    const RunValuesWanted& wanted_;
+    std::vector<RunValues> runs_;
+    std::unordered_map<std::int64_t, std::size_t> at_;
+};
+
+}  // namespace
+
+Expected<std::vector<RunValues>> ProjectFile::run_values(const RunValuesWanted& wanted) const {
+    return ValuesReader(impl_->db, wanted).read();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,51 @@
+#pragma once
+// What many runs left behind, in numbers: read by queries from the file's rows, without loading runs, captures or
+// images: ten times as fast (tests/bench/bench_statistics.cpp).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/correction/correction.h"
+#include "core/text.h"
+#include "projects/model/run.h"
+
+namespace seamwright {
+
+struct RunValuesWanted {
+    // Of runs started then or later, and before; as utc_now() writes it. Empty: all.
+    std::string since_utc, until_utc;
+};
+
+struct RegionValue {
+    std::string region_id;
+    bool gate_passed = false;
+    // Absent where too little was measured to solve.
+    std::optional<CorrectionStatus> status;
+    Pose workobject_from_movedworkobject = Pose::Identity();  // of status ok and over_limit, else identity
+    std::vector<Text> refusals;                               // empty when passed
+};
+struct PlaceValue {
+    std::string place_id;
+    double gap_mm = 0, flush_mm = 0;
+};
+struct PanelValue {
+    std::string job_id;
+    bool gate_passed = false;
+    std::vector<PlaceValue> before, after;  // measured ones
+    std::vector<Text> refusals;
+};
+struct RunValues {
+    std::int64_t number = 0;
+    std::string part_id, started_utc, finished_utc;
+    bool push = false;
+    RunStatus status = RunStatus::ok;
+    std::int64_t setup = 0;
+    std::vector<RegionValue> regions;
+    std::optional<PanelValue> panel;
+    // Spots without a measurement.
+    std::vector<std::pair<std::string, SpotStatus>> not_measured;
+};
+
+}  // namespace seamwright

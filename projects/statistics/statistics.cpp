@@ -1,0 +1,405 @@
+#include "projects/statistics/statistics.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+
+#include "core/acceptance/distributions.h"
+#include "core/geometry/notation.h"
+#include "projects/proof/path_direction.h"
+
+namespace seamwright {
+namespace {
+
+constexpr std::size_t kLongestSaid = 200;
+
+bool only_signs(const std::string& pattern) {
+    bool inside = false;
+    for (const char c : pattern) {
+        inside = c == '{' || (inside && c != '}');
+        if (!inside && (std::isalpha(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) >= 0x80))
+            return false;
+    }
+    return true;
+}
+
+// "{}: {}" says nothing itself; what it joins does. Words of somebody else are their own pattern.
+const Text& telling(const Text& text) {
+    if (!only_signs(text.key())) return text;
+    for (auto argument = text.arguments().rbegin(); argument != text.arguments().rend(); ++argument)
+        if (const Text* inner = std::get_if<Text>(&*argument)) return telling(*inner);
+    return text;
+}
+
+std::string pattern_of(const Text& text) {
+    const Text& t = telling(text);
+    return only_signs(t.key()) ? t.english().substr(0, kLongestSaid) : t.key();
+}
+
+void count_refusal(std::vector<RefusalReason>& reasons, const Text& text, const std::string& utc) {
+    std::string pattern = pattern_of(text);
+    auto at = std::find_if(reasons.begin(), reasons.end(),
+                           [&](const RefusalReason& r) { return r.pattern == pattern; });
+    if (at == reasons.end()) at = reasons.insert(at, {std::move(pattern), telling(text), 0, {}});
+    ++at->count;
+    at->last_utc = utc;
+}
+
+template <class Counted>
+void most_frequent_first(std::vector<Counted>& list) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Counted& a, const Counted& b) { return a.count > b.count; });
+}
+
+ProcessLimits about(double middle, double half) {
+    if (!std::isfinite(half) || !(half > 0)) return {};
+    return {middle - half, middle + half};
+}
+
+// The newest file that has it says its limits and points.
+template <class Thing>
+const Thing* newest(const Production& p, std::vector<Thing> Project::*list, const std::string& id) {
+    for (auto file = p.files.rbegin(); file != p.files.rend(); ++file)
+        for (const Thing& thing : file->project.*list)
+            if (thing.id == id) return &thing;
+    return nullptr;
+}
+
+class Maker {
+  public:
+    explicit Maker(Statistics& statistics) : s_(statistics) {}
+
+    Expected<void> make() {
+        std::vector<std::string> regions, jobs;
+        for (const ProductionFile& file : s_.production.files) {
+            for (const Region& r : file.project.regions) add(regions, r.id);
+            for (const PanelJob& j : file.project.panel_jobs) add(jobs, j.id);
+        }
+        // What was renamed or deleted since has values without limits.
+        for (const ProductionRun& run : s_.production.runs) {
+            for (const RegionValue& r : run.values.regions) add(regions, r.region_id);
+            if (run.values.panel) add(jobs, run.values.panel->job_id);
+        }
+        const std::string& wanted = s_.options.region;
+        bool found = wanted.empty();
+        for (const auto& id : regions)
+            if (wanted.empty() || id == wanted) {
+                found = true;
+                if (auto done = region(id); !done) return done;
+            }
+        for (const auto& id : jobs)
+            if (wanted.empty() || id == wanted) {
+                found = true;
+                if (auto done = panel(id); !done) return done;
+            }
+        if (!found) {
+            regions.insert(regions.end(), jobs.begin(), jobs.end());
+            std::string ids;
+            for (const auto& id : regions) ids += (ids.empty() ? "" : ", ") + id;
+            return usage_error(Text("there is no region \"{}\"", wanted), "statistics",
+                               Text("there are: {}", ids));
+        }
+        counts();
+        cycle();
+        caveats();
+        return {};
+    }
+
+  private:
+    static void add(std::vector<std::string>& list, const std::string& id) {
+        if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
+    }
+
+    Expected<void> region(const std::string& id) {
+        RegionStatistics out;
+        out.id = id;
+        std::vector<std::size_t> used;
+        std::vector<Pose> found;
+        for (std::size_t i = 0; i < s_.production.runs.size(); ++i)
+            for (const RegionValue& r : s_.production.runs[i].values.regions) {
+                if (r.region_id != id) continue;
+                ++out.runs;
+                out.passed += r.gate_passed;
+                for (const Text& why : r.refusals)
+                    count_refusal(out.refusals, why, s_.production.runs[i].values.started_utc);
+                const bool over = !r.gate_passed && r.status == CorrectionStatus::over_limit;
+                out.over_limit += over;
+                if (!over && !(r.gate_passed && r.status == CorrectionStatus::ok)) {
+                    ++out.left_out;
+                    continue;
+                }
+                used.push_back(i);
+                found.push_back(r.workobject_from_movedworkobject);
+            }
+        const Region* setup = newest(s_.production, &Project::regions, id);
+        add_six(out, setup, found);
+        if (setup) add_path(out, *setup, found);
+        for (Characteristic& c : out.characteristics) c.runs = used;
+        return finish(std::move(out));
+    }
+
+    void add_six(RegionStatistics& out, const Region* setup, const std::vector<Pose>& found) const {
+        constexpr std::array<const char*, 6> keys{"x_mm", "y_mm", "z_mm", "a_deg", "b_deg", "c_deg"};
+        constexpr std::array<const char*, 6> names{"X", "Y", "Z", "A", "B", "C"};
+        for (std::size_t k = 0; k < 6; ++k) {
+            if (setup && !setup->free[k]) continue;
+            Characteristic c;
+            c.key = keys[k];
+            c.name = std::string(names[k]);
+            c.unit = k < 3 ? "mm" : "deg";
+            if (setup) c.limits = about(0, k < 3 ? setup->limits.translation_mm : setup->limits.rotation_deg);
+            for (const Pose& d : found) {
+                const KukaAbc abc = kuka_from_rotation(d.linear());
+                const double angles[] = {abc.a_deg, abc.b_deg, abc.c_deg};
+                c.values.push_back(k < 3 ? d.translation()[static_cast<Eigen::Index>(k)] : angles[k - 3]);
+            }
+            out.characteristics.push_back(std::move(c));
+        }
+    }
+
+    void add_path(RegionStatistics& out, const Region& region, const std::vector<Pose>& found) const {
+        for (auto file = s_.production.files.rbegin(); file != s_.production.files.rend(); ++file) {
+            const auto& regions = file->project.regions;
+            if (std::none_of(regions.begin(), regions.end(),
+                             [&](const Region& r) { return r.id == region.id; }))
+                continue;
+            double worst = -1;
+            std::size_t worst_at = 0;
+            for (const PathDirection& at : path_directions(file->project, region)) {
+                Characteristic c;
+                c.key = at.spot_id + (at.normal ? "_normal_mm" : "_binormal_mm");
+                c.name =
+                    at.normal ? Text("spot {}, normal", at.spot_id) : Text("spot {}, binormal", at.spot_id);
+                c.path_point = true;
+                if (s_.options.tolerance_mm) c.limits = about(0, *s_.options.tolerance_mm / 2);
+                double square = 0;
+                for (const Pose& d : found) {
+                    c.values.push_back(at.value(d));
+                    square += c.values.back() * c.values.back();
+                }
+                if (square > worst) worst = square, worst_at = out.characteristics.size();
+                out.characteristics.push_back(std::move(c));
+            }
+            if (worst >= 0) out.characteristics[worst_at].worst_point = true;
+            return;
+        }
+    }
+
+    Expected<void> panel(const std::string& id) {
+        RegionStatistics out;
+        out.id = id;
+        out.panel = true;
+        const PanelJob* job = newest(s_.production, &Project::panel_jobs, id);
+        std::map<std::string, std::array<Characteristic, 2>> places;
+        for (std::size_t i = 0; i < s_.production.runs.size(); ++i) {
+            const RunValues& run = s_.production.runs[i].values;
+            if (!run.panel || run.panel->job_id != id) continue;
+            ++out.runs;
+            out.passed += run.panel->gate_passed;
+            for (const Text& why : run.panel->refusals) count_refusal(out.refusals, why, run.started_utc);
+            out.left_out += run.panel->after.empty();
+            for (const PlaceValue& place : run.panel->after) {
+                auto& two = places[place.place_id];
+                for (Characteristic& c : two) c.runs.push_back(i);
+                two[0].values.push_back(place.gap_mm);
+                two[1].values.push_back(place.flush_mm);
+            }
+        }
+        for (auto& [place_id, two] : places) {
+            const PanelPlace* taught = nullptr;
+            if (job)
+                for (const PanelPlace& p : job->places)
+                    if (p.id == place_id) taught = &p;
+            two[0].key = place_id + "_gap_mm";
+            two[0].name = Text("place {}, gap", place_id);
+            two[1].key = place_id + "_flush_mm";
+            two[1].name = Text("place {}, flush", place_id);
+            if (taught) {
+                two[0].nominal = taught->gap_mm;
+                two[0].limits = about(taught->gap_mm, job->gap_tolerance_mm);
+                two[1].nominal = taught->flush_mm;
+                two[1].limits = about(taught->flush_mm, job->flush_tolerance_mm);
+            }
+            for (Characteristic& c : two) out.characteristics.push_back(std::move(c));
+        }
+        return finish(std::move(out));
+    }
+
+    Expected<void> finish(RegionStatistics out) {
+        most_frequent_first(out.refusals);
+        for (Characteristic& c : out.characteristics)
+            if (!c.values.empty())
+                if (auto done = judge(c); !done) return done;
+        std::erase_if(out.characteristics, [](const Characteristic& c) { return c.values.empty(); });
+        s_.regions.push_back(std::move(out));
+        return {};
+    }
+
+    Expected<void> judge(Characteristic& c) const {
+        auto summary = summarise_process(c.values, c.limits);
+        if (!summary) return tl::unexpected(summary.error());
+        c.summary = *summary;
+        std::vector<StudyValue> row;
+        for (const double v : c.values) row.push_back({{}, {}, static_cast<long>(row.size()), v, {}, {}});
+        auto groups = subgroups_of(row, s_.options.subgroup);
+        if (!groups) return tl::unexpected(groups.error());
+        // Without scatter, or with one group, there is no chart, and the table shows why.
+        if (auto chart = stability_study(groups->groups)) c.chart = std::move(*chart);
+        if (auto ewma = ewma_chart(c.values, c.summary.mean, c.summary.sigma_within))
+            c.ewma = std::move(*ewma);
+        std::vector<double> days;
+        for (const std::size_t run : c.runs) days.push_back(s_.production.runs[run].day);
+        auto trend = trend_of(days, c.values, c.limits);
+        if (!trend) return tl::unexpected(trend.error());
+        c.trend = *trend;
+        say_caveats(c);
+        return {};
+    }
+
+    static void say_caveats(Characteristic& c) {
+        const ProcessSummary& r = c.summary;
+        if (r.n < kCapabilityValues)
+            c.caveats.push_back(
+                Text("{} values are few: an index is a hint below {}", r.n, kCapabilityValues));
+        if (r.correlated)
+            c.caveats.push_back(
+                Text("parts that follow each other are alike (correlation {:.2f}): the limits of "
+                     "the indices are wider for it, the charts alarm more often than by chance, "
+                     "Cp and Cpk flatter",
+                     r.correlation));
+        if (r.not_normal())
+            c.caveats.push_back(
+                c.limits.any() && r.by_quantiles
+                    ? Text("the values are not normally distributed: read the indices by quantiles")
+                    : Text("the values are not normally distributed: shares beyond the limits do not follow "
+                           "from the indices"));
+        if (c.trend && c.trend->significant)
+            c.caveats.push_back("the values wander with time: an index describes no state that stays");
+    }
+
+    void counts() {
+        std::vector<UnmeasuredSpot>& list = s_.unmeasured;
+        for (const ProductionRun& run : s_.production.runs) {
+            ++s_.by_status[static_cast<std::size_t>(run.values.status)];
+            for (const auto& missing : run.values.not_measured) {
+                const auto& [spot, status] = missing;
+                auto at = std::find_if(list.begin(), list.end(), [&](const UnmeasuredSpot& u) {
+                    return u.spot_id == missing.first && u.status == missing.second;
+                });
+                if (at == list.end()) at = list.insert(at, {spot, status, 0});
+                ++at->count;
+            }
+        }
+        most_frequent_first(list);
+    }
+
+    void cycle() {
+        std::vector<double> took, between;
+        for (std::size_t i = 0; i < s_.production.runs.size(); ++i) {
+            const ProductionRun& run = s_.production.runs[i];
+            if (i > 0) between.push_back(86400 * (run.day - s_.production.runs[i - 1].day));
+            if (run.values.status == RunStatus::device) continue;
+            const auto end = utc_milliseconds(run.values.finished_utc);
+            const auto start = utc_milliseconds(run.values.started_utc);
+            // A clock that was set back during a run tells no time.
+            if (end && start && *end >= *start) took.push_back(static_cast<double>(*end - *start) / 1e3);
+        }
+        if (took.empty()) return;
+        CycleTime c;
+        c.n = static_cast<int>(took.size());
+        if (took.size() > 1) {
+            const Moments m = moments(took);
+            c.mean_s = m.mean;
+            c.s_s = m.s;
+        } else {
+            c.mean_s = took.front();
+        }
+        std::sort(took.begin(), took.end());
+        std::sort(between.begin(), between.end());
+        const std::size_t last = took.size() - 1;
+        c.median_s = took[last / 2];
+        c.p95_s = took[(95 * last + 99) / 100];
+        c.longest_s = took.back();
+        if (!between.empty()) c.between_s = between[(between.size() - 1) / 2];
+        s_.cycle = c;
+    }
+
+    void caveats() {
+        const Production& p = s_.production;
+        std::vector<Text>& say = s_.caveats;
+        if (p.proofs > 0)
+            say.push_back(
+                Text("Runs of proofs (unmoved part, known shifts) that are left out: {}.", p.proofs));
+        if (p.studies > 0)
+            say.push_back(Text("Runs of studies of the measuring process that are left out: {}.", p.studies));
+        if (p.unfinished > 0)
+            say.push_back(Text("Cancelled and interrupted runs that are left out: {}.", p.unfinished));
+        if (p.setups > p.files.size())
+            say.push_back(
+                Text("The runs were made with {} different setups: a step may be a change of the "
+                     "project and not of the parts.",
+                     p.setups));
+        int left_out = 0;
+        for (const RegionStatistics& r : s_.regions) left_out += r.panel ? 0 : r.left_out;
+        if (left_out > 0)
+            say.push_back(
+                Text("Refused corrections without a value here: {}. What the parts were like that "
+                     "could not be measured is not known.",
+                     left_out));
+        if (std::any_of(s_.regions.begin(), s_.regions.end(),
+                        [](const RegionStatistics& r) { return !r.panel; }))
+            say.push_back(
+                "The limits of a displacement are the safety gate's: Cpk says how far the parts are from "
+                "a refusal, not how good the bead is.");
+    }
+
+    Statistics& s_;
+};
+
+}  // namespace
+
+std::string RefusalReason::said(Language language) const {
+    if (only_signs(first.key())) return pattern;
+    const std::string words =
+        language == Language::german ? std::string(german_of(pattern).value_or(pattern)) : pattern;
+    std::string out;
+    bool inside = false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const char c = words[i];
+        if (!inside && i + 1 < words.size() && (c == '{' || c == '}') && words[i + 1] == c) {
+            out += c;
+            ++i;
+        } else if (c == '{') {
+            inside = true;
+            out += "…";
+        } else if (c == '}') {
+            inside = false;
+        } else if (!inside) {
+            out += c;
+        }
+    }
+    return out;
+}
+
+Expected<Statistics> production_statistics(const std::vector<std::filesystem::path>& files,
+                                           const StatisticsOptions& options) {
+    if (files.empty()) return usage_error("no file is given", "statistics", "name FILE.seam");
+    if (options.subgroup < 1 || options.subgroup > 25)
+        return usage_error(Text("a subgroup of {} values is none", options.subgroup), "statistics",
+                           "give 1 to 25");
+    if (options.tolerance_mm && !(*options.tolerance_mm > 0 && std::isfinite(*options.tolerance_mm)))
+        return usage_error("the tolerance is not above 0", "statistics", "give T = USL - LSL in mm");
+    const RunValuesWanted& when = options.runs;
+    if (!when.since_utc.empty() && !when.until_utc.empty() && when.until_utc <= when.since_utc)
+        return usage_error("the end is not after the beginning", "statistics", "give --since before --until");
+    auto production = production_of(files, options.runs);
+    if (!production) return tl::unexpected(production.error());
+    Statistics s;
+    s.options = options;
+    s.production = std::move(*production);
+    if (auto made = Maker(s).make(); !made) return tl::unexpected(made.error());
+    return s;
+}
+
+}  // namespace seamwright

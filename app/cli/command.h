@@ -58,6 +58,7 @@ void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, mirror
 void add_import(CommandLine& line);
 void add_drawing(CommandLine& line);
+void add_propose(CommandLine& line);
 void add_run(CommandLine& line);
 void add_record(CommandLine& line);
 void add_proof(CommandLine& line);  // zero-shift, known-shift

@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
     add_project_commands(line);
     add_import(line);
     add_drawing(line);
+    add_propose(line);
     add_run(line);
     add_record(line);
     add_proof(line);

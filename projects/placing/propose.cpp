@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devices/simulated/scene/random.h"
 #include "projects/placing/expected_profile.h"
 #include "projects/proof/forecast.h"
 #include "projects/station/measure.h"
@@ -165,7 +166,7 @@ class Proposer {
             spot.base_from_flange = given_.part.base_from_workobject * a.workobject_from_sensor *
                                     calibration_->flange_from_sensor.inverse();
             spot.feature = seen->recipe;
-            spot.reference_mm = {seen->point_mm.x(), 0, seen->point_mm.y()};
+            spot.reference_mm = Eigen::Vector3d(seen->point_mm.x(), 0, seen->point_mm.y());
             spot.reference_profile = seen->profile;
             spot.curve = curve_at(chain_, a, seen->point_mm);
             project_.spots.push_back(std::move(spot));

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "devices/cell_server.h"
+#include "devices/drawing/door_step.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/tables/path_csv.h"
@@ -410,6 +411,10 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
                 {0, {}, 0, frozen_contour(spot.id, spot.alignment, spot.judged_by)}, project);
             !kept)
             return tl::unexpected(kept.error());
+    if (auto drawing = door_step(); !drawing)
+        return tl::unexpected(drawing.error());
+    else if (auto written = write_text_file(options.folder / "door.step", *drawing); !written)
+        return tl::unexpected(written.error());
     if (auto written = write_text_file(options.folder / "bead.csv", taught_bead(world)); !written)
         return tl::unexpected(written.error());
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller

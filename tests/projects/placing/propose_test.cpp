@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "devices/drawing/door_step.h"
 #include "projects/placing/expected_profile.h"
@@ -31,7 +33,7 @@ const World& world() {
         w.project.robots[0].arrival_covariance = arrival;
         const std::string text = *door_step();
         DrawingOptions options;
-        options.chord_mm = 0.02;
+        options.chord_mm = 0.05;
         w.drawing = *read_drawing(std::as_bytes(std::span(text.data(), text.size())), "door.step", options);
         for (const DrawingEdge& e : w.drawing.edges)
             if (e.fold_deg > 60 && !e.convex && e.length_mm > 300 &&
@@ -78,6 +80,7 @@ std::optional<ContourCurve> curve_by_hand(const DoorSpot& door, const Eigen::Vec
 PlacedSet by_hand(const std::vector<std::string>& ids, const ProposeOptions& o) {
     const World& w = world();
     Project project = w.project;
+    const Spot habits = project.spots.front();
     project.spots.clear();
     Region region;
     region.id = "hand";
@@ -91,6 +94,9 @@ PlacedSet by_hand(const std::vector<std::string>& ids, const ProposeOptions& o) 
                              11, {door.edge_mm.x(), door.edge_mm.z()});
         if (!seen) continue;
         Spot spot;
+        spot.sigma_mm = habits.sigma_mm;
+        spot.jitter_mm = habits.jitter_mm;
+        spot.stop_at_trigger = habits.stop_at_trigger;
         spot.id = door.id;
         spot.sensor_id = "A";
         spot.robot_id = "R1";
@@ -163,7 +169,9 @@ TEST(Propose, SpotsSeeTheirFeatureWhereTheDrawingHasItAndMayBeLost) {
 }
 
 TEST(Propose, IsTheSameWhereverTheRobotStands) {
-    const ProposeOptions o = quick(5, 5, 0.3);
+    ProposeOptions o = quick(5, 5, 0.3);
+    o.step_mm = 200;
+    o.cone_deg = 0;
     Project other = world().project;
     other.part.base_from_workobject =
         make_pose(rotation_exp({0, 0, 1.2}), {-500, 2000, 300}) * other.part.base_from_workobject;

@@ -57,6 +57,8 @@ void add_calibrate(CommandLine& line);
 void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, mirror
 void add_import(CommandLine& line);
+void add_drawing(CommandLine& line);
+void add_propose(CommandLine& line);
 void add_run(CommandLine& line);
 void add_service(CommandLine& line);
 void add_record(CommandLine& line);

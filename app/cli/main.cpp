@@ -6,6 +6,8 @@ int main(int argc, char** argv) {
     add_demo(line);
     add_project_commands(line);
     add_import(line);
+    add_drawing(line);
+    add_propose(line);
     add_run(line);
     add_service(line);
     add_record(line);

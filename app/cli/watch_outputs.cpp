@@ -15,9 +15,8 @@ Expected<std::unique_ptr<ShiftReports>> open_reports(const WatchOutputArguments&
                                                      const std::filesystem::path& file) {
     if (a.report_every.empty()) return std::unique_ptr<ShiftReports>();
     ShiftReportOptions options;
-    auto every = seconds_argument(a.report_every, "--report-every");
-    if (!every) return tl::unexpected(every.error());
-    options.every_s = *every;
+    SEAM_TRY(auto every, seconds_argument(a.report_every, "--report-every"));
+    options.every_s = every;
     // Hours and minutes as a time of some day.
     const auto first = utc_seconds("1970-01-01T" + a.report_from + ":00Z");
     if (!first || a.report_from.size() != 5)
@@ -40,9 +39,8 @@ Expected<std::unique_ptr<ShiftReports>> open_reports(const WatchOutputArguments&
 // The first line of the file: what stands on a command line everybody on the computer can read.
 Expected<std::string> read_token(const std::string& path) {
     if (path.empty()) return std::string();
-    auto text = read_text_file(path);
-    if (!text) return tl::unexpected(text.error());
-    std::string token = text->substr(0, text->find('\n'));
+    SEAM_TRY(auto text, read_text_file(path));
+    std::string token = text.substr(0, text.find('\n'));
     while (!token.empty() && (token.back() == '\r' || token.back() == ' ')) token.pop_back();
     return token;
 }
@@ -87,21 +85,19 @@ void add_watch_outputs(CLI::App* command, CLI::Option* watching, WatchOutputArgu
 Expected<WatchOutputs> WatchOutputs::open(const WatchOutputArguments& a, Station& station, bool push) {
     WatchOutputs out;
     if (!a.status.empty()) {
-        auto token = read_token(a.status_token);
-        if (!token) return tl::unexpected(token.error());
-        if (!a.status_token.empty() && token->empty())
+        SEAM_TRY(auto token, read_token(a.status_token));
+        if (!a.status_token.empty() && token.empty())
             return usage_error("the first line of the file is empty", a.status_token,
                                "write the token into it");
         out.board_ = std::make_unique<StatusBoard>(station.project().name, kProgram, push);
-        auto server = StatusServer::start(*out.board_, {a.status, *token, *language_from(a.language)});
-        if (!server) return tl::unexpected(server.error());
-        out.server_ = std::make_unique<StatusServer>(std::move(*server));
+        SEAM_TRY(auto server,
+                 StatusServer::start(*out.board_, {a.status, token, *language_from(a.language)}));
+        out.server_ = std::make_unique<StatusServer>(std::move(server));
         fmt::print(stderr, "status page: http://{}:{}/\n", a.status.substr(0, a.status.rfind(':')),
                    out.server_->port());
     }
-    auto reports = open_reports(a, station.file().path());
-    if (!reports) return tl::unexpected(reports.error());
-    out.reports_ = std::move(*reports);
+    SEAM_TRY(auto reports, open_reports(a, station.file().path()));
+    out.reports_ = std::move(reports);
     return out;
 }
 

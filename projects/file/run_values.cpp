@@ -17,8 +17,7 @@ class ValuesReader {
     ValuesReader(Database& db, const RunValuesWanted& wanted) : db_(db), wanted_(wanted) {}
 
     Expected<std::vector<RunValues>> read() {
-        for (const char* table : {"runs", "run_regions", "run_panels"})
-            if (auto sound = check_rows(db_, table); !sound) return tl::unexpected(sound.error());
+        for (const char* table : {"runs", "run_regions", "run_panels"}) SEAM_OK(check_rows(db_, table));
         const auto regions = [&](Statement& row) { return region(row); };
         const auto panels = [&](Statement& row) { return panel(row); };
         const auto spots = [&](Statement& row) { return spot(row); };
@@ -49,11 +48,10 @@ class ValuesReader {
   private:
     template <class Read>
     Expected<void> query(const char* sql, const Read& read) {
-        auto s = db_.prepare(fmt::format(fmt::runtime(sql), kWhichRuns));
-        if (!s) return tl::unexpected(s.error());
-        s->bind(1, wanted_.since_utc);
-        s->bind(2, wanted_.until_utc);
-        return for_each_row(*s, read);
+        SEAM_TRY(auto s, db_.prepare(fmt::format(fmt::runtime(sql), kWhichRuns)));
+        s.bind(1, wanted_.since_utc);
+        s.bind(2, wanted_.until_utc);
+        return for_each_row(s, read);
     }
 
     Expected<void> wrong(std::int64_t number) const {

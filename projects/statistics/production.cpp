@@ -7,7 +7,7 @@
 #include <ctime>
 #include <set>
 
-#include "projects/acceptance/live_study.h"
+#include "projects/acceptance/study/live_study.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 
@@ -45,17 +45,13 @@ class Purposes {
 };
 
 Expected<void> add_file(Production& p, const std::filesystem::path& path, const RunValuesWanted& wanted) {
-    auto file = ProjectFile::open(path, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto evidence = file->evidence();
-    if (!evidence) return tl::unexpected(evidence.error());
-    auto runs = file->run_values(wanted);
-    if (!runs) return tl::unexpected(runs.error());
-    const Purposes purposes(*evidence);
+    SEAM_TRY(auto file, ProjectFile::open(path, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto evidence, file.evidence());
+    SEAM_TRY(auto runs, file.run_values(wanted));
+    const Purposes purposes(evidence);
     std::set<std::int64_t> setups;
-    for (RunValues& run : *runs) {
+    for (RunValues& run : runs) {
         const auto started = utc_milliseconds(run.started_utc);
         if (!started)
             return file_error("a run has no valid time", Text("{}: run {}", path.string(), run.number));
@@ -72,7 +68,7 @@ Expected<void> add_file(Production& p, const std::filesystem::path& path, const 
         p.runs.push_back({p.files.size(), static_cast<double>(*started) / 86400e3, std::move(run)});
     }
     p.setups += setups.size();
-    p.files.push_back({path, std::move(*project)});
+    p.files.push_back({path, std::move(project)});
     return {};
 }
 
@@ -87,7 +83,7 @@ Expected<Production> production_of(const std::vector<std::filesystem::path>& fil
         const auto real = std::filesystem::weakly_canonical(path, ignored);
         if (!seen.insert(real).second)
             return usage_error("the file is given twice", path.string(), "give each file once");
-        if (auto added = add_file(p, path, wanted); !added) return tl::unexpected(added.error());
+        SEAM_OK(add_file(p, path, wanted));
     }
     std::stable_sort(p.runs.begin(), p.runs.end(),
                      [](const ProductionRun& a, const ProductionRun& b) { return a.day < b.day; });

@@ -44,8 +44,7 @@ std::filesystem::path shift_report_path(const Shift& shift, const ShiftReportOpt
 Expected<std::filesystem::path> write_shift_report(const Shift& shift, const ShiftReportOptions& options) {
     StatisticsOptions wanted = options.statistics;
     wanted.runs = {utc_text(shift.from_s), utc_text(shift.until_s)};
-    auto statistics = production_statistics({options.file}, wanted);
-    if (!statistics) return tl::unexpected(statistics.error());
+    SEAM_TRY(auto statistics, production_statistics({options.file}, wanted));
     std::error_code error;
     std::filesystem::create_directories(options.folder, error);
     if (error)
@@ -54,10 +53,9 @@ Expected<std::filesystem::path> write_shift_report(const Shift& shift, const Shi
     const auto path = shift_report_path(shift, options);
     auto json_path = path;
     json_path.replace_extension(".json");
-    if (auto done = write_text_file(json_path, statistics_json(*statistics).dump(2) + "\n"); !done)
-        return tl::unexpected(done.error());
-    const auto page = statistics_page(*statistics, options.language, options.program);
-    if (auto done = write_text_file(path, page.html()); !done) return tl::unexpected(done.error());
+    SEAM_OK(write_text_file(json_path, statistics_json(statistics).dump(2) + "\n"));
+    const auto page = statistics_page(statistics, options.language, options.program);
+    SEAM_OK(write_text_file(path, page.html()));
     return path;
 }
 

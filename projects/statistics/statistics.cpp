@@ -237,22 +237,19 @@ class Maker {
     }
 
     Expected<void> judge(Characteristic& c) const {
-        auto summary = summarise_process(c.values, c.limits);
-        if (!summary) return tl::unexpected(summary.error());
-        c.summary = *summary;
+        SEAM_TRY(auto summary, summarise_process(c.values, c.limits));
+        c.summary = summary;
         std::vector<StudyValue> row;
         for (const double v : c.values) row.push_back({{}, {}, static_cast<long>(row.size()), v, {}, {}});
-        auto groups = subgroups_of(row, s_.options.subgroup);
-        if (!groups) return tl::unexpected(groups.error());
+        SEAM_TRY(auto groups, subgroups_of(row, s_.options.subgroup));
         // Without scatter, or with one group, there is no chart, and the table shows why.
-        if (auto chart = stability_study(groups->groups)) c.chart = std::move(*chart);
+        if (auto chart = stability_study(groups.groups)) c.chart = std::move(*chart);
         if (auto ewma = ewma_chart(c.values, c.summary.mean, c.summary.sigma_within))
             c.ewma = std::move(*ewma);
         std::vector<double> days;
         for (const std::size_t run : c.runs) days.push_back(s_.production.runs[run].day);
-        auto trend = trend_of(days, c.values, c.limits);
-        if (!trend) return tl::unexpected(trend.error());
-        c.trend = *trend;
+        SEAM_TRY(auto trend, trend_of(days, c.values, c.limits));
+        c.trend = trend;
         say_caveats(c);
         return {};
     }
@@ -393,12 +390,11 @@ Expected<Statistics> production_statistics(const std::vector<std::filesystem::pa
     const RunValuesWanted& when = options.runs;
     if (!when.since_utc.empty() && !when.until_utc.empty() && when.until_utc <= when.since_utc)
         return usage_error("the end is not after the beginning", "statistics", "give --since before --until");
-    auto production = production_of(files, options.runs);
-    if (!production) return tl::unexpected(production.error());
+    SEAM_TRY(auto production, production_of(files, options.runs));
     Statistics s;
     s.options = options;
-    s.production = std::move(*production);
-    if (auto made = Maker(s).make(); !made) return tl::unexpected(made.error());
+    s.production = std::move(production);
+    SEAM_OK(Maker(s).make());
     return s;
 }
 

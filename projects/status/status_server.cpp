@@ -246,17 +246,16 @@ int StatusServer::port() const {
 }
 
 Expected<StatusServer> StatusServer::start(const StatusBoard& board, const StatusServerOptions& options) {
-    const auto endpoint = endpoint_of(options.address);
-    if (!endpoint) return tl::unexpected(endpoint.error());
-    const bool loopback = endpoint->address().is_loopback();
+    SEAM_TRY(const auto endpoint, endpoint_of(options.address));
+    const bool loopback = endpoint.address().is_loopback();
     if ((!loopback || !options.token.empty()) && options.token.size() < kShortestToken)
         return usage_error(Text("{} needs a token of at least {} signs", options.address, kShortestToken),
                            "--status", "give --status-token FILE, or an address of this computer, 127.0.0.1");
     auto impl = std::make_unique<Impl>(board, options, loopback);
     beast::error_code error;
-    impl->acceptor.open(endpoint->protocol(), error);
+    impl->acceptor.open(endpoint.protocol(), error);
     if (!error) impl->acceptor.set_option(asio::socket_base::reuse_address(true), error);
-    if (!error) impl->acceptor.bind(*endpoint, error);
+    if (!error) impl->acceptor.bind(endpoint, error);
     if (!error) impl->acceptor.listen(kMostConnections, error);
     if (error)
         return device_error(Text("the status page cannot be served: {}", error.message()), options.address,

@@ -84,20 +84,18 @@ Expected<std::string> unit_text(const ServiceArguments& a, const std::filesystem
 }
 
 Expected<Answer> service_command(const ServiceArguments& a) {
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
+    SEAM_OK(ProjectFile::open(a.file, FileAccess::read_only));
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error)
         return file_error(Text("where this program lies is not known: {}", error.message()),
                           "/proc/self/exe");
-    auto text = unit_text(a, program);
-    if (!text) return tl::unexpected(text.error());
+    SEAM_TRY(auto text, unit_text(a, program));
     Answer answer;
-    answer.json = {{"status", "ok"}, {"unit", *text}};
-    answer.text = *text;
+    answer.json = {{"status", "ok"}, {"unit", text}};
+    answer.text = text;
     if (!a.out.empty()) {
-        if (auto done = write_text_file(a.out, *text); !done) return tl::unexpected(done.error());
+        SEAM_OK(write_text_file(a.out, text));
         answer.json["file"] = a.out;
         answer.text = a.out + " written; then: systemctl daemon-reload && systemctl enable --now " +
                       std::filesystem::path(a.out).filename().string() + "\n";

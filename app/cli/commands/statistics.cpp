@@ -53,19 +53,17 @@ Expected<Answer> statistics_command(const StatisticsArguments& given) {
     for (const auto& [text, option, to] : {std::tuple{&a.since, "--since", &a.options.runs.since_utc},
                                            std::tuple{&a.until, "--until", &a.options.runs.until_utc}}) {
         if (text->empty()) continue;
-        auto time = time_argument(*text, option, now);
-        if (!time) return tl::unexpected(time.error());
-        *to = *time;
+        SEAM_TRY(auto time, time_argument(*text, option, now));
+        *to = time;
     }
     if (a.tolerance->count() > 0) a.options.tolerance_mm = a.tolerance_mm;
     const std::vector<std::filesystem::path> files(a.files.begin(), a.files.end());
-    auto statistics = production_statistics(files, a.options);
-    if (!statistics) return tl::unexpected(statistics.error());
+    SEAM_TRY(auto statistics, production_statistics(files, a.options));
     Answer answer;
-    answer.json = statistics_json(*statistics);
-    answer.text = statistics_page(*statistics, Language::english, "Seamwright " SEAMWRIGHT_VERSION).text();
-    if (auto done = write_files(a, *statistics, answer); !done) return tl::unexpected(done.error());
-    answer.exit_code = statistics->production.runs.empty() ? kExitVerdict : kExitOk;
+    answer.json = statistics_json(statistics);
+    answer.text = statistics_page(statistics, Language::english, "Seamwright " SEAMWRIGHT_VERSION).text();
+    SEAM_OK(write_files(a, statistics, answer));
+    answer.exit_code = statistics.production.runs.empty() ? kExitVerdict : kExitOk;
     return answer;
 }
 

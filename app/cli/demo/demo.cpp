@@ -8,6 +8,7 @@
 
 #include "core/profile/taught_profile.h"
 #include "devices/cell_server.h"
+#include "devices/drawing/door_step.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/exchange/tables/path_csv.h"
@@ -378,6 +379,8 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
                 {0, {}, 0, frozen_contour(spot.id, spot.alignment, spot.judged_by)}, project);
             !kept)
             return tl::unexpected(kept.error());
+    SEAM_TRY(const auto drawing, door_step());
+    SEAM_OK(write_text_file(options.folder / "door.step", drawing));
     SEAM_OK(write_text_file(options.folder / "bead.csv", taught_bead(world)));
     world.store_program(measuring_program(project, kRobot));  // loaded on the controller
     world.set_mode(RobotMode::automatic);

@@ -1,0 +1,16 @@
+#pragma once
+// A drawing read in a process of its own: OpenCASCADE follows some damaged files into memory that is not there, and what
+// it is doing cannot be stopped everywhere. So it ends alone, and the answer is a sentence.
+
+#include <functional>
+
+#include "devices/drawing/drawing.h"
+
+namespace seamwright::drawing {
+
+// `read` runs in a child with options whose progress comes back here; cancelling ends the child. Error besides those of
+// `read`: (file) the child ended without an answer, (device) no child could be made, (usage) cancelled.
+Expected<Drawing> read_apart(const std::string& name, const DrawingOptions& options,
+                             const std::function<Expected<Drawing>(const DrawingOptions&)>& read);
+
+}  // namespace seamwright::drawing

@@ -1,0 +1,264 @@
+#include "projects/placing/propose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/simulated/scene/random.h"
+#include "projects/placing/expected_profile.h"
+#include "projects/proof/forecast.h"
+#include "projects/station/measure.h"
+
+namespace seamwright {
+namespace {
+
+constexpr int kUsualPlaces = 60;
+constexpr double kNearestMm = 10;      // of two places
+constexpr double kCurveTravelMm = 20;  // of the edge that the spot's curve is fitted to
+constexpr const char* kRegion = "proposed";
+
+Eigen::Vector3d middle_normal(const DrawingPoint& p) {
+    Eigen::Vector3d n = p.normal_left + p.normal_right;
+    if (n.norm() < 0.1)
+        n = p.normal_left.cross(p.tangent) - p.tangent.cross(p.normal_right);  // a knife's edge
+    n -= p.tangent.dot(n) * p.tangent;
+    return n.normalized();
+}
+
+struct Attitude {
+    double arc_mm = 0, turned_deg = 0;
+    int place = 0;
+    Pose workobject_from_sensor = Pose::Identity();
+};
+
+std::vector<Attitude> attitudes(const EdgeChain& chain, const ProposeOptions& o, int& places) {
+    const double length = chain.length_mm();
+    const double step = o.step_mm > 0 ? o.step_mm : std::max(kNearestMm, length / kUsualPlaces);
+    places = std::max(1, static_cast<int>(length / step));
+    std::vector<double> turns{0};
+    if (o.cone_deg > 0) turns = {-o.cone_deg, 0, o.cone_deg};
+    std::vector<Attitude> all;
+    for (int i = 0; i < places; ++i) {
+        const double arc = length * (i + 0.5) / places;
+        const DrawingPoint p = chain.at(arc);
+        for (const double turn : turns)
+            for (const double way : {1.0, -1.0}) {
+                Eigen::Matrix3d axes;
+                axes.col(1) = way * p.tangent;
+                axes.col(2) = rotation_exp(rad_from_deg(turn) * p.tangent) * middle_normal(p);
+                axes.col(0) = axes.col(1).cross(axes.col(2));
+                all.push_back({arc, turn, i, make_pose(axes, p.point_mm)});
+            }
+    }
+    return all;
+}
+
+std::optional<ContourCurve> curve_at(const EdgeChain& chain, const Attitude& a,
+                                     const Eigen::Vector2d& reference) {
+    const Pose sensor_from_workobject = a.workobject_from_sensor.inverse();
+    std::vector<TravelPoint> travel;
+    for (double s = -kCurveTravelMm; s <= kCurveTravelMm; s += 2) {
+        const double arc = a.arc_mm + s;
+        if (!chain.closed && (arc < 0 || arc > chain.length_mm())) continue;
+        const Eigen::Vector3d p = sensor_from_workobject * chain.at(arc).point_mm;
+        travel.push_back({p.y(), p.x() + reference.x(), p.z() + reference.y()});
+    }
+    auto curve = fit_contour_curve(travel);
+    if (!curve) return std::nullopt;
+    return *curve;
+}
+
+class Proposer {
+  public:
+    Proposer(const Project& project, const Drawing& drawing, const ProposeOptions& options)
+        : given_(project), drawing_(drawing), o_(options) {}
+
+    Expected<Proposal> propose() {
+        SEAM_OK(prepare());
+        SEAM_OK(look());
+        SEAM_TRY(auto task, placing_task());
+        SEAM_TRY(auto placing, SpotPlacing::make(std::move(task)));
+        if (placing.places() < o_.fewest)
+            return input_error(Text("a feature is seen at {} places along edge {} only, {} are needed",
+                                    placing.places(), o_.edge, o_.fewest),
+                               drawing_.source,
+                               "choose another edge, or let the sensor turn further (--cone-deg)");
+        tell(0.7, "choosing");
+        out_.set = placing.propose(o_.fewest, o_.most);
+        const int k = static_cast<int>(out_.set.chosen.size());
+        tell(0.9, "bounding");
+        out_.bound_mm = placing.bound_mm(k);
+        if (k > 1) out_.bound_of_fewer_mm = placing.bound_mm(k - 1);
+        out_.along_mm = placing.along_bead(out_.set.chosen);
+        out_.places = placing.places();
+        out_.candidates = static_cast<int>(project_.spots.size());
+        take_spots();
+        return std::move(out_);
+    }
+
+  private:
+    void tell(double share, const Text& what) const {
+        if (o_.progress) o_.progress(share, what);
+    }
+
+    Expected<void> prepare() {
+        if (!(o_.three_sigma_mm > 0) || !std::isfinite(o_.three_sigma_mm))
+            return usage_error("the wanted 3 sigma is not above 0 mm");
+        if (o_.fewest < 1 || o_.most < o_.fewest || o_.most > 40)
+            return usage_error("the number of spots is not from 1 to 40");
+        if (!(o_.noise_mm > 0 && o_.noise_mm <= 1)) return usage_error("the noise is not from 0 to 1 mm");
+        if (!(o_.cone_deg >= 0 && o_.cone_deg <= 60))
+            return usage_error("the cone is not from 0 to 60 degrees");
+        if (!(o_.step_mm >= 0 && o_.step_mm <= 1000) || (o_.step_mm > 0 && o_.step_mm < 1))
+            return usage_error("the step between places is not from 1 to 1000 mm");
+        if (given_.sensors.empty() || given_.robots.empty())
+            return input_error("the project has no sensor or no robot", given_.name, "add both before spots");
+        sensor_ = o_.sensor_id.empty() ? &given_.sensors.front() : find_sensor(given_, o_.sensor_id);
+        robot_ = o_.robot_id.empty() ? &given_.robots.front() : find_robot(given_, o_.robot_id);
+        if (!sensor_) return usage_error(Text("there is no sensor \"{}\"", o_.sensor_id));
+        if (!robot_) return usage_error(Text("there is no robot \"{}\"", o_.robot_id));
+        calibration_ = calibration_of(given_, sensor_->id);
+        if (!calibration_)
+            return input_error(Text("sensor {} has no calibration in use", sensor_->id), given_.name,
+                               "calibrate it: where it stands on the flange decides where the robot goes");
+        SEAM_TRY(auto chain, tangent_chain(drawing_, o_.edge));
+        chain_ = std::move(chain);
+        SEAM_TRY(auto bead, bead_of(drawing_, o_.edge, o_.bead_step_mm));
+        out_.bead = std::move(bead);
+        return {};
+    }
+
+    // Every attitude's spot, as far as it sees something.
+    Expected<void> look() {
+        const MeshTree tree(drawing_.mesh);
+        const OpticsSettings optics = optics_of(*calibration_, o_.optics);
+        project_ = given_;
+        project_.spots.clear();
+        project_.regions.clear();
+        Spot usual;  // the project's habits
+        for (const Spot& spot : given_.spots)
+            if (spot.sensor_id == sensor_->id) {
+                usual.sigma_mm = spot.sigma_mm, usual.jitter_mm = spot.jitter_mm,
+                usual.speed_mm_s = spot.speed_mm_s;
+                usual.stop_at_trigger = spot.stop_at_trigger;
+                break;
+            }
+        int places = 0;
+        const std::vector<Attitude> all = attitudes(chain_, o_, places);
+        out_.tried = static_cast<int>(all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (o_.cancel.stop_requested())
+                return tl::unexpected(Error{ErrorKind::usage, "cancelled", {}, {}, ErrorCode::cancelled});
+            if (i % 16 == 0) tell(0.7 * static_cast<double>(i) / static_cast<double>(all.size()), "looking");
+            const Attitude& a = all[i];
+            const auto seen = expected_feature(tree, a.workobject_from_sensor, optics, sensor_->filter,
+                                               o_.noise_mm, hash64(o_.seed, i), Eigen::Vector2d::Zero());
+            if (!seen) continue;
+            Spot spot = usual;
+            spot.id = fmt::format("candidate {}", i + 1);
+            spot.sensor_id = sensor_->id;
+            spot.robot_id = robot_->id;
+            spot.base_from_flange = given_.part.base_from_workobject * a.workobject_from_sensor *
+                                    calibration_->flange_from_sensor.inverse();
+            spot.feature = seen->recipe;
+            spot.reference_mm = Eigen::Vector3d(seen->point_mm.x(), 0, seen->point_mm.y());
+            spot.reference_profile = seen->profile;
+            spot.curve = curve_at(chain_, a, seen->point_mm);
+            project_.spots.push_back(std::move(spot));
+            attitudes_.push_back(a);
+            covariances_.push_back(seen->covariance_mm2);
+        }
+        return {};
+    }
+
+    Expected<PlacingTask> placing_task() {
+        Region region;
+        region.id = kRegion;
+        for (const Spot& spot : project_.spots) region.spot_ids.push_back(spot.id);
+        project_.regions = {region};
+        PlacingTask task;
+        const std::vector<SpotObservation> planned = planned_observations(project_, region);
+        if (planned.size() != project_.spots.size())
+            return input_error("a candidate could not be planned", drawing_.source);
+        for (std::size_t i = 0; i < planned.size(); ++i)
+            task.candidates.push_back({planned[i], travel_window_mm(project_.spots[i]), attitudes_[i].place});
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+        for (const BeadPoint& p : out_.bead) middle += p.point_mm / static_cast<double>(out_.bead.size());
+        task.bead = out_.bead;
+        task.displacements = required_displacements(given_.requirements, middle);
+        task.options = correction_options(project_, region);
+        task.three_sigma_mm = o_.three_sigma_mm;
+        task.one_may_be_lost = o_.one_may_be_lost;
+        task.seed = o_.seed;
+        return task;
+    }
+
+    void take_spots() {
+        Project proposed = project_;
+        proposed.spots.clear();
+        Region region;
+        region.id = kRegion;
+        for (const std::size_t c : out_.set.chosen) {
+            ProposedSpot p;
+            p.spot = project_.spots[c];
+            p.spot.id = free_id();
+            p.arc_mm = attitudes_[c].arc_mm;
+            p.turned_deg = attitudes_[c].turned_deg;
+            const Eigen::Matrix2d& s = covariances_[c];
+            const double mean = s.trace() / 2, off = std::hypot((s(0, 0) - s(1, 1)) / 2, s(0, 1));
+            p.sigma_mm = {std::sqrt(mean + off), std::sqrt(std::max(0.0, mean - off))};
+            p.point_mm = attitudes_[c].workobject_from_sensor * p.spot.reference_mm;
+            proposed.spots.push_back(p.spot);
+            region.spot_ids.push_back(p.spot.id);
+            out_.spots.push_back(std::move(p));
+        }
+        if (const auto forecast = forecast_region(proposed, region))
+            out_.sigma_forecast_mm = forecast->sigma_mm;
+    }
+    std::string free_id() const {
+        for (std::size_t n = 1;; ++n) {
+            const std::string id = fmt::format("P{}", n);
+            const bool taken =
+                find_spot(given_, id) || std::any_of(out_.spots.begin(), out_.spots.end(),
+                                                     [&](const ProposedSpot& p) { return p.spot.id == id; });
+            if (!taken) return id;
+        }
+    }
+
+    const Project& given_;
+    const Drawing& drawing_;
+    const ProposeOptions& o_;
+    const SensorSetup* sensor_ = nullptr;
+    const RobotSetup* robot_ = nullptr;
+    const Calibration* calibration_ = nullptr;
+    EdgeChain chain_;
+    Project project_;  // with a spot a candidate
+    std::vector<Attitude> attitudes_;
+    std::vector<Eigen::Matrix2d> covariances_;
+    Proposal out_;
+};
+
+}  // namespace
+
+Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::string& edge, double step_mm) {
+    if (!(step_mm >= 1 && step_mm <= 1000))
+        return usage_error("the step along the bead is not from 1 to 1000 mm");
+    SEAM_TRY(auto chain, tangent_chain(drawing, edge));
+    const auto [from, to] = chain.arcs_of(drawing, edge);
+    const int n = std::max(2, static_cast<int>((to - from) / step_mm) + 1);
+    std::vector<BeadPoint> bead;
+    for (int i = 0; i < n; ++i) {
+        const DrawingPoint p = chain.at(from + (to - from) * (i + 0.5) / n);
+        const Eigen::Vector3d normal = middle_normal(p);
+        bead.push_back({p.point_mm, normal, p.tangent.cross(normal).normalized()});
+    }
+    return bead;
+}
+
+Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
+                                 const ProposeOptions& options) {
+    return Proposer(project, drawing, options).propose();
+}
+
+}  // namespace seamwright

@@ -1,0 +1,69 @@
+#pragma once
+// Spots proposed from the drawing (methods.md 10 and 11): along an edge those that leave the bead best known.
+//
+// The bead is the edge that is named; candidates stand along the whole chain of tangent edges that it lies in, `step_mm`
+// apart: the sensor's travel along the edge in either direction, its height axis along the middle of the two faces'
+// normals and turned about the edge by up to cone_deg both ways, the edge in the middle of its range. What a candidate
+// would see is cut from the drawing (expected_profile.h); where no feature is found surely it is none. The drawing lies in
+// the work object. Noise, arrivals, trigger and calibration are the project's, as the forecast takes them, and the bead is
+// judged as taught and displaced by what is required to be recovered (forecast.h); the choice is core/correction/placing.
+// What a robot cannot reach or would run into is not known here.
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "core/correction/placing/placing.h"
+#include "devices/drawing/drawing.h"
+#include "devices/simulated/scene/renderer.h"
+#include "projects/model/project.h"
+
+namespace seamwright {
+
+struct ProposeOptions {
+    std::string edge;                 // "e12"
+    std::string sensor_id, robot_id;  // empty: the project's first
+    double three_sigma_mm = 0.1;
+    int fewest = 4, most = 12;
+    bool one_may_be_lost = true;
+    double step_mm = 0;      // between places; 0: 60 of them on the chain, at least 10 mm apart
+    double cone_deg = 15;    // 0: the middle of the normals alone
+    double noise_mm = 0.02;  // of a profile's point, one standard deviation
+    double bead_step_mm = 20;
+    OpticsSettings optics;  // where the calibration does not say it
+    std::uint64_t seed = 1;
+    std::stop_token cancel;
+    std::function<void(double share, const Text& what)> progress;
+};
+
+struct ProposedSpot {
+    Spot spot;                                           // id "P1", ...; in the order of the way
+    double arc_mm = 0;                                   // on the chain
+    double turned_deg = 0;                               // about the edge, from the middle of the normals
+    Eigen::Vector2d sigma_mm = Eigen::Vector2d::Zero();  // of its feature, the larger first
+    Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  // its reference, work object
+};
+
+struct Proposal {
+    std::vector<ProposedSpot> spots;
+    PlacedSet set;                 // indices are of no meaning here
+    double bound_mm = 0;           // no set of as many spots among these candidates has a smaller 3 sigma
+    double bound_of_fewer_mm = 0;  // the same for one spot less; 0: there is none
+    std::vector<double> along_mm;  // 3 sigma at every point of the bead
+    std::vector<BeadPoint> bead;
+    int places = 0, candidates = 0, tried = 0;  // tried: attitudes; candidates: those that see something
+    double sigma_forecast_mm = 0;  // as the safety gate will judge it (forecast.h), one standard deviation
+};
+
+// Error (input): no such edge, a sensor without calibration, options out of range, too few places see a feature; (usage)
+// cancelled.
+Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
+                                 const ProposeOptions& options);
+
+// The bead as it is judged: the named edge in steps.
+Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::string& edge, double step_mm);
+
+}  // namespace seamwright

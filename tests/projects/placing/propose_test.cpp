@@ -1,0 +1,214 @@
+#include "projects/placing/propose.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "devices/drawing/door_step.h"
+#include "projects/placing/expected_profile.h"
+#include "projects/proof/forecast.h"
+#include "projects/station/measure.h"
+#include "tests/projects/door_project.h"
+
+namespace seamwright {
+namespace {
+
+struct World {
+    std::shared_ptr<SimulatedCell> cell;
+    Project project;
+    Drawing drawing;
+    std::string edge;  // the foot of the flange's step along the top
+};
+
+const World& world() {
+    static const World made = [] {
+        World w;
+        const nlohmann::json settings = cell_settings(Pose::Identity());
+        w.cell = *SimulatedCell::open(settings);
+        w.project = door_project(*w.cell, settings);
+        Matrix6 arrival = Matrix6::Identity() * 9e-4;  // 0.03 mm and 0.002 degree
+        arrival.bottomRightCorner<3, 3>() *= 1e-6;
+        w.project.robots[0].arrival_covariance = arrival;
+        const std::string text = *door_step();
+        DrawingOptions options;
+        options.chord_mm = 0.05;
+        w.drawing = *read_drawing(std::as_bytes(std::span(text.data(), text.size())), "door.step", options);
+        for (const DrawingEdge& e : w.drawing.edges)
+            if (e.fold_deg > 60 && !e.convex && e.length_mm > 300 &&
+                door_side_of(e.points[e.points.size() / 2].point_mm) == "top")
+                w.edge = e.id;
+        return w;
+    }();
+    return made;
+}
+
+ProposeOptions quick(int fewest, int most, double three_sigma_mm) {
+    ProposeOptions o;
+    o.edge = world().edge;
+    o.fewest = fewest;
+    o.most = most;
+    o.three_sigma_mm = three_sigma_mm;
+    o.step_mm = 90;
+    o.bead_step_mm = 60;
+    o.optics.width = 400;
+    return o;
+}
+
+// As the demo's pass would find it: the outermost line seen from the spot.
+std::optional<ContourCurve> curve_by_hand(const DoorSpot& door, const Eigen::Vector2d& point_mm) {
+    const Pose sensor_from_workobject = door.workobject_from_sensor.inverse();
+    std::vector<TravelPoint> travel;
+    constexpr int kLooks = 3000;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const bool first : {true, false})
+        for (int i = 0; i < kLooks; ++i) {
+            const DoorEdge e = door_edge(door_edge_length_mm() * i / kLooks);
+            const Eigen::Vector3d p = sensor_from_workobject * (e.point_mm + kDoorFlangeTop_mm * e.up);
+            if (first && std::abs(p.y()) < 0.6 && std::abs(p.x() + 15) < 5) middle = p;
+            if (!first && std::abs(p.y()) < 20 && std::abs(p.x() + 15) < 20)
+                travel.push_back(
+                    {p.y(), p.x() - middle.x() + point_mm.x(), p.z() - middle.z() + point_mm.y()});
+        }
+    auto curve = fit_contour_curve(travel);
+    EXPECT_TRUE(curve);
+    return curve ? std::optional<ContourCurve>(*curve) : std::nullopt;
+}
+
+// The demo's spots of its region "top" as the same bead sees them: expected from the same drawing, same noise.
+PlacedSet by_hand(const std::vector<std::string>& ids, const ProposeOptions& o) {
+    const World& w = world();
+    Project project = w.project;
+    const Spot habits = project.spots.front();
+    project.spots.clear();
+    Region region;
+    region.id = "hand";
+    const MeshTree tree(w.drawing.mesh);
+    const Calibration& calibration = project.calibrations[0];
+    const OpticsSettings optics = optics_of(calibration, o.optics);
+    for (const DoorSpot& door : default_door_spots()) {
+        if (std::find(ids.begin(), ids.end(), door.id) == ids.end()) continue;
+        const auto seen =
+            expected_feature(tree, door.workobject_from_sensor, optics, project.sensors[0].filter, o.noise_mm,
+                             11, {door.edge_mm.x(), door.edge_mm.z()});
+        if (!seen) continue;
+        Spot spot;
+        spot.sigma_mm = habits.sigma_mm;
+        spot.jitter_mm = habits.jitter_mm;
+        spot.stop_at_trigger = habits.stop_at_trigger;
+        spot.id = door.id;
+        spot.sensor_id = "A";
+        spot.robot_id = "R1";
+        spot.base_from_flange = project.part.base_from_workobject * door.workobject_from_sensor *
+                                calibration.flange_from_sensor.inverse();
+        spot.feature = seen->recipe;
+        spot.reference_mm = Eigen::Vector3d(seen->point_mm.x(), 0, seen->point_mm.y());
+        spot.reference_profile = seen->profile;
+        spot.curve = curve_by_hand(door, seen->point_mm);
+        project.spots.push_back(spot);
+        region.spot_ids.push_back(spot.id);
+    }
+    EXPECT_EQ(project.spots.size(), ids.size());
+    project.regions = {region};
+    PlacingTask task;
+    task.bead = *bead_of(w.drawing, o.edge, o.bead_step_mm);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const BeadPoint& p : task.bead) middle += p.point_mm / static_cast<double>(task.bead.size());
+    const auto planned = planned_observations(project, region);
+    for (std::size_t i = 0; i < planned.size(); ++i)
+        task.candidates.push_back({planned[i], travel_window_mm(project.spots[i]), static_cast<int>(i)});
+    task.displacements = required_displacements(project.requirements, middle);
+    task.options = correction_options(project, region);
+    task.three_sigma_mm = o.three_sigma_mm;
+    const auto placing = SpotPlacing::make(task);
+    EXPECT_TRUE(placing);
+    std::vector<std::size_t> all(planned.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    return placing->judge(all);
+}
+
+TEST(Propose, IsNeverWorseThanTheSpotsMadeByHand) {
+    ASSERT_FALSE(world().edge.empty());
+    const std::vector<std::string> ids = default_door_regions()[0].spot_ids;
+    ProposeOptions o = quick(static_cast<int>(ids.size()), static_cast<int>(ids.size()), 0.2);
+    o.one_may_be_lost = false;
+    const PlacedSet hand = by_hand(ids, o);
+    const auto proposal = propose_spots(world().project, world().drawing, o);
+    ASSERT_TRUE(proposal) << proposal.error().sentence();
+    EXPECT_EQ(proposal->spots.size(), ids.size());
+    EXPECT_LE(proposal->set.three_sigma_mm, hand.three_sigma_mm);
+    EXPECT_LE(proposal->bound_mm, proposal->set.three_sigma_mm);
+    std::printf(
+        "%zu spots: by hand %.4f mm, proposed %.4f mm, bound %.4f mm; %d of %d attitudes see a feature\n",
+        ids.size(), hand.three_sigma_mm, proposal->set.three_sigma_mm, proposal->bound_mm,
+        proposal->candidates, proposal->tried);
+}
+
+TEST(Propose, SpotsSeeTheirFeatureWhereTheDrawingHasItAndMayBeLost) {
+    const auto proposal = propose_spots(world().project, world().drawing, quick(4, 12, 0.35));
+    ASSERT_TRUE(proposal) << proposal.error().sentence();
+    EXPECT_TRUE(proposal->set.enough)
+        << proposal->set.three_sigma_mm << " " << proposal->set.lost_three_sigma_mm;
+    EXPECT_LE(proposal->set.lost_three_sigma_mm, 0.35);
+    const auto chain = tangent_chain(world().drawing, world().edge);
+    const Calibration& calibration = world().project.calibrations[0];
+    for (const ProposedSpot& p : proposal->spots) {
+        EXPECT_LT((p.point_mm - chain->at(p.arc_mm).point_mm).norm(), 3.1)
+            << "the reference lies at the edge";
+        EXPECT_TRUE(p.spot.curve) << "the edge bends";
+        // The simulated sensor sees on the simulated door what the drawing promised.
+        const Pose stands = world().project.part.base_from_workobject.inverse() * p.spot.base_from_flange *
+                            calibration.flange_from_sensor;
+        const MeshTree door(world().cell->part_mesh());
+        const auto seen =
+            expected_feature(door, stands, optics_of(calibration, {}), world().project.sensors[0].filter,
+                             0.02, 99, Eigen::Vector2d(p.spot.reference_mm.x(), p.spot.reference_mm.z()));
+        ASSERT_TRUE(seen) << p.spot.id;
+    }
+}
+
+TEST(Propose, IsTheSameWhereverTheRobotStands) {
+    ProposeOptions o = quick(5, 5, 0.3);
+    o.step_mm = 200;
+    o.cone_deg = 0;
+    Project other = world().project;
+    other.part.base_from_workobject =
+        make_pose(rotation_exp({0, 0, 1.2}), {-500, 2000, 300}) * other.part.base_from_workobject;
+    const auto a = propose_spots(world().project, world().drawing, o);
+    const auto b = propose_spots(other, world().drawing, o);
+    ASSERT_TRUE(a && b);
+    EXPECT_NEAR(a->set.three_sigma_mm, b->set.three_sigma_mm, 1e-6);
+    for (std::size_t i = 0; i < a->spots.size(); ++i)
+        EXPECT_NEAR((a->spots[i].point_mm - b->spots[i].point_mm).norm(), 0, 1e-6);
+}
+
+TEST(Propose, RefusesWithASentence) {
+    const World& w = world();
+    ProposeOptions o = quick(4, 12, 0.1);
+    o.edge = "e99999";
+    EXPECT_FALSE(propose_spots(w.project, w.drawing, o));
+    o = quick(0, 12, 0.1);
+    EXPECT_FALSE(propose_spots(w.project, w.drawing, o));
+    o = quick(4, 12, std::nan(""));
+    EXPECT_FALSE(propose_spots(w.project, w.drawing, o));
+    o = quick(4, 12, 0.1);
+    o.noise_mm = -1;
+    EXPECT_FALSE(propose_spots(w.project, w.drawing, o));
+    Project bare = w.project;
+    bare.sensors[0].calibration_id.clear();
+    const auto refused = propose_spots(bare, w.drawing, quick(4, 12, 0.1));
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().sentence().find("calibration"), std::string::npos);
+    EXPECT_FALSE(propose_spots(Project{}, w.drawing, quick(4, 12, 0.1)));
+    std::stop_source stop;
+    stop.request_stop();
+    o = quick(4, 12, 0.1);
+    o.cancel = stop.get_token();
+    const auto cancelled = propose_spots(w.project, w.drawing, o);
+    ASSERT_FALSE(cancelled);
+    EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
+}
+
+}  // namespace
+}  // namespace seamwright

@@ -1,0 +1,63 @@
+#include "core/calibration/on_part/pass_motion.h"
+
+#include <algorithm>
+#include <array>
+
+namespace seamwright::on_part {
+namespace {
+
+Vector6 displacement(const Pose& from, const Pose& to) {
+    const Pose d = from.inverse() * to;
+    Vector6 v;
+    v << d.translation(), rotation_log(d.linear());
+    return v;
+}
+
+Pose displaced(const Pose& from, const Vector6& by) {
+    return from * make_pose(rotation_exp(by.tail<3>()), by.head<3>());
+}
+
+}  // namespace
+
+PassMotion::PassMotion(std::vector<double> times_s, std::vector<Pose> poses)
+    : times_(std::move(times_s)), poses_(std::move(poses)) {}
+
+Pose PassMotion::at(double time_s) const {
+    const std::size_t n = times_.size();
+    if (n < 2) return poses_.front();
+    const auto after = std::upper_bound(times_.begin(), times_.end(), time_s);
+    const std::size_t i =
+        std::clamp<std::size_t>(static_cast<std::size_t>(after - times_.begin()), 1, n - 1) - 1;
+    if (time_s == times_[i]) return poses_[i];
+    if (n < 4 || time_s < times_.front() || time_s > times_.back()) {
+        const std::size_t k = time_s < times_.front() ? std::min<std::size_t>(2, n - 1) : i + 1;
+        const std::size_t j = time_s > times_.back() ? n - std::min<std::size_t>(3, n) : i;
+        const std::size_t from = time_s < times_.front() ? 0 : time_s > times_.back() ? n - 1 : i;
+        const Vector6 rate = displacement(poses_[j], poses_[k]) / (times_[k] - times_[j]);
+        return displaced(poses_[from], rate * (time_s - times_[from]));
+    }
+    const std::size_t first = std::min(i == 0 ? 0 : i - 1, n - 4);
+    Vector6 sum = Vector6::Zero();
+    for (std::size_t a = first; a < first + 4; ++a) {
+        if (a == i) continue;
+        double weight = 1;
+        for (std::size_t b = first; b < first + 4; ++b)
+            if (b != a) weight *= (time_s - times_[b]) / (times_[a] - times_[b]);
+        sum += weight * displacement(poses_[i], poses_[a]);
+    }
+    return displaced(poses_[i], sum);
+}
+
+Vector6 PassMotion::twist(double time_s) const {
+    if (!timed()) return Vector6::Zero();
+    const double h = 0.5 * (times_.back() - times_.front()) / static_cast<double>(times_.size() - 1);
+    return displacement(at(time_s - h), at(time_s + h)) / (2 * h);
+}
+
+bool PassMotion::inside(double time_s) const {
+    if (!timed()) return true;
+    return time_s >= times_.front() - 0.25 * (times_[1] - times_[0]) &&
+           time_s <= times_.back() + 0.25 * (times_.back() - times_[times_.size() - 2]);
+}
+
+}  // namespace seamwright::on_part

@@ -187,7 +187,10 @@ struct Unknowns {
                                          : nullptr,
                                      mounting.data(), passes[s.pass].data(), edges[s.edge].data(), &latency);
         }
-        if (!priors) return;
+        if (!priors) {  // an edge that nobody sees has its columns too
+            for (Eigen::VectorXd& e : edges) problem.AddParameterBlock(e.data(), static_cast<int>(e.size()));
+            return;
+        }
         Matrix6 covariance = Matrix6::Zero();
         covariance.diagonal() << Eigen::Vector3d::Constant(variances.pass_mm * variances.pass_mm),
             Eigen::Vector3d::Constant(variances.pass_rad * variances.pass_rad);
@@ -252,7 +255,6 @@ Blocks linearised(const Data& data, const Variances& variances, const State& sta
     b.shared = b.wanted;
     std::vector<Eigen::Index> at_pass(unknowns.passes.size(), -1);
     for (Eigen::VectorXd& e : unknowns.edges) {
-        if (!unknowns.problem.HasParameterBlock(e.data())) continue;
         list.push_back(e.data());
         b.shared += e.size();
     }

@@ -21,6 +21,17 @@ PoseResidual residual_of(const Refined& r, const Names& names, std::size_t pass,
     one.excluded = names.excluded[pass];
     double sum = 0, n = 0;
     wrong = 0;
+    const auto sees = [&](std::size_t edge) {
+        return std::any_of(r.data.sights.begin(), r.data.sights.end(),
+                           [&](const Sight& s) { return s.used && s.edge == edge; });
+    };
+    const auto own = std::find_if(given.sights.begin(), given.sights.end(),
+                                  [&](const Sight& s) { return s.pass == pass; });
+    if (own == given.sights.end() || !sees(own->edge)) {
+        one.used = false;
+        one.note = "no pass that is used follows its edge";
+        return one;
+    }
     for (std::size_t i = 0; i < given.sights.size(); ++i) {
         const Sight& s = given.sights[i];
         if (s.pass != pass) continue;
@@ -44,11 +55,13 @@ HoldOut verify(const Refined& r) {
     HoldOut h;
     h.left_out = 1;
     double sum = 0, n = 0, worst = 0;
+    const Blocks all = linearised(r.data, r.variances, r.state);
+    if (all.ss.size() == 0) return h;
     for (std::size_t p = 0; p < r.data.motions.size(); ++p) {
         if (r.wrong_passes[p] || std::none_of(r.data.sights.begin(), r.data.sights.end(),
                                               [&](const Sight& s) { return s.used && s.pass == p; }))
             continue;
-        const std::vector<double> off = held_out(r, p);
+        const std::vector<double> off = held_out(r, all, p);
         if (off.empty()) continue;
         ++h.folds;
         for (const double d : off) sum += d * d, ++n, worst = std::max(worst, d);
@@ -102,7 +115,7 @@ bool apart(const State& a, const State& b, const Eigen::Vector2d& point) {
 
 std::vector<PartEdge> edges_of(const Refined& r, const Names& names, bool& steep) {
     std::vector<PartEdge> list;
-    for (std::size_t e = 0; e < names.edges.size(); ++e) {
+    for (std::size_t e = 0; e < r.data.edges; ++e) {
         PartEdge one;
         one.id = names.edges[e];
         one.straight = r.estimate.straight[e] > 0.5;

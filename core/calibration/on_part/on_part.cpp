@@ -90,13 +90,22 @@ Data data_of(const std::vector<EdgePass>& passes, const OnPartOptions& options, 
     data.latency_free = !options.latency_s;
     data.latency_s = options.latency_s.value_or(0);
     data.prior = options.prior;
+    const auto excluded = [&](const EdgePass& pass) {
+        return std::find(options.exclude.begin(), options.exclude.end(), pass.id) != options.exclude.end();
+    };
+    // Edges that only excluded passes follow come last and are none of the problem's.
+    for (const bool out : {false, true}) {
+        for (const EdgePass& pass : passes)
+            if (excluded(pass) == out &&
+                std::find(names.edges.begin(), names.edges.end(), pass.edge) == names.edges.end())
+                names.edges.push_back(pass.edge);
+        if (!out) data.edges = names.edges.size();
+    }
     for (const EdgePass& pass : passes) {
         const auto known = std::find(names.edges.begin(), names.edges.end(), pass.edge);
         const auto edge = static_cast<std::size_t>(known - names.edges.begin());
-        if (known == names.edges.end()) names.edges.push_back(pass.edge);
         names.passes.push_back(pass.id);
-        names.excluded.push_back(std::find(options.exclude.begin(), options.exclude.end(), pass.id) !=
-                                 options.exclude.end());
+        names.excluded.push_back(excluded(pass));
         std::vector<double> times;
         std::vector<Pose> poses;
         for (std::size_t i = 0; i < pass.profiles.size(); ++i) {
@@ -112,7 +121,6 @@ Data data_of(const std::vector<EdgePass>& passes, const OnPartOptions& options, 
         }
         data.motions.emplace_back(std::move(times), std::move(poses));
     }
-    data.edges = names.edges.size();
     return data;
 }
 
@@ -200,7 +208,7 @@ Expected<OnPartResult> calibrate_on_part(const std::vector<EdgePass>& passes, co
     if (!found)
         return refused(
             names, OnPartStatus::not_converged, "no smooth edge is common to the passes",
-            "check that every pass names its edge, that the part stands still, and the robot's poses");
+            "check that the part stands still, that every pass names its edge, and the robot's poses");
     OnPartResult result =
         judge(found->refined, data, names, options.prior ? std::vector<Rival>{} : found->rivals, options);
     if (!result.bump || !result.bump->moved) return result;

@@ -6,6 +6,8 @@
 namespace seamwright::on_part {
 namespace {
 
+constexpr double kBeyond = 0.02;  // of an interval
+
 Vector6 displacement(const Pose& from, const Pose& to) {
     const Pose d = from.inverse() * to;
     Vector6 v;
@@ -56,8 +58,8 @@ Vector6 PassMotion::twist(double time_s) const {
 
 bool PassMotion::inside(double time_s) const {
     if (!timed()) return true;
-    return time_s >= times_.front() - 0.25 * (times_[1] - times_[0]) &&
-           time_s <= times_.back() + 0.25 * (times_.back() - times_[times_.size() - 2]);
+    return time_s >= times_.front() - kBeyond * (times_[1] - times_[0]) &&
+           time_s <= times_.back() + kBeyond * (times_.back() - times_[times_.size() - 2]);
 }
 
 }  // namespace seamwright::on_part

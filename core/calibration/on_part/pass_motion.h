@@ -17,7 +17,7 @@ class PassMotion {
     Pose at(double time_s) const;
     // Body twist (mm/s, rad/s): at(t + dt) = at(t) * (turn by w dt, shift by v dt), to first order.
     Vector6 twist(double time_s) const;
-    // Not more than a quarter of an interval beyond the ends.
+    // Not more than a fiftieth of an interval beyond the ends.
     bool inside(double time_s) const;
     bool timed() const { return times_.size() > 1; }
 

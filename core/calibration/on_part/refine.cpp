@@ -5,6 +5,7 @@
 
 #include "core/calibration/on_part/advice.h"
 #include "core/calibration/on_part/start.h"
+#include "core/calibration/statistics.h"
 #include "core/geometry/decompositions.h"
 #include "core/median.h"
 #include "core/numbers.h"
@@ -204,6 +205,14 @@ Refined refine(const Data& data, const State& start, const std::optional<RobotRe
     how.view = view_of(r.state, r.working_point, blocks.wanted);
     how.scale_free = false;
     r.estimate = estimate(blocks, r.data, r.state, r.variances, how);
+    if (!how.robot) {  // q is known as well as the passes are many: four numbers each, less what is solved for
+        const auto passes =
+            std::count_if(blocks.rows.begin(), blocks.rows.end(), [](int n) { return n > 0; });
+        const double freedom = 4.0 * static_cast<double>(passes) - static_cast<double>(blocks.wanted) -
+                               4.0 * static_cast<double>(data.edges);
+        const double student = student_quantile(0.975, std::max(2.0, freedom)) / normal_quantile(0.975);
+        r.estimate.covariance *= student * student;
+    }
     r.solved = true;
     return r;
 }
@@ -218,28 +227,24 @@ Rival rival(const Refined& refined, const State& start) {
     return other;
 }
 
-std::vector<double> held_out(const Refined& refined, std::size_t pass) {
+std::vector<double> held_out(const Refined& refined, const Blocks& all, std::size_t pass) {
     const Data& data = refined.data;
     std::vector<bool> seen(data.edges);
     for (const Sight& s : data.sights)
         if (s.used && s.pass != pass) seen[s.edge] = true;
-    const Blocks all = linearised(data, refined.variances, refined.state);
-    if (all.ss.size() == 0) return {};
-    const Blocks rest = without_pass(all, data, pass);
     const Eigen::MatrixXd view = view_of(refined.state, refined.working_point, all.wanted);
-    const Estimate e = at_variances(rest, data, refined.state, refined.variances, view);
+    const Estimate e =
+        at_variances(without_pass(all, data, pass), data, refined.state, refined.variances, view);
     const Eigen::MatrixXd back = inverse_matrix(view);
     if (open_directions(back * e.covariance * back.transpose()).mounting) return {};
-    // The edge follows: with the others' answer in place, solved for it alone.
-    Data others = data;
     State state = refined.state;
     state.mounting = retract(state.mounting, e.step.head<6>());
     if (e.step.size() > 6) state.latency_s += e.step(6);
-    others.prior = MountingPrior{state.mounting, Matrix6::Identity() * 1e-12};
-    others.latency_free = false;
-    for (Sight& s : others.sights)
-        if (s.pass == pass) s.used = false;
-    if (!std::isfinite(solve_state(others, refined.variances, {0, true, 8}, state))) return {};
+    Eigen::Index at = 0;
+    for (EdgeCurve& edge : state.edges) {
+        edge.coefficients += e.edges.segment(at, edge.coefficients.size());
+        at += edge.coefficients.size();
+    }
     std::vector<double> off;
     for (const Sight& s : data.sights)
         if (s.used && s.pass == pass && seen[s.edge]) off.push_back(distance(data, state, s).norm());

@@ -28,7 +28,7 @@ struct Rival {
 Rival rival(const Refined& refined, const State& start);
 
 // The answer by all passes but one: predicted distances of that one's points (mm). Empty: its edge is seen by no other,
-// or the rest does not determine the answer.
-std::vector<double> held_out(const Refined& refined, std::size_t pass);
+// or the rest does not determine the answer. `all`: linearised at the refined state.
+std::vector<double> held_out(const Refined& refined, const Blocks& all, std::size_t pass);
 
 }  // namespace seamwright::on_part

@@ -12,8 +12,8 @@
 namespace seamwright::on_part {
 namespace {
 
-constexpr int kAttitudes = 600;
-constexpr std::size_t kRefined = 14, kMost = 140;
+constexpr int kAttitudes = 400;
+constexpr std::size_t kRefined = 12, kMost = 140;
 
 // A thinned sight with its pose at the start's latency.
 struct Ray {
@@ -81,7 +81,7 @@ class Shift {
         Eigen::Vector3d shift = Eigen::Vector3d::Zero();
         std::vector<double> weights(rays_.size(), 1);
         Trial trial;
-        for (int round = 0; round < 4; ++round) {
+        for (int round = 0; round < 3; ++round) {
             solve(turn, directions, weights, shift);
             double sum = 0;
             for (std::size_t k = 0; k < rays_.size(); ++k) sum += std::sqrt(residual2_[k]);

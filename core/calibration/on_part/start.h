@@ -1,7 +1,7 @@
 #pragma once
 // From no guess to a few places of the sensor that may be right. Private to core/calibration/on_part.
 //
-// For an assumed attitude of the sensor on the flange (600 of them, evenly over all: super-Fibonacci, Alexa 2022) the
+// For an assumed attitude of the sensor on the flange (400 of them, evenly over all: super-Fibonacci, Alexa 2022) the
 // shift and, for the edges' rough directions, parabolas over them are linear; wrong profiles weigh less (Cauchy), and the
 // directions follow from the points. The best are solved on thinned profiles.
 

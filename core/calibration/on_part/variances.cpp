@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::array kPass_mm = {0.002, 0.005, 0.01, 0.02, 0.035, 0.06, 0.1, 0.2, 0.4, 0.8};
 constexpr std::array kCurvature = {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2};
-constexpr double kLoose = 1e-6;  // of the precision: q is a thousand times as large
+constexpr double kUnseen = 1e-6;  // information of a coefficient that no profile sees: sigma 1 m
+constexpr double kLoose = 1e-6;   // of the precision: q is a thousand times as large
 constexpr double kRad_per_mm = 1.0 / 172;
 constexpr double kClosed = 1e-6;  // information 1/mm^2 below which a direction takes no step: sigma 1 m
 
@@ -49,8 +50,8 @@ Shared without_passes(const Blocks& blocks, const State& state, double mm, doubl
 }
 
 struct Marginal {
-    Eigen::MatrixXd information;
-    Eigen::VectorXd gradient;
+    Eigen::MatrixXd information, follow;  // the edges' step is -base - follow * step of the wanted
+    Eigen::VectorXd gradient, base;
     double rr = 0, log_det = 0;
 };
 
@@ -74,26 +75,30 @@ Marginal without_edges(const Shared& shared, const Blocks& blocks, const State& 
             m.log_det -= static_cast<double>(k - 2) * std::log(precision);
         }
     }
-    a.diagonal() *= 1 + 1e-12;
+    a.diagonal().array() += kUnseen;
     const Eigen::MatrixXd cross = shared.a.bottomLeftCorner(n, w);
     const Eigen::LLT<Eigen::MatrixXd> llt(a);
     if (llt.info() != Eigen::Success) {  // a part of an edge that no profile saw, and nothing to bind it
         m.rr = kInfinity;
         m.information = Eigen::MatrixXd::Zero(w, w);
         m.gradient = Eigen::VectorXd::Zero(w);
+        m.follow = Eigen::MatrixXd::Zero(n, w);
+        m.base = Eigen::VectorXd::Zero(n);
         return m;
     }
     const Eigen::MatrixXd solved = llt.solve(cross);
     m.information = shared.a.topLeftCorner(w, w) - cross.transpose() * solved;
     m.gradient = shared.g.head(w) - solved.transpose() * g;
-    m.rr -= g.dot(llt.solve(g));
+    m.base = llt.solve(g);
+    m.follow = solved;
+    m.rr -= g.dot(m.base);
     m.log_det += 2 * llt.matrixLLT().diagonal().array().log().sum();
     return m;
 }
 
 struct Answer {
     double minus2 = kInfinity, scale2 = 1, rr = 0;
-    Eigen::VectorXd step;
+    Eigen::VectorXd step, edges;
     Eigen::MatrixXd covariance, information;
     Eigen::VectorXd gradient;
 };
@@ -153,6 +158,7 @@ class Likelihood {
         answer.minus2 = freedom * std::log(answer.scale2) + rr / answer.scale2 + log_det;
         answer.rr = rr;
         answer.step = view_ * step;
+        answer.edges = -m.base - m.follow * answer.step;
         const Eigen::VectorXd inverse = eigen.values.cwiseMax(1e-12).cwiseInverse();
         answer.covariance = view_ * eigen.vectors * (answer.scale2 * inverse).asDiagonal() *
                             eigen.vectors.transpose() * view_.transpose();
@@ -282,6 +288,7 @@ Estimate at_variances(const Blocks& blocks, const Data& data, const State& state
     e.information = answer.information;
     e.gradient = answer.gradient;
     e.rr = answer.rr;
+    e.edges = answer.edges;
     return e;
 }
 

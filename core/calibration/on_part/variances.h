@@ -19,6 +19,7 @@ Eigen::MatrixXd view_of(const State& state, const Eigen::Vector2d& working_point
 struct Estimate {
     Variances variances;           // the likeliest
     Eigen::VectorXd step;          // of the wanted unknowns from where the state stands
+    Eigen::VectorXd edges;         // step of their coefficients; of at_variances() alone
     Eigen::MatrixXd covariance;    // of them; an open direction has a huge sigma
     Eigen::MatrixXd information;   // by the data alone, at the likeliest
     Eigen::VectorXd gradient;      // by the data alone

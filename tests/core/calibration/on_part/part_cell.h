@@ -15,15 +15,15 @@ namespace seamwright::part_cell {
 using Curve = std::function<Eigen::Vector3d(double)>;  // of about the way along it, mm, around 0
 
 struct Noise {
-    double point_mm = 0;                 // of each coordinate
-    double pass_mm = 0, pass_deg = 0;    // the robot's, common to a pass
+    double point_mm = 0;                     // of each coordinate
+    double pass_mm = 0, pass_deg = 0;        // the robot's, common to a pass
     double profile_mm = 0, profile_deg = 0;  // the robot's, of every profile
 };
 
 struct Motion {
-    double length_mm = 20;    // along the edge
-    double aside_mm = 4;      // S across it
-    double turn_deg = 5;      // within the pass, peak to peak
+    double length_mm = 20;  // along the edge
+    double aside_mm = 4;    // S across it
+    double turn_deg = 5;    // within the pass, peak to peak
     double speed_mm_s = 50;
     int profiles = 40;
 };
@@ -70,8 +70,8 @@ class Cell {
 
     // One pass: the sensor leans by `lean` (deg, about its X, Y, Z) against the nominal attitude, stands off by (x, z).
     EdgePass pass(const std::string& id, const std::string& edge, const Curve& curve,
-                  const Eigen::Vector3d& lean_deg, const Eigen::Vector2d& off_mm, double sign, const Motion& m,
-                  const Noise& noise, double latency_s, bool covariance = false) {
+                  const Eigen::Vector3d& lean_deg, const Eigen::Vector2d& off_mm, double sign,
+                  const Motion& m, const Noise& noise, double latency_s, bool covariance = false) {
         EdgePass pass{id, edge, {}};
         const Eigen::Isometry3d wrong = small(noise.pass_mm, noise.pass_deg);
         const double phase = uniform(0, 6.28), phase2 = uniform(0, 6.28);
@@ -105,16 +105,17 @@ class Cell {
     }
 
     // Twelve passes and more: both directions, leaning about X, Y, Z, aside and higher.
-    std::vector<EdgePass> passes(const std::vector<Curve>& curves, int count, double lean_deg, const Motion& m,
-                                 const Noise& noise, double latency_s, bool covariance = false) {
+    std::vector<EdgePass> passes(const std::vector<Curve>& curves, int count, double lean_deg,
+                                 const Motion& m, const Noise& noise, double latency_s,
+                                 bool covariance = false) {
         std::vector<EdgePass> list;
         for (int i = 0; i < count; ++i) {
             const auto e = static_cast<std::size_t>(i) % curves.size();
             const Eigen::Vector3d lean(uniform(-lean_deg, lean_deg), uniform(-lean_deg, lean_deg),
                                        uniform(-lean_deg, lean_deg));
             const Eigen::Vector2d off(uniform(-5, 5), uniform(-5, 5));
-            list.push_back(pass("P" + std::to_string(i + 1), "e" + std::to_string(e + 1), curves[e], lean, off,
-                                (i / static_cast<int>(curves.size())) % 2 ? -1 : 1, m, noise, latency_s,
+            list.push_back(pass("P" + std::to_string(i + 1), "e" + std::to_string(e + 1), curves[e], lean,
+                                off, (i / static_cast<int>(curves.size())) % 2 ? -1 : 1, m, noise, latency_s,
                                 covariance));
         }
         return list;
@@ -145,7 +146,8 @@ class Cell {
         const Eigen::Isometry3d back = sensor.inverse();
         const auto y = [&](double u) { return (back * curve(u)).y(); };
         double a = guess, b = guess;
-        for (double step = 0.5; y(a) * y(b) > 0 && step < 200; step *= 1.5) a = guess - step, b = guess + step;
+        for (double step = 0.5; y(a) * y(b) > 0 && step < 200; step *= 1.5)
+            a = guess - step, b = guess + step;
         const double low = y(a);
         for (int i = 0; i < 200 && std::abs(b - a) > 1e-13; ++i) {
             const double c = 0.5 * (a + b);

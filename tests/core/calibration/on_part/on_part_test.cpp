@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/calibration/on_part/part_cell.h"
+#include "tests/core/calibration/sphere/sphere_simulation.h"
 
 namespace seamwright {
 namespace {
@@ -195,6 +196,28 @@ TEST(OnPart, AfterABumpItSaysWhetherTheSensorMoved) {
     ASSERT_EQ(moved->status, OnPartStatus::ok) << moved->report.judgement.reason.english();
     EXPECT_LT(working_mm(*moved, cell.mounting()), 4 * moved->working_sigma_mm);
     EXPECT_NEAR(moved->bump->turn_deg, 0.8, 0.3);
+}
+
+// Two ways to the same mounting, each with its own sigma: chi squared of six, the 99.9 % point.
+TEST(OnPart, TheSphereInTheSameCellAgrees) {
+    for (unsigned seed = 51; seed < 56; ++seed) {
+        Cell cell(seed);
+        const auto part =
+            calibrate_on_part(cell.passes({cell.straight(), cell.round(200, 50)}, 12, 20, {}, kUsual, 0.01));
+        ASSERT_TRUE(part);
+        ASSERT_EQ(part->status, OnPartStatus::ok);
+        simulation::Random random(seed);
+        simulation::SphereCell sphere = simulation::any_cell(random);
+        sphere.flange_from_sensor = cell.mounting();
+        sphere.step_mm = 0.3;
+        TcpSphereOptions options;
+        options.radius_mm = sphere.radius;
+        const auto ball = calibrate_tcp_sphere(simulation::sphere_observations(sphere, 9, random), options);
+        ASSERT_TRUE(ball);
+        ASSERT_EQ(ball->status, TcpSphereStatus::ok);
+        const Vector6 d = difference(part->flange_from_sensor, ball->flange_from_sensor);
+        EXPECT_LT(d.dot((part->covariance + ball->covariance).inverse() * d), 22.5) << seed;
+    }
 }
 
 TEST(OnPart, WhatIsNoInputIsRefusedInOneSentence) {

@@ -71,43 +71,6 @@ HoldOut verify(const Refined& r) {
     return h;
 }
 
-// Do data alone contradict that the sensor is where the prior says?
-BumpTest bump_of(const Refined& r, const MountingPrior& prior, const Pose& answer) {
-    BumpTest test;
-    const Matrix6 view = view_of(r.state, r.working_point, 6);
-    Eigen::MatrixXd info = r.estimate.information;
-    Eigen::VectorXd g = r.estimate.gradient;
-    if (info.rows() > 6) {  // the latency goes with the data
-        const double tau = std::max(info(6, 6), 1e-12);
-        g = (g.head(6) - info.col(6).head(6) * (g(6) / tau)).eval();
-        info = (info.topLeftCorner(6, 6) - info.col(6).head(6) * info.row(6).head(6) / tau).eval();
-    }
-    // By the data alone, from the prior's mean: step d with information * d = q.
-    const Vector6 off = difference(r.state.mounting, prior.flange_from_sensor);
-    const Vector6 q = view.transpose() * (info * off - g);
-    const Matrix6 s = view.transpose() * info * view;
-    const Matrix6 back = inverse_matrix(view);
-    const Matrix6 p = back * prior.covariance * back.transpose();
-    const SymmetricEigen eigen = symmetric_eigen(s);
-    std::vector<Eigen::Index> known;
-    for (Eigen::Index i = 0; i < 6; ++i)
-        if (eigen.values(i) > 1 / (kOnPartOpen_mm * kOnPartOpen_mm)) known.push_back(i);
-    test.directions = static_cast<int>(known.size());
-    if (!known.empty()) {
-        const Eigen::MatrixXd v = eigen.vectors(Eigen::all, known);
-        const Eigen::VectorXd lambda = eigen.values(known);
-        const Eigen::VectorXd d = lambda.cwiseInverse().asDiagonal() * (v.transpose() * q);
-        const Eigen::MatrixXd c = v.transpose() * p * v + Eigen::MatrixXd(lambda.cwiseInverse().asDiagonal());
-        test.chi_squared = d.dot(solve_symmetric(c, d).col(0));
-        test.limit = chi_squared_quantile(0.99, static_cast<double>(known.size()));
-        test.moved = test.chi_squared > test.limit;
-    }
-    const Eigen::Vector3d m = in_sensor(r.working_point);
-    test.shift_mm = (answer * m - prior.flange_from_sensor * m).norm();
-    test.turn_deg = deg_from_rad(angle_rad(answer, prior.flange_from_sensor));
-    return test;
-}
-
 bool apart(const State& a, const State& b, const Eigen::Vector2d& point) {
     return (a.mounting * in_sensor(point) - b.mounting * in_sensor(point)).norm() > kApart_mm ||
            angle_rad(a.mounting, b.mounting) > kApart_rad;
@@ -206,6 +169,42 @@ Text left_out_sentence(OnPartResult& result, const Refined& r) {
 
 }  // namespace
 
+BumpTest bump_of(const Refined& r, const MountingPrior& prior, const Pose& answer) {
+    BumpTest test;
+    const Matrix6 view = view_of(r.state, r.working_point, 6);
+    Eigen::MatrixXd info = r.estimate.information;
+    Eigen::VectorXd g = r.estimate.gradient;
+    if (info.rows() > 6) {  // the latency goes with the data
+        const double tau = std::max(info(6, 6), 1e-12);
+        g = (g.head(6) - info.col(6).head(6) * (g(6) / tau)).eval();
+        info = (info.topLeftCorner(6, 6) - info.col(6).head(6) * info.row(6).head(6) / tau).eval();
+    }
+    // By the data alone, from the prior's mean: step d with information * d = q.
+    const Vector6 off = difference(r.state.mounting, prior.flange_from_sensor);
+    const Vector6 q = view.transpose() * (info * off - g);
+    const Matrix6 s = view.transpose() * info * view;
+    const Matrix6 back = inverse_matrix(view);
+    const Matrix6 p = back * prior.covariance * back.transpose();
+    const SymmetricEigen eigen = symmetric_eigen(s);
+    std::vector<Eigen::Index> known;
+    for (Eigen::Index i = 0; i < 6; ++i)
+        if (eigen.values(i) > 1 / (kOnPartOpen_mm * kOnPartOpen_mm)) known.push_back(i);
+    test.directions = static_cast<int>(known.size());
+    if (!known.empty()) {
+        const Eigen::MatrixXd v = eigen.vectors(Eigen::all, known);
+        const Eigen::VectorXd lambda = eigen.values(known);
+        const Eigen::VectorXd d = lambda.cwiseInverse().asDiagonal() * (v.transpose() * q);
+        const Eigen::MatrixXd c = v.transpose() * p * v + Eigen::MatrixXd(lambda.cwiseInverse().asDiagonal());
+        test.chi_squared = d.dot(solve_symmetric(c, d).col(0));
+        test.limit = chi_squared_quantile(0.99, static_cast<double>(known.size()));
+        test.moved = test.chi_squared > test.limit;
+    }
+    const Eigen::Vector3d m = in_sensor(r.working_point);
+    test.shift_mm = (answer * m - prior.flange_from_sensor * m).norm();
+    test.turn_deg = deg_from_rad(angle_rad(answer, prior.flange_from_sensor));
+    return test;
+}
+
 OnPartResult refused(const Names& names, OnPartStatus status, const Text& reason, const Text& cure) {
     OnPartResult result;
     result.status = status;
@@ -249,7 +248,6 @@ OnPartResult judge(const Refined& r, const Data& given, const Names& names, cons
     const Open open = open_directions(seen);
     result.working_sigma_mm = std::sqrt(symmetric_eigen(seen.topLeftCorner(3, 3)).values(2));
     const Pose answer = retract(r.state.mounting, r.estimate.step.head<6>());
-    if (given.prior && !open.mounting) result.bump = bump_of(r, *given.prior, answer);
     if (open.mounting || 3 * result.working_sigma_mm > kOnPartGood_mm)
         result.advice = next_passes(r.data, r.state, r.variances, r.working_point, kOnPartGood_mm / 3);
     result.open = open.words;

@@ -14,6 +14,8 @@ struct Names {
 
 OnPartResult judge(const Refined& refined, const Data& given, const Names& names,
                    const std::vector<Rival>& rivals, const OnPartOptions& options);
+// Do the data contradict that the sensor is where the prior says? `refined` by the data alone.
+BumpTest bump_of(const Refined& refined, const MountingPrior& prior, const Pose& answer);
 // No answer, and why.
 OnPartResult refused(const Names& names, OnPartStatus status, const Text& reason, const Text& cure);
 

@@ -174,6 +174,39 @@ std::optional<Found> find(const Data& data, const std::vector<State>& begun, con
     return found;
 }
 
+// The data alone are asked first: beside a prior that no longer holds, a moved sensor would look like noise.
+std::optional<OnPartResult> after_bump(const Data& data, const Names& names, const OnPartOptions& options) {
+    const State old = start_at(data, options.prior->flange_from_sensor, options.latency_s.value_or(0), 8, 12);
+    Data without = data;
+    without.prior.reset();
+    OnPartOptions alone = options;
+    alone.prior.reset();
+    const Refined near = refine(without, old, options.robot);
+    if (!near.solved) return std::nullopt;
+    const BumpTest test = bump_of(near, *options.prior, near.state.mounting);
+    OnPartResult result;
+    if (test.moved) {
+        std::vector<State> begun = starts(without);
+        begun.insert(begun.begin(), near.state);
+        const auto found = find(without, begun, alone);
+        if (!found) return std::nullopt;
+        result = judge(found->refined, without, names, found->rivals, alone);
+    } else {
+        const Refined both = refine(data, old, options.robot);
+        if (!both.solved) return std::nullopt;
+        result = judge(both, data, names, {}, options);
+    }
+    result.bump = test;
+    if (result.status == OnPartStatus::ok) {
+        const Eigen::Vector3d m = in_sensor(result.working_point_mm);
+        result.bump->shift_mm =
+            (result.flange_from_sensor * m - options.prior->flange_from_sensor * m).norm();
+        result.bump->turn_deg =
+            deg_from_rad(angle_rad(result.flange_from_sensor, options.prior->flange_from_sensor));
+    }
+    return result;
+}
+
 }  // namespace
 
 std::string_view name_of(OnPartStatus status) {
@@ -198,38 +231,16 @@ Expected<OnPartResult> calibrate_on_part(const std::vector<EdgePass>& passes, co
     if (all < kFewestProfiles * 4)
         return refused(names, OnPartStatus::undetermined, Text("{} profiles are too few to solve from", all),
                        "make passes of ten profiles and more, from several attitudes");
-    std::vector<State> begun;
-    if (options.prior)
-        begun.push_back(
-            start_at(data, options.prior->flange_from_sensor, options.latency_s.value_or(0), 8, 12));
-    else
-        begun = starts(data);
-    auto found = find(data, begun, options);
-    if (!found)
+    const auto none = [&] {
         return refused(
             names, OnPartStatus::not_converged, "no smooth edge is common to the passes",
             "check that the part stands still, that every pass names its edge, and the robot's poses");
-    OnPartResult result =
-        judge(found->refined, data, names, options.prior ? std::vector<Rival>{} : found->rivals, options);
-    if (!result.bump || !result.bump->moved) return result;
-    // The sensor has moved: the prior no longer says where it is, the data alone must.
-    const BumpTest test = *result.bump;
-    OnPartOptions alone = options;
-    alone.prior.reset();
-    Data without = data;
-    without.prior.reset();
-    auto again = find(without, {found->refined.state}, alone);
-    if (!again) return result;
-    result = judge(again->refined, without, names, again->rivals, alone);
-    result.bump = test;
-    if (result.status == OnPartStatus::ok) {
-        const Eigen::Vector3d m = in_sensor(result.working_point_mm);
-        result.bump->shift_mm =
-            (result.flange_from_sensor * m - options.prior->flange_from_sensor * m).norm();
-        result.bump->turn_deg =
-            deg_from_rad(angle_rad(result.flange_from_sensor, options.prior->flange_from_sensor));
+    };
+    if (!options.prior) {
+        const auto found = find(data, starts(data), options);
+        return found ? judge(found->refined, data, names, found->rivals, options) : none();
     }
-    return result;
+    return after_bump(data, names, options).value_or(none());
 }
 
 }  // namespace seamwright

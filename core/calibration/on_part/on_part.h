@@ -115,7 +115,7 @@ struct OnPartResult {
 };
 
 // Error (input): no pass, ids twice, times that do not rise within a pass, metres, what is not finite, a covariance
-// that is none, an edge that is none. Too little to solve from is an answer, undetermined. Deterministic. About 0.2 s
+// that is none, an edge that is none. Too little to solve from is an answer, undetermined. Deterministic. About 0.4 s
 // for twelve passes of forty profiles.
 Expected<OnPartResult> calibrate_on_part(const std::vector<EdgePass>& passes,
                                          const OnPartOptions& options = {});

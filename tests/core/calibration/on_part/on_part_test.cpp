@@ -196,6 +196,25 @@ TEST(OnPart, AfterABumpItSaysWhetherTheSensorMoved) {
     ASSERT_EQ(moved->status, OnPartStatus::ok) << moved->report.judgement.reason.english();
     EXPECT_LT(working_mm(*moved, cell.mounting()), 4 * moved->working_sigma_mm);
     EXPECT_NEAR(moved->bump->turn_deg, 0.8, 0.3);
+    // A blow that nobody would call small, against a prior that is sure of itself.
+    options.prior->flange_from_sensor =
+        cell.mounting() * Eigen::Translation3d(7, -5, 6) *
+        Eigen::AngleAxisd(6 * Cell::kDeg, Eigen::Vector3d(1, 2, -1).normalized());
+    const auto struck = calibrate_on_part(passes, options);
+    ASSERT_TRUE(struck && struck->bump);
+    EXPECT_TRUE(struck->bump->moved);
+    ASSERT_EQ(struck->status, OnPartStatus::ok) << struck->report.judgement.reason.english();
+    EXPECT_LT(working_mm(*struck, cell.mounting()), 4 * struck->working_sigma_mm);
+    // Passes that alone would not do: with the old place they only say that nothing shows.
+    options.prior->flange_from_sensor = cell.mounting();
+    Motion stiff;
+    stiff.turn_deg = 0;
+    const auto few = cell.passes({cell.straight()}, 4, 0, stiff, kUsual, 0.005);
+    const auto checked = calibrate_on_part(few, options);
+    ASSERT_TRUE(checked && checked->bump);
+    EXPECT_FALSE(checked->bump->moved);
+    ASSERT_EQ(checked->status, OnPartStatus::ok) << checked->report.judgement.reason.english();
+    EXPECT_LT(working_mm(*checked, cell.mounting()), 0.15);
 }
 
 // Two ways to the same mounting, each with its own sigma: chi squared of six, the 99.9 % point.

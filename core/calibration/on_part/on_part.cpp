@@ -1,0 +1,246 @@
+#include "core/calibration/on_part/on_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/calibration/on_part/judge.h"
+#include "core/calibration/on_part/start.h"
+#include "core/calibration/pose_set.h"
+#include "core/geometry/decompositions.h"
+#include "core/numbers.h"
+
+namespace seamwright {
+namespace {
+
+using namespace on_part;
+
+constexpr double kNoise_mm = 0.03;  // of a point whose covariance is not known; its scale is estimated
+constexpr std::size_t kFewestProfiles = 4;
+
+Text place(const EdgePass& pass) {
+    return Text("pass '{}'", pass.id);
+}
+
+Expected<void> check_pass(const EdgePass& pass) {
+    if (pass.profiles.empty())
+        return input_error("there is no profile", place(pass), "leave out a pass without profiles");
+    std::vector<Pose> poses;
+    std::vector<std::string> ids;
+    for (std::size_t i = 0; i < pass.profiles.size(); ++i) {
+        const EdgeProfile& p = pass.profiles[i];
+        poses.push_back(p.base_from_flange);
+        ids.push_back(std::to_string(i));
+        if (!std::isfinite(p.time_s) || std::abs(p.time_s) > 1e12)
+            return input_error(Text("the time of profile {} is no time", i), place(pass), "give seconds");
+        if (!p.point_mm.allFinite() || p.point_mm.norm() > 1e4)
+            return input_error(Text("the point of profile {} is none within 10 m", i), place(pass),
+                               "leave out profiles that saw no edge");
+        if (!p.covariance_mm2.allFinite() ||
+            (p.covariance_mm2 - p.covariance_mm2.transpose()).norm() > 1e-6 * p.covariance_mm2.norm() ||
+            p.covariance_mm2.determinant() < 0 || p.covariance_mm2.trace() < 0 ||
+            p.covariance_mm2.norm() > 1e4 ||
+            (p.covariance_mm2.norm() > 0 && !(p.covariance_mm2.trace() > 1e-12)))
+            return input_error(Text("the covariance of profile {} is none", i), place(pass),
+                               "give a symmetric 2 x 2 matrix in mm^2, or none");
+        if (i > 0 && !(p.time_s > pass.profiles[i - 1].time_s))
+            return input_error(Text("the time of profile {} does not come after the one before", i),
+                               place(pass), "give the profiles in the order of their times");
+    }
+    return check_rigid(poses, ids, place(pass));
+}
+
+Expected<void> check_passes(const std::vector<EdgePass>& passes, const OnPartOptions& options) {
+    if (passes.empty())
+        return input_error("there is no pass", "passes", "give passes over an edge of the part");
+    std::vector<std::string> ids;
+    std::vector<Pose> poses;
+    for (const EdgePass& pass : passes) ids.push_back(pass.id);
+    if (auto ok = check_ids(ids, options.exclude, "passes"); !ok) return ok;
+    for (const EdgePass& pass : passes) {
+        if (pass.edge.empty())
+            return input_error("the edge has no name", place(pass), "name the edge that it follows");
+        if (auto ok = check_pass(pass); !ok) return ok;
+        for (const EdgeProfile& p : pass.profiles) poses.push_back(p.base_from_flange);
+    }
+    if (auto ok = check_millimetres(poses, "passes"); !ok) return ok;
+    if (options.latency_s && !(std::abs(*options.latency_s) <= 1))
+        return input_error("the latency is beyond one second", "latency", "give it in seconds");
+    if (options.robot && !(options.robot->sigma_mm > 0 && options.robot->sigma_mm < 10 &&
+                           options.robot->sigma_rad > 0 && options.robot->sigma_rad < 0.1))
+        return input_error("the robot's repeatability is none", "robot",
+                           "give sigma_mm and sigma_deg, both above zero");
+    if (options.prior) {
+        if (auto pose = pose_from_matrix(options.prior->flange_from_sensor.matrix(), "prior"); !pose)
+            return tl::unexpected(pose.error());
+        const Matrix6& c = options.prior->covariance;
+        const Vector6 diagonal = c.diagonal();
+        if (!c.allFinite() || !(diagonal.minCoeff() > 0) || (c - c.transpose()).norm() > 1e-6 * c.norm())
+            return input_error("the covariance is none", "prior",
+                               "give a symmetric 6 x 6 matrix, mm and rad, positive definite");
+        const Vector6 scale = diagonal.cwiseSqrt().cwiseInverse();
+        if (!(symmetric_eigen(scale.asDiagonal() * c * scale.asDiagonal()).values(0) > 1e-12))
+            return input_error("the covariance is not positive definite", "prior",
+                               "give a symmetric 6 x 6 matrix, mm and rad, positive definite");
+    }
+    return {};
+}
+
+Data data_of(const std::vector<EdgePass>& passes, const OnPartOptions& options, Names& names) {
+    Data data;
+    data.latency_free = !options.latency_s;
+    data.latency_s = options.latency_s.value_or(0);
+    data.prior = options.prior;
+    const auto excluded = [&](const EdgePass& pass) {
+        return std::find(options.exclude.begin(), options.exclude.end(), pass.id) != options.exclude.end();
+    };
+    // Edges that only excluded passes follow come last and are none of the problem's.
+    for (const bool out : {false, true}) {
+        for (const EdgePass& pass : passes)
+            if (excluded(pass) == out &&
+                std::find(names.edges.begin(), names.edges.end(), pass.edge) == names.edges.end())
+                names.edges.push_back(pass.edge);
+        if (!out) data.edges = names.edges.size();
+    }
+    for (const EdgePass& pass : passes) {
+        const auto known = std::find(names.edges.begin(), names.edges.end(), pass.edge);
+        const auto edge = static_cast<std::size_t>(known - names.edges.begin());
+        names.passes.push_back(pass.id);
+        names.excluded.push_back(excluded(pass));
+        std::vector<double> times;
+        std::vector<Pose> poses;
+        for (std::size_t i = 0; i < pass.profiles.size(); ++i) {
+            const EdgeProfile& p = pass.profiles[i];
+            times.push_back(p.time_s);
+            poses.push_back(p.base_from_flange);
+            Sight s{data.motions.size(),   edge, i, p.time_s, p.point_mm, p.covariance_mm2,
+                    !names.excluded.back()};
+            if (!(s.covariance.trace() > 0))
+                s.covariance = kNoise_mm * kNoise_mm * Eigen::Matrix2d::Identity();
+            s.covariance.diagonal().array() += 1e-4 * s.covariance.trace();
+            data.sights.push_back(s);
+        }
+        data.motions.emplace_back(std::move(times), std::move(poses));
+    }
+    return data;
+}
+
+// The sensor mirrored at the plane across the edge: what one straight edge under one attitude cannot tell apart.
+State mirrored(const Refined& r) {
+    const Sight* middle = nullptr;
+    for (const Sight& s : r.data.sights)
+        if (s.used && s.edge == 0) middle = &s;
+    State state = r.state;
+    if (!middle) return state;
+    const Eigen::Vector3d d =
+        r.data.motions[middle->pass].at(middle->time_s).linear().transpose() * r.state.edges[0].axes.col(0);
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - 2 * d * d.transpose();
+    const Eigen::Matrix3d turn = across * r.state.mounting.linear() * Eigen::Vector3d(1, -1, 1).asDiagonal();
+    const Eigen::Vector3d m = in_sensor(r.working_point);
+    state.mounting = make_pose(turn, r.state.mounting * m - turn * m);
+    return state;
+}
+
+std::vector<Rival> rivals_of(const Refined& best, const std::vector<State>& others) {
+    std::vector<Rival> list;
+    for (const State& other : others) list.push_back(rival(best, other));
+    list.push_back(rival(best, mirrored(best)));
+    std::sort(list.begin(), list.end(), [](const Rival& a, const Rival& b) { return a.cost < b.cost; });
+    return list;
+}
+
+// From every start; then from a rival that fits better, if there is one.
+struct Found {
+    Refined refined;
+    std::vector<Rival> rivals;
+};
+std::optional<Found> find(const Data& data, const std::vector<State>& begun, const OnPartOptions& options) {
+    Found found;
+    std::size_t from = 0;
+    for (; from < begun.size(); ++from) {
+        found.refined = refine(data, begun[from], options.robot);
+        if (found.refined.solved) break;
+    }
+    if (!found.refined.solved) return std::nullopt;
+    std::vector<State> others = begun;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(from));
+    for (int round = 0; round < 3; ++round) {
+        found.rivals = rivals_of(found.refined, others);
+        if (found.rivals.empty() || !(found.rivals.front().cost < found.refined.cost - 1e-6)) break;
+        Refined better = refine(data, found.rivals.front().state, options.robot);
+        if (!better.solved) break;
+        others.push_back(found.refined.state);
+        found.refined = std::move(better);
+    }
+    return found;
+}
+
+// The data alone are asked first: beside a prior that no longer holds, a moved sensor would look like noise.
+std::optional<OnPartResult> after_bump(const Data& data, const Names& names, const OnPartOptions& options) {
+    const State old = start_at(data, options.prior->flange_from_sensor, options.latency_s.value_or(0), 8, 12);
+    Data without = data;
+    without.prior.reset();
+    OnPartOptions alone = options;
+    alone.prior.reset();
+    const Refined near = refine(without, old, options.robot);
+    if (!near.solved) return std::nullopt;
+    const BumpTest test = bump_of(near, *options.prior, near.state.mounting);
+    OnPartResult result;
+    if (test.moved) {
+        std::vector<State> begun = starts(without);
+        begun.insert(begun.begin(), near.state);
+        const auto found = find(without, begun, alone);
+        if (!found) return std::nullopt;
+        result = judge(found->refined, without, names, found->rivals, alone);
+    } else {
+        const Refined both = refine(data, old, options.robot);
+        if (!both.solved) return std::nullopt;
+        result = judge(both, data, names, {}, options);
+    }
+    result.bump = test;
+    if (result.status == OnPartStatus::ok) {
+        const Eigen::Vector3d m = in_sensor(result.working_point_mm);
+        result.bump->shift_mm =
+            (result.flange_from_sensor * m - options.prior->flange_from_sensor * m).norm();
+        result.bump->turn_deg =
+            deg_from_rad(angle_rad(result.flange_from_sensor, options.prior->flange_from_sensor));
+    }
+    return result;
+}
+
+}  // namespace
+
+std::string_view name_of(OnPartStatus status) {
+    switch (status) {
+        case OnPartStatus::ok:
+            return "ok";
+        case OnPartStatus::undetermined:
+            return "undetermined";
+        case OnPartStatus::not_converged:
+            return "not_converged";
+    }
+    return "undetermined";
+}
+
+Expected<OnPartResult> calibrate_on_part(const std::vector<EdgePass>& passes, const OnPartOptions& options) {
+    if (auto ok = check_passes(passes, options); !ok) return tl::unexpected(ok.error());
+    Names names;
+    const Data data = data_of(passes, options, names);
+    std::vector<std::size_t> profiles(passes.size());
+    std::size_t all = 0;
+    for (const Sight& s : data.sights) all += s.used;
+    if (all < kFewestProfiles * 4)
+        return refused(names, OnPartStatus::undetermined, Text("{} profiles are too few to solve from", all),
+                       "make passes of ten profiles and more, from several attitudes");
+    const auto none = [&] {
+        return refused(
+            names, OnPartStatus::not_converged, "no smooth edge is common to the passes",
+            "check that the part stands still, that every pass names its edge, and the robot's poses");
+    };
+    if (!options.prior) {
+        const auto found = find(data, starts(data), options);
+        return found ? judge(found->refined, data, names, found->rivals, options) : none();
+    }
+    return after_bump(data, names, options).value_or(none());
+}
+
+}  // namespace seamwright

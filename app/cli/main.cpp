@@ -13,6 +13,8 @@ int main(int argc, char** argv) {
     add_hand_over(line);
     add_acceptance(line);
     add_device_studies(line);
+    add_scan(line);
+    add_fit(line);
     add_replay(line);
     add_correct(line);
     add_plan(line);

@@ -68,6 +68,8 @@ void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
 void add_statistics(CommandLine& line);
 void add_device_studies(CommandLine& line);  // measure-robot, measure-trigger
+void add_scan(CommandLine& line);
+void add_fit(CommandLine& line);
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);
 void add_sim_cell(CommandLine& line);

@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
     add_acceptance(line);
     add_statistics(line);
     add_device_studies(line);
+    add_scan(line);
+    add_fit(line);
     add_replay(line);
     add_correct(line);
     add_plan(line);

@@ -74,12 +74,6 @@ struct BoxTest {
 
 }  // namespace
 
-Eigen::AlignedBox3d TriangleMesh::box() const {
-    Eigen::AlignedBox3d b;
-    for (const auto& v : vertices) b.extend(v);
-    return b;
-}
-
 MeshTree::MeshTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
     build();
     fit();

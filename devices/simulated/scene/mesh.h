@@ -6,14 +6,9 @@
 #include <optional>
 #include <vector>
 
-namespace seamwright {
+#include "core/geometry/triangle_mesh.h"
 
-struct TriangleMesh {
-    std::vector<Eigen::Vector3d> vertices;  // mm
-    std::vector<Eigen::Vector3i>
-        triangles;  // anticlockwise seen from outside; the renderer lights both sides
-    Eigen::AlignedBox3d box() const;
-};
+namespace seamwright {
 
 struct RayHit {
     double distance_mm = 0;

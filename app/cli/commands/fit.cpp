@@ -1,0 +1,327 @@
+// seamwright scan, fit: a pass as a cloud, and the cloud on the drawing.
+
+#include <fmt/format.h>
+
+#include "app/cli/command.h"
+#include "app/cli/pose_argument.h"
+#include "app/cli/signal_watch.h"
+#include "devices/exchange/cloud/cloud_file.h"
+#include "devices/exchange/files.h"
+#include "devices/exchange/json_fields.h"
+#include "devices/exchange/pose_json.h"
+#include "devices/exchange/tables/point_table.h"
+#include "devices/simulated/scene/mesh_file.h"
+#include "projects/scan/fit_report.h"
+#include "projects/scan/scan.h"
+#include "widgets/print/pdf.h"
+
+namespace seamwright::cli {
+namespace {
+
+using nlohmann::json;
+
+struct ScanArguments {
+    std::string file, capture, out;
+    std::int64_t run = 0;
+    RecordedGapPass recorded;
+    DrivenGapPass driven;
+    double cell_mm = 0;
+    bool keep_outliers = false;
+};
+
+Expected<ScanResult> scanned(ScanArguments& a) {
+    if (!a.driven.spot_ids.empty()) {
+        auto station = Station::open(a.file);
+        if (!station) return tl::unexpected(station.error());
+        if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+        a.driven.cancel = stop_on_signal();
+        a.driven.progress = [](const RunProgress& p) {
+            if (p.done == p.total || p.done % 50 == 0) fmt::print(stderr, "[{}/{}]\n", p.done, p.total);
+        };
+        auto pass = gap_pass(*station, a.driven);
+        if (!pass) return tl::unexpected(pass.error());
+        return scan_of_pass(station->project(), *pass);
+    }
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    if (a.run > 0) return scan_of_run(*file, a.run);
+    if (a.capture.empty())
+        return usage_error("there is nothing to make a scan of", a.file,
+                           "give --spots S1,S2 to drive along, --capture PASS.seam, or --run N");
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    auto capture = CaptureReader::open(a.capture);
+    if (!capture) return tl::unexpected(capture.error());
+    auto pass = gap_pass(*project, *capture, a.recorded);
+    if (!pass) return tl::unexpected(pass.error());
+    return scan_of_pass(*project, *pass);
+}
+
+Expected<Answer> scan_command(ScanArguments& a) {
+    auto scan = scanned(a);
+    if (!scan) return tl::unexpected(scan.error());
+    if (scan->cloud.empty())
+        return input_error("no profile of the pass has a point", a.file,
+                           "look at the sensor's picture on the way");
+    if (a.keep_outliers)
+        scan->cloud = a.cell_mm > 0 ? voxel_grid(scan->cloud, a.cell_mm) : std::move(scan->cloud);
+    else
+        clean(*scan, a.cell_mm);
+    estimate_normals(scan->cloud);
+    if (auto written = write_cloud(a.out, scan->cloud, kInBaseMark); !written)
+        return tl::unexpected(written.error());
+    const Eigen::AlignedBox3d box = scan->cloud.box();
+    const auto corner = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
+    Answer answer;
+    answer.json = {{"status", "ok"},
+                   {"out", a.out},
+                   {"frame", "base"},
+                   {"profiles", scan->profiles},
+                   {"without_profile", scan->without_profile},
+                   {"without_pose", scan->without_pose},
+                   {"points", scan->cloud.size()},
+                   {"outliers", scan->outliers},
+                   {"box", {{"from_mm", corner(box.min())}, {"to_mm", corner(box.max())}}}};
+    answer.text =
+        fmt::format("{} written: {} points of {} profiles in the robot's base, {} outliers left out\n", a.out,
+                    scan->cloud.size(), scan->profiles, scan->outliers);
+    return answer;
+}
+
+struct FitArguments {
+    std::string file, scan, to = "drawing", cloud, mesh, start, pairs, unit, report, pdf, colours,
+                            language = "en";
+    bool take = false, anywhere = false;
+    FitOptions options;
+};
+
+// {"pairs":[{"part":[x,y,z],"base":[x,y,z]}, ..]}
+Expected<void> read_pairs(const std::string& path, FitOptions& options) {
+    auto document = read_json_file(path);
+    if (!document) return tl::unexpected(document.error());
+    if (auto good = only_fields(*document, {"pairs"}, path); !good) return good;
+    auto list = json_array(*document, "pairs", path);
+    if (!list) return tl::unexpected(list.error());
+    for (std::size_t i = 0; i < (*list)->size(); ++i) {
+        const std::string where = json_path(path + ": pairs", i);
+        const json& pair = (**list)[i];
+        if (auto good = only_fields(pair, {"part", "base"}, where); !good) return good;
+        auto part = json_vector3(pair, "part", where), base = json_vector3(pair, "base", where);
+        if (!part) return tl::unexpected(part.error());
+        if (!base) return tl::unexpected(base.error());
+        options.pairs_part.push_back(*part);
+        options.pairs_base.push_back(*base);
+    }
+    if (options.pairs_part.size() < 3)
+        return input_error("a pose needs three pairs of points", path,
+                           "pick three places of the part that lie far apart");
+    return {};
+}
+
+// The drawing, and of a project where the part is supposed to stand.
+Expected<TriangleMesh> drawing(FitArguments& a) {
+    if (a.file.empty()) {
+        if (a.cloud.empty() || a.mesh.empty())
+            return usage_error("there is nothing to fit", "fit",
+                               "give --cloud SCAN.ply --mesh PART.stl, or FILE.seam --scan SCAN.ply");
+        return load_mesh(a.mesh, a.unit);
+    }
+    auto file = ProjectFile::open(a.file, FileAccess::read_only);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    if (!a.anywhere && !a.options.start && a.options.pairs_part.empty())
+        a.options.start = project->part.base_from_workobject;
+    if (!a.mesh.empty()) return load_mesh(a.mesh, a.unit);
+    if (project->part.mesh_ply.empty())
+        return input_error("the project's part has no drawing", a.file, "give the mesh with --mesh PART.stl");
+    return mesh_from_ply(project->part.mesh_ply, a.file);
+}
+
+Expected<void> take_pose(const FitArguments& a, const FitReport& report, Answer& answer) {
+    auto file = ProjectFile::open(a.file);
+    if (!file) return tl::unexpected(file.error());
+    auto project = file->load();
+    if (!project) return tl::unexpected(project.error());
+    const Pose before = project->part.base_from_workobject;
+    project->part.base_from_workobject = report.fit.base_from_part;
+    if (auto saved = file->save(*project); !saved) return saved;
+    const double moved = distance_mm(before, report.fit.base_from_part);
+    const Text note("work object taken from a fit of {}: moved by {:.3f} mm and {:.4f} degrees; before: {}",
+                    report.scan, moved, deg_from_rad(angle_rad(before, report.fit.base_from_part)),
+                    pose_json(before).dump());
+    if (auto noted = file->append_event({0, {}, 0, EventKind::note, project->part.name, note}); !noted)
+        return tl::unexpected(noted.error());
+    answer.json["taken"] = true;
+    answer.json["base_from_workobject_before"] = pose_json(before);
+    answer.text += fmt::format(
+        "taken: the work object moved by {:.3f} mm; what it was stands in the file's events\n", moved);
+    return {};
+}
+
+Expected<void> write_reports(const FitArguments& a, const FitReport& report, const Cloud& cloud,
+                             const Surface& surface, Answer& answer) {
+    if (!a.colours.empty() && !report.deviation.signed_mm.empty())
+        if (auto written =
+                write_text_file(a.colours, deviation_svg(report, cloud, surface, *language_from(a.language)));
+            !written)
+            return written;
+    if (a.report.empty() && a.pdf.empty()) return {};
+    const report::Page page = fit_page(report, cloud, surface, *language_from(a.language));
+    if (!a.report.empty()) {
+        if (auto written = write_text_file(a.report, page.html()); !written) return written;
+        answer.text += a.report + " written\n";
+    }
+    if (!a.pdf.empty()) {
+        if (auto written = write_pdf(page, a.pdf); !written) return written;
+        answer.text += a.pdf + " written\n";
+    }
+    return {};
+}
+
+Expected<Answer> fit_command(FitArguments& a) {
+    if (a.to != "drawing")
+        return usage_error(Text("a scan is fitted to the drawing, not to \"{}\"", a.to), "--to",
+                           "give --to drawing");
+    if (a.take && a.file.empty())
+        return usage_error("there is no project to take the pose into", "--take", "give FILE.seam");
+    if (!a.start.empty()) {
+        auto pose = read_pose_argument(a.start, "--start");
+        if (!pose) return tl::unexpected(pose.error());
+        a.options.start = *pose;
+    }
+    if (!a.pairs.empty())
+        if (auto read = read_pairs(a.pairs, a.options); !read) return tl::unexpected(read.error());
+    const std::string source = a.cloud.empty() ? a.scan : a.cloud;
+    if (source.empty())
+        return usage_error("there is nothing to fit", "fit", "give the scan: --scan SCAN.ply");
+    auto mesh = drawing(a);
+    if (!mesh) return tl::unexpected(mesh.error());
+    auto cloud = read_cloud(source, a.unit);
+    if (!cloud) return tl::unexpected(cloud.error());
+    const Surface surface(*mesh);
+    const auto stop = stop_on_signal();
+    a.options.cancelled = [stop] { return stop.stop_requested(); };
+    FitReport report;
+    report.scan = source;
+    report.part = a.mesh.empty() ? a.file : a.mesh;
+    auto fit = fit_surface(*cloud, surface, a.options);
+    if (!fit) {
+        Error error = fit.error();
+        error.within(Text(source));
+        return tl::unexpected(error);
+    }
+    report.fit = std::move(*fit);
+    const bool placed = report.fit.status != FitStatus::no_fit && report.fit.status != FitStatus::cancelled;
+    if (placed)
+        report.deviation = deviation_map(*cloud, surface, report.fit.base_from_part,
+                                         {std::max(2 * report.fit.gate_mm, 0.005 * surface.size_mm()),
+                                          report.fit.noise_mm, 41, a.options.cancelled});
+    const bool ok = report.fit.status == FitStatus::ok;
+    Answer answer{fit_json(report), fit_text(report), ok ? kExitOk : kExitVerdict};
+    answer.json["taken"] = false;
+    if (auto written = write_reports(a, report, *cloud, surface, answer); !written)
+        return tl::unexpected(written.error());
+    if (a.take && ok)
+        if (auto taken = take_pose(a, report, answer); !taken) return tl::unexpected(taken.error());
+    return answer;
+}
+
+void add_scan_options(CLI::App* command, const std::shared_ptr<ScanArguments>& a) {
+    command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
+    auto* spots =
+        command->add_option("--spots", a->driven.spot_ids, "Spots that the robot goes along, in order");
+    spots->delimiter(',')->type_name("S1,S2,...");
+    command->add_option("--step-mm", a->driven.step_mm, "Of the robot, from profile to profile")
+        ->check(CLI::Range(0.05, 100.0))
+        ->capture_default_str()
+        ->needs(spots);
+    auto* capture = command->add_option("--capture", a->capture, "A recorded pass: profiles and robot poses");
+    capture->type_name("PASS.seam")->excludes(spots);
+    command->add_option("--run", a->run, "The profiles of a stored run")
+        ->check(CLI::PositiveNumber)
+        ->excludes(spots)
+        ->excludes(capture);
+    command->add_option("--sensor", a->recorded.sensor_id, "Which one, when the capture has several")
+        ->needs(capture)
+        ->type_name("ID");
+    command->add_option("--robot", a->recorded.robot_id, "Whose poses, when the capture has several")
+        ->needs(capture)
+        ->type_name("ID");
+    command->add_option("--cell-mm", a->cell_mm, "One point a cell of this size; 0: every point")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    command->add_flag("--keep-outliers", a->keep_outliers,
+                      "Without it points that stand far from all others are left out");
+    command->add_option("--out", a->out, "The cloud, in the robot's base")
+        ->required()
+        ->type_name("FILE.ply|.pcd|.csv");
+}
+
+}  // namespace
+
+void add_scan(CommandLine& line) {
+    auto a = std::make_shared<ScanArguments>();
+    CLI::App* command = line.add(
+        "scan",
+        "A cloud of points in the robot's base from a pass over the part: the robot goes from spot to spot, "
+        "step by step "
+        "(keep its\nway clear), or a recorded pass (`seamwright record`), or the profiles of a stored run.",
+        "seamwright scan door_left.seam --spots T1,T2,T3 --step-mm 2 --out door.ply\n"
+        "  seamwright scan door_left.seam --capture pass.seam --out door.pcd");
+    add_scan_options(command, a);
+    line.on(command, [a] { return scan_command(*a); });
+}
+
+void add_fit(CommandLine& line) {
+    auto a = std::make_shared<FitArguments>();
+    CLI::App* command = line.add("fit",
+                                 "Where a part stands: its scan fitted to its drawing, with the sigma of "
+                                 "noise and of form, the deviation map, and a "
+                                 "refusal\nthat names the directions that a flat, round or symmetric part "
+                                 "leaves open. In a project the search begins "
+                                 "at its work object.\nExit 1 where the fit is refused.",
+                                 "seamwright fit --cloud scan.ply --mesh part.stl --report fit.html\n"
+                                 "  seamwright fit door_left.seam --scan door.ply --to drawing --take");
+    command->add_option("file", a->file, "The project")->type_name("FILE.seam");
+    command->add_option("--scan", a->scan, "The cloud, in the robot's base: PLY, PCD, CSV")
+        ->type_name("FILE");
+    command->add_option("--cloud", a->cloud, "The same, without a project")->type_name("FILE");
+    command->add_option("--mesh", a->mesh, "The drawing: STL, PLY, OBJ; of a project, instead of its own")
+        ->type_name("FILE");
+    command->add_option("--to", a->to, "What the scan is fitted to: drawing")->capture_default_str();
+    command->add_option("--unit", a->unit, "Of the files: mm or m")->check(CLI::IsMember({"mm", "m"}));
+    command->add_option("--start", a->start, "Where it stands roughly, base_from_workobject")
+        ->type_name("POSE");
+    command->add_option("--start-mm", a->options.start_mm, "How roughly")
+        ->check(CLI::Range(0.1, 10000.0))
+        ->capture_default_str();
+    command->add_option("--start-deg", a->options.start_deg, "How roughly")
+        ->check(CLI::Range(0.1, 180.0))
+        ->capture_default_str();
+    command
+        ->add_option("--pairs", a->pairs,
+                     "Three or more picked pairs: {\"pairs\":[{\"part\":[x,y,z],\"base\":[x,y,z]},..]}")
+        ->type_name("FILE.json");
+    command->add_flag("--anywhere", a->anywhere, "Search everywhere, not about the project's work object");
+    command
+        ->add_option("--noise-mm", a->options.noise_mm,
+                     "Of a point along the normal, one sigma; else estimated")
+        ->check(CLI::Range(0.0, 10.0));
+    command
+        ->add_option("--sigma-limit-mm", a->options.sigma_limit_mm,
+                     "A direction whose 3 sigma is beyond counts as open")
+        ->check(CLI::Range(0.001, 1000.0))
+        ->capture_default_str();
+    command->add_option("--seed", a->options.seed, "Of the search")->capture_default_str();
+    command->add_option("--report", a->report, "Page with the deviation map")->type_name("FILE.html");
+    command->add_option("--pdf", a->pdf, "The same as PDF")->type_name("FILE.pdf");
+    command->add_option("--map", a->colours, "The deviation map alone")->type_name("FILE.svg");
+    command->add_option("--language", a->language, "en or de, of the page")
+        ->check(CLI::IsMember({"en", "de"}))
+        ->capture_default_str();
+    command->add_flag("--take", a->take, "Set the project's work object where the fit is ok");
+    line.on(command, [a] { return fit_command(*a); });
+}
+
+}  // namespace seamwright::cli

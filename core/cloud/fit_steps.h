@@ -1,0 +1,37 @@
+#pragma once
+// The steps of fit.h, apart from one another.
+
+#include "core/cloud/fit.h"
+#include "core/cloud/form_model.h"
+#include "core/cloud/refine.h"
+
+namespace seamwright::fitting {
+
+// The residuals of a pose, point by point: what the form's model and the noise are taken from.
+struct Residual {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();  // base
+    double value_mm = 0, noise_mm2 = 0;  // variance; 0: not stated
+};
+std::vector<Residual> residuals_of(const Cloud& cloud, const Surface& surface, const Pose& base_from_part,
+                                   double gate_mm, bool facing);
+// Standard deviation of a point beside its neighbours: the median over cells of some eight points. NaN where no cell has
+// three.
+double local_noise_mm(const std::vector<Residual>& residuals);
+// At most some 180 neighbourhoods of one facing. `noise_mm` where a residual states none.
+std::vector<FormNode> form_nodes(const std::vector<Residual>& residuals, const FitSystem& system,
+                                 double noise_mm);
+
+// The part's longer axes and its thinnest, in base.
+PlateAxes plate_axes(const Surface& surface, const Pose& base_from_part);
+
+// Starts for rivals of `best`: the same part turned by symmetries, tilted and shifted along its axes. With a start only
+// what stays within its tolerance.
+std::vector<Pose> rival_starts(const Surface& surface, const Pose& best, const FitOptions& options);
+bool within_start(const Pose& pose, const Surface& surface, const FitOptions& options);
+// What `judges` say of two poses. `form_mm`: what a point may be off anyway.
+FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, const Pose& rival,
+                 double form_mm, double most_mm, bool facing);
+// The largest distance of a corner of the part's box between two poses.
+double corner_distance_mm(const Surface& surface, const Pose& a, const Pose& b);
+
+}  // namespace seamwright::fitting

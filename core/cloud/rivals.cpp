@@ -1,0 +1,98 @@
+// Poses that would explain a scan as well.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/cloud/fit_steps.h"
+#include "core/geometry/decompositions.h"
+
+namespace seamwright::fitting {
+namespace {
+
+// Fewer points than these speak for nothing: beside them, three times the rival's own are asked for.
+constexpr double kLeastShare = 0.004;
+constexpr std::size_t kLeastPoints = 8;
+
+Eigen::Matrix3d principal_axes(const Surface& surface) {
+    const Cloud points = surface.sampled(1000, 7);
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const auto& p : points.points) middle += p / static_cast<double>(points.size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const auto& p : points.points) spread += (p - middle) * (p - middle).transpose();
+    return symmetric_eigen(spread).vectors;
+}
+
+}  // namespace
+
+PlateAxes plate_axes(const Surface& surface, const Pose& base_from_part) {
+    const Cloud points = surface.sampled(1000, 7);
+    Eigen::Matrix3d axes = principal_axes(surface).rowwise().reverse();  // the longest first
+    if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
+    Eigen::AlignedBox3d own;
+    for (const auto& p : points.points) own.extend(Eigen::Vector3d(axes.transpose() * p));
+    PlateAxes plate;
+    plate.middle_mm = base_from_part * Eigen::Vector3d(axes * own.center());
+    plate.axes = base_from_part.linear() * axes;
+    plate.half_mm = (own.sizes() / 2).cwiseMax(1e-3);
+    return plate;
+}
+
+double corner_distance_mm(const Surface& surface, const Pose& a, const Pose& b) {
+    double most = 0;
+    for (int k = 0; k < 8; ++k) {
+        const Eigen::Vector3d c = surface.box().corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
+        most = std::max(most, (a * c - b * c).norm());
+    }
+    return most;
+}
+
+bool within_start(const Pose& pose, const Surface& surface, const FitOptions& options) {
+    if (!options.start) return true;
+    const Eigen::Vector3d c = surface.box().center();
+    return (pose * c - *options.start * c).norm() <= options.start_mm &&
+           angle_rad(pose, *options.start) <= rad_from_deg(options.start_deg);
+}
+
+std::vector<Pose> rival_starts(const Surface& surface, const Pose& best, const FitOptions& options) {
+    std::vector<Pose> out;
+    const Eigen::Vector3d centre = surface.box().center();
+    const auto moved = [&](const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& shift) {
+        const Eigen::Matrix3d turn = rotation_exp(angle * axis.normalized());
+        const Pose part_from_part = make_pose(turn, centre - turn * centre + shift);
+        const Pose pose = best * part_from_part;
+        if (within_start(pose, surface, options)) out.push_back(pose);
+    };
+    // The drawing's axes, and the part's own where they are others.
+    const Eigen::Matrix3d own = principal_axes(surface);
+    std::vector<Eigen::Vector3d> axes{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
+                                      Eigen::Vector3d::UnitZ()};
+    if (own.cwiseAbs().rowwise().maxCoeff().minCoeff() < 0.995)
+        for (int k = 0; k < 3; ++k) axes.emplace_back(own.col(k));
+    for (const Eigen::Vector3d& axis : axes) {
+        for (const double deg : {180.0, 90.0, -90.0, 120.0, -120.0, 8.0, -8.0})
+            moved(axis, rad_from_deg(deg), Eigen::Vector3d::Zero());
+        for (const double share : {0.02, -0.02, 0.06, -0.06, 0.18, -0.18})
+            moved(axis, 0, share * surface.size_mm() * axis);
+    }
+    return out;
+}
+
+FitRival compare(const Cloud& judges, const Surface& surface, const Pose& best, const Pose& rival,
+                 double form_mm, double most_mm, bool facing) {
+    FitRival r;
+    r.base_from_part = rival;
+    const std::vector<double> a = distances(judges, surface, best, most_mm, facing),
+                              b = distances(judges, surface, rival, most_mm, facing);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        r.for_best += b[i] > a[i] + form_mm;
+        r.for_rival += a[i] > b[i] + form_mm;
+    }
+    const auto least =
+        std::max(kLeastPoints, static_cast<std::size_t>(kLeastShare * static_cast<double>(a.size())));
+    r.told_apart = r.for_best >= least + 3 * r.for_rival;
+    return r;
+}
+
+}  // namespace seamwright::fitting

@@ -27,14 +27,15 @@ void show_about(QWidget* parent) {
     box.setObjectName("about_box");
     box.setWindowTitle(QCoreApplication::translate("About", "About Seamwright"));
     box.setTextFormat(Qt::RichText);
-    box.setText(
+    const QString text =
         QStringLiteral("<h2>Seamwright %1</h2><p>%2</p><p>%3</p><table>%4</table>")
             .arg(QStringLiteral(SEAMWRIGHT_VERSION),
                  QCoreApplication::translate(
                      "About",
                      "Robot path correction with laser-stripe sensors: calibrate, teach, align, prove, run."),
                  QCoreApplication::translate("About", "Built on these libraries, and their licences:"),
-                 libraries));
+                 libraries);
+    box.setText(text);
     box.setStandardButtons(QMessageBox::Ok);
     box.exec();
 }

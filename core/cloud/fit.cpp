@@ -179,9 +179,8 @@ class Fit {
     }
 
     Expected<SurfaceFit> run() {
-        auto starts = starting_poses();
-        if (!starts) return tl::unexpected(starts.error());
-        if (!take_best(*starts) || !on_the_part() || !closed_directions() || !sure()) return out_;
+        SEAM_TRY(auto starts, starting_poses());
+        if (!take_best(starts) || !on_the_part() || !closed_directions() || !sure()) return out_;
         look_for_rivals();
         return out_;
     }
@@ -195,9 +194,8 @@ class Fit {
 
     Expected<std::vector<Pose>> starting_poses() {
         if (!options_.pairs_part.empty()) {
-            auto pose = pose_of_pairs(options_.pairs_part, options_.pairs_base);
-            if (!pose) return tl::unexpected(pose.error());
-            options_.start = *pose;
+            SEAM_TRY(auto pose, pose_of_pairs(options_.pairs_part, options_.pairs_base));
+            options_.start = pose;
         }
         out_.from_start = options_.start.has_value();
         if (options_.start) {
@@ -425,7 +423,7 @@ const char* to_string(FitStatus status) {
 }
 
 Expected<SurfaceFit> fit_surface(const Cloud& cloud, const Surface& surface, const FitOptions& options) {
-    if (auto good = check_input(cloud, surface, options); !good) return tl::unexpected(good.error());
+    SEAM_OK(check_input(cloud, surface, options));
     return Fit(cloud, surface, options).run();
 }
 

@@ -696,4 +696,11 @@ std::string utf8_text(const std::string& text) {
     return parse_json(dump_messages(text), {})->get<std::string>();
 }
 
+std::optional<CorrectionStatus> correction_status_named(const std::string& word) {
+    const auto& words = EnumWords<CorrectionStatus>::words;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (word == words[i]) return static_cast<CorrectionStatus>(i);
+    return std::nullopt;
+}
+
 }  // namespace seamwright

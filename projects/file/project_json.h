@@ -26,4 +26,7 @@ Expected<std::string> dump_document(const nlohmann::json& document, const std::s
 std::string dump_messages(const nlohmann::json& document);
 std::string utf8_text(const std::string& text);
 
+// The status by its word in a document; nullopt: there is no such one.
+std::optional<CorrectionStatus> correction_status_named(const std::string& word);
+
 }  // namespace seamwright

@@ -4,6 +4,7 @@
 
 #include "devices/exchange/pose_json.h"
 #include "projects/file/project_file_detail.h"
+#include "projects/file/project_json.h"
 #include "projects/file/row_checksum.h"
 #include "projects/file/stored_text.h"
 
@@ -105,9 +106,7 @@ class ValuesReader {
         else
             return wrong(of->number);
         if (!status.empty()) {
-            for (const CorrectionStatus s : {CorrectionStatus::ok, CorrectionStatus::under_determined,
-                                             CorrectionStatus::over_limit, CorrectionStatus::not_converged})
-                if (to_string(s) == status) r.status = s;
+            r.status = correction_status_named(status);
             if (!r.status) return wrong(of->number);
         }
         if (r.status == CorrectionStatus::ok || r.status == CorrectionStatus::over_limit) {

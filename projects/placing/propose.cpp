@@ -85,7 +85,19 @@ class Proposer {
                                drawing_.source,
                                "choose another edge, or let the sensor turn further (--cone-deg)");
         tell(0.7, "choosing");
-        out_.set = placing.propose(o_.fewest, o_.most);
+        // The bead's own measure and the gate's must both hold: spots that the gate would refuse are not enough.
+        for (int least = o_.fewest;;) {
+            out_.set = placing.propose(least, o_.most);
+            out_.spots.clear();
+            take_spots();
+            const int count = static_cast<int>(out_.set.chosen.size());
+            const bool passes = 3 * out_.sigma_forecast_mm <= o_.three_sigma_mm;
+            if (passes || !out_.set.enough || count >= o_.most) {
+                out_.set.enough = out_.set.enough && passes;
+                break;
+            }
+            least = count + 1;
+        }
         const int k = static_cast<int>(out_.set.chosen.size());
         tell(0.9, "bounding");
         out_.bound_mm = placing.bound_mm(k);
@@ -93,7 +105,6 @@ class Proposer {
         out_.along_mm = placing.along_bead(out_.set.chosen);
         out_.places = placing.places();
         out_.candidates = static_cast<int>(project_.spots.size());
-        take_spots();
         return std::move(out_);
     }
 

@@ -49,8 +49,8 @@ struct ProposedSpot {
 
 struct Proposal {
     std::vector<ProposedSpot> spots;
-    PlacedSet set;                 // indices are of no meaning here
-    double bound_mm = 0;           // no set of as many spots among these candidates has a smaller 3 sigma
+    PlacedSet set;        // indices are of no meaning here; enough: by its own measure and by the gate's
+    double bound_mm = 0;  // no set of as many spots among these candidates has a smaller 3 sigma
     double bound_of_fewer_mm = 0;  // the same for one spot less; 0: there is none
     std::vector<double> along_mm;  // 3 sigma at every point of the bead
     std::vector<BeadPoint> bead;

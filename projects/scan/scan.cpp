@@ -17,21 +17,18 @@ ScanResult scan_of_pass(const Project& project, const GapPass& pass) {
 }
 
 Expected<ScanResult> scan_of_run(const ProjectFile& file, std::int64_t run_number) {
-    auto run = file.load_run(run_number);
-    if (!run) return tl::unexpected(run.error());
-    auto setup = file.load_run_setup(run_number);
-    if (!setup) return tl::unexpected(setup.error());
+    SEAM_TRY(auto run, file.load_run(run_number));
+    SEAM_TRY(auto setup, file.load_run_setup(run_number));
     ScanResult scan;
-    for (const SpotMeasurement& m : run->spots) {
-        if (m.capture < 0 || static_cast<std::size_t>(m.capture) >= run->captures.size()) continue;
-        const Capture& capture = run->captures[static_cast<std::size_t>(m.capture)];
-        auto measurer = SpotMeasurer::make(*setup, m.spot_id);
-        if (!measurer) return tl::unexpected(measurer.error());
-        measurer->measure(capture);
-        const Calibration* calibration = calibration_of(*setup, measurer->spot());
-        const Pose base_from_flange = capture.base_from_flange.value_or(measurer->spot().base_from_flange);
+    for (const SpotMeasurement& m : run.spots) {
+        if (m.capture < 0 || static_cast<std::size_t>(m.capture) >= run.captures.size()) continue;
+        const Capture& capture = run.captures[static_cast<std::size_t>(m.capture)];
+        SEAM_TRY(auto measurer, SpotMeasurer::make(setup, m.spot_id));
+        measurer.measure(capture);
+        const Calibration* calibration = calibration_of(setup, measurer.spot());
+        const Pose base_from_flange = capture.base_from_flange.value_or(measurer.spot().base_from_flange);
         const std::size_t before = scan.cloud.size();
-        append_profile(scan.cloud, measurer->profile(),
+        append_profile(scan.cloud, measurer.profile(),
                        base_from_flange * (calibration ? calibration->flange_from_sensor : Pose::Identity()));
         ++(scan.cloud.size() > before ? scan.profiles : scan.without_profile);
     }

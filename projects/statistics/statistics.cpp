@@ -86,12 +86,12 @@ class Maker {
         for (const auto& id : regions)
             if (wanted.empty() || id == wanted) {
                 found = true;
-                if (auto done = region(id); !done) return done;
+                SEAM_OK(region(id));
             }
         for (const auto& id : jobs)
             if (wanted.empty() || id == wanted) {
                 found = true;
-                if (auto done = panel(id); !done) return done;
+                SEAM_OK(panel(id));
             }
         if (!found) {
             regions.insert(regions.end(), jobs.begin(), jobs.end());
@@ -229,8 +229,7 @@ class Maker {
     Expected<void> finish(RegionStatistics out) {
         most_frequent_first(out.refusals);
         for (Characteristic& c : out.characteristics)
-            if (!c.values.empty())
-                if (auto done = judge(c); !done) return done;
+            if (!c.values.empty()) SEAM_OK(judge(c));
         std::erase_if(out.characteristics, [](const Characteristic& c) { return c.values.empty(); });
         s_.regions.push_back(std::move(out));
         return {};

@@ -30,7 +30,8 @@ Expected<CalibrationSolution> solved_folder(const char* method, const fs::path& 
                                             double pitch_mm, const char* pattern = "chessboard",
                                             const ExcludedIds& exclude = {}) {
     const CalibrationMethod& m = *find_method(method);
-    auto data = m.data_of_images({folder.string(), board, pitch_mm, pattern, exclude});
+    auto data = m.data_of_images(
+        {folder.string(), {.counts = board, .pitch_mm = pitch_mm, .pattern = pattern}, exclude});
     if (!data) return tl::unexpected(data.error());
     return solve_calibration(m, *data, {});
 }

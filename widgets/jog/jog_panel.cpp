@@ -25,10 +25,10 @@ constexpr double kArrived_mm = 0.02, kArrived_rad = 1e-4;
 // A place that was not reached for so long is no longer where the next step starts.
 constexpr std::chrono::seconds kForgotten{3};
 
-struct Step {
+struct JogStep {
     double mm, deg;
 };
-constexpr std::array<Step, 6> kSteps{{{0.1, 0.1}, {0.5, 0.1}, {1, 0.5}, {5, 1}, {10, 2}, {50, 10}}};
+constexpr std::array<JogStep, 6> kJogSteps{{{0.1, 0.1}, {0.5, 0.1}, {1, 0.5}, {5, 1}, {10, 2}, {50, 10}}};
 constexpr int kFirstStep = 2;
 
 }  // namespace
@@ -86,7 +86,7 @@ void JogPanel::make_choices() {
     add_field(box, tr("Way"), way_, tr("What one press of a key does"));
     step_ = new QComboBox;
     step_->setObjectName("jog_step");
-    for (const Step& s : kSteps)
+    for (const JogStep& s : kJogSteps)
         step_->addItem(tr("%1 mm, %2 degrees").arg(locale().toString(s.mm), locale().toString(s.deg)));
     step_->setCurrentIndex(kFirstStep);
     add_field(box, tr("Step"), step_, tr("How far one press moves and turns"));
@@ -207,7 +207,7 @@ void JogPanel::pressed(const Key& key) {
     message_->clear();
     pressed_ = &key;
     if (way_->currentIndex() == 0) {
-        const Step& s = kSteps[static_cast<std::size_t>(step_->currentIndex())];
+        const JogStep& s = kJogSteps[static_cast<std::size_t>(step_->currentIndex())];
         step(s.mm, s.deg);
         return;
     }

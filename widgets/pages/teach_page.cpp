@@ -61,7 +61,7 @@ void TeachPage::do_deed(SpotDeed deed) {
         case SpotDeed::pass:
             return emit step_wanted(Step::align);
         case SpotDeed::next_spot:
-            return desk_.selection().select_spot(next_undone(desk_.project(), desk_.selection().spot())->id);
+            return desk_.selection().select_spot(next_undone(desk_, desk_.selection().spot())->id);
         case SpotDeed::next_step:
             return emit step_wanted(Step::regions);
     }

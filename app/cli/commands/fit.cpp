@@ -5,6 +5,7 @@
 #include "app/cli/command.h"
 #include "app/cli/pose_argument.h"
 #include "app/cli/signal_watch.h"
+#include "devices/drawing/drawing.h"
 #include "devices/exchange/cloud/cloud_file.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
@@ -31,60 +32,52 @@ struct ScanArguments {
 
 Expected<ScanResult> scanned(ScanArguments& a) {
     if (!a.driven.spot_ids.empty()) {
-        auto station = Station::open(a.file);
-        if (!station) return tl::unexpected(station.error());
-        if (auto connected = station->connect(); !connected) return tl::unexpected(connected.error());
+        SEAM_TRY(auto station, Station::open(a.file));
+        SEAM_OK(station.connect());
         a.driven.cancel = stop_on_signal();
         a.driven.progress = [](const RunProgress& p) {
             if (p.done == p.total || p.done % 50 == 0) fmt::print(stderr, "[{}/{}]\n", p.done, p.total);
         };
-        auto pass = gap_pass(*station, a.driven);
-        if (!pass) return tl::unexpected(pass.error());
-        return scan_of_pass(station->project(), *pass);
+        SEAM_TRY(auto pass, gap_pass(station, a.driven));
+        return scan_of_pass(station.project(), pass);
     }
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    if (a.run > 0) return scan_of_run(*file, a.run);
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    if (a.run > 0) return scan_of_run(file, a.run);
     if (a.capture.empty())
         return usage_error("there is nothing to make a scan of", a.file,
                            "give --spots S1,S2 to drive along, --capture PASS.seam, or --run N");
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    auto capture = CaptureReader::open(a.capture);
-    if (!capture) return tl::unexpected(capture.error());
-    auto pass = gap_pass(*project, *capture, a.recorded);
-    if (!pass) return tl::unexpected(pass.error());
-    return scan_of_pass(*project, *pass);
+    SEAM_TRY(auto project, file.load());
+    SEAM_TRY(auto capture, CaptureReader::open(a.capture));
+    SEAM_TRY(auto pass, gap_pass(project, capture, a.recorded));
+    return scan_of_pass(project, pass);
 }
 
 Expected<Answer> scan_command(ScanArguments& a) {
-    auto scan = scanned(a);
-    if (!scan) return tl::unexpected(scan.error());
-    if (scan->cloud.empty())
+    SEAM_TRY(auto scan, scanned(a));
+    if (scan.cloud.empty())
         return input_error("no profile of the pass has a point", a.file,
                            "look at the sensor's picture on the way");
     if (a.keep_outliers)
-        scan->cloud = a.cell_mm > 0 ? voxel_grid(scan->cloud, a.cell_mm) : std::move(scan->cloud);
+        scan.cloud = a.cell_mm > 0 ? voxel_grid(scan.cloud, a.cell_mm) : std::move(scan.cloud);
     else
-        clean(*scan, a.cell_mm);
-    estimate_normals(scan->cloud);
-    if (auto written = write_cloud(a.out, scan->cloud, kInBaseMark); !written)
-        return tl::unexpected(written.error());
-    const Eigen::AlignedBox3d box = scan->cloud.box();
+        clean(scan, a.cell_mm);
+    estimate_normals(scan.cloud);
+    SEAM_OK(write_cloud(a.out, scan.cloud, kInBaseMark));
+    const Eigen::AlignedBox3d box = scan.cloud.box();
     const auto corner = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
     Answer answer;
     answer.json = {{"status", "ok"},
                    {"out", a.out},
                    {"frame", "base"},
-                   {"profiles", scan->profiles},
-                   {"without_profile", scan->without_profile},
-                   {"without_pose", scan->without_pose},
-                   {"points", scan->cloud.size()},
-                   {"outliers", scan->outliers},
+                   {"profiles", scan.profiles},
+                   {"without_profile", scan.without_profile},
+                   {"without_pose", scan.without_pose},
+                   {"points", scan.cloud.size()},
+                   {"outliers", scan.outliers},
                    {"box", {{"from_mm", corner(box.min())}, {"to_mm", corner(box.max())}}}};
     answer.text =
         fmt::format("{} written: {} points of {} profiles in the robot's base, {} outliers left out\n", a.out,
-                    scan->cloud.size(), scan->profiles, scan->outliers);
+                    scan.cloud.size(), scan.profiles, scan.outliers);
     return answer;
 }
 
@@ -97,25 +90,35 @@ struct FitArguments {
 
 // {"pairs":[{"part":[x,y,z],"base":[x,y,z]}, ..]}
 Expected<void> read_pairs(const std::string& path, FitOptions& options) {
-    auto document = read_json_file(path);
-    if (!document) return tl::unexpected(document.error());
-    if (auto good = only_fields(*document, {"pairs"}, path); !good) return good;
-    auto list = json_array(*document, "pairs", path);
-    if (!list) return tl::unexpected(list.error());
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
+    SEAM_TRY(auto document, read_json_file(path));
+    SEAM_OK(only_fields(document, {"pairs"}, path));
+    SEAM_TRY(auto list, json_array(document, "pairs", path));
+    for (std::size_t i = 0; i < list->size(); ++i) {
         const std::string where = json_path(path + ": pairs", i);
-        const json& pair = (**list)[i];
-        if (auto good = only_fields(pair, {"part", "base"}, where); !good) return good;
-        auto part = json_vector3(pair, "part", where), base = json_vector3(pair, "base", where);
-        if (!part) return tl::unexpected(part.error());
-        if (!base) return tl::unexpected(base.error());
-        options.pairs_part.push_back(*part);
-        options.pairs_base.push_back(*base);
+        const json& pair = (*list)[i];
+        SEAM_OK(only_fields(pair, {"part", "base"}, where));
+        SEAM_TRY(const auto part, json_vector3(pair, "part", where));
+        SEAM_TRY(const auto base, json_vector3(pair, "base", where));
+        options.pairs_part.push_back(part);
+        options.pairs_base.push_back(base);
     }
     if (options.pairs_part.size() < 3)
         return input_error("a pose needs three pairs of points", path,
                            "pick three places of the part that lie far apart");
     return {};
+}
+
+// STEP and IGES tessellated; STL, PLY and OBJ as they are.
+Expected<TriangleMesh> part_surface(const std::string& path, const std::string& unit) {
+    std::string kind = std::filesystem::path(path).extension().string();
+    for (char& c : kind)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (kind != ".step" && kind != ".stp" && kind != ".iges" && kind != ".igs") return load_mesh(path, unit);
+    DrawingOptions options;
+    options.unit = unit;
+    options.cancel = stop_on_signal();
+    SEAM_TRY(auto drawing, read_drawing(path, options));
+    return std::move(drawing.mesh);
 }
 
 // The drawing, and of a project where the part is supposed to stand.
@@ -124,34 +127,29 @@ Expected<TriangleMesh> drawing(FitArguments& a) {
         if (a.cloud.empty() || a.mesh.empty())
             return usage_error("there is nothing to fit", "fit",
                                "give --cloud SCAN.ply --mesh PART.stl, or FILE.seam --scan SCAN.ply");
-        return load_mesh(a.mesh, a.unit);
+        return part_surface(a.mesh, a.unit);
     }
-    auto file = ProjectFile::open(a.file, FileAccess::read_only);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
+    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto project, file.load());
     if (!a.anywhere && !a.options.start && a.options.pairs_part.empty())
-        a.options.start = project->part.base_from_workobject;
-    if (!a.mesh.empty()) return load_mesh(a.mesh, a.unit);
-    if (project->part.mesh_ply.empty())
+        a.options.start = project.part.base_from_workobject;
+    if (!a.mesh.empty()) return part_surface(a.mesh, a.unit);
+    if (project.part.mesh_ply.empty())
         return input_error("the project's part has no drawing", a.file, "give the mesh with --mesh PART.stl");
-    return mesh_from_ply(project->part.mesh_ply, a.file);
+    return mesh_from_ply(project.part.mesh_ply, a.file);
 }
 
 Expected<void> take_pose(const FitArguments& a, const FitReport& report, Answer& answer) {
-    auto file = ProjectFile::open(a.file);
-    if (!file) return tl::unexpected(file.error());
-    auto project = file->load();
-    if (!project) return tl::unexpected(project.error());
-    const Pose before = project->part.base_from_workobject;
-    project->part.base_from_workobject = report.fit.base_from_part;
-    if (auto saved = file->save(*project); !saved) return saved;
+    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(auto project, file.load());
+    const Pose before = project.part.base_from_workobject;
+    project.part.base_from_workobject = report.fit.base_from_part;
+    SEAM_OK(file.save(project));
     const double moved = distance_mm(before, report.fit.base_from_part);
     const Text note("work object taken from a fit of {}: moved by {:.3f} mm and {:.4f} degrees; before: {}",
                     report.scan, moved, deg_from_rad(angle_rad(before, report.fit.base_from_part)),
                     pose_json(before).dump());
-    if (auto noted = file->append_event({0, {}, 0, EventKind::note, project->part.name, note}); !noted)
-        return tl::unexpected(noted.error());
+    SEAM_OK(file.append_event({0, {}, 0, EventKind::note, project.part.name, note}));
     answer.json["taken"] = true;
     answer.json["base_from_workobject_before"] = pose_json(before);
     answer.text += fmt::format(
@@ -169,11 +167,11 @@ Expected<void> write_reports(const FitArguments& a, const FitReport& report, con
     if (a.report.empty() && a.pdf.empty()) return {};
     const report::Page page = fit_page(report, cloud, surface, *language_from(a.language));
     if (!a.report.empty()) {
-        if (auto written = write_text_file(a.report, page.html()); !written) return written;
+        SEAM_OK(write_text_file(a.report, page.html()));
         answer.text += a.report + " written\n";
     }
     if (!a.pdf.empty()) {
-        if (auto written = write_pdf(page, a.pdf); !written) return written;
+        SEAM_OK(write_pdf(page, a.pdf));
         answer.text += a.pdf + " written\n";
     }
     return {};
@@ -186,26 +184,22 @@ Expected<Answer> fit_command(FitArguments& a) {
     if (a.take && a.file.empty())
         return usage_error("there is no project to take the pose into", "--take", "give FILE.seam");
     if (!a.start.empty()) {
-        auto pose = read_pose_argument(a.start, "--start");
-        if (!pose) return tl::unexpected(pose.error());
-        a.options.start = *pose;
+        SEAM_TRY(auto pose, read_pose_argument(a.start, "--start"));
+        a.options.start = pose;
     }
-    if (!a.pairs.empty())
-        if (auto read = read_pairs(a.pairs, a.options); !read) return tl::unexpected(read.error());
+    if (!a.pairs.empty()) SEAM_OK(read_pairs(a.pairs, a.options));
     const std::string source = a.cloud.empty() ? a.scan : a.cloud;
     if (source.empty())
         return usage_error("there is nothing to fit", "fit", "give the scan: --scan SCAN.ply");
-    auto mesh = drawing(a);
-    if (!mesh) return tl::unexpected(mesh.error());
-    auto cloud = read_cloud(source, a.unit);
-    if (!cloud) return tl::unexpected(cloud.error());
-    const Surface surface(*mesh);
+    SEAM_TRY(auto mesh, drawing(a));
+    SEAM_TRY(auto cloud, read_cloud(source, a.unit));
+    const Surface surface(mesh);
     const auto stop = stop_on_signal();
     a.options.cancelled = [stop] { return stop.stop_requested(); };
     FitReport report;
     report.scan = source;
     report.part = a.mesh.empty() ? a.file : a.mesh;
-    auto fit = fit_surface(*cloud, surface, a.options);
+    auto fit = fit_surface(cloud, surface, a.options);
     if (!fit) {
         Error error = fit.error();
         error.within(Text(source));
@@ -214,16 +208,14 @@ Expected<Answer> fit_command(FitArguments& a) {
     report.fit = std::move(*fit);
     const bool placed = report.fit.status != FitStatus::no_fit && report.fit.status != FitStatus::cancelled;
     if (placed)
-        report.deviation = deviation_map(*cloud, surface, report.fit.base_from_part,
+        report.deviation = deviation_map(cloud, surface, report.fit.base_from_part,
                                          {std::max(2 * report.fit.gate_mm, 0.005 * surface.size_mm()),
                                           report.fit.noise_mm, 41, a.options.cancelled});
     const bool ok = report.fit.status == FitStatus::ok;
     Answer answer{fit_json(report), fit_text(report), ok ? kExitOk : kExitVerdict};
     answer.json["taken"] = false;
-    if (auto written = write_reports(a, report, *cloud, surface, answer); !written)
-        return tl::unexpected(written.error());
-    if (a.take && ok)
-        if (auto taken = take_pose(a, report, answer); !taken) return tl::unexpected(taken.error());
+    SEAM_OK(write_reports(a, report, cloud, surface, answer));
+    if (a.take && ok) SEAM_OK(take_pose(a, report, answer));
     return answer;
 }
 
@@ -287,7 +279,9 @@ void add_fit(CommandLine& line) {
     command->add_option("--scan", a->scan, "The cloud, in the robot's base: PLY, PCD, CSV")
         ->type_name("FILE");
     command->add_option("--cloud", a->cloud, "The same, without a project")->type_name("FILE");
-    command->add_option("--mesh", a->mesh, "The drawing: STL, PLY, OBJ; of a project, instead of its own")
+    command
+        ->add_option("--mesh", a->mesh,
+                     "The drawing: STEP, IGES, STL, PLY, OBJ; of a project, instead of its own")
         ->type_name("FILE");
     command->add_option("--to", a->to, "What the scan is fitted to: drawing")->capture_default_str();
     command->add_option("--unit", a->unit, "Of the files: mm or m")->check(CLI::IsMember({"mm", "m"}));

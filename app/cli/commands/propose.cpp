@@ -90,8 +90,9 @@ Answer answer_of(const Proposal& p, const Project& project, const ProposeArgumen
         p.bound_of_fewer_mm > 0
             ? fmt::format(", none of {} below {:.4f} mm", p.spots.size() - 1, p.bound_of_fewer_mm)
             : "");
-    answer.text += fmt::format("forecast as the safety gate judges it: sigma {:.4f} mm at the worst spot\n",
-                               p.sigma_forecast_mm);
+    answer.text += fmt::format(
+        "forecast as the safety gate judges it: sigma {:.4f} mm at the worst spot, three of them {:.4f}\n",
+        p.sigma_forecast_mm, 3 * p.sigma_forecast_mm);
     answer.text +=
         p.set.enough ? "enough\n" : "not enough: allow more spots (--spots), or name a wider tolerance\n";
     json bead = json::array();

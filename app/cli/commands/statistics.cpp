@@ -27,10 +27,8 @@ Expected<void> write_files(const StatisticsArguments& a, const Statistics& s, An
     };
     if (!a.html.empty() || !a.pdf.empty()) {
         const report::Page page = statistics_page(s, language, "Seamwright " SEAMWRIGHT_VERSION);
-        if (!a.html.empty())
-            if (auto done = written("html", a.html, write_text_file(a.html, page.html())); !done) return done;
-        if (!a.pdf.empty())
-            if (auto done = written("pdf", a.pdf, write_pdf(page, a.pdf)); !done) return done;
+        if (!a.html.empty()) SEAM_OK(written("html", a.html, write_text_file(a.html, page.html())));
+        if (!a.pdf.empty()) SEAM_OK(written("pdf", a.pdf, write_pdf(page, a.pdf)));
     }
     if (!a.xlsx.empty())
         if (auto done = written("xlsx", a.xlsx, write_workbook(statistics_workbook(s, language), a.xlsx));
@@ -41,8 +39,7 @@ Expected<void> write_files(const StatisticsArguments& a, const Statistics& s, An
         if (characteristics.empty())
             return input_error("nothing here has limits on both sides, which Q-DAS asks for", "--dfq",
                                "state the regions' limits, or give --tolerance-mm");
-        if (auto done = written("dfq", a.dfq, write_text_file(a.dfq, dfq_text(characteristics))); !done)
-            return done;
+        SEAM_OK(written("dfq", a.dfq, write_text_file(a.dfq, dfq_text(characteristics))));
     }
     return {};
 }

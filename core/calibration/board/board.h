@@ -32,8 +32,8 @@ struct BoardSpec {
     double pitch_mm = 0;
     double marker_mm = 0;  // edge of a marker or tag; 0 (charuco alone): found from the picture
     int dictionary = -1;   // OpenCV's number of a predefined one; -1: the family that fits is found
-    std::optional<bool>
-        legacy;  // charuco of an even number of rows as OpenCV drew it before 4.6; unset: what fits
+    // charuco of an even number of rows as OpenCV drew it before 4.6; unset: what fits
+    std::optional<bool> legacy = {};
 };
 
 std::string_view name_of(BoardPattern pattern);  // "chessboard"

@@ -31,10 +31,6 @@ CornerStart start_at(const LatticeCell& cell, const LatticePlace& place, const V
 }
 
 constexpr int kRough = 5;  // px, half a window
-bool sound(const CornerFit& fit) {
-    return fit.foreign < 0.2 && fit.noise < 0.4 * fit.half_contrast && fit.sigma_px < 0.5;
-}
-
 // How far to look for corners that say where this one lies: with few of them perspective is not seen.
 int reach_around(const SaddleLattice& lattice, const LatticeCell& cell) {
     constexpr int kNearest = 2, kFarthest = 5, kEnough = 12;

@@ -266,6 +266,10 @@ bool gather(const cv::Mat& grey, int cx, int cy, int half, std::vector<WindowPix
 
 }  // namespace
 
+bool sound(const CornerFit& fit) {
+    return fit.foreign < 0.2 && fit.noise < 0.4 * fit.half_contrast && fit.sigma_px < 0.5;
+}
+
 std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& start) {
     if (!start.at.allFinite()) return std::nullopt;
     const int cx = static_cast<int>(std::lround(start.at.x())),

@@ -40,6 +40,9 @@ struct CornerFit {
     double foreign = 0;        // share of the window's pixels that the model does not explain
 };
 
+// Whether the model explains what is around it, and the corner is known to half a pixel.
+bool sound(const CornerFit& fit);
+
 // `grey` 8 or 16 bit; `first`, `second` as in Saddle; the window reaches `half_px` to each side. `bend1`,
 // `bend2`: curvature of the edges (1/px, positive towards their normals) where a lens bends them. nullopt:
 // the window leaves the picture, the edges are not there, or the corner walked off.

@@ -231,6 +231,8 @@ std::vector<Wanted> wanted_corners(const BoardSpec& spec, bool legacy, double ma
 
 std::optional<FoundBoard> find_marker_board(const cv::Mat& full, const cv::Mat& grey, const BoardSpec& spec) {
     constexpr int kLeastHalf_px = 3, kMostHalf_px = 12;
+    // A corner farther from where the markers say is another thing: half hidden, or a glint.
+    constexpr double kAstray_px = 1, kAstray = 0.02;
     constexpr double kLeastPitch_px = 8;  // its marker could not be read
     const cv::Mat stripe = stripe_mask(grey);
     cv::Mat wide;
@@ -259,7 +261,8 @@ std::optional<FoundBoard> find_marker_board(const cv::Mat& full, const cv::Mat& 
             CornerStart start{place, x.normalized(), y.normalized(), half};
             if (!w.light_ahead) start.first = -y.normalized(), start.second = x.normalized();
             const auto fit = fit_corner(full, start);
-            if (!fit || (fit->at - place).norm() > half || fit->foreign > 0.3) continue;
+            if (!fit || !sound(*fit) || (fit->at - place).norm() > std::max(kAstray_px, kAstray * pitch_px))
+                continue;
             found.index.push_back(w.index);
             found.pixel.push_back(fit->at);
             found.object_mm.push_back(board_point(spec, w.index));

@@ -55,14 +55,14 @@ Expected<void> check_passes(const std::vector<EdgePass>& passes, const OnPartOpt
     std::vector<std::string> ids;
     std::vector<Pose> poses;
     for (const EdgePass& pass : passes) ids.push_back(pass.id);
-    if (auto ok = check_ids(ids, options.exclude, "passes"); !ok) return ok;
+    SEAM_OK(check_ids(ids, options.exclude, "passes"));
     for (const EdgePass& pass : passes) {
         if (pass.edge.empty())
             return input_error("the edge has no name", place(pass), "name the edge that it follows");
-        if (auto ok = check_pass(pass); !ok) return ok;
+        SEAM_OK(check_pass(pass));
         for (const EdgeProfile& p : pass.profiles) poses.push_back(p.base_from_flange);
     }
-    if (auto ok = check_millimetres(poses, "passes"); !ok) return ok;
+    SEAM_OK(check_millimetres(poses, "passes"));
     if (options.latency_s && !(std::abs(*options.latency_s) <= 1))
         return input_error("the latency is beyond one second", "latency", "give it in seconds");
     if (options.robot && !(options.robot->sigma_mm > 0 && options.robot->sigma_mm < 10 &&
@@ -70,8 +70,7 @@ Expected<void> check_passes(const std::vector<EdgePass>& passes, const OnPartOpt
         return input_error("the robot's repeatability is none", "robot",
                            "give sigma_mm and sigma_deg, both above zero");
     if (options.prior) {
-        if (auto pose = pose_from_matrix(options.prior->flange_from_sensor.matrix(), "prior"); !pose)
-            return tl::unexpected(pose.error());
+        SEAM_OK(pose_from_matrix(options.prior->flange_from_sensor.matrix(), "prior"));
         const Matrix6& c = options.prior->covariance;
         const Vector6 diagonal = c.diagonal();
         if (!c.allFinite() || !(diagonal.minCoeff() > 0) || (c - c.transpose()).norm() > 1e-6 * c.norm())
@@ -222,7 +221,7 @@ std::string_view name_of(OnPartStatus status) {
 }
 
 Expected<OnPartResult> calibrate_on_part(const std::vector<EdgePass>& passes, const OnPartOptions& options) {
-    if (auto ok = check_passes(passes, options); !ok) return tl::unexpected(ok.error());
+    SEAM_OK(check_passes(passes, options));
     Names names;
     const Data data = data_of(passes, options, names);
     std::vector<std::size_t> profiles(passes.size());

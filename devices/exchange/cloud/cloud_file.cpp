@@ -82,22 +82,21 @@ Expected<void> set_scale(Cloud& cloud, const std::string& unit, const std::strin
 }  // namespace
 
 Expected<Cloud> parse_cloud(std::string_view bytes, const std::string& where, const std::string& unit) {
-    auto table = parse_points(bytes, where, kMostCloudPoints);
-    if (!table) return tl::unexpected(table.error());
-    const std::vector<double>*x = column(*table, {"x", "x_mm"}), *y = column(*table, {"y", "y_mm"}),
-          *z = column(*table, {"z", "z_mm"});
-    if (table->names.empty() && table->columns.size() >= 3)
-        x = &table->columns[0], y = &table->columns[1], z = &table->columns[2];
+    SEAM_TRY(auto table, parse_points(bytes, where, kMostCloudPoints));
+    const std::vector<double>*x = column(table, {"x", "x_mm"}), *y = column(table, {"y", "y_mm"}),
+          *z = column(table, {"z", "z_mm"});
+    if (table.names.empty() && table.columns.size() >= 3)
+        x = &table.columns[0], y = &table.columns[1], z = &table.columns[2];
     if (!x || !y || !z)
         return input_error("has no columns x, y and z", where,
                            "a cloud's points need x, y and z in millimetres");
-    const auto* nx = column(*table, {"nx", "normal_x"});
-    const auto* ny = column(*table, {"ny", "normal_y"});
-    const auto* nz = column(*table, {"nz", "normal_z"});
-    const auto* tx = column(*table, {"towards_x"});
-    const auto* ty = column(*table, {"towards_y"});
-    const auto* tz = column(*table, {"towards_z"});
-    const auto* sigma = column(*table, {"sigma_mm"});
+    const auto* nx = column(table, {"nx", "normal_x"});
+    const auto* ny = column(table, {"ny", "normal_y"});
+    const auto* nz = column(table, {"nz", "normal_z"});
+    const auto* tx = column(table, {"towards_x"});
+    const auto* ty = column(table, {"towards_y"});
+    const auto* tz = column(table, {"towards_z"});
+    const auto* sigma = column(table, {"sigma_mm"});
     const auto unit_vector = [](double a, double b, double c) {
         const Eigen::Vector3d v(a, b, c);
         const double length = v.norm();
@@ -105,12 +104,12 @@ Expected<Cloud> parse_cloud(std::string_view bytes, const std::string& where, co
                                                       : Eigen::Vector3f(Eigen::Vector3f::Zero());
     };
     Cloud cloud;
-    cloud.points.reserve(table->rows());
-    for (std::size_t i = 0; i < table->rows(); ++i) {
+    cloud.points.reserve(table.rows());
+    for (std::size_t i = 0; i < table.rows(); ++i) {
         const Eigen::Vector3d p((*x)[i], (*y)[i], (*z)[i]);
         if (!p.allFinite()) continue;
         if (p.cwiseAbs().maxCoeff() > 1e6)
-            return input_error("the scan has a point that is not finite or beyond 1 km", table->at(where, i),
+            return input_error("the scan has a point that is not finite or beyond 1 km", table.at(where, i),
                                "give millimetres");
         cloud.points.push_back(p);
         if (nx && ny && nz) cloud.normals.push_back(unit_vector((*nx)[i], (*ny)[i], (*nz)[i]));
@@ -120,14 +119,13 @@ Expected<Cloud> parse_cloud(std::string_view bytes, const std::string& where, co
                 std::isfinite((*sigma)[i]) && (*sigma)[i] > 0 ? static_cast<float>((*sigma)[i]) : 0.0F);
     }
     if (cloud.empty()) return input_error("holds no points", where);
-    if (auto good = set_scale(cloud, unit, where); !good) return tl::unexpected(good.error());
+    SEAM_OK(set_scale(cloud, unit, where));
     return cloud;
 }
 
 Expected<Cloud> read_cloud(const std::filesystem::path& path, const std::string& unit) {
-    const auto bytes = read_text_file(path, kCloudFileLimit);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return parse_cloud(*bytes, path.string(), unit);
+    SEAM_TRY(const auto bytes, read_text_file(path, kCloudFileLimit));
+    return parse_cloud(bytes, path.string(), unit);
 }
 
 std::string cloud_ply(const Cloud& cloud, std::string_view frame) {

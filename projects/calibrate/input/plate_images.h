@@ -20,8 +20,8 @@ struct BoardWords {
     double pitch_mm = 0;
     std::string pattern = "chessboard";  // name_of(BoardPattern)
     double marker_mm = 0;                // 0: not given
-    std::string dictionary;              // "4x4_50", ...; empty: what fits
-    std::string legacy;                  // "yes", "no"; empty: what fits
+    std::string dictionary = {};         // "4x4_50", ...; empty: what fits
+    std::string legacy = {};             // "yes", "no"; empty: what fits
 };
 Expected<BoardSpec> parse_board(const BoardWords& words);
 

@@ -16,7 +16,7 @@
 #include "core/calibration/on_part/on_part.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
-#include "projects/calibrate/methods/example_cell.h"
+#include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/file/stored_text.h"
 
@@ -34,57 +34,47 @@ Expected<Eigen::MatrixXd> square_matrix(const json& rows, std::size_t size, cons
     const auto n = static_cast<Eigen::Index>(size);
     Eigen::MatrixXd matrix(n, n);
     for (std::size_t i = 0; i < size; ++i) {
-        auto row = as_numbers(rows[i], size, json_path(where, i));
-        if (!row) return tl::unexpected(row.error());
-        matrix.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(row->data(), n);
+        SEAM_TRY(auto row, as_numbers(rows[i], size, json_path(where, i)));
+        matrix.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
     }
     return matrix;
 }
 
 Expected<EdgeProfile> parse_edge_profile(const json& entry, const std::string& where) {
     EdgeProfile profile;
-    auto time = json_number(entry, "time_s", where);
-    if (!time) return tl::unexpected(time.error());
-    profile.time_s = *time;
-    auto field = json_field(entry, "base_from_flange", where);
-    if (!field) return tl::unexpected(field.error());
-    auto pose = parse_pose(**field, json_path(where, "base_from_flange"));
-    if (!pose) return tl::unexpected(pose.error());
-    profile.base_from_flange = *pose;
-    auto point = json_vector2(entry, "point", where);
-    if (!point) return tl::unexpected(point.error());
-    profile.point_mm = *point;
+    SEAM_TRY(auto time, json_number(entry, "time_s", where));
+    profile.time_s = time;
+    SEAM_TRY(auto field, json_field(entry, "base_from_flange", where));
+    SEAM_TRY(auto pose, parse_pose(*field, json_path(where, "base_from_flange")));
+    profile.base_from_flange = pose;
+    SEAM_TRY(auto point, json_vector2(entry, "point", where));
+    profile.point_mm = point;
     if (const auto it = entry.find("covariance"); it != entry.end() && !it->is_null()) {
-        auto covariance = square_matrix(*it, 2, json_path(where, "covariance"));
-        if (!covariance) return tl::unexpected(covariance.error());
-        profile.covariance_mm2 = *covariance;
+        SEAM_TRY(auto covariance, square_matrix(*it, 2, json_path(where, "covariance")));
+        profile.covariance_mm2 = covariance;
     }
     return profile;
 }
 
 Expected<std::vector<EdgePass>> parse_edge_passes(const json& data) {
-    auto list = json_array(data, "passes", "");
-    if (!list) return tl::unexpected(list.error());
+    SEAM_TRY(auto list, json_array(data, "passes", ""));
     std::vector<EdgePass> passes;
     std::size_t all = 0;
-    for (std::size_t i = 0; i < (*list)->size(); ++i) {
-        const json& entry = (**list)[i];
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        const json& entry = (*list)[i];
         const std::string where = json_path("passes", i);
         EdgePass pass;
-        auto id = entry_id(entry, i, where);
-        if (!id) return tl::unexpected(id.error());
-        pass.id = *id;
-        auto edge = json_string(entry, "edge", where);
-        if (!edge) return tl::unexpected(edge.error());
-        pass.edge = *edge;
-        auto profiles = json_array(entry, "profiles", where);
-        if (!profiles) return tl::unexpected(profiles.error());
-        if ((all += (*profiles)->size()) > kMostProfiles)
+        SEAM_TRY(auto id, entry_id(entry, i, where));
+        pass.id = id;
+        SEAM_TRY(auto edge, json_string(entry, "edge", where));
+        pass.edge = edge;
+        SEAM_TRY(auto profiles, json_array(entry, "profiles", where));
+        if ((all += profiles->size()) > kMostProfiles)
             return input_error(Text("more than {} profiles", kMostProfiles), where, "thin them out");
-        for (std::size_t k = 0; k < (*profiles)->size(); ++k) {
-            auto profile = parse_edge_profile((**profiles)[k], json_path(json_path(where, "profiles"), k));
-            if (!profile) return tl::unexpected(profile.error());
-            pass.profiles.push_back(*profile);
+        for (std::size_t k = 0; k < profiles->size(); ++k) {
+            SEAM_TRY(auto profile,
+                     parse_edge_profile((*profiles)[k], json_path(json_path(where, "profiles"), k)));
+            pass.profiles.push_back(profile);
         }
         passes.push_back(std::move(pass));
     }
@@ -111,26 +101,19 @@ Expected<std::optional<double>> parse_latency(const json& data) {
 Expected<OnPartOptions> parse_on_part_options(const json& data, const ExcludedIds& exclude) {
     OnPartOptions options;
     options.exclude = exclude;
-    auto latency = parse_latency(data);
-    if (!latency) return tl::unexpected(latency.error());
-    options.latency_s = *latency;
+    SEAM_TRY(auto latency, parse_latency(data));
+    options.latency_s = latency;
     if (const auto it = data.find("robot"); it != data.end() && !it->is_null()) {
-        auto mm = json_number(*it, "sigma_mm", "robot");
-        if (!mm) return tl::unexpected(mm.error());
-        auto deg = json_number(*it, "sigma_deg", "robot");
-        if (!deg) return tl::unexpected(deg.error());
-        options.robot = RobotRepeatability{*mm, rad_from_deg(*deg)};
+        SEAM_TRY(auto mm, json_number(*it, "sigma_mm", "robot"));
+        SEAM_TRY(auto deg, json_number(*it, "sigma_deg", "robot"));
+        options.robot = RobotRepeatability{mm, rad_from_deg(deg)};
     }
     if (const auto it = data.find("prior"); it != data.end() && !it->is_null()) {
-        auto field = json_field(*it, "flange_from_sensor", "prior");
-        if (!field) return tl::unexpected(field.error());
-        auto pose = parse_pose(**field, "prior.flange_from_sensor");
-        if (!pose) return tl::unexpected(pose.error());
-        auto rows = json_field(*it, "covariance", "prior");
-        if (!rows) return tl::unexpected(rows.error());
-        auto covariance = square_matrix(**rows, 6, "prior.covariance");
-        if (!covariance) return tl::unexpected(covariance.error());
-        options.prior = MountingPrior{*pose, Matrix6(*covariance)};
+        SEAM_TRY(auto field, json_field(*it, "flange_from_sensor", "prior"));
+        SEAM_TRY(auto pose, parse_pose(*field, "prior.flange_from_sensor"));
+        SEAM_TRY(auto rows, json_field(*it, "covariance", "prior"));
+        SEAM_TRY(auto covariance, square_matrix(*rows, 6, "prior.covariance"));
+        options.prior = MountingPrior{pose, Matrix6(covariance)};
     }
     return options;
 }
@@ -175,52 +158,49 @@ json moved_json(const OnPartResult& solved) {
 }
 
 Expected<CalibrationSolution> solve_on_part(const json& data, const ExcludedIds& exclude) {
-    auto passes = parse_edge_passes(data);
-    if (!passes) return tl::unexpected(passes.error());
-    auto options = parse_on_part_options(data, exclude);
-    if (!options) return tl::unexpected(options.error());
-    auto solved = calibrate_on_part(*passes, *options);
-    if (!solved) return tl::unexpected(solved.error());
+    SEAM_TRY(auto passes, parse_edge_passes(data));
+    SEAM_TRY(auto options, parse_on_part_options(data, exclude));
+    SEAM_TRY(auto solved, calibrate_on_part(passes, options));
 
     CalibrationSolution solution;
     json& result = solution.document;
-    const bool ok = solved->status == OnPartStatus::ok;
-    if (ok) solution.found = SensorOnFlange{{solved->flange_from_sensor, solved->covariance}};
-    const bool latency = ok && solved->latency_known;
-    result["status"] = std::string(name_of(solved->status));
-    result["flange_from_sensor"] = ok ? pose_json(solved->flange_from_sensor) : json(nullptr);
-    result["latency_s"] = latency ? number_json(solved->latency_s) : json(nullptr);
-    result["latency_sigma_s"] = latency ? number_json(solved->latency_sigma_s) : json(nullptr);
+    const bool ok = solved.status == OnPartStatus::ok;
+    if (ok) solution.found = SensorOnFlange{{solved.flange_from_sensor, solved.covariance}};
+    const bool latency = ok && solved.latency_known;
+    result["status"] = std::string(name_of(solved.status));
+    result["flange_from_sensor"] = ok ? pose_json(solved.flange_from_sensor) : json(nullptr);
+    result["latency_s"] = latency ? number_json(solved.latency_s) : json(nullptr);
+    result["latency_sigma_s"] = latency ? number_json(solved.latency_sigma_s) : json(nullptr);
     result["sigma"] = nullptr;
     if (ok) {
-        result["sigma"] = pose_sigma_json(solved->flange_from_sensor, solved->covariance);
-        result["sigma"]["working_mm"] = number_json(solved->working_sigma_mm);
-        result["rms_mm"] = number_json(solved->rms_mm);
-        result["noise_mm"] = number_json(solved->noise_mm);
-        result["pass_error_mm"] = number_json(solved->pass_error_mm);
-        result["working_point_mm"] = vector_json(solved->working_point_mm);
-        result["covariance_pose"] = matrix_json(solved->covariance);
+        result["sigma"] = pose_sigma_json(solved.flange_from_sensor, solved.covariance);
+        result["sigma"]["working_mm"] = number_json(solved.working_sigma_mm);
+        result["rms_mm"] = number_json(solved.rms_mm);
+        result["noise_mm"] = number_json(solved.noise_mm);
+        result["pass_error_mm"] = number_json(solved.pass_error_mm);
+        result["working_point_mm"] = vector_json(solved.working_point_mm);
+        result["covariance_pose"] = matrix_json(solved.covariance);
     }
     Text advice;
-    for (const Text& next : solved->advice) advice = joined(advice, "; ", next);
+    for (const Text& next : solved.advice) advice = joined(advice, "; ", next);
     put_text(result, "advice", advice);
-    put_texts(result, "next_passes", solved->advice);
-    put_texts(result, "unobservable", solved->open);
-    result["edges"] = edges_json(*solved);
-    result["moved"] = moved_json(*solved);
-    result["per_pass"] = per_pass_json(*solved, *passes);
-    solution.notices = std::move(solved->notices);
-    if (solved->bump)
+    put_texts(result, "next_passes", solved.advice);
+    put_texts(result, "unobservable", solved.open);
+    result["edges"] = edges_json(solved);
+    result["moved"] = moved_json(solved);
+    result["per_pass"] = per_pass_json(solved, passes);
+    solution.notices = std::move(solved.notices);
+    if (solved.bump)
         solution.notices.insert(
             solution.notices.begin(),
-            solved->bump->moved
+            solved.bump->moved
                 ? Text("the sensor has moved: the data contradict its old place (chi squared {:.3g} of "
                        "{:.3g})",
-                       solved->bump->chi_squared, solved->bump->limit)
+                       solved.bump->chi_squared, solved.bump->limit)
                 : Text("nothing shows that the sensor has moved (chi squared {:.3g} of {:.3g})",
-                       solved->bump->chi_squared, solved->bump->limit));
-    solution.degenerate = std::move(solved->open);
-    solution.report = std::move(solved->report);
+                       solved.bump->chi_squared, solved.bump->limit));
+    solution.degenerate = std::move(solved.open);
+    solution.report = std::move(solved.report);
     finish_document(solution);
     // Of the pose alone, in the one tangent, as programs read it; the parameters' sigmas stand beside them.
     result["covariance"] = ok ? result["covariance_pose"] : json(nullptr);

@@ -675,8 +675,8 @@ TEST_F(Guided, BoardFromAFolderOfImages) {
         me.picture("guided_folder");
     }
     const CalibrationMethod& method = *find_method("stripe-camera");
-    const auto command_line =
-        solve_calibration(method, *method.data_of_images({images.string(), "7x6", 10, "chessboard", {}}), {});
+    const auto command_line = solve_calibration(
+        method, *method.data_of_images({images.string(), {.counts = "7x6", .pitch_mm = 10}, {}}), {});
     ASSERT_TRUE(command_line);
     const auto session = CalibrationSession::open(file, "stripe-camera", "A", "R1").value();
     ASSERT_TRUE(session.solution());

@@ -120,6 +120,8 @@ TEST_F(Jogging, ARealRobotMovesOnlyWhenSomebodyStandsBesideIt) {
     auto served = serve_cell({}, folder / "cell.seam");
     ASSERT_TRUE(served) << served.error().sentence();
     served->station.reset();
+    served->cell->set_mode(
+        RobotMode::manual_reduced);  // T1 with the program SEAMWRIGHT, as a KUKA is moved by command
     start(QString::fromStdString((folder / "cell.seam").string()));
     const Pose before = settled();
     EXPECT_FALSE(key("jog_Xplus")->isEnabled());
@@ -131,7 +133,8 @@ TEST_F(Jogging, ARealRobotMovesOnlyWhenSomebodyStandsBesideIt) {
     ASSERT_TRUE(key("jog_Xplus")->isEnabled());
     me->choose("jog_frame", "Robot's base");
     me->click("jog_Xplus");
-    ASSERT_TRUE(me->wait([&] { return place() && distance_mm(*place(), before) > 0.9; }));
+    ASSERT_TRUE(me->wait([&] { return place() && distance_mm(*place(), before) > 0.9; }))
+        << me->find<QLabel>("jog_message")->text().toStdString();
     EXPECT_LT((settled().translation() - before.translation() - Eigen::Vector3d(1, 0, 0)).norm(), 0.02);
     picture("jog_real");
     studio->window().show_step(Step::cell);

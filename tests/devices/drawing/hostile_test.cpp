@@ -30,7 +30,8 @@ TEST(HostileDrawing, EachEndsWithASentence) {
     refused(box.substr(0, box.size() / 2), "a.step", "is cut off");
     refused(box, "a.iges", "is no IGES file");
     refused(box, "a.jt", "is neither");
-    refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n", "a.step", "cannot be read");
+    refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n", "a.step",
+            "cannot be read");
     const std::string iges = box_iges(10, 20, 30);
     refused(iges.substr(0, iges.size() / 2), "a.igs", "is cut off");
     refused(box, "a.ply", "");

@@ -490,7 +490,7 @@ TEST_F(Session, StripeCameraFilesGiveTheCommandLinesAnswer) {
     for (CalibrationCapture& c : read->captures) ASSERT_TRUE(s.add(std::move(c)));
     solve(s);
     const auto command_line = solve_calibration(
-        s.method(), *s.method().data_of_images({images.string(), "7x6", 10, "chessboard", {}}), {});
+        s.method(), *s.method().data_of_images({images.string(), {.counts = "7x6", .pitch_mm = 10}, {}}), {});
     ASSERT_TRUE(command_line);
     const auto numbers = [](const json& r) {
         std::vector<double> all;
@@ -514,7 +514,8 @@ TEST_F(Session, StripeCameraFilesGiveTheCommandLinesAnswer) {
     ASSERT_TRUE(resumed.leave_out(id, true));
     solve(resumed);
     const auto without = solve_calibration(
-        s.method(), *s.method().data_of_images({images.string(), "7x6", 10, "chessboard", {id}}), {});
+        s.method(), *s.method().data_of_images({images.string(), {.counts = "7x6", .pitch_mm = 10}, {id}}),
+        {});
     ASSERT_TRUE(without);
     EXPECT_NEAR(resumed.solution()->document["camera"]["fx"].get<double>(),
                 without->document["camera"]["fx"].get<double>(), 1e-6);

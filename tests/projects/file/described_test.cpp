@@ -36,11 +36,11 @@ MEMBERS(PanelRecord, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(PartSetup, a, b, c, d)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
-MEMBERS(FilterOptions, a, b, c, d, e, f)
+MEMBERS(FilterOptions, a, b, c, d, e, f, g)
 MEMBERS(RobotSetup, a, b, c, d, e, f, g)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(FeatureRecipe, a, b, c, d)
-MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
+MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s)
 MEMBERS(Region, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(KeptOffset, a, b, c, d, e)
 MEMBERS(PanelPlace, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
@@ -92,7 +92,8 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(panel.fit->spots[0], p["fit"]["spots"][0]);
 
     whole(PartSetup{}, to_json_document(PartSetup{}), 1);  // the mesh is a row of its own
-    const SensorSetup sensor;
+    SensorSetup sensor;
+    sensor.filter.as_delivered = true;
     const auto c = to_json_document(sensor);
     whole(sensor, c);
     whole(sensor.peaks, c["peaks"]);
@@ -101,6 +102,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(Calibration{}, to_json_document(Calibration{}));
     Spot taught;
     taught.via.resize(1, Pose::Identity());
+    taught.reference_arrivals = 5;
     const auto t = to_json_document(taught);
     whole(taught, t);
     whole(taught.feature, t["feature"]);

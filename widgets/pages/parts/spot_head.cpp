@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "devices/registry.h"
+#include "projects/proof/checklist.h"
 #include "projects/station/measure.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/style.h"
@@ -11,27 +12,38 @@
 namespace seamwright {
 namespace {
 
-bool is_done(const Spot& s) {
-    return !s.enabled || (s.reference_profile.size() > 0 && (s.curve || s.stop_at_trigger));
+bool pass_accepted(const Desk& desk, const Spot& s) {
+    // As the checklist judges it.
+    const Evidence* pass = newest<FrozenContour>(desk.facts(), s.id);
+    if (!s.curve || !pass || std::get<FrozenContour>(pass->what).status != AlignmentStatus::frozen)
+        return false;
+    const auto then = desk.facts().setups.find(pass->setup);
+    return then != desk.facts().setups.end() && !pass_changed(*then->second, desk.project(), s.id);
+}
+
+bool is_done(const Desk& desk, const Spot& s) {
+    return !s.enabled || (s.reference_profile.size() > 0 && pass_accepted(desk, s));
 }
 
 }  // namespace
 
-SpotDeed next_deed(const Project& project, const std::string& spot_id) {
+SpotDeed next_deed(const Desk& desk, const std::string& spot_id) {
+    const Project& project = desk.project();
     if (project.spots.empty()) return SpotDeed::add;
     const Spot* s = find_spot(project, spot_id);
     if (!s) return SpotDeed::choose;
-    if (!is_done(*s)) {
+    if (!is_done(desk, *s)) {
         if (s->feature.kind == "template" && s->feature.template_profile.size() == 0) return SpotDeed::piece;
         return s->reference_profile.size() == 0 ? SpotDeed::reference : SpotDeed::pass;
     }
-    return next_undone(project, spot_id) ? SpotDeed::next_spot : SpotDeed::next_step;
+    return next_undone(desk, spot_id) ? SpotDeed::next_spot : SpotDeed::next_step;
 }
 
-const Spot* next_undone(const Project& project, const std::string& spot_id) {
+const Spot* next_undone(const Desk& desk, const std::string& spot_id) {
+    const Project& project = desk.project();
     const auto at = std::find_if(project.spots.begin(), project.spots.end(),
                                  [&](const Spot& s) { return s.id == spot_id; });
-    const auto missing = [](const Spot& s) { return !is_done(s); };
+    const auto missing = [&](const Spot& s) { return !is_done(desk, s); };
     auto found = std::find_if(at == project.spots.end() ? at : std::next(at), project.spots.end(), missing);
     if (found == project.spots.end()) found = std::find_if(project.spots.begin(), at, missing);
     return found == at || found == project.spots.end() ? nullptr : &*found;
@@ -72,7 +84,7 @@ void SpotHead::refresh() {
     const bool connected = desk_.station().connected, busy = desk_.worker().busy();
     go_->setVisible(robot && is_simulated_cell(robot->driver));
     go_->setEnabled(connected && !busy);
-    shown_ = next_deed(project, desk_.selection().spot());
+    shown_ = next_deed(desk_, desk_.selection().spot());
     name_->setText(s ? tr("Spot %1").arg(QString::fromStdString(s->id)) : tr("No spot"));
     bool may = !busy;
     switch (shown_) {
@@ -106,7 +118,7 @@ void SpotHead::refresh() {
             state_->setText(tr("Taught and aligned."));
             deed_->setText(
                 tr("Next: spot %1")
-                    .arg(QString::fromStdString(next_undone(project, desk_.selection().spot())->id)));
+                    .arg(QString::fromStdString(next_undone(desk_, desk_.selection().spot())->id)));
             break;
         case SpotDeed::next_step:
             state_->setText(tr("All spots are taught and aligned."));

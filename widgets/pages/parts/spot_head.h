@@ -5,7 +5,6 @@
 #include <QPushButton>
 #include <QWidget>
 
-#include "projects/model/project.h"
 #include "widgets/desk/desk.h"
 
 namespace seamwright {
@@ -20,10 +19,11 @@ enum class SpotDeed {
     next_step   // all spots are done
 };
 
-// Of the spot with this id (none: empty) as the project stands.
-SpotDeed next_deed(const Project& project, const std::string& spot_id);
+// Of the spot with this id (none: empty) as project and evidence stand: a pass counts while it was accepted and the spot is
+// as it was then.
+SpotDeed next_deed(const Desk& desk, const std::string& spot_id);
 // The first spot after it, in the project's order and round again, of which something is missing; nullptr: none.
-const Spot* next_undone(const Project& project, const std::string& spot_id);
+const Spot* next_undone(const Desk& desk, const std::string& spot_id);
 
 class SpotHead : public QWidget {
     Q_OBJECT

@@ -151,7 +151,9 @@ TEST(MarkerBoard, EveryFamilyAndLayoutIsFoundByItself) {
             const auto found = find_board(view(s.image), c.drawn.spec);
             ASSERT_TRUE(found.board) << c.name << " tilt " << tilt;
             const auto all = static_cast<std::size_t>(board_columns(c.drawn.spec) * board_rows(c.drawn.spec));
-            EXPECT_GE(found.board->pixel.size(), all * 9 / 10) << c.name;
+            // The squares between tags are a quarter of a pitch: some corners of a leaning grid are too small to measure.
+            const auto least = c.drawn.spec.pattern == BoardPattern::aprilgrid ? all * 3 / 4 : all * 9 / 10;
+            EXPECT_GE(found.board->pixel.size(), least) << c.name;
             EXPECT_EQ(found.board->symmetry, 1);
             EXPECT_LT(rms_px(c.drawn, s, *found.board), 0.06) << c.name << " tilt " << tilt;
         }

@@ -170,16 +170,13 @@ void MainWindow::make_docks() {
     QDockWidget* residuals = add_dock("dock_residuals", tr("Residuals"), views_.residuals);
     QDockWidget* trend = add_dock("dock_charts", tr("Charts"), charts);
     QDockWidget* events = add_dock("dock_events", tr("Events"), new EventList(desk_));
-    auto* jog_scroll = new QScrollArea;
-    jog_scroll->setWidgetResizable(true);
-    jog_scroll->setFrameShape(QFrame::NoFrame);
     views_.jog = new JogPanel(desk_);
-    jog_scroll->setWidget(views_.jog);
-    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), jog_scroll);
+    QDockWidget* jog = add_dock("dock_jog", tr("Jog"), views_.jog);
     addDockWidget(Qt::RightDockWidgetArea, profile);
     tabifyDockWidget(profile, camera);
     addDockWidget(Qt::RightDockWidgetArea, scene);
     for (QDockWidget* d : {align, residuals, trend, events, jog}) tabifyDockWidget(scene, d);
+    jog->hide();  // until it is asked for
     profile->raise();
     scene->raise();
     views_.raise = [this](QWidget* view) {

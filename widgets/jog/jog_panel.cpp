@@ -2,6 +2,7 @@
 
 #include <QFocusEvent>
 #include <QGridLayout>
+#include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QVBoxLayout>
 
@@ -35,6 +36,8 @@ constexpr int kFirstStep = 2;
 
 JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     setObjectName("jog_panel");
+    setAccessibleName(tr("Robot"));
+    setToolTip(tr("The robot that is moved"));
     setFocusPolicy(Qt::StrongFocus);
     auto* box = new QVBoxLayout(this);
     make_choices();
@@ -46,7 +49,7 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     box->addWidget(place_);
     message_ = make_text({});
     message_->setObjectName("jog_message");
-    message_->setMinimumHeight(3 * fontMetrics().lineSpacing());
+    message_->setMinimumHeight(2 * fontMetrics().lineSpacing());
     message_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
     box->addWidget(message_);
     box->addStretch(1);
@@ -63,40 +66,44 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
 }
 
 void JogPanel::make_choices() {
-    auto& box = static_cast<QVBoxLayout&>(*layout());
+    auto* columns = new QHBoxLayout;
+    auto *left = new QVBoxLayout, *right = new QVBoxLayout;
+    columns->addLayout(left, 1);
+    columns->addLayout(right, 1);
+    static_cast<QVBoxLayout&>(*layout()).addLayout(columns);
     robot_ = new QComboBox;
     robot_->setObjectName("jog_robot");
-    add_field(box, tr("Robot"), robot_, tr("The robot that is moved"));
+    add_field(*left, tr("Robot"), robot_, tr("The robot that is moved"));
     consent_ = new QCheckBox(tr("Somebody stands beside the robot"));
     consent_->setObjectName("jog_consent");
     consent_->setToolTip(
         tr("A real robot moves from here only after this was said; asked again after every connection"));
     consent_->setMinimumHeight(style::kTargetPx);
-    box.addWidget(consent_);
+    right->addWidget(consent_);
     frame_ = new QComboBox;
     frame_->setObjectName("jog_frame");
     frame_->addItem(tr("Sensor (X along the laser, Z height)"), static_cast<int>(JogFrame::sensor));
     frame_->addItem(tr("Flange"), static_cast<int>(JogFrame::flange));
     frame_->addItem(tr("Robot's base"), static_cast<int>(JogFrame::base));
-    add_field(box, tr("Axes of"), frame_, tr("Along and about whose axes the keys move"));
+    add_field(*right, tr("Axes of"), frame_, tr("Along and about whose axes the keys move"));
     way_ = new QComboBox;
     way_->setObjectName("jog_way");
     way_->addItem(tr("One step a press"));
     way_->addItem(tr("As long as pressed"));
-    add_field(box, tr("Way"), way_, tr("What one press of a key does"));
+    add_field(*left, tr("Way"), way_, tr("What one press of a key does"));
     step_ = new QComboBox;
     step_->setObjectName("jog_step");
     for (const JogStep& s : kJogSteps)
         step_->addItem(tr("%1 mm, %2 degrees").arg(locale().toString(s.mm), locale().toString(s.deg)));
     step_->setCurrentIndex(kFirstStep);
-    add_field(box, tr("Step"), step_, tr("How far one press moves and turns"));
+    add_field(*right, tr("Step"), step_, tr("How far one press moves and turns"));
     speed_ = new QDoubleSpinBox;
     speed_->setObjectName("jog_speed");
     speed_->setRange(1, kMostSpeed_mm_s);
     speed_->setDecimals(0);
     speed_->setValue(10);
     speed_->setSuffix(tr(" mm/s"));
-    add_field(box, tr("Speed"), speed_,
+    add_field(*left, tr("Speed"), speed_,
               tr("While a key is pressed; turns go at a fifth of it in degrees a second"));
     connect(way_, &QComboBox::currentIndexChanged, this, &JogPanel::refresh);
     connect(robot_, &QComboBox::currentIndexChanged, this, [this] {

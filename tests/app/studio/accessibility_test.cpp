@@ -183,7 +183,7 @@ TEST_F(Accessibility, EveryActionHasAWordATipAndAShortcutOfItsOwn) {
     }
     // A dock's shortcut brings it to the front with the focus inside.
     const auto docks = window().findChildren<QDockWidget*>();
-    ASSERT_EQ(docks.size(), 7);
+    ASSERT_EQ(docks.size(), 8);
     for (QDockWidget* dock : docks) {
         const auto* a = window().findChild<QAction*>("show_" + dock->objectName());
         ASSERT_TRUE(a);

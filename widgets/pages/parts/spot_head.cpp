@@ -1,6 +1,5 @@
 #include "widgets/pages/parts/spot_head.h"
 
-#include <QHBoxLayout>
 #include <algorithm>
 
 #include "devices/registry.h"
@@ -50,25 +49,22 @@ const Spot* next_undone(const Desk& desk, const std::string& spot_id) {
 }
 
 SpotHead::SpotHead(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
-    auto* row = new QHBoxLayout(this);
-    row->setContentsMargins(0, 0, 0, 0);
-    auto* words = new QVBoxLayout;
+    auto* words = new QVBoxLayout(this);
+    words->setContentsMargins(0, 0, 0, 0);
     name_ = make_heading({});
     name_->setObjectName("head_spot");
     state_ = make_text({});
     state_->setObjectName("head_state");
     words->addWidget(name_);
     words->addWidget(state_);
-    row->addLayout(words, 1);
     go_ =
         make_button("head_go", "shift", tr("Go there"), tr("Moves the simulated robot to the spot"), [this] {
             if (const Spot* s = find_spot(desk_.project(), desk_.selection().spot()))
                 desk_.worker().jog_simulated(s->robot_id, s->base_from_flange);
         });
-    row->addWidget(go_);
     deed_ = make_button("head_deed", "next", {}, tr("What comes next of this spot"),
                         [this] { emit wanted(shown_); });
-    row->addWidget(deed_);
+    words->addLayout(make_row({deed_, go_}));
     connect(&desk_, &Desk::station_changed, this, [this] {
         if (isVisible()) refresh();
     });

@@ -40,16 +40,17 @@ JogPanel::JogPanel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
     setToolTip(tr("The robot that is moved"));
     setFocusPolicy(Qt::StrongFocus);
     auto* box = new QVBoxLayout(this);
+    box->setContentsMargins(8, 2, 8, 2);
+    box->setSpacing(4);
     make_choices();
     make_keys();
     place_ = make_text({});
     place_->setObjectName("jog_place");
     place_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    place_->setMinimumHeight(2 * fontMetrics().lineSpacing());
     box->addWidget(place_);
     message_ = make_text({});
     message_->setObjectName("jog_message");
-    message_->setMinimumHeight(2 * fontMetrics().lineSpacing());
+    message_->hide();
     message_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
     box->addWidget(message_);
     box->addStretch(1);
@@ -105,6 +106,10 @@ void JogPanel::make_choices() {
     speed_->setSuffix(tr(" mm/s"));
     add_field(*left, tr("Speed"), speed_,
               tr("While a key is pressed; turns go at a fifth of it in degrees a second"));
+    for (QComboBox* b : {robot_, frame_, way_, step_}) {  // beside each other in half a small screen
+        b->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        b->setMinimumContentsLength(6);
+    }
     connect(way_, &QComboBox::currentIndexChanged, this, &JogPanel::refresh);
     connect(robot_, &QComboBox::currentIndexChanged, this, [this] {
         target_.reset();
@@ -130,7 +135,7 @@ void JogPanel::make_keys() {
                 QStringLiteral("jog_%1%2").arg(short_names[a], way == 0 ? "minus" : "plus"), {},
                 short_names[a] + " " + sign, names[a] + ", " + (way == 0 ? tr("back") : tr("ahead")), [] {});
             key.button->setAccessibleName(names[a] + ", " + (way == 0 ? tr("back") : tr("ahead")));
-            key.button->setMinimumHeight(style::kTargetPx + 8);
+            key.button->setMinimumHeight(style::kTargetPx);
             connect(key.button, &QPushButton::pressed, this, [this, &key] { pressed(key); });
             connect(key.button, &QPushButton::released, this, &JogPanel::stop);
             key.button->installEventFilter(this);
@@ -211,7 +216,7 @@ void JogPanel::refresh() {
 
 void JogPanel::pressed(const Key& key) {
     if (!allowed()) return;
-    message_->clear();
+    message_->hide();
     pressed_ = &key;
     if (way_->currentIndex() == 0) {
         const JogStep& s = kJogSteps[static_cast<std::size_t>(step_->currentIndex())];
@@ -260,6 +265,7 @@ void JogPanel::moved(const std::string& robot_id, const Pose& base_from_flange, 
     if (!trouble.isEmpty()) {
         stop();
         message_->setText(trouble);
+        message_->show();
     }
     // Short of it, a newer place is on its way: the next step goes on from there.
     if (!trouble.isEmpty() || (target_ && distance_mm(*target_, base_from_flange) < kArrived_mm &&

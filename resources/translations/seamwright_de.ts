@@ -2661,8 +2661,8 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <translation>Ein wirklicher Roboter bewegt sich von hier erst, wenn das bestätigt ist; nach jedem Verbinden wird neu gefragt</translation>
     </message>
     <message>
-        <source>Sensor (X along the laser, Z height)</source>
-        <translation>Sensor (X längs des Lasers, Z Höhe)</translation>
+        <source>Sensor</source>
+        <translation>Sensor</translation>
     </message>
     <message>
         <source>Flange</source>

@@ -83,7 +83,7 @@ void JogPanel::make_choices() {
     right->addWidget(consent_);
     frame_ = new QComboBox;
     frame_->setObjectName("jog_frame");
-    frame_->addItem(tr("Sensor (X along the laser, Z height)"), static_cast<int>(JogFrame::sensor));
+    frame_->addItem(tr("Sensor"), static_cast<int>(JogFrame::sensor));
     frame_->addItem(tr("Flange"), static_cast<int>(JogFrame::flange));
     frame_->addItem(tr("Robot's base"), static_cast<int>(JogFrame::base));
     add_field(*right, tr("Axes of"), frame_, tr("Along and about whose axes the keys move"));

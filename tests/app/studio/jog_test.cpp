@@ -78,7 +78,7 @@ TEST_F(Jogging, APressIsOneStepAlongTheChosenAxes) {
     for (int i = 0; i < 3; ++i) QTest::mouseClick(key("jog_Zplus"), Qt::LeftButton);
     after = settled();
     EXPECT_LT((after.translation() - before.translation() - Eigen::Vector3d(0, 0, 15)).norm(), 1e-6);
-    me->choose("jog_frame", "Sensor (X along the laser, Z height)");
+    me->choose("jog_frame", "Sensor");
     const Pose here = settled();
     me->click("jog_Rzplus");
     const Pose turned = settled();

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <type_traits>
@@ -199,13 +200,23 @@ Expected<Drawing> read_apart(const std::string& name, const DrawingOptions& opti
         return device_error("no process could be made to read it", name);
     }
     const Child child{id, ends[0]};
+    using Clock = std::chrono::steady_clock;
+    const auto patience = std::chrono::duration<double>(options.patience_s);
+    auto heard = Clock::now();
     std::string bytes;
     std::vector<char> buffer(std::size_t{1} << 16);
     for (;;) {
         if (options.cancel.stop_requested())
             return tl::unexpected(Error{ErrorKind::usage, "cancelled", name, {}, ErrorCode::cancelled});
         pollfd ready{child.pipe, POLLIN, 0};
-        if (poll(&ready, 1, kLookMs) <= 0) continue;
+        if (poll(&ready, 1, kLookMs) <= 0) {
+            if (Clock::now() - heard < patience) continue;
+            return file_error(
+                Text("is damaged or too large: OpenCASCADE came to no end over it in {:.0f} s",
+                     options.patience_s),
+                name, "export it again from the drawing program, a part of it alone where it is large");
+        }
+        heard = Clock::now();
         const ssize_t n = ::read(child.pipe, buffer.data(), buffer.size());
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)

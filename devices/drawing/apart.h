@@ -8,8 +8,9 @@
 
 namespace seamwright::drawing {
 
-// `read` runs in a child with options whose progress comes back here; cancelling ends the child. Error besides those of
-// `read`: (file) the child ended without an answer, (device) no child could be made, (usage) cancelled.
+// `read` runs in a child with options whose progress comes back here; cancelling ends the child, and so does
+// options.patience_s (which is set: above 0) without progress. Error besides those of
+// `read`: (file) the child ended without an answer or came to no end, (device) no child could be made, (usage) cancelled.
 Expected<Drawing> read_apart(const std::string& name, const DrawingOptions& options,
                              const std::function<Expected<Drawing>(const DrawingOptions&)>& read);
 

@@ -32,6 +32,8 @@ Expected<void> check(const DrawingOptions& o) {
     if (!within(o.step_mm, 0.05, 100)) return usage_error("the step along edges is not from 0.05 to 100 mm");
     if (!within(o.sharp_deg, 1, 170) || !within(o.bend_deg, 1, 170))
         return usage_error("an angle of sharp edges is not from 1 to 170 degrees");
+    if (!within(o.patience_s, 0, 1e6))
+        return usage_error("the patience with a drawing is not from 0 to 1e6 s");
     return {};
 }
 

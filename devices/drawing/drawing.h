@@ -72,6 +72,9 @@ struct DrawingOptions {
     double step_mm = 2;                    // 0.05 to 100
     std::string unit;                      // of a mesh, as load_mesh() takes it
     double sharp_deg = 20, bend_deg = 40;  // of a mesh
+    // For how long STEP and IGES may be read without any progress before they count as damaged: OpenCASCADE goes round in
+    // circles over some files. 0: 30 s and 10 s a megabyte.
+    double patience_s = 0;
     std::stop_token cancel;
     // 0 to 1 and what is being done; called on the reading thread.
     std::function<void(double share, const Text& what)> progress;
@@ -80,7 +83,7 @@ struct DrawingOptions {
 inline constexpr std::size_t kLargestDrawing = std::size_t{1} << 30;  // bytes of a file
 
 // By the name's ending: .step .stp .iges .igs .stl .ply .obj. Error (file): missing, another ending, larger than
-// kLargestDrawing, not what its ending says, cut off, of a schema that holds no shapes, nothing in it, not finite, beyond
+// kLargestDrawing, not what its ending says, cut off, without end, of a schema that holds no shapes, nothing in it, not finite, beyond
 // 100 m; (usage): cancelled, options out of range. One drawing is read at a time; a second caller waits.
 Expected<Drawing> read_drawing(const std::filesystem::path& path, const DrawingOptions& options = {});
 // The same from the bytes that a project keeps; `name` is that of the file they came from.

@@ -463,6 +463,8 @@ Expected<void> check_step(std::string_view text, const std::string& name) {
     return {};
 }
 
+constexpr double kPatienceS = 30, kPatienceSPerByte = 10e-6;
+
 // Whatever OpenCASCADE throws.
 template <class F>
 Expected<Drawing> caught(const std::string& name, const DrawingOptions& options, const F& read) {
@@ -480,8 +482,10 @@ Expected<Drawing> caught(const std::string& name, const DrawingOptions& options,
 }
 
 template <class F>
-Expected<Drawing> guarded(const std::string& name, const DrawingOptions& options, const F& read) {
+Expected<Drawing> guarded(std::size_t bytes, const std::string& name, DrawingOptions options, const F& read) {
     const Quiet quiet;
+    if (options.patience_s == 0)
+        options.patience_s = kPatienceS + kPatienceSPerByte * static_cast<double>(bytes);
     return read_apart(name, options, [&](const DrawingOptions& here) { return caught(name, here, read); });
 }
 
@@ -490,7 +494,7 @@ Expected<Drawing> guarded(const std::string& name, const DrawingOptions& options
 Expected<Drawing> read_step(std::span<const std::byte> bytes, const std::string& name,
                             const DrawingOptions& given) {
     SEAM_OK(check_step(view_of(bytes), name));
-    return guarded(name, given, [&](const DrawingOptions& options) -> Expected<Drawing> {
+    return guarded(bytes.size(), name, given, [&](const DrawingOptions& options) -> Expected<Drawing> {
         STEPControl_Reader reader;
         Interface_Static::SetCVal("xstep.cascade.unit", "MM");
         SlicedBytes buffer(bytes, options);
@@ -528,7 +532,7 @@ Expected<Drawing> read_iges(std::span<const std::byte> bytes, const std::string&
     if (line == std::string_view::npos || last < line + 73 || text[line + 73] != 'T')
         return file_error("is cut off: it does not end with the line that IGES ends with", name,
                           "copy it again");
-    return guarded(name, given, [&](const DrawingOptions& options) -> Expected<Drawing> {
+    return guarded(bytes.size(), name, given, [&](const DrawingOptions& options) -> Expected<Drawing> {
         // This reader knows files alone.
         const TemporaryFile file;
         if (!file.ok()) return file_error("no file can be made there", file.path());

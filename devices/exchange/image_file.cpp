@@ -10,6 +10,7 @@
 
 #include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
+#include "devices/exchange/image_channel.h"
 
 #if defined(__SANITIZE_THREAD__)
 // GDAL, which OpenCV registers among its codecs, takes its own locks in both orders while it starts.
@@ -36,27 +37,6 @@ constexpr std::pair<ImageChannel, std::string_view> kChannels[] = {
     {ImageChannel::green, "green"},
     {ImageChannel::blue, "blue"},
     {ImageChannel::red_difference, "red-difference"}};
-
-// BGR or BGRA to one channel.
-cv::Mat one_channel(const cv::Mat& image, ImageChannel channel) {
-    cv::Mat result;
-    if (channel == ImageChannel::grey) {
-        cv::cvtColor(image, result, image.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
-        return result;
-    }
-    if (channel != ImageChannel::red_difference) {
-        cv::extractChannel(image, result,
-                           channel == ImageChannel::blue    ? 0
-                           : channel == ImageChannel::green ? 1
-                                                            : 2);
-        return result;
-    }
-    std::vector<cv::Mat> bgr;
-    cv::split(image, bgr);
-    cv::addWeighted(bgr[0], 0.5, bgr[1], 0.5, 0, result);
-    cv::subtract(bgr[2], result, result);
-    return result;
-}
 
 struct LineShown {
     double share = 0;   // of the lines whose strongest peak goes on from the line before

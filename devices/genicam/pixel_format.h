@@ -47,7 +47,8 @@ const PixelFormat* pixel_format_by_name(std::string_view name);
 // sizes that are not positive.
 std::size_t image_bytes(const PixelFormat& format, int width, int height, std::size_t row_padding = 0);
 
-// Grey values of `count` pixels. Preconditions (asserted): a grey format; `packed` holds them all.
+// The values of `count` pixels (of RGB: components), of a mosaic as they lie. Preconditions (asserted): no range format;
+// `packed` holds them all.
 // To bytes for 8 bit, else to 16-bit words.
 void unpack_pixels(const PixelFormat& format, std::span<const std::byte> packed, std::size_t count,
                    std::byte* out);

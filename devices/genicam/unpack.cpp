@@ -97,14 +97,15 @@ bool have_ssse3() {
 #endif
 
 std::size_t packed_bytes(const PixelFormat& format, std::size_t count) {
-    return (count * static_cast<std::size_t>(format.bits_per_pixel()) + 7) / 8;
+    const std::size_t components = format.colour.size() == 3 ? 3 : 1;
+    return (count * static_cast<std::size_t>(format.bits_per_pixel()) / components + 7) / 8;
 }
 
 }  // namespace
 
 void unpack_pixels(const PixelFormat& format, std::span<const std::byte> packed, std::size_t count,
                    std::byte* out) {
-    assert(!format.is_range() && format.colour.empty() && packed.size() >= packed_bytes(format, count));
+    assert(!format.is_range() && packed.size() >= packed_bytes(format, count));
     const auto in = reinterpret_cast<Bytes>(packed.data());
     std::size_t done = 0;
     switch (format.packing) {
@@ -130,7 +131,7 @@ void unpack_pixels(const PixelFormat& format, std::span<const std::byte> packed,
 }
 
 void pack_pixels(const PixelFormat& format, const std::byte* pixels, std::size_t count, std::byte* out) {
-    assert(!format.is_range() && format.colour.empty());
+    assert(!format.is_range());
     const auto value = [pixels](std::size_t i) {
         std::uint16_t word = 0;
         std::memcpy(&word, pixels + 2 * i, 2);

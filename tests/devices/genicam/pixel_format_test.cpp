@@ -111,7 +111,8 @@ TEST(PixelFormat, ColourCamerasShowTheLaserInTheRedDifference) {
     constexpr int kWidth = 32, kHeight = 24;
     const auto red = [](int y) { return 90 * std::exp(-0.5 * std::pow((y - 11.3) / 2.0, 2)); };
     for (const char* name :
-         {"RGB8", "BGR8", "BayerRG8", "BayerGR8", "BayerGB8", "BayerBG8", "BayerRG10", "BayerBG12"}) {
+         {"RGB8", "BGR8", "RGB12", "BGR16", "BayerRG8", "BayerGR8", "BayerGB8", "BayerBG8", "BayerRG10",
+          "BayerBG12", "BayerGR16", "BayerRG10p", "BayerGB12p", "BayerBG10Packed", "BayerGR12Packed"}) {
         SCOPED_TRACE(name);
         const PixelFormat* format = pixel_format_by_name(name);
         ASSERT_NE(format, nullptr);
@@ -139,6 +140,11 @@ TEST(PixelFormat, ColourCamerasShowTheLaserInTheRedDifference) {
                 const char c = (y % 2 ? below : pattern)[static_cast<std::size_t>(x % 2)];
                 put(white + (c == 'R' ? red(y) : 0));
             }
+        if (format->packing == Packing::lsb || format->packing == Packing::gige) {
+            std::vector<std::byte> packed(image_bytes(*format, kWidth, kHeight));
+            pack_pixels(*format, payload.data(), kWidth * kHeight, packed.data());
+            payload = packed;
+        }
         std::vector<std::byte> pixels;
         const auto image =
             unpack_image(*format, payload, kWidth, kHeight, 0, pixels, ImageChannel::red_difference);

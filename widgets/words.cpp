@@ -72,6 +72,13 @@ constexpr auto kWords = std::to_array<Word>({
     {"deg", QT_TRANSLATE_NOOP("Words", "deg")},
     {"us", QT_TRANSLATE_NOOP("Words", "us")},
     // choices
+    {"chessboard", QT_TRANSLATE_NOOP("Words", "chessboard")},
+    {"circles", QT_TRANSLATE_NOOP("Words", "circles")},
+    {"charuco", QT_TRANSLATE_NOOP("Words", "ChArUco")},
+    {"aprilgrid", QT_TRANSLATE_NOOP("Words", "AprilGrid")},
+    {"found", QT_TRANSLATE_NOOP("Words", "found")},
+    {"yes", QT_TRANSLATE_NOOP("Words", "yes")},
+    {"no", QT_TRANSLATE_NOOP("Words", "no")},
     {"left", QT_TRANSLATE_NOOP("Words", "left")},
     {"right", QT_TRANSLATE_NOOP("Words", "right")},
     {"outermost", QT_TRANSLATE_NOOP("Words", "outermost")},

@@ -654,6 +654,34 @@
         <source>sensor&apos;s own point</source>
         <translation>Punkt des Sensors</translation>
     </message>
+    <message>
+        <source>chessboard</source>
+        <translation>Schachbrett</translation>
+    </message>
+    <message>
+        <source>circles</source>
+        <translation>Kreise</translation>
+    </message>
+    <message>
+        <source>ChArUco</source>
+        <translation>ChArUco</translation>
+    </message>
+    <message>
+        <source>AprilGrid</source>
+        <translation>AprilGrid</translation>
+    </message>
+    <message>
+        <source>found</source>
+        <translation>gefunden</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>ja</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>nein</translation>
+    </message>
 </context>
 <context>
     <name>main</name>

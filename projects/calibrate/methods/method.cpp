@@ -1,7 +1,9 @@
 #include "projects/calibrate/methods/method.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/calibration/board/board.h"
 #include "devices/exchange/json_fields.h"
 
 namespace seamwright {
@@ -19,10 +21,26 @@ Expected<json> prepared_settings(const CalibrationMethod& method, json settings,
                           : Expected<json>(std::move(settings));
 }
 
+namespace {
+
+void write_setting(const MethodSetting& which, json& settings, double value) {
+    const json::json_pointer at(which.pointer);
+    if (which.written.empty()) {
+        settings[at] = which.info.decimals == 0 ? std::round(value) : value;
+        return;
+    }
+    const json& written = which.written[static_cast<std::size_t>(std::lround(value))];
+    if (!written.is_null())
+        settings[at] = written;
+    else if (settings.contains(at))
+        settings[at.parent_pointer()].erase(at.back());
+}
+
+}  // namespace
+
 json default_settings(const CalibrationMethod& method) {
     json settings = method.fixed_settings;
-    for (const MethodSetting& s : method.settings)
-        settings[json::json_pointer(s.pointer)] = s.info.default_value;
+    for (const MethodSetting& s : method.settings) write_setting(s, settings, s.info.default_value);
     return settings;
 }
 
@@ -31,7 +49,7 @@ Expected<void> set_setting(const CalibrationMethod& method, json& settings, cons
     for (const MethodSetting& s : method.settings) {
         if (s.info.name != name) continue;
         SEAM_OK(validate({{name, value}}, {s.info}, method.id));
-        settings[json::json_pointer(s.pointer)] = s.info.decimals == 0 ? std::round(value) : value;
+        write_setting(s, settings, value);
         return {};
     }
     return input_error(Text("there is no setting \"{}\"", name), method.id);
@@ -39,6 +57,12 @@ Expected<void> set_setting(const CalibrationMethod& method, json& settings, cons
 
 double setting(const MethodSetting& which, const json& settings) {
     const json::json_pointer at(which.pointer);
+    if (!which.written.empty()) {
+        const json written = settings.contains(at) ? settings[at] : json();
+        const auto it = std::find(which.written.begin(), which.written.end(), written);
+        return it == which.written.end() ? which.info.default_value
+                                         : static_cast<double>(it - which.written.begin());
+    }
     return settings.contains(at) && settings[at].is_number() ? settings[at].get<double>()
                                                              : which.info.default_value;
 }
@@ -58,18 +82,56 @@ MethodSetting number_setting(const char* name, const char* pointer, const char* 
     return s;
 }
 
+MethodSetting choice_setting(const char* name, const char* pointer, std::vector<std::string> choices,
+                             std::vector<json> written, const char* help, Text label) {
+    MethodSetting s;
+    s.info.name = name;
+    s.info.maximum = static_cast<double>(choices.size()) - 1;
+    s.info.decimals = 0;
+    s.info.help = help;
+    s.info.choices = std::move(choices);
+    s.pointer = pointer;
+    s.label = std::move(label);
+    s.written = std::move(written);
+    return s;
+}
+
 MethodSetting sphere_radius_setting() {
     return number_setting("radius", "/radius_mm", "mm", 1, 500, 25, 4, "Radius of the sphere.",
                           "Radius of the sphere");
 }
 
 std::vector<MethodSetting> board_settings() {
-    return {number_setting("board_columns", "/board/columns", "", 3, 200, 7, 0,
-                           "Inner corners along the board.", "Corners along"),
-            number_setting("board_rows", "/board/rows", "", 3, 200, 6, 0, "Inner corners across the board.",
-                           "Corners across"),
-            number_setting("board_pitch", "/board/pitch_mm", "mm", 0.2, 1000, 10, 3, "Edge of a square.",
-                           "Edge of a square")};
+    std::vector<std::string> patterns, dictionaries{"found"};
+    std::vector<json> pattern_written{json()}, dictionary_written{json()};
+    for (const BoardPattern p :
+         {BoardPattern::chessboard, BoardPattern::circles, BoardPattern::charuco, BoardPattern::aprilgrid}) {
+        patterns.emplace_back(name_of(p));
+        if (p != BoardPattern::chessboard) pattern_written.emplace_back(name_of(p));
+    }
+    for (const std::string& name : dictionary_names()) {
+        dictionaries.push_back(name);
+        dictionary_written.emplace_back(name);
+    }
+    return {
+        choice_setting(
+            "board_pattern", "/board/pattern", patterns, pattern_written,
+            "Chessboard; grid of circles; chessboard with markers (ChArUco); grid of tags (AprilGrid).",
+            "Pattern"),
+        number_setting("board_columns", "/board/columns", "", 3, 200, 7, 0,
+                       "Along the board: inner corners or circles; of ChArUco squares, of AprilGrid tags.",
+                       "Corners along"),
+        number_setting("board_rows", "/board/rows", "", 3, 200, 6, 0,
+                       "Across the board, counted as along it.", "Corners across"),
+        number_setting("board_pitch", "/board/pitch_mm", "mm", 0.2, 1000, 10, 3,
+                       "Edge of a square; distance of circles; from tag to tag.", "Edge of a square"),
+        number_setting("board_marker", "/board/marker_mm", "mm", 0, 1000, 0, 3,
+                       "Edge of a marker or tag; 0: found from the picture (ChArUco alone).",
+                       "Edge of a marker"),
+        choice_setting("board_dictionary", "/board/dictionary", dictionaries, dictionary_written,
+                       "The markers' dictionary; found: the one that fits the picture.", "Dictionary"),
+        choice_setting("board_legacy", "/board/legacy", {"found", "yes", "no"}, {json(), true, false},
+                       "ChArUco as OpenCV drew it before version 4.6.", "Old layout")};
 }
 
 Expected<std::string> entry_id(const json& entry, std::size_t index, const std::string& where) {

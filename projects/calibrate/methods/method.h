@@ -41,11 +41,13 @@ bool shows_board(CaptureKind kind);
 // project (a plate's place, a lens). `check`: it only judges the calibration in use.
 enum class AnswerUse { sensor, record, check };
 
-// A number that a person gives before capturing: where it stands in the method's data.
+// A number or a choice that a person gives before capturing: where it stands in the method's data.
 struct MethodSetting {
     ParameterInfo info;   // name is unique within the method
     const char* pointer;  // JSON pointer: "/board/columns"
     Text label;           // "Radius of the sphere"
+    // Of a choice: what each of info.choices writes; null writes nothing.
+    std::vector<nlohmann::json> written = {};
 };
 
 // The set-up as the guided page draws it.
@@ -130,6 +132,8 @@ double setting(const MethodSetting& which, const nlohmann::json& settings);
 // Settings that several methods have.
 MethodSetting number_setting(const char* name, const char* pointer, const char* unit, double minimum,
                              double maximum, double otherwise, int decimals, const char* help, Text label);
+MethodSetting choice_setting(const char* name, const char* pointer, std::vector<std::string> choices,
+                             std::vector<nlohmann::json> written, const char* help, Text label);
 MethodSetting sphere_radius_setting();
 std::vector<MethodSetting> board_settings();
 

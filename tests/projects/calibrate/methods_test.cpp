@@ -2,7 +2,9 @@
 
 #include <random>
 
+#include "core/calibration/board/board.h"
 #include "projects/calibrate/methods/methods.h"
+#include "projects/calibrate/methods/stripe_frames.h"
 
 namespace seamwright {
 namespace {
@@ -148,6 +150,57 @@ std::vector<std::string> ids() {
     for (const CalibrationMethod& m : calibration_methods()) list.push_back(m.id);
     return list;
 }
+// Every value of every setting is read back, each number and each choice; what is at its default is as it was at first.
+TEST_P(EveryMethod, ItsSettingsAreReadBack) {
+    json settings = default_settings(method_);
+    const json at_first = settings;
+    for (const MethodSetting& s : method_.settings) {
+        EXPECT_NE(s.label.in(Language::german), "") << s.info.name;
+        std::vector<double> values{s.info.minimum, s.info.maximum};
+        for (std::size_t i = 0; i < s.info.choices.size(); ++i) values.push_back(static_cast<double>(i));
+        for (const double value : values) {
+            ASSERT_TRUE(set_setting(method_, settings, s.info.name, value)) << s.info.name;
+            EXPECT_EQ(setting(s, settings), value) << s.info.name;
+        }
+        EXPECT_FALSE(set_setting(method_, settings, s.info.name, s.info.maximum + 1)) << s.info.name;
+        ASSERT_TRUE(set_setting(method_, settings, s.info.name, s.info.default_value));
+    }
+    EXPECT_EQ(settings, at_first);
+}
+
+// The page's words for a board are those of its data.
+TEST(BoardSettings, AreTheBoardThatIsLookedFor) {
+    const CalibrationMethod& method = *find_method("stripe-camera");
+    json settings = default_settings(method);
+    const auto plain = parse_board_json(settings["board"], "board");
+    ASSERT_TRUE(plain) << plain.error().sentence();
+    EXPECT_EQ(plain->pattern, BoardPattern::chessboard);
+    EXPECT_EQ(plain->dictionary, -1);
+    EXPECT_FALSE(plain->legacy);
+    const auto choose = [&](const std::string& name, const std::string& word) {
+        for (const MethodSetting& s : method.settings) {
+            if (s.info.name != name) continue;
+            const auto it = std::find(s.info.choices.begin(), s.info.choices.end(), word);
+            ASSERT_NE(it, s.info.choices.end()) << word;
+            ASSERT_TRUE(
+                set_setting(method, settings, name, static_cast<double>(it - s.info.choices.begin())));
+        }
+    };
+    choose("board_pattern", "charuco");
+    choose("board_dictionary", "5x5_100");
+    choose("board_legacy", "no");
+    ASSERT_TRUE(set_setting(method, settings, "board_marker", 7.5));
+    const auto marked = parse_board_json(settings["board"], "board");
+    ASSERT_TRUE(marked) << marked.error().sentence();
+    EXPECT_EQ(marked->pattern, BoardPattern::charuco);
+    EXPECT_EQ(marked->dictionary, dictionary_named("5x5_100"));
+    EXPECT_EQ(marked->legacy, false);
+    EXPECT_EQ(marked->marker_mm, 7.5);
+    choose("board_pattern", "aprilgrid");
+    ASSERT_TRUE(set_setting(method, settings, "board_marker", 0));
+    EXPECT_FALSE(parse_board_json(settings["board"], "board")) << "an AprilGrid's tags have a size";
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(ids()), [](const auto& one) {
     std::string name = one.param;
     std::replace(name.begin(), name.end(), '-', '_');

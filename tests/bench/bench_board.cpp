@@ -52,6 +52,28 @@ void compare(const char* name, test::BoardPicture picture, bool peers) {
                 sectors_found ? "found" : "not found");
 }
 
+// The other patterns, where nothing is to be found: every dictionary and every threshold is tried.
+void without(const char* name, test::BoardPicture picture) {
+    const StripeImage image{reinterpret_cast<const std::byte*>(picture.pixels.data()), picture.width,
+                            picture.height, static_cast<std::size_t>(picture.width), 8};
+    for (const BoardPattern pattern :
+         {BoardPattern::circles, BoardPattern::charuco, BoardPattern::aprilgrid}) {
+        BoardSpec spec;
+        spec.pattern = pattern;
+        spec.columns = 7, spec.rows = 6, spec.pitch_mm = 10;
+        if (pattern == BoardPattern::aprilgrid) spec.marker_mm = 7;
+        double ours = 1e300;
+        bool found = false;
+        for (int i = 0; i < 3; ++i) {
+            const double t = now_ms();
+            found = find_board(image, spec).board.has_value();
+            ours = std::min(ours, now_ms() - t);
+        }
+        std::printf("%s, %s: %.1f ms (%s)\n", std::string(name_of(pattern)).c_str(), name, ours,
+                    found ? "found" : "not found");
+    }
+}
+
 void BM_board(benchmark::State& state) {
     auto picture = picture_of(1280, 1024, true);
     const cv::Mat grey(picture.height, picture.width, CV_8U, picture.pixels.data());
@@ -73,4 +95,10 @@ int main(int argc, char** argv) {
     compare("1.3MP_without", picture_of(1280, 1024, false), false);
     compare("20MP", picture_of(5472, 3648, true), false);
     compare("20MP_without", picture_of(5472, 3648, false), false);
+    // A chessboard is a picture full of squares, of which none is a marker.
+    using seamwright::without;
+    without("1.3 MP of clutter", picture_of(1280, 1024, false));
+    without("1.3 MP with a chessboard", picture_of(1280, 1024, true));
+    without("20 MP of clutter", picture_of(5472, 3648, false));
+    without("20 MP with a chessboard", picture_of(5472, 3648, true));
 }

@@ -99,6 +99,21 @@ std::vector<std::string> dictionary_names() {
 
 namespace detail {
 
+std::vector<cv::Mat> reduced(const cv::Mat& grey) {
+    const double longest = std::max(grey.cols, grey.rows);
+    std::vector<cv::Mat> pictures;
+    for (const double side : {1600.0, 3200.0}) {
+        if (!pictures.empty() && pictures.back().cols == grey.cols) break;
+        if (longest <= side) {
+            pictures.push_back(grey);
+        } else {
+            pictures.emplace_back();
+            cv::resize(grey, pictures.back(), {}, side / longest, side / longest, cv::INTER_AREA);
+        }
+    }
+    return pictures;
+}
+
 cv::Mat grey_of(const StripeImage& image) {
     cv::Mat out;
     if (image.empty()) return out;

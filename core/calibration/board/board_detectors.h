@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "core/calibration/board/board.h"
 
@@ -16,6 +17,10 @@ cv::Mat stripe_mask(const cv::Mat& grey);
 cv::Mat without_stripe(const cv::Mat& grey, const cv::Mat& stripe);
 // Contrast stretched between quantiles of the pixels outside `ignore`, then value^gamma.
 cv::Mat stretched(const cv::Mat& grey, const cv::Mat& ignore, double gamma);
+
+// The picture as dots and markers are looked for in it: as it is, or where it is large reduced to a side of 1600 px, then
+// of 3200. A pixel p of one of them lies at (p + 1/2) s - 1/2 of the picture, s the ratio of their widths.
+std::vector<cv::Mat> reduced(const cv::Mat& grey);
 
 std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spec);
 // ChArUco and AprilGrid: OpenCV reads the markers of `grey` (8 bit), which predict where the corners are; these are measured in

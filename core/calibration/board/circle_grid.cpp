@@ -14,14 +14,17 @@
 namespace seamwright::detail {
 namespace {
 
+constexpr double kSoft_px = 0.7;
+constexpr double kLargestDot = 0.02;  // of the picture's area
+
 struct Dot {
     cv::Point2d centre;
     double radius = 0;
     int seen = 1;
 };
 
-// Dark ellipses of one binary image (dots white in it).
-void ellipses(const cv::Mat& binary, std::vector<Dot>& out) {
+// Dark ellipses of one binary image (dots white in it), none larger than `largest_px2`.
+void ellipses(const cv::Mat& binary, double largest_px2, std::vector<Dot>& out) {
     std::vector<std::vector<cv::Point>> contours;
     cv::findContours(binary, contours, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
     for (const auto& c : contours) {
@@ -30,7 +33,7 @@ void ellipses(const cv::Mat& binary, std::vector<Dot>& out) {
         if (box.x <= 0 || box.y <= 0 || box.x + box.width >= binary.cols || box.y + box.height >= binary.rows)
             continue;
         const cv::Moments m = cv::moments(c);
-        if (m.m00 < 12 || m.m00 > 0.02 * binary.total()) continue;
+        if (m.m00 < 12 || m.m00 > largest_px2) continue;
         // An ellipse of semi-axes p, q has second moments p^2/4, q^2/4 and area pi p q.
         const double xx = m.mu20 / m.m00, xy = m.mu11 / m.m00, yy = m.mu02 / m.m00;
         const double half = 0.5 * (xx + yy), root = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
@@ -62,12 +65,13 @@ std::vector<Dot> find_dots(const cv::Mat& grey) {
         }
     };
     cv::Mat soft, binary;
-    cv::GaussianBlur(grey, soft, {}, 0.7);
+    cv::GaussianBlur(grey, soft, {}, kSoft_px);
+    const double largest_px2 = kLargestDot * static_cast<double>(grey.total());
     std::vector<Dot> dots;
     for (int threshold = 25; threshold <= 225; threshold += 12) {
         cv::threshold(soft, binary, threshold, 255, cv::THRESH_BINARY_INV);
         dots.clear();
-        ellipses(binary, dots);
+        ellipses(binary, largest_px2, dots);
         add(dots);
     }
     for (const int block : {21, 41, 81}) {
@@ -76,12 +80,44 @@ std::vector<Dot> find_dots(const cv::Mat& grey) {
             cv::adaptiveThreshold(soft, binary, 255, cv::ADAPTIVE_THRESH_GAUSSIAN_C, cv::THRESH_BINARY_INV,
                                   block, offset);
             dots.clear();
-            ellipses(binary, dots);
+            ellipses(binary, largest_px2, dots);
             add(dots);
         }
     }
     std::erase_if(merged, [](const Dot& d) { return d.seen < 3; });
     return merged;
+}
+
+// A dot of a reduced picture measured in the whole one, between its own darkness and that around it. What is not found
+// again keeps its place.
+void measure_in_full(const cv::Mat& full, Dot& dot) {
+    const int half = static_cast<int>(std::ceil(2.5 * dot.radius)) + 2;
+    const cv::Rect around =
+        cv::Rect(cvRound(dot.centre.x) - half, cvRound(dot.centre.y) - half, 2 * half + 1, 2 * half + 1) &
+        cv::Rect(0, 0, full.cols, full.rows);
+    if (around.width < 8 || around.height < 8) return;
+    cv::Mat soft, binary;
+    cv::GaussianBlur(full(around), soft, {}, kSoft_px);
+    double dark = 0, light = 0;
+    cv::minMaxLoc(soft, &dark, &light);
+    std::vector<Dot> seen, kept;
+    for (const double level : {0.35, 0.45, 0.55, 0.65}) {
+        cv::threshold(soft, binary, dark + level * (light - dark), 255, cv::THRESH_BINARY_INV);
+        seen.clear();
+        ellipses(binary, static_cast<double>(soft.total()), seen);
+        for (Dot& d : seen) {
+            d.centre += cv::Point2d(around.tl());
+            if (cv::norm(d.centre - dot.centre) < 0.5 * dot.radius &&
+                std::abs(d.radius - dot.radius) < 0.4 * dot.radius)
+                kept.push_back(d);
+        }
+    }
+    if (kept.size() < 2) return;
+    dot.centre = {0, 0}, dot.radius = 0;
+    for (const Dot& d : kept) {
+        dot.centre += d.centre * (1.0 / static_cast<double>(kept.size()));
+        dot.radius += d.radius / static_cast<double>(kept.size());
+    }
 }
 
 using Cell = std::pair<int, int>;
@@ -239,11 +275,7 @@ std::optional<FoundBoard> as_board(const std::vector<Dot>& dots, std::vector<Pla
     return board;
 }
 
-}  // namespace
-
-std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spec) {
-    const cv::Mat stripe = stripe_mask(grey);
-    const std::vector<Dot> dots = find_dots(stretched(grey, stripe, 1.0));
+std::optional<FoundBoard> grid_of(const std::vector<Dot>& dots, const BoardSpec& spec) {
     const auto total = static_cast<std::size_t>(spec.columns * spec.rows);
     if (dots.size() + total / 20 + 1 < total) return std::nullopt;
     // Seeds from the middle of all dots outwards.
@@ -292,6 +324,24 @@ std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spe
             });
             if (auto board = as_board(dots, placed, spec)) return board;
         }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<FoundBoard> find_circles(const cv::Mat& grey, const BoardSpec& spec) {
+    for (const cv::Mat& small : reduced(grey)) {
+        std::vector<Dot> dots = find_dots(stretched(small, stripe_mask(small), 1.0));
+        const double scale = static_cast<double>(grey.cols) / small.cols;
+        if (scale > 1) {
+            for (Dot& d : dots) {
+                d.centre = (d.centre + cv::Point2d(0.5, 0.5)) * scale - cv::Point2d(0.5, 0.5);
+                d.radius *= scale;
+                measure_in_full(grey, d);
+            }
+        }
+        if (auto board = grid_of(dots, spec)) return board;
     }
     return std::nullopt;
 }

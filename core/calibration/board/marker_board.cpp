@@ -33,24 +33,79 @@ struct Reading {
     int dictionary = kFamilies[0], border_bits = 1;
 };
 
-std::map<int, Corners> read_markers(const cv::Mat& image, const Reading& reading) {
-    auto parameters = cv::aruco::DetectorParameters::create();
-    parameters->markerBorderBits = reading.border_bits;
-    std::vector<std::vector<cv::Point2f>> found, rejected;
-    std::vector<int> ids;
-    cv::aruco::detectMarkers(
-        image, cv::makePtr<cv::aruco::Dictionary>(*cv::aruco::getPredefinedDictionary(reading.dictionary)),
-        found, ids, parameters, rejected);
-    std::map<int, Corners> markers;
-    std::map<int, int> times;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        ++times[ids[i]];
-        for (std::size_t k = 0; k < 4; ++k) markers[ids[i]][k] = Vector2d(found[i][k].x, found[i][k].y);
+// The squares of a picture, looked for once; which of them are markers, and of which dictionary, is read from their cells.
+class Squares {
+  public:
+    explicit Squares(cv::Mat image) : image_(std::move(image)) {
+        auto parameters = cv::aruco::DetectorParameters::create();
+        std::vector<int> ids;
+        std::vector<std::vector<cv::Point2f>> found;
+        cv::aruco::detectMarkers(
+            image_, cv::makePtr<cv::aruco::Dictionary>(*cv::aruco::getPredefinedDictionary(kFamilies[0])),
+            found, ids, parameters, corners_);
+        corners_.insert(corners_.end(), found.begin(), found.end());
     }
-    for (const auto& [id, n] : times)
-        if (n > 1) markers.erase(id);  // which of them is on the board is not known
-    return markers;
-}
+    std::size_t size() const { return corners_.size(); }
+
+    std::map<int, Corners> markers(const Reading& reading) const {
+        const cv::aruco::Dictionary dictionary = *cv::aruco::getPredefinedDictionary(reading.dictionary);
+        std::map<int, Corners> markers;
+        std::map<int, int> times;
+        for (std::size_t i = 0; i < corners_.size(); ++i) {
+            const cv::Mat bits = bits_of(i, dictionary.markerSize, reading.border_bits);
+            int id = -1, turns = 0;
+            if (bits.empty() || !dictionary.identify(bits, id, turns, kCorrected)) continue;
+            ++times[id];
+            for (std::size_t k = 0; k < 4; ++k) {
+                const cv::Point2f& c = corners_[i][(k + 4 - static_cast<std::size_t>(turns)) % 4];
+                markers[id][k] = Vector2d(c.x, c.y);
+            }
+        }
+        for (const auto& [id, n] : times)
+            if (n > 1) markers.erase(id);  // which of them is on the board is not known
+        return markers;
+    }
+
+  private:
+    // The cells inside of the border, 1 where they are light; empty where it is no marker's square: without contrast, or its
+    // border is not dark.
+    cv::Mat bits_of(std::size_t square, int cells, int border) const {
+        const int all = cells + 2 * border, side = all * kCell_px;
+        const std::vector<cv::Point2f> upright{{0, 0},
+                                               {static_cast<float>(side - 1), 0},
+                                               {static_cast<float>(side - 1), static_cast<float>(side - 1)},
+                                               {0, static_cast<float>(side - 1)}};
+        cv::Mat flat, spread, mean;
+        cv::warpPerspective(image_, flat, cv::getPerspectiveTransform(corners_[square], upright),
+                            {side, side}, cv::INTER_LINEAR);
+        cv::meanStdDev(flat(cv::Rect(kCell_px / 2, kCell_px / 2, side - kCell_px, side - kCell_px)), mean,
+                       spread);
+        if (spread.at<double>(0) < kLeastSpread) return {};
+        cv::threshold(flat, flat, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
+        cv::Mat bits(cells, cells, CV_8U);
+        int light_in_border = 0;
+        for (int row = 0; row < all; ++row)
+            for (int column = 0; column < all; ++column) {
+                const int inner = kCell_px - 2 * kCellRim_px;
+                const cv::Mat cell = flat(
+                    cv::Rect(column * kCell_px + kCellRim_px, row * kCell_px + kCellRim_px, inner, inner));
+                const bool light = 2 * cv::countNonZero(cell) > inner * inner;
+                const int r = row - border, c = column - border;
+                if (r >= 0 && c >= 0 && r < cells && c < cells)
+                    bits.at<std::uint8_t>(r, c) = light;
+                else
+                    light_in_border += light;
+            }
+        return light_in_border > kLightBorder * cells * cells ? cv::Mat() : bits;
+    }
+
+    static constexpr int kCell_px = 8, kCellRim_px = 2;
+    static constexpr double kCorrected = 0.6;     // of the errors that the dictionary can correct
+    static constexpr double kLeastSpread = 5;     // of the grey values
+    static constexpr double kLightBorder = 0.35;  // light cells of the border, of those inside
+    cv::Mat image_;
+    std::vector<std::vector<cv::Point2f>> corners_;
+};
 
 // Where a marker's middle is, in pitches: x along the columns, y down the rows, from the first marker's or square's middle.
 // nullopt: the board has no such marker.
@@ -118,8 +173,8 @@ struct Read {
     bool legacy = false;
 };
 
-Read read_board(const cv::Mat& image, const BoardSpec& spec, const Reading& reading) {
-    const auto markers = read_markers(image, reading);
+Read read_board(const Squares& squares, const BoardSpec& spec, const Reading& reading) {
+    const auto markers = squares.markers(reading);
     Read best;
     for (const bool legacy : {false, true}) {
         if (legacy && (spec.pattern == BoardPattern::aprilgrid || spec.rows % 2 != 0)) continue;
@@ -131,22 +186,23 @@ Read read_board(const cv::Mat& image, const BoardSpec& spec, const Reading& read
 }
 
 // As the spec says; where it leaves the dictionary open, every family until one fits, that of the last picture first.
-Read read_any(const cv::Mat& image, const BoardSpec& spec) {
+Read read_any(const Squares& squares, const BoardSpec& spec) {
+    if (squares.size() < static_cast<std::size_t>(kFewestMarkers)) return {};
     if (spec.pattern == BoardPattern::aprilgrid) {
         for (const int bits : {2, 1})
             if (auto read = read_board(
-                    image, spec,
+                    squares, spec,
                     {spec.dictionary >= 0 ? spec.dictionary : int(cv::aruco::DICT_APRILTAG_36h11), bits});
                 !read.markers.empty())
                 return read;
         return {};
     }
-    if (spec.dictionary >= 0) return read_board(image, spec, {spec.dictionary, 1});
+    if (spec.dictionary >= 0) return read_board(squares, spec, {spec.dictionary, 1});
     static thread_local int last = kFamilies[0];
-    if (auto read = read_board(image, spec, {last, 1}); !read.markers.empty()) return read;
+    if (auto read = read_board(squares, spec, {last, 1}); !read.markers.empty()) return read;
     for (const int family : kFamilies) {
         if (family == last) continue;
-        auto read = read_board(image, spec, {family, 1});
+        auto read = read_board(squares, spec, {family, 1});
         if (read.markers.empty()) continue;
         last = family;
         return read;
@@ -227,47 +283,60 @@ std::vector<Wanted> wanted_corners(const BoardSpec& spec, bool legacy, double ma
     return wanted;
 }
 
-}  // namespace
-
-std::optional<FoundBoard> find_marker_board(const cv::Mat& full, const cv::Mat& grey, const BoardSpec& spec) {
+// The corners where the markers say, measured in the picture as taken, `scale` times larger than that which was read.
+FoundBoard corners_of(const cv::Mat& full, const Read& read, double scale, const BoardSpec& spec) {
     constexpr int kLeastHalf_px = 3, kMostHalf_px = 12;
     // A corner farther from where the markers say is another thing: half hidden, or a glint.
     constexpr double kAstray_px = 1, kAstray = 0.02;
     constexpr double kLeastPitch_px = 8;  // its marker could not be read
-    const cv::Mat stripe = stripe_mask(grey);
-    cv::Mat wide;
-    cv::dilate(stripe, wide, cv::getStructuringElement(cv::MORPH_ELLIPSE, {15, 15}));
-    for (const cv::Mat& image : {grey, stretched(without_stripe(grey, stripe), wide, 1.0)}) {
-        const Read read = read_any(image, spec);
-        if (read.markers.empty()) continue;
-        const double marker =
-            spec.marker_mm > 0 ? spec.marker_mm / spec.pitch_mm : marker_share(read.markers);
-        FoundBoard found;
-        found.detector = spec.pattern == BoardPattern::aprilgrid ? "AprilGrid"
-                         : read.legacy                           ? "ChArUco, legacy"
-                                                                 : "ChArUco";
-        for (const Wanted& w : wanted_corners(spec, read.legacy, marker)) {
-            const auto h = homography_near(read.markers, w.at, marker);
-            if (!h) continue;
-            const auto at = [&](const Vector2d& p) -> Vector2d {
-                return (*h * p.homogeneous()).hnormalized();
-            };
-            const Vector2d place = at(w.at), x = at(w.at + Vector2d(0.25, 0)) - place,
-                           y = at(w.at + Vector2d(0, 0.25)) - place;
-            const double pitch_px = 4 * std::min(x.norm(), y.norm());
-            const int half =
-                std::clamp(static_cast<int>(0.95 * w.clear * pitch_px), kLeastHalf_px, kMostHalf_px);
-            if (!place.allFinite() || pitch_px < kLeastPitch_px) continue;
-            CornerStart start{place, x.normalized(), y.normalized(), half};
-            if (!w.light_ahead) start.first = -y.normalized(), start.second = x.normalized();
-            const auto fit = fit_corner(full, start);
-            if (!fit || !sound(*fit) || (fit->at - place).norm() > std::max(kAstray_px, kAstray * pitch_px))
-                continue;
-            found.index.push_back(w.index);
-            found.pixel.push_back(fit->at);
-            found.object_mm.push_back(board_point(spec, w.index));
+    const double marker = spec.marker_mm > 0 ? spec.marker_mm / spec.pitch_mm : marker_share(read.markers);
+    FoundBoard found;
+    found.detector = spec.pattern == BoardPattern::aprilgrid ? "AprilGrid"
+                     : read.legacy                           ? "ChArUco, legacy"
+                                                             : "ChArUco";
+    for (const Wanted& w : wanted_corners(spec, read.legacy, marker)) {
+        const auto h = homography_near(read.markers, w.at, marker);
+        if (!h) continue;
+        const auto at = [&](const Vector2d& p) -> Vector2d { return (*h * p.homogeneous()).hnormalized(); };
+        const Vector2d place = at(w.at), x = at(w.at + Vector2d(0.25, 0)) - place,
+                       y = at(w.at + Vector2d(0, 0.25)) - place;
+        const double pitch_px = 4 * std::min(x.norm(), y.norm());
+        const int half = std::clamp(static_cast<int>(0.95 * w.clear * pitch_px), kLeastHalf_px, kMostHalf_px);
+        if (!place.allFinite() || pitch_px < kLeastPitch_px) continue;
+        CornerStart start{place, x.normalized(), y.normalized(), half};
+        if (!w.light_ahead) start.first = -y.normalized(), start.second = x.normalized();
+        const auto fit = fit_corner(full, start);
+        if (!fit || !sound(*fit) ||
+            (fit->at - place).norm() > std::max(kAstray_px * scale, kAstray * pitch_px))
+            continue;
+        found.index.push_back(w.index);
+        found.pixel.push_back(fit->at);
+        found.object_mm.push_back(board_point(spec, w.index));
+    }
+    return found;
+}
+
+}  // namespace
+
+std::optional<FoundBoard> find_marker_board(const cv::Mat& full, const cv::Mat& grey, const BoardSpec& spec) {
+    for (const cv::Mat& small : reduced(grey)) {
+        const double scale = static_cast<double>(grey.cols) / small.cols;
+        const cv::Mat stripe = stripe_mask(small);
+        for (const bool mended : {false, true}) {
+            cv::Mat image = small;
+            if (mended) {
+                cv::Mat wide;
+                cv::dilate(stripe, wide, cv::getStructuringElement(cv::MORPH_ELLIPSE, {15, 15}));
+                image = stretched(without_stripe(small, stripe), wide, 1.0);
+            }
+            Read read = read_any(Squares(image), spec);
+            if (read.markers.empty()) continue;
+            for (Seen& marker : read.markers)
+                for (Vector2d& corner : marker.pixel)
+                    corner = scale * (corner + Vector2d(0.5, 0.5)) - Vector2d(0.5, 0.5);
+            FoundBoard found = corners_of(full, read, scale, spec);
+            if (found.pixel.size() >= static_cast<std::size_t>(kFewestCorners)) return found;
         }
-        if (found.pixel.size() >= static_cast<std::size_t>(kFewestCorners)) return found;
     }
     return std::nullopt;
 }

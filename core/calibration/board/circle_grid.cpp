@@ -188,6 +188,30 @@ struct Placed {
     std::size_t dot;
 };
 
+// The middle of a circle's picture is not the picture of its middle: near sides are larger. What lies between the two by
+// the plate's homography (the lens' distortion left out: a circle is small) is taken off. With the circle's dual conic D
+// (plate) its picture is H D H^T, whose middle is its last column.
+void take_off_eccentricity(const std::vector<Dot>& dots, const std::vector<Placed>& placed,
+                           FoundBoard& board) {
+    std::vector<Eigen::Vector2d> grid;
+    for (const Eigen::Vector3d& p : board.object_mm) grid.emplace_back(p.x(), p.y());
+    const auto h = homography_dlt(grid, board.pixel);
+    if (!h) return;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        const Eigen::Vector3d seen = *h * grid[i].homogeneous();
+        const Eigen::Vector2d middle = seen.hnormalized();
+        // px a mm, of areas
+        const Eigen::Matrix2d j =
+            (h->topLeftCorner<2, 2>() - middle * h->bottomLeftCorner<1, 2>()) / seen.z();
+        const double radius_mm = dots[placed[i].dot].radius / std::sqrt(std::abs(j.determinant()));
+        Eigen::Matrix3d dual = -grid[i].homogeneous() * grid[i].homogeneous().transpose();
+        dual(0, 0) += radius_mm * radius_mm;
+        dual(1, 1) += radius_mm * radius_mm;
+        const Eigen::Vector3d ellipse = *h * dual * h->row(2).transpose();
+        board.pixel[i] -= ellipse.hnormalized() - middle;
+    }
+}
+
 std::optional<FoundBoard> as_board(const std::vector<Dot>& dots, std::vector<Placed> placed,
                                    const BoardSpec& spec) {
     // Right-handed as the camera sees it.
@@ -254,6 +278,7 @@ std::optional<FoundBoard> as_board(const std::vector<Dot>& dots, std::vector<Pla
         board.pixel.emplace_back(dots[p.dot].centre.x, dots[p.dot].centre.y);
         board.object_mm.emplace_back(p.column * spec.pitch_mm, p.row * spec.pitch_mm, 0);
     }
+    take_off_eccentricity(dots, placed, board);
     if (mark > 0) {
         // Brings the mark to (0, 0); on an oblong grid whose mark is on the other diagonal, to row 0.
         if (spec.columns == spec.rows) {

@@ -993,14 +993,6 @@
         <translation>PDF oder HTML, mit Zeilen zum Unterschreiben</translation>
     </message>
     <message>
-        <source>Q-DAS...</source>
-        <translation>Q-DAS ...</translation>
-    </message>
-    <message>
-        <source>The values as Q-DAS ASCII (.dfq)</source>
-        <translation>Die Werte als Q-DAS ASCII (.dfq)</translation>
-    </message>
-    <message>
         <source>The artefact&apos;s certificate and points</source>
         <translation>Schein und Punkte des Normals</translation>
     </message>
@@ -1027,14 +1019,6 @@
     <message>
         <source>The report is in %1</source>
         <translation>Der Bericht steht in %1</translation>
-    </message>
-    <message>
-        <source>Values as Q-DAS</source>
-        <translation>Werte als Q-DAS</translation>
-    </message>
-    <message>
-        <source>Q-DAS (*.dfq)</source>
-        <translation>Q-DAS (*.dfq)</translation>
     </message>
     <message>
         <source>The values are in %1</source>
@@ -1135,6 +1119,22 @@
     <message>
         <source>%1: %2</source>
         <translation>%1: %2</translation>
+    </message>
+    <message>
+        <source>Values...</source>
+        <translation>Werte ...</translation>
+    </message>
+    <message>
+        <source>The values as Q-DAS ASCII (.dfq) or as an Excel workbook (.xlsx)</source>
+        <translation>Die Werte als Q-DAS ASCII (.dfq) oder als Excel-Mappe (.xlsx)</translation>
+    </message>
+    <message>
+        <source>Values</source>
+        <translation>Werte</translation>
+    </message>
+    <message>
+        <source>Q-DAS (*.dfq);;Excel (*.xlsx)</source>
+        <translation>Q-DAS (*.dfq);;Excel (*.xlsx)</translation>
     </message>
 </context>
 <context>

@@ -79,10 +79,12 @@ TEST_F(AcceptanceCli, Type1) {
 
 TEST_F(AcceptanceCli, FilesOfEveryKind) {
     const std::string file = write("v.csv", fifty(true));
-    const auto dfq = folder / "v.dfq", html = folder / "v.html", pdf = folder / "v.pdf";
-    const json j = answer({"--data", file, "--tolerance-mm", "6", "--nominal", "10", "--dfq", dfq.string(),
-                           "--html", html.string(), "--pdf", pdf.string(), "--language", "de"},
-                          1);
+    const auto dfq = folder / "v.dfq", html = folder / "v.html", pdf = folder / "v.pdf",
+               xlsx = folder / "v.xlsx";
+    const json j =
+        answer({"--data", file, "--tolerance-mm", "6", "--nominal", "10", "--dfq", dfq.string(), "--xlsx",
+                xlsx.string(), "--html", html.string(), "--pdf", pdf.string(), "--language", "de"},
+               1);
     EXPECT_EQ(j["type1"]["verdict"], "ok");
     EXPECT_EQ(j["vda5"]["verdict"], "ok");
     EXPECT_EQ(j["type3"]["verdict"], "not_done");
@@ -91,6 +93,14 @@ TEST_F(AcceptanceCli, FilesOfEveryKind) {
     EXPECT_THAT(slurp(dfq), HasSubstr("K0014/1 M\r\n"));
     EXPECT_THAT(slurp(html), HasSubstr("Abnahme des Messprozesses"));
     EXPECT_EQ(slurp(pdf).substr(0, 5), "%PDF-");
+    // A workbook is a zip file of tables; cmake unpacks those.
+    ASSERT_EQ(std::system(("cd '" + folder.string() + "' && cmake -E tar xf v.xlsx").c_str()), 0);
+    const std::string words = slurp(folder / "xl" / "sharedStrings.xml");
+    for (const char* word : {"Cgk", "Erforderlich", "Q_MS", "Werte"})
+        EXPECT_THAT(words + slurp(folder / "xl" / "workbook.xml"), HasSubstr(word));
+    const std::string values = slurp(folder / "xl" / "worksheets" / "sheet2.xml");
+    EXPECT_THAT(values, HasSubstr("<row r=\"51\""));
+    EXPECT_THAT(values, testing::Not(HasSubstr("<row r=\"52\"")));
 }
 
 TEST_F(AcceptanceCli, BadInputIsOneSentence) {

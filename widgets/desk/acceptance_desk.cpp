@@ -4,6 +4,7 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/quality/qdas.h"
 #include "devices/quality/study_csv.h"
+#include "projects/acceptance/pages/acceptance_workbook.h"
 #include "projects/acceptance/study/kept_offsets.h"
 #include "widgets/shown_text.h"
 
@@ -154,11 +155,13 @@ Expected<report::Page> AcceptanceDesk::page(Language language) const {
                            "Seamwright " SEAMWRIGHT_VERSION);
 }
 
-Expected<void> AcceptanceDesk::write_dfq(const std::filesystem::path& path) const {
+Expected<void> AcceptanceDesk::write_values(const std::filesystem::path& path, Language language) const {
     if (!stored() || !stored()->studies)
         return input_error("there are no values yet", {},
                            stored() && stored()->lacking ? stored()->lacking->text() : trouble());
-    return write_text_file(path, dfq_text(qdas_study(*stored()->studies)));
+    const Acceptance& acceptance = *stored()->studies;
+    if (path.extension() == ".xlsx") return write_workbook(acceptance_workbook(acceptance, language), path);
+    return write_text_file(path, dfq_text(qdas_study(acceptance)));
 }
 
 }  // namespace seamwright

@@ -35,7 +35,8 @@ class AcceptanceDesk : public QObject {
 
     // Ending .html: HTML, else PDF. Error (input): nothing is judged yet.
     Expected<report::Page> page(Language language) const;
-    Expected<void> write_dfq(const std::filesystem::path& path) const;
+    // As a workbook where the name ends in .xlsx, else as Q-DAS ASCII.
+    Expected<void> write_values(const std::filesystem::path& path, Language language) const;
 
   signals:
     void judged();

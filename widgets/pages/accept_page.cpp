@@ -255,9 +255,10 @@ void AcceptPage::make_exports() {
     add_field(box(), tr("Language"), language_, tr("Of the report"));
     report_ = make_button("accept_report", "export", tr("Report..."), tr("PDF or HTML, with lines to sign"),
                           [this] { write_report(); });
-    dfq_ = make_button("accept_dfq", "export", tr("Q-DAS..."), tr("The values as Q-DAS ASCII (.dfq)"),
-                       [this] { write_dfq(); });
-    box().addLayout(make_row({report_, dfq_}));
+    values_ = make_button("accept_values", "export", tr("Values..."),
+                          tr("The values as Q-DAS ASCII (.dfq) or as an Excel workbook (.xlsx)"),
+                          [this] { write_values(); });
+    box().addLayout(make_row({report_, values_}));
 }
 
 void AcceptPage::do_deed(const AgendaItem& at, bool with_fields) {
@@ -320,13 +321,15 @@ void AcceptPage::write_report() {
     if (done(written)) emit told(tr("The report is in %1").arg(file));
 }
 
-void AcceptPage::write_dfq() {
+void AcceptPage::write_values() {
     const QFileInfo project(QString::fromStdString(desk_.path().string()));
     const QString file = QFileDialog::getSaveFileName(
-        this, tr("Values as Q-DAS"), project.path() + "/" + project.completeBaseName() + ".dfq",
-        tr("Q-DAS (*.dfq)"));
+        this, tr("Values"), project.path() + "/" + project.completeBaseName() + ".dfq",
+        tr("Q-DAS (*.dfq);;Excel (*.xlsx)"));
     if (file.isEmpty()) return;
-    if (done(acceptance_.write_dfq(file.toStdString()))) emit told(tr("The values are in %1").arg(file));
+    if (done(acceptance_.write_values(file.toStdString(),
+                                      static_cast<Language>(language_->currentData().toInt()))))
+        emit told(tr("The values are in %1").arg(file));
 }
 
 }  // namespace seamwright

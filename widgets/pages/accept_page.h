@@ -51,7 +51,7 @@ class AcceptPage : public StepPage {
     LiveStudyOptions options_of(const AgendaItem& item, bool with_fields) const;
     void import(AgendaStudy study);
     void write_report();
-    void write_dfq();
+    void write_values();
 
     AcceptanceDesk acceptance_;
     QComboBox* region_ = nullptr;
@@ -74,7 +74,7 @@ class AcceptPage : public StepPage {
     QTableWidget* offsets_ = nullptr;
     QPushButton *keep_ = nullptr, *act_ = nullptr, *off_ = nullptr;
     QComboBox* language_ = nullptr;
-    QPushButton *report_ = nullptr, *dfq_ = nullptr;
+    QPushButton *report_ = nullptr, *values_ = nullptr;
 };
 
 }  // namespace seamwright

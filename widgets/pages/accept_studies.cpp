@@ -310,7 +310,7 @@ void AcceptPage::enable() {
     const StoredAcceptance* stored = acceptance_.stored();
     keep_->setEnabled(!busy && stored && stored->studies && stored->studies->correlation.has_value());
     report_->setEnabled(!busy && stored && stored->anything());
-    dfq_->setEnabled(!busy && stored && stored->studies.has_value());
+    values_->setEnabled(!busy && stored && stored->studies.has_value());
     const QTableWidgetItem* state = offsets_->item(offsets_->currentRow(), 1);
     bool acts = false;
     for (int r = 0; r < offsets_->rowCount(); ++r) acts = acts || offsets_->item(r, 1)->text() == tr("acts");

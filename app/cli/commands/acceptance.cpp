@@ -11,6 +11,7 @@
 #include "projects/acceptance/equipment/sensor_check.h"
 #include "projects/acceptance/pages/acceptance_json.h"
 #include "projects/acceptance/pages/acceptance_page.h"
+#include "projects/acceptance/pages/acceptance_workbook.h"
 #include "projects/acceptance/stored_acceptance.h"
 #include "projects/acceptance/study/stored_values.h"
 #include "projects/station/fields.h"
@@ -20,7 +21,8 @@ namespace seamwright::cli {
 namespace {
 
 struct AcceptanceArguments {
-    std::string file, data, references, sensor_data, study = "all", region, dfq, html, pdf, language = "en";
+    std::string file, data, references, sensor_data, study = "all", region, dfq, xlsx, html, pdf,
+                                                     language = "en";
     double reference_mm = 0;
     CLI::Option* reference = nullptr;
     std::map<std::string, CLI::Option*> required;  // by the names of acceptance_fields()
@@ -148,7 +150,8 @@ Expected<std::optional<SensorCheck>> sensor_of(const AcceptanceArguments& a) {
 }
 
 Expected<Answer> sensor_command(const AcceptanceArguments& a) {
-    if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
+    if (!a.dfq.empty() || !a.xlsx.empty())
+        return usage_error("it has no values for Q-DAS or Excel", "--study", "leave --dfq and --xlsx out");
     SEAM_TRY(auto check, sensor_of(a));
     if (!check)
         return usage_error("the artefacts are not named", "--study sensor",
@@ -175,7 +178,8 @@ Expected<Answer> sensor_command(const AcceptanceArguments& a) {
 
 Expected<Answer> device_study_command(const AcceptanceArguments& a) {
     if (a.file.empty()) return usage_error("it is of a project", "--study", "give FILE.seam");
-    if (!a.dfq.empty()) return usage_error("it has no values for Q-DAS", "--study", "leave --dfq out");
+    if (!a.dfq.empty() || !a.xlsx.empty())
+        return usage_error("it has no values for Q-DAS or Excel", "--study", "leave --dfq and --xlsx out");
     SEAM_TRY(auto studies, device_studies_of(a));
     const auto page = [&](Language language) {
         report::Page of(
@@ -257,6 +261,11 @@ Expected<Answer> acceptance_command(const AcceptanceArguments& given) {
         answer.text += a.dfq + " written\n";
     }
     options.language = *language_from(a.language);
+    if (!a.xlsx.empty()) {
+        SEAM_OK(write_workbook(acceptance_workbook(*acceptance, options.language), a.xlsx));
+        answer.json["xlsx"] = a.xlsx;
+        answer.text += a.xlsx + " written\n";
+    }
     SEAM_OK(write_page(a, acceptance_page(*acceptance, options), answer));
     return answer;
 }
@@ -326,6 +335,8 @@ void add_acceptance(CommandLine& line) {
     command->add_option("--resolution-mm", s.resolution_mm, "Of the measuring system (VDA 5)")
         ->capture_default_str();
     command->add_option("--dfq", a->dfq, "The values as Q-DAS ASCII")->type_name("FILE.dfq");
+    command->add_option("--xlsx", a->xlsx, "Every index with its limits, the ANOVA table and the values")
+        ->type_name("FILE.xlsx");
     command->add_option("--html", a->html, "The report, one self-contained page")->type_name("FILE.html");
     command->add_option("--pdf", a->pdf, "The report, A4, needs no screen")->type_name("FILE.pdf");
     command->add_option("--language", a->language, "Of the report: en or de")

@@ -212,27 +212,10 @@ void vda5_chapter(AcceptanceWriter& w) {
         w.page.paragraph(w.t("The uncertainty leaves nothing of the tolerance: no value proves conformity."));
 }
 
-std::string study_name(const AcceptanceWriter& w, Study study) {
-    switch (study) {
-        case Study::type1:
-            return w.t("Type 1: capability on a reference part");
-        case Study::type3:
-            return w.t("Type 3: repeatability and reproducibility");
-        case Study::linearity:
-            return w.t("Linearity");
-        case Study::stability:
-            return w.t("Stability");
-        case Study::correlation:
-            return w.t("Correlation with the reference instrument");
-        default:
-            return w.t("Uncertainty of the measuring process (VDA 5, ISO 22514-7)");
-    }
-}
-
 void overview(AcceptanceWriter& w) {
     Rows rows{{w.t("Study"), w.t("Result"), w.t("Verdict")}};
     const auto row = [&](Study study, AcceptanceVerdict v, const std::string& result) {
-        rows.push_back({study_name(w, study), result, name_of(v).in(w.language)});
+        rows.push_back({title_of(study).in(w.language), result, name_of(v).in(w.language)});
     };
     const Acceptance& a = w.a;
     if (a.type1)
@@ -340,6 +323,23 @@ void forecast_chapter(AcceptanceWriter& w) {
 
 }  // namespace
 
+Text title_of(Study study) {
+    switch (study) {
+        case Study::type1:
+            return Text("Type 1: capability on a reference part");
+        case Study::type3:
+            return Text("Type 3: repeatability and reproducibility");
+        case Study::linearity:
+            return Text("Linearity");
+        case Study::stability:
+            return Text("Stability");
+        case Study::correlation:
+            return Text("Correlation with the reference instrument");
+        default:
+            return Text("Uncertainty of the measuring process (VDA 5, ISO 22514-7)");
+    }
+}
+
 Text name_of(AcceptanceVerdict verdict) {
     switch (verdict) {
         case AcceptanceVerdict::ok:
@@ -397,7 +397,7 @@ void add_studies_not_done(report::Page& page, Language language, const Acceptanc
     w.heading(w.t("Studies that the data do not allow"));
     Rows rows{{w.t("Study"), w.t("Finding")}};
     for (const auto& [study, error] : a.not_done)
-        rows.push_back({study_name(w, study), error.text().in(language)});
+        rows.push_back({title_of(study).in(w.language), error.text().in(language)});
     page.table(rows);
 }
 

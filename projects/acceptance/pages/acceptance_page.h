@@ -34,6 +34,7 @@ report::Page begin_acceptance_page(const std::string& file, Language language, c
                                    const std::string& program);
 void add_signatures(report::Page& page, Language language, const Acceptance* acceptance);
 
+Text title_of(Study study);
 // The word of a verdict and its colour.
 Text name_of(AcceptanceVerdict verdict);
 report::Tone tone_of(AcceptanceVerdict verdict);

@@ -156,7 +156,7 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     text << std::ifstream(html).rdbuf();
     EXPECT_THAT(text.str(), testing::HasSubstr("Abnahme des Messprozesses"));
     me.answer_file_dialog(QString::fromStdString(dfq.string()));
-    me.click("accept_dfq");
+    me.click("accept_values");
     EXPECT_TRUE(std::filesystem::exists(dfq));
 }
 

@@ -59,6 +59,7 @@ void add_project_commands(CommandLine& line);  // new, info, check, export, mirr
 void add_import(CommandLine& line);
 void add_drawing(CommandLine& line);
 void add_propose(CommandLine& line);
+void add_confirm(CommandLine& line);
 void add_run(CommandLine& line);
 void add_service(CommandLine& line);
 void add_record(CommandLine& line);

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
     add_import(line);
     add_drawing(line);
     add_propose(line);
+    add_confirm(line);
     add_run(line);
     add_service(line);
     add_record(line);

@@ -13,6 +13,7 @@ namespace seamwright {
     }
 SEAMWRIGHT_WORDS(ScanLines, "columns", "rows");
 SEAMWRIGHT_WORDS(PeakMethod, "centre_of_gravity", "gaussian", "steger");
+SEAMWRIGHT_WORDS(ReferenceState, "measured", "from_drawing");
 SEAMWRIGHT_WORDS(RobotMode, "unknown", "manual_reduced", "manual_full", "automatic", "external", "stopped",
                  "fault");
 SEAMWRIGHT_WORDS(FeatureStatus, "ok", "no_points", "not_found", "ambiguous", "ill_conditioned");
@@ -290,6 +291,15 @@ void describe(A& a, Calibration& v) {
     a("result", v.result);
 }
 template <class A>
+void describe(A& a, DrawingOrigin& v) {
+    a("name", v.name);
+    a("bytes", v.bytes);
+    a("crc32", v.crc32);
+    a("edge", v.edge);
+    a("arc_mm", v.arc_mm);
+    a("reference_mm", v.reference_mm);
+}
+template <class A>
 void describe(A& a, Spot& v) {
     a("id", v.id);
     a("sensor_id", v.sensor_id);
@@ -305,6 +315,9 @@ void describe(A& a, Spot& v) {
     a("feature", v.feature);
     a("reference_mm", v.reference_mm);
     if (A::reading || v.reference_arrivals != 1) a("reference_arrivals", v.reference_arrivals);
+    // Absent where they say nothing, so that a setup of before is the same setup.
+    if (A::reading || v.reference_state != ReferenceState::measured) a("reference_state", v.reference_state);
+    if (A::reading || v.drawn) a("drawn", v.drawn);
     if (a.options().profiles) a("reference_profile", v.reference_profile);
     a("weights", v.weights);
     a("sigma_mm", v.sigma_mm);

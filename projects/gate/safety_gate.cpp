@@ -88,6 +88,15 @@ void judge_spots(const GateRequest& request, Reasons& reasons) {
         reasons.refuse_unless(count == 1, "spot {} of the region is {}", id,
                               count ? "given twice" : "not known");
     }
+    std::string unconfirmed;
+    for (const GateSpot& spot : request.spots)
+        if (spot.reference != ReferenceState::measured)
+            unconfirmed += (unconfirmed.empty() ? "" : ", ") + spot.id;
+    reasons.refuse_unless(
+        unconfirmed.empty(),
+        "spots from the drawing are not confirmed: {}; confirm them on the part (`seamwright "
+        "confirm FILE.seam`, Teach page)",
+        unconfirmed);
     bool any = false;
     for (const GateSpot& spot : request.spots) {
         const auto& ids = request.region.spot_ids;

@@ -46,6 +46,8 @@ struct GateSpot {
     std::string calibrated_utc;
     SensorIdentity sensor, calibrated_sensor;  // as connected; as calibrated
     RobotIdentity robot, calibrated_robot;
+    // One from the drawing refuses the region, measured or not: where the part's contour is nobody has seen yet.
+    ReferenceState reference = ReferenceState::measured;
 };
 
 struct GateRequest {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/calibration/verdict.h"
@@ -20,6 +21,7 @@
 #include "core/profile/filter.h"
 #include "core/profile/sensor_model.h"
 #include "core/profile/stripe/peaks.h"
+#include "core/text.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
 #include "projects/model/panel_job.h"
@@ -76,6 +78,24 @@ struct Calibration {
     nlohmann::json result = nlohmann::json::object();
 };
 
+// Where a spot's reference comes from.
+enum class ReferenceState {
+    measured,     // on the part; or nowhere yet, then there is no reference_profile
+    from_drawing  // expected from the drawing, not confirmed: the spot is measured, but nothing is pushed by it
+};
+std::string_view to_string(ReferenceState state);  // "from_drawing"
+Text name_of(ReferenceState state);                // "from the drawing, not confirmed"
+
+// What a spot was made from that was taught on a drawing; stays with it when it is confirmed.
+struct DrawingOrigin {
+    std::string name;  // of the file
+    std::uint64_t bytes = 0;
+    std::uint32_t crc32 = 0;                                 // of these bytes
+    std::string edge;                                        // "e12"
+    double arc_mm = 0;                                       // along its chain of tangent edges
+    Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // as drawn, sensor frame
+};
+
 struct Spot {
     std::string id;  // "S1"
     std::string sensor_id, robot_id;
@@ -92,6 +112,8 @@ struct Spot {
     Eigen::Vector3d reference_mm = Eigen::Vector3d::Zero();  // sensor frame
     int reference_arrivals = 1;                              // of the robot, that reference_mm is the mean of
     Profile reference_profile;
+    ReferenceState reference_state = ReferenceState::measured;
+    std::optional<DrawingOrigin> drawn;
     Eigen::Vector3d weights = {1, 0, 1};
     double sigma_mm = 0.05;
     double jitter_mm = 3;  // half width of the jitter window
@@ -163,5 +185,8 @@ struct Project {
     std::vector<Region> regions;
     std::vector<PanelJob> panel_jobs;
 };
+
+// The region's spots that are from the drawing and not confirmed, in its order; disabled ones too.
+std::vector<std::string> unconfirmed_spots(const Project& project, const Region& region);
 
 }  // namespace seamwright

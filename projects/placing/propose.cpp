@@ -129,6 +129,15 @@ class Proposer {
         robot_ = o_.robot_id.empty() ? &given_.robots.front() : find_robot(given_, o_.robot_id);
         if (!sensor_) return usage_error(Text("there is no sensor \"{}\"", o_.sensor_id));
         if (!robot_) return usage_error(Text("there is no robot \"{}\"", o_.robot_id));
+        region_.id = kRegion;
+        if (!o_.region_id.empty()) {
+            const auto known = std::find_if(given_.regions.begin(), given_.regions.end(),
+                                            [&](const Region& r) { return r.id == o_.region_id; });
+            if (known == given_.regions.end())
+                return usage_error(Text("there is no region \"{}\"", o_.region_id), given_.name);
+            region_ = *known;
+        }
+        region_.spot_ids.clear();
         calibration_ = calibration_of(given_, sensor_->id);
         if (!calibration_)
             return input_error(Text("sensor {} has no calibration in use", sensor_->id), given_.name,
@@ -176,6 +185,8 @@ class Proposer {
             spot.reference_mm = Eigen::Vector3d(seen->point_mm.x(), 0, seen->point_mm.y());
             spot.reference_profile = seen->profile;
             spot.curve = curve_at(chain_, a, seen->point_mm);
+            spot.reference_state = ReferenceState::from_drawing;
+            spot.drawn = DrawingOrigin{drawing_.source, 0, 0, o_.edge, a.arc_mm, spot.reference_mm};
             project_.spots.push_back(std::move(spot));
             attitudes_.push_back(a);
             covariances_.push_back(seen->covariance_mm2);
@@ -184,8 +195,7 @@ class Proposer {
     }
 
     Expected<PlacingTask> placing_task() {
-        Region region;
-        region.id = kRegion;
+        Region region = region_;
         for (const Spot& spot : project_.spots) region.spot_ids.push_back(spot.id);
         project_.regions = {region};
         PlacingTask task;
@@ -208,8 +218,7 @@ class Proposer {
     void take_spots() {
         Project proposed = project_;
         proposed.spots.clear();
-        Region region;
-        region.id = kRegion;
+        Region region = region_;
         for (const std::size_t c : out_.set.chosen) {
             ProposedSpot p;
             p.spot = project_.spots[c];
@@ -243,6 +252,7 @@ class Proposer {
     const SensorSetup* sensor_ = nullptr;
     const RobotSetup* robot_ = nullptr;
     const Calibration* calibration_ = nullptr;
+    Region region_;  // without spots
     EdgeChain chain_;
     Project project_;  // with a spot a candidate
     std::vector<Attitude> attitudes_;

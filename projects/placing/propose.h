@@ -7,7 +7,8 @@
 // would see is cut from the drawing (expected_profile.h); where no feature is found surely it is none. The drawing lies in
 // the work object. Noise, arrivals, trigger and calibration are the project's, as the forecast takes them, and the bead is
 // judged as taught and displaced by what is required to be recovered (forecast.h); the choice is core/correction/placing.
-// What a robot cannot reach or would run into is not known here.
+// What a robot cannot reach or would run into is not known here: a project knows no robot's axes, so that cone_deg alone
+// limits the attitudes. The spots are ReferenceState::from_drawing; take.h puts them into a project.
 
 #include <cstdint>
 #include <functional>
@@ -26,6 +27,7 @@ namespace seamwright {
 struct ProposeOptions {
     std::string edge;                 // "e12"
     std::string sensor_id, robot_id;  // empty: the project's first
+    std::string region_id;            // whose free degrees and limits hold; empty: those of a new region
     double three_sigma_mm = 0.1;
     int fewest = 4, most = 12;
     bool one_may_be_lost = true;
@@ -58,7 +60,7 @@ struct Proposal {
     double sigma_forecast_mm = 0;  // as the safety gate will judge it (forecast.h), one standard deviation
 };
 
-// Error (input): no such edge, a sensor without calibration, options out of range, too few places see a feature; (usage)
+// Error (input): no such edge or region, a sensor without calibration, options out of range, too few places see a feature; (usage)
 // cancelled.
 Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
                                  const ProposeOptions& options);

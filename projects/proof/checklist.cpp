@@ -123,6 +123,9 @@ CheckItem check_taught(const Project& p) {
         if (!spot.enabled) continue;
         if (spot.reference_profile.size() == 0)
             return missing(kStep, Text("measure the reference of spot {}", spot.id));
+        if (spot.reference_state == ReferenceState::from_drawing)
+            return missing(kStep,
+                           Text("confirm spot {} on the part: its reference is from the drawing", spot.id));
         evidence.push_back(Text("spot {}: {}, reference x {} mm, z {} mm", spot.id, spot.feature.kind,
                                 mm(spot.reference_mm.x()), mm(spot.reference_mm.z())));
     }
@@ -431,6 +434,8 @@ bool pass_changed(const Project& then, const Project& now, const std::string& sp
         s.enabled = s.required = true;
         s.reference_mm.setZero();
         s.reference_profile = {};
+        s.reference_state = ReferenceState::measured;
+        s.drawn.reset();
         s.weights.setOnes();
         s.sigma_mm = 1;
         s.jitter_mm = 1;

@@ -175,6 +175,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
         spot.feature = std::move(*recipe);
         spot.reference_mm.x() = -spot.reference_mm.x();
         spot.reference_profile = mirrored_profile(spot.reference_profile);
+        if (spot.drawn) spot.drawn->reference_mm.x() = -spot.drawn->reference_mm.x();
         if (spot.curve) spot.curve->x_coefficients = -spot.curve->x_coefficients;
     }
 

@@ -179,6 +179,7 @@ struct Station::Impl {
             GateSpot g;
             g.id = id;
             g.required = spot->required;
+            g.reference = spot->reference_state;
             for (const SpotMeasurement& m : job.run.spots)
                 if (m.spot_id == id && m.status == SpotStatus::measured) {
                     g.measured = true;

@@ -128,6 +128,7 @@ Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement>
     for (std::size_t i : kept) squares += (point(i) - mean).cwiseAbs2();
     if (kept.size() > 1) taught.spread_mm = (squares / static_cast<double>(kept.size() - 1)).cwiseSqrt();
     taught.spot.reference_mm = {mean.x(), 0.0, mean.y()};
+    taught.spot.reference_state = ReferenceState::measured;
     const auto typical = std::min_element(kept.begin(), kept.end(), [&](std::size_t i, std::size_t k) {
         return (point(i) - mean).squaredNorm() < (point(k) - mean).squaredNorm();
     });
@@ -156,6 +157,7 @@ Spot with_reference_of(const Spot& before, Spot after) {
     if (measured_alike(before, after)) return after;
     after.reference_profile = {};
     after.reference_arrivals = 1;
+    after.drawn.reset();
     after.curve.reset();
     return after;
 }

@@ -41,7 +41,7 @@ struct TeachOptions {
     std::function<void(const RunProgress&)> progress;
 };
 
-// `spot` comes back with reference_mm (mean of the measurements, y = 0), reference_arrivals and reference_profile (the one's
+// `spot` comes back with reference_mm (mean of the measurements, y = 0; ReferenceState::measured), reference_arrivals and reference_profile (the one's
 // whose point is the most typical).
 struct TaughtSpot {
     Spot spot;

@@ -37,6 +37,46 @@ std::string statistic_text(const char* title, const std::vector<DemoStatistic>& 
     return text;
 }
 
+nlohmann::json offline_json(const DemoOutcome& outcome) {
+    const DemoOffline& o = *outcome.offline;
+    const DemoStatistic hand = statistic_of(outcome.parts, o.region_id, &DemoPart::path);
+    nlohmann::json j = {{"project", o.project_file.string()},
+                        {"region", o.region_id},
+                        {"edge", o.edge},
+                        {"spots", o.proposal.spots.size()},
+                        {"forecast_sigma_mm", o.proposal.sigma_forecast_mm},
+                        {"hand_forecast_sigma_mm", o.hand_forecast_mm},
+                        {"refused_before", o.refused_before.english()},
+                        {"confirmation", confirmation_json(o.confirmation)},
+                        {"hand_path", statistic_json({hand})},
+                        {"seconds", o.seconds}};
+    int pushed = 0;
+    for (const DemoPart& part : o.parts) pushed += part.pushed();
+    j["pushed"] = pushed;
+    if (pushed > 0) j["path"] = statistic_json({statistic_of(o.parts, o.region_id, &DemoPart::path)});
+    return j;
+}
+
+std::string offline_text(const DemoOutcome& outcome) {
+    const DemoOffline& o = *outcome.offline;
+    int pushed = 0;
+    for (const DemoPart& part : o.parts) pushed += part.pushed();
+    std::string text = fmt::format(
+        "\nfrom the drawing: region {}, edge {} of door.step, {} spots proposed, forecast sigma {:.3f} mm "
+        "(by hand {:.3f})\n  before: {}\n  then: {}\n",
+        o.region_id, o.edge, o.proposal.spots.size(), o.proposal.sigma_forecast_mm, o.hand_forecast_mm,
+        o.refused_before.english(), said_of(o.confirmation).english());
+    if (pushed == 0) return text;
+    const DemoStatistic now = statistic_of(o.parts, o.region_id, &DemoPart::path),
+                        hand = statistic_of(outcome.parts, o.region_id, &DemoPart::path);
+    text += fmt::format(
+        "  the same parts, {} of {} pushed: bead 3 sigma {:.3f} mm, largest {:.3f} (by hand {:.3f}, "
+        "{:.3f}); {:.1f} s\n",
+        pushed, o.parts.size(), now.after_three_sigma_mm, now.after_max_mm, hand.after_three_sigma_mm,
+        hand.after_max_mm, o.seconds);
+    return text;
+}
+
 Expected<Answer> demo(const DemoOptions& options) {
     SEAM_TRY(auto outcome,
              run_demo(options, [](const std::string& step) { fmt::print(stderr, "{}\n", step); }));
@@ -44,7 +84,8 @@ Expected<Answer> demo(const DemoOptions& options) {
     int pushed = 0;
     for (const DemoPart& part : outcome.parts) pushed += part.pushed();
     const auto spots = statistics(outcome, &DemoPart::spots), path = statistics(outcome, &DemoPart::path);
-    const bool ok = pushed == static_cast<int>(outcome.parts.size());
+    const bool ok = pushed == static_cast<int>(outcome.parts.size()) &&
+                    (!outcome.offline || outcome.offline->confirmation.ok);
     Answer answer;
     answer.exit_code = ok ? kExitOk : kExitVerdict;
     answer.json = {{"status", ok ? "ok" : "refused"},
@@ -70,6 +111,10 @@ Expected<Answer> demo(const DemoOptions& options) {
     if (pushed > 0) {
         answer.text += statistic_text("deviation at the spots, pushed parts", spots);
         answer.text += statistic_text("deviation along the bead, pushed parts", path);
+    }
+    if (outcome.offline) {
+        answer.json["offline"] = offline_json(outcome);
+        answer.text += offline_text(outcome);
     }
     answer.text += fmt::format(
         "\nsimulated (noise, jitter, repeatability and seed are stated in the report), {:.1f} s\nproject "
@@ -191,6 +236,7 @@ void add_demo(CommandLine& line) {
         ->check(CLI::IsMember(sources));
     command->add_flag("!--in-process", options->loopback,
                       "Without the GigE Vision camera and the KUKA controller on the loopback address");
+    command->add_flag("!--no-offline", options->offline, "Without the chapter from the drawing");
     command
         ->add_option("--camera", options->camera_address,
                      "Loopback address of the served camera; free: one that is found free")

@@ -55,11 +55,20 @@ Expected<Answer> info(const std::string& path) {
                            name_of(c.verdict));
     });
     lines("spots", project.spots, [](const Spot& s) {
-        return fmt::format("{}  {} with sensor {}{}", s.id, s.feature.kind, s.sensor_id,
-                           s.enabled ? "" : ", switched off");
+        const Text state =
+            s.drawn ? Text("{} ({}, edge {})", name_of(s.reference_state), s.drawn->name, s.drawn->edge)
+                    : name_of(s.reference_state);
+        return fmt::format("{}  {} with sensor {}{}{}", s.id, s.feature.kind, s.sensor_id,
+                           s.enabled ? "" : ", switched off",
+                           s.reference_profile.size() > 0 ? ", " + state.english() : "");
     });
-    lines("regions", project.regions, [](const Region& r) {
-        return fmt::format("{}  {} spots, frame {}", r.id, r.spot_ids.size(), r.frame_name);
+    json unconfirmed = json::array();
+    for (const Spot& s : project.spots)
+        if (s.reference_state == ReferenceState::from_drawing) unconfirmed.push_back(s.id);
+    lines("regions", project.regions, [&](const Region& r) {
+        const auto open = unconfirmed_spots(project, r);
+        return fmt::format("{}  {} spots, frame {}{}", r.id, r.spot_ids.size(), r.frame_name,
+                           open.empty() ? "" : fmt::format(", {} not confirmed", open.size()));
     });
     text += fmt::format("{} runs\n", runs.size());
     for (const RunSummary& r : runs) {
@@ -82,6 +91,7 @@ Expected<Answer> info(const std::string& path) {
                    {"calibrations", project.calibrations.size()},
                    {"spots", project.spots.size()},
                    {"regions", project.regions.size()},
+                   {"unconfirmed_spots", unconfirmed},
                    {"runs", list},
                    {"project", export_project(project)}};
     answer.text = text;

@@ -1,18 +1,21 @@
-// seamwright propose: spots from the drawing.
+// seamwright propose: spots from the drawing, into the project.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <span>
 
 #include "app/cli/command.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/pose_json.h"
 #include "projects/file/project_file.h"
-#include "projects/placing/propose.h"
+#include "projects/placing/take.h"
 
 namespace seamwright::cli {
 namespace {
@@ -20,9 +23,11 @@ namespace {
 using nlohmann::json;
 
 struct ProposeArguments {
-    std::string file, drawing, region, spots = "4..12", unit;
+    std::string file, drawing, spots = "4..12", unit;
     double chord_mm = 0.02;
-    bool none_lost = false;
+    bool none_lost = false, three_sigma_given = false;
+    bool take = false, undo = false;
+    TakeOptions taking;
     ProposeOptions options;
 };
 
@@ -42,16 +47,30 @@ Expected<void> read_range(const std::string& text, int& fewest, int& most) {
     return {};
 }
 
-Expected<Drawing> drawing_for(const ProposeArguments& a, const Project& project) {
+// The drawing and the bytes that it was read from.
+struct ReadDrawing {
+    std::string file;
+    Drawing drawing;
+};
+Expected<ReadDrawing> drawing_for(const ProposeArguments& a, const Project& project) {
     DrawingOptions options;
     options.cancel = a.options.cancel;
     options.chord_mm = a.chord_mm;
     options.unit = a.unit;
-    if (!a.drawing.empty()) return read_drawing(a.drawing, options);
-    if (project.part.mesh_ply.empty())
+    ReadDrawing read;
+    if (a.drawing.empty() && project.part.mesh_ply.empty())
         return usage_error("the project holds no part to propose spots on", a.file,
                            "name the part's drawing: --drawing FILE");
-    return read_drawing(project.part.mesh_ply, "part.ply", options);
+    if (a.drawing.empty()) {
+        const auto& ply = project.part.mesh_ply;
+        read.file.assign(reinterpret_cast<const char*>(ply.data()), ply.size());
+        SEAM_TRY(read.drawing, read_drawing(ply, "part.ply", options));
+        return read;
+    }
+    SEAM_TRY(read.file, read_text_file(a.drawing, kLargestDrawing));
+    const std::string name = std::filesystem::path(a.drawing).filename().string();
+    SEAM_TRY(read.drawing, read_drawing(std::as_bytes(std::span(read.file)), name, options));
+    return read;
 }
 
 json number(double v) {
@@ -117,8 +136,40 @@ Answer answer_of(const Proposal& p, const Project& project, const ProposeArgumen
     return answer;
 }
 
+Expected<void> save(ProjectFile& file, const TakenSpots& taken, const Text& said) {
+    SEAM_OK(file.save(taken.project));
+    EventRecord event;
+    event.utc = utc_now();
+    event.subject = taken.region_id;
+    event.text = said;
+    SEAM_OK(file.append_event(event));
+    return {};
+}
+
+Expected<Answer> undo(const ProposeArguments& a) {
+    SEAM_TRY(auto file, ProjectFile::open(a.file));
+    SEAM_TRY(const auto project, file.load());
+    SEAM_TRY(const auto out, without_unconfirmed(project, a.options.region_id));
+    SEAM_OK(save(file, out, Text("{} spots from the drawing taken out again", out.spot_ids.size())));
+    Answer answer;
+    answer.json = {{"status", "ok"}, {"removed", out.spot_ids}};
+    answer.text = fmt::format("taken out again: {}\n", fmt::join(out.spot_ids, ", "));
+    return answer;
+}
+
+// What the project itself asks for, where nobody names a figure.
+double wanted_by(const Project& project, const std::string& region_id) {
+    double wanted = project.requirements.sigma3_mm;
+    for (const Region& r : project.regions)
+        if (r.id == region_id) wanted = std::min(wanted, 3 * r.sigma_limit_mm);
+    return wanted;
+}
+
 Expected<Answer> propose_command(const ProposeArguments& given) {
     ProposeArguments a = given;
+    if (a.undo) return undo(a);
+    if (a.options.edge.empty())
+        return usage_error("no edge is named", "--edge", "`seamwright drawing` lists them");
     SEAM_OK(read_range(a.spots, a.options.fewest, a.options.most));
     a.options.one_may_be_lost = !a.none_lost;
     a.options.cancel = stop_on_signal();
@@ -129,15 +180,37 @@ Expected<Answer> propose_command(const ProposeArguments& given) {
         last = percent;
         fmt::print(stderr, "{} %  {}\n", percent, what.english());
     };
-    SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
+    SEAM_TRY(auto file, ProjectFile::open(a.file, a.take ? FileAccess::read_write : FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
-    SEAM_TRY(auto drawing, drawing_for(a, project));
-    auto proposal = propose_spots(project, drawing, a.options);
+    if (!a.options.region_id.empty() && !a.three_sigma_given)
+        a.options.three_sigma_mm = wanted_by(project, a.options.region_id);
+    SEAM_TRY(const auto read, drawing_for(a, project));
+    auto proposal = propose_spots(project, read.drawing, a.options);
     if (!proposal) {
         proposal.error().within(a.file);
         return tl::unexpected(proposal.error());
     }
-    return answer_of(*proposal, project, a);
+    Answer answer = answer_of(*proposal, project, a);
+    if (!a.take) return answer;
+    if (!proposal->set.enough) {
+        answer.text += "nothing is taken into the project\n";
+        answer.json["taken"] = nullptr;
+        return answer;
+    }
+    a.taking.region_id = a.options.region_id;
+    SEAM_TRY(const auto taken,
+             take_proposal(project, read.drawing, std::as_bytes(std::span(read.file)), *proposal, a.taking));
+    SEAM_OK(
+        save(file, taken,
+             Text("{} spots from drawing {}, edge {}, not confirmed: {}", taken.spot_ids.size(),
+                  read.drawing.source, a.options.edge, fmt::format("{}", fmt::join(taken.spot_ids, ", ")))));
+    answer.json["taken"] = {
+        {"region", taken.region_id}, {"new_region", taken.new_region}, {"spots", taken.spot_ids}};
+    answer.text += fmt::format(
+        "{} spots are in region {}, from the drawing and not confirmed: nothing is pushed by them until\n"
+        "`seamwright confirm {}` has measured them on the part; --undo takes them out again\n",
+        taken.spot_ids.size(), taken.region_id, a.file);
+    return answer;
 }
 
 }  // namespace
@@ -148,16 +221,18 @@ void add_propose(CommandLine& line) {
                                  "Where to put the spots along an edge of the drawing: the fewest that leave "
                                  "the bead known to the wanted 3 sigma, "
                                  "any one of which may be lost, then the shortest way. Says how far a better "
-                                 "set could go. Reads the project, "
-                                 "changes nothing; exit code 1 where the wanted is not reached.",
+                                 "set could go. Exit code 1 where the wanted is not reached. The project is "
+                                 "left as it is, unless the spots are to be taken: then they are in it, from "
+                                 "the drawing and not confirmed, with via points over the part.",
                                  "seamwright propose door_left.seam --drawing door.step --edge e12 "
-                                 "--three-sigma-mm 0.1 --spots 4..12");
+                                 "--three-sigma-mm 0.1 --spots 4..12\n"
+                                 "  seamwright propose door_left.seam --drawing door.step --edge e12 "
+                                 "--region top --take");
     ProposeOptions& o = a->options;
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
     command
         ->add_option("--edge", o.edge,
                      "The edge that the bead follows; spots stand along its chain of tangent edges")
-        ->required()
         ->type_name("ID");
     command
         ->add_option("--drawing", a->drawing,
@@ -166,8 +241,34 @@ void add_propose(CommandLine& line) {
     command->add_option("--unit", a->unit, "Of a mesh: mm or m")->check(CLI::IsMember({"mm", "m"}));
     command->add_option("--chord-mm", a->chord_mm, "Chord error of the drawing's faces")
         ->capture_default_str();
-    command->add_option("--three-sigma-mm", o.three_sigma_mm, "Wanted across the bead at its worst point")
-        ->capture_default_str();
+    CLI::Option* three_sigma =
+        command
+            ->add_option(
+                "--three-sigma-mm", o.three_sigma_mm,
+                "Wanted across the bead at its worst point; with --region what project and region require")
+            ->capture_default_str();
+    command
+        ->add_option("--region", o.region_id,
+                     "Its limits and free degrees hold, and it takes the spots; else a new one")
+        ->type_name("ID");
+    CLI::Option* take =
+        command->add_flag("--take", a->take, "The spots into the project, where they are enough");
+    command->add_option("--new-region", a->taking.new_region, "Name of the new region")
+        ->type_name("ID")
+        ->needs(take);
+    command->add_option("--frame", a->taking.frame, "Its frame on the controller; else made of its name")
+        ->type_name("NAME")
+        ->needs(take);
+    command
+        ->add_option("--safe-mm", a->taking.safe_mm,
+                     "Via points so high over the part; 0: straight from spot to spot")
+        ->capture_default_str()
+        ->needs(take);
+    command
+        ->add_flag(
+            "--undo", a->undo,
+            "Takes the spots out again that nobody has confirmed (of --region), and a region left empty")
+        ->excludes(take);
     command->add_option("--spots", a->spots, "How many: 8 or 4..12")->capture_default_str();
     command->add_flag("--none-lost", a->none_lost, "No spot need be replaceable");
     command->add_option("--sensor", o.sensor_id, "Which sensor; else the project's first");
@@ -192,7 +293,10 @@ void add_propose(CommandLine& line) {
     command->add_option("--seed", o.seed, "Of the noise and of the search")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    line.on(command, [a] { return propose_command(*a); });
+    line.on(command, [a, three_sigma] {
+        a->three_sigma_given = three_sigma->count() > 0;
+        return propose_command(*a);
+    });
 }
 
 }  // namespace seamwright::cli

@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 
+#include "app/cli/demo/demo_detail.h"
 #include "core/profile/taught_profile.h"
 #include "devices/cell_server.h"
 #include "devices/drawing/door_step.h"
@@ -141,29 +142,6 @@ DemoDeviation deviation(const SimulatedCell& cell, const Region& region, const P
     return d;
 }
 
-Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLink& robot, DemoPart& part) {
-    for (const Region& region : project.regions) {
-        SEAM_TRY(auto pushed, robot.read_frame(region.frame_name));
-        for (const DoorSpot& spot : dense_door_spots()) {
-            if (door_side_of(spot.workobject_from_sensor.translation()) != region.id) continue;
-            const Eigen::Matrix3d axes = spot.workobject_from_sensor.linear();
-            part.spots.push_back(deviation(cell, region, pushed, spot.workobject_from_sensor * spot.edge_mm,
-                                           axes.col(0), axes.col(2)));
-            part.spots.back().arc_mm = static_cast<double>(part.spots.size() - 1);
-        }
-        const std::vector<Eigen::Vector3d> path = door_bead_path(10);
-        for (std::size_t i = 0; i < path.size(); ++i) {
-            if (door_side_of(path[i]) != region.id) continue;
-            const Eigen::Vector3d along =
-                (path[(i + 1) % path.size()] - path[(i + path.size() - 1) % path.size()]).normalized();
-            const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(along).normalized();
-            part.path.push_back(deviation(cell, region, pushed, path[i], across, along.cross(across)));
-            part.path.back().arc_mm = 10.0 * static_cast<double>(i);
-        }
-    }
-    return {};
-}
-
 // The bead as the application was taught it, for `seamwright path`: tool Z into the sheet, X along the path.
 std::string taught_bead(const SimulatedCell& cell) {
     const std::vector<Eigen::Vector3d> bead = door_bead_path(10);
@@ -178,13 +156,6 @@ std::string taught_bead(const SimulatedCell& cell) {
             {cell.base_from_workobject() * make_pose(axes, bead[i]), door_side_of(bead[i])});
     }
     return path_csv(path, PathNotation::kuka);
-}
-
-// Restores the taught frames, as the controller does between two parts.
-Expected<void> reset_frames(RobotLink& robot, const Project& project) {
-    for (const Region& region : project.regions)
-        SEAM_OK(robot.write_frame(region.frame_name, region.base_from_frame));
-    return {};
 }
 
 PartState next_part(std::mt19937_64& random, bool bent) {
@@ -228,6 +199,35 @@ DemoCalibration true_calibration(const SimulatedCell& cell) {
 }
 
 }  // namespace
+
+Expected<void> judge(const SimulatedCell& cell, const Project& project, RobotLink& robot, DemoPart& part) {
+    for (const Region& region : project.regions) {
+        SEAM_TRY(auto pushed, robot.read_frame(region.frame_name));
+        for (const DoorSpot& spot : dense_door_spots()) {
+            if (door_side_of(spot.workobject_from_sensor.translation()) != region.id) continue;
+            const Eigen::Matrix3d axes = spot.workobject_from_sensor.linear();
+            part.spots.push_back(deviation(cell, region, pushed, spot.workobject_from_sensor * spot.edge_mm,
+                                           axes.col(0), axes.col(2)));
+            part.spots.back().arc_mm = static_cast<double>(part.spots.size() - 1);
+        }
+        const std::vector<Eigen::Vector3d> path = door_bead_path(10);
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            if (door_side_of(path[i]) != region.id) continue;
+            const Eigen::Vector3d along =
+                (path[(i + 1) % path.size()] - path[(i + path.size() - 1) % path.size()]).normalized();
+            const Eigen::Vector3d across = Eigen::Vector3d::UnitZ().cross(along).normalized();
+            part.path.push_back(deviation(cell, region, pushed, path[i], across, along.cross(across)));
+            part.path.back().arc_mm = 10.0 * static_cast<double>(i);
+        }
+    }
+    return {};
+}
+
+Expected<void> reset_frames(RobotLink& robot, const Project& project) {
+    for (const Region& region : project.regions)
+        SEAM_OK(robot.write_frame(region.frame_name, region.base_from_frame));
+    return {};
+}
 
 std::string_view to_string(DemoSource source) {
     switch (source) {
@@ -275,6 +275,16 @@ void add(const DemoOutcome& outcome, std::vector<DemoDeviation> DemoPart::*which
     for (const DemoPart& part : outcome.parts)
         if (part.pushed())
             for (const DemoDeviation& d : part.*which) of(d.region_id).add(d), of("all").add(d);
+}
+
+DemoStatistic statistic_of(const std::vector<DemoPart>& parts, const std::string& region_id,
+                           std::vector<DemoDeviation> DemoPart::*which) {
+    DeviationTally tally;
+    for (const DemoPart& part : parts)
+        if (part.pushed())
+            for (const DemoDeviation& d : part.*which)
+                if (d.region_id == region_id) tally.add(d);
+    return tally.statistic(region_id);
 }
 
 std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
@@ -417,6 +427,21 @@ Expected<DemoOutcome> run_demo(const DemoOptions& options,
         outcome.parts.push_back(std::move(part));
     }
     outcome.cell = world.describe();
+    if (options.offline) {
+        station.disconnect();
+        SEAM_TRY(outcome.offline, run_offline(
+                                      options, outcome, world, drawing,
+                                      [&](Station& copy) -> Expected<void> {
+                                          if (options.loopback) return copy.connect();
+                                          std::map<std::string, std::unique_ptr<ProfileSource>> again;
+                                          std::map<std::string, std::unique_ptr<RobotLink>> links;
+                                          again[kSensor] = make_simulated_sensor(cell);
+                                          links[kRobot] = make_simulated_robot(cell);
+                                          copy.connect(std::move(again), std::move(links));
+                                          return {};
+                                      },
+                                      progress));
+    }
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return outcome;
 }

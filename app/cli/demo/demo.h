@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,8 +17,10 @@
 #include "core/alignment/alignment.h"
 #include "core/calibration/calibration.h"
 #include "devices/simulated/cell.h"
+#include "projects/confirm/confirm.h"
 #include "projects/model/project.h"
 #include "projects/model/run.h"
+#include "projects/placing/propose.h"
 
 namespace seamwright::cli {
 
@@ -41,6 +44,7 @@ struct DemoOptions {
     // Over loopback: the sensor as a GigE Vision camera at this address, the robot as a KUKA controller that
     // connects by EthernetKRL. In-process otherwise: the same cell without cables between.
     bool loopback = true;
+    bool offline = true;                  // the chapter from the drawing
     std::string camera_address = "free";  // 127.0.0.1, else another of 127.0.0.0/8 that is free
     int robot_port = 0;                   // 0: 54600, else another that is free
 };
@@ -86,6 +90,18 @@ struct DemoTaughtSpot {
     AlignmentOptions judged_by;
 };
 
+// The same region without a person at the part: from the drawing, proposed, confirmed, the same parts.
+struct DemoOffline {
+    std::filesystem::path project_file;
+    std::string region_id, edge;
+    Proposal proposal;            // of as many spots as the hand-made region has
+    double hand_forecast_mm = 0;  // as the safety gate judges it, one sigma: of the hand-made spots
+    Text refused_before;          // what the gate said to the unconfirmed region
+    Confirmation confirmation;
+    std::vector<DemoPart> parts;  // empty where the confirmation was refused
+    double seconds = 0;
+};
+
 struct DemoOutcome {
     std::filesystem::path project_file, report_file;
     nlohmann::json cell;  // what noise and scatter the figures below hold for
@@ -95,6 +111,7 @@ struct DemoOutcome {
     std::vector<RegionPlan> plans;      // one a region
     std::vector<RunRecord> zero_shift;  // the undisplaced part, three times
     std::vector<DemoPart> parts;
+    std::optional<DemoOffline> offline;
     double seconds = 0;
 };
 
@@ -113,6 +130,9 @@ void add(const DemoOutcome& outcome, std::vector<DemoDeviation> DemoPart::*which
          std::vector<std::pair<std::string, DeviationTally>>& tallies);
 std::vector<DemoStatistic> statistics(const DemoOutcome& outcome,
                                       std::vector<DemoDeviation> DemoPart::*which);
+// Of one region of some parts, the pushed ones.
+DemoStatistic statistic_of(const std::vector<DemoPart>& parts, const std::string& region_id,
+                           std::vector<DemoDeviation> DemoPart::*which);
 
 Expected<DemoOutcome> run_demo(const DemoOptions& options,
                                const std::function<void(const std::string&)>& progress);

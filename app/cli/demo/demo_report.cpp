@@ -243,6 +243,37 @@ std::string demo_picture(const DemoOutcome& o) {
     return svg(plot);
 }
 
+namespace {
+
+void offline_chapter(Page& page, const DemoOutcome& outcome) {
+    const DemoOffline& o = *outcome.offline;
+    page.heading("From the drawing");
+    page.paragraph(
+        fmt::format("The same cell without a person at the part: spots of region {} proposed along edge {} "
+                    "of door.step, as many as "
+                    "were made by hand, taken into a copy of the project ({}), confirmed on the part, the "
+                    "same parts again.",
+                    o.region_id, o.edge, o.project_file.filename().string()));
+    page.paragraph(
+        fmt::format("Before they were confirmed the safety gate said: {}.", o.refused_before.english()));
+    page.verdict(o.confirmation.ok ? "confirmed" : "not confirmed",
+                 o.confirmation.ok ? Tone::good : Tone::attention, said_of(o.confirmation).english());
+    std::vector<std::vector<std::string>> rows = {
+        {"spot", "finding", "shift x (mm)", "shift z (mm)", "contour rms (mm)", "left (mm)"}};
+    for (const SpotConfirmation& s : o.confirmation.spots)
+        rows.push_back({s.spot_id, std::string(to_string(s.finding)), mm(s.shift_mm.x()), mm(s.shift_mm.y()),
+                        mm(s.contour_rms_mm), mm(s.left_mm)});
+    page.table(rows);
+    const DemoStatistic now = statistic_of(o.parts, o.region_id, &DemoPart::path),
+                        hand = statistic_of(outcome.parts, o.region_id, &DemoPart::path);
+    page.table({{"spots", "forecast sigma (mm)", "bead after, 3 sigma (mm)", "bead after, largest (mm)"},
+                {"by hand", mm(o.hand_forecast_mm), mm(hand.after_three_sigma_mm), mm(hand.after_max_mm)},
+                {"from the drawing", mm(o.proposal.sigma_forecast_mm), mm(now.after_three_sigma_mm),
+                 mm(now.after_max_mm)}});
+}
+
+}  // namespace
+
 std::string demo_report(const DemoOutcome& o) {
     Page page("Seamwright demo: door left");
     const auto path = statistics(o, &DemoPart::path);
@@ -261,6 +292,7 @@ std::string demo_report(const DemoOutcome& o) {
     teaching_chapter(page, o);
     zero_shift_chapter(page, o);
     correction_chapter(page, o);
+    if (o.offline) offline_chapter(page, o);
     page.heading("The simulated cell");
     std::vector<std::vector<std::string>> rows = {{"setting", "value"}};
     for (const auto& item : o.cell.items()) rows.push_back({item.key(), item.value().dump()});

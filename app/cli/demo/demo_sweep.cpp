@@ -9,7 +9,7 @@ DemoSweep sweep_demo(DemoOptions options, std::uint64_t first, std::uint64_t las
                      const std::function<void(const SweepRow&)>& each) {
     DemoSweep sweep;
     std::vector<std::pair<std::string, DeviationTally>> tallies;
-    options.loopback = false;
+    options.loopback = options.offline = false;
     for (options.seed = first; options.seed <= last; ++options.seed) {
         SweepRow row;
         row.seed = options.seed;

@@ -103,8 +103,11 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     Spot taught;
     taught.via.resize(1, Pose::Identity());
     taught.reference_arrivals = 5;
+    taught.reference_state = ReferenceState::from_drawing;
+    taught.drawn.emplace();
     const auto t = to_json_document(taught);
     whole(taught, t);
+    whole(*taught.drawn, t["drawn"]);
     whole(taught.feature, t["feature"]);
     Region kept;
     kept.offsets.resize(1);

@@ -695,6 +695,37 @@ TEST(Migration, VersionFiveBecomesCurrentAndTakesAcceptance) {
     EXPECT_TRUE(opened->check().empty());
 }
 
+// What was taught before there were drawings was taught on the part; a spot from the drawing is kept as such.
+TEST(Migration, SpotsOfOlderVersionsAreMeasuredAndTakeTheDrawing) {
+    for (int version = 1; version <= 5; ++version) {
+        TemporaryFolder folder;
+        const fs::path path = folder / "old.seam";
+        make_old_version(path, version);
+        auto file = ProjectFile::open(path);
+        ASSERT_TRUE(file) << file.error().sentence();
+        Project project = file->load().value();
+        ASSERT_FALSE(project.spots.empty());
+        for (const Spot& spot : project.spots) {
+            EXPECT_EQ(spot.reference_state, ReferenceState::measured);
+            EXPECT_FALSE(spot.drawn);
+        }
+        const auto before = file->setup_of(project);
+        project.spots[0].reference_state = ReferenceState::from_drawing;
+        project.spots[0].drawn =
+            DrawingOrigin{"door.step", 1234567890123, 0xfedcba98, "e12", 17.25, {1.5, 0, -2}};
+        ASSERT_TRUE(file->save(project));
+        EXPECT_NE(*file->setup_of(project), *before);
+        const auto opened = ProjectFile::open(path);
+        const Spot again = opened->load()->spots[0];
+        EXPECT_EQ(exact_text(again), exact_text(project.spots[0]));
+        EXPECT_EQ(again.reference_state, ReferenceState::from_drawing);
+        ASSERT_TRUE(again.drawn);
+        EXPECT_EQ(again.drawn->bytes, 1234567890123u);
+        EXPECT_EQ(again.drawn->crc32, 0xfedcba98u);
+        EXPECT_TRUE(opened->check().empty());
+    }
+}
+
 TEST(ProjectFile, PanelRunsComeBackToTheLastBit) {
     TemporaryFolder folder;
     const Project project = sample_project();

@@ -94,7 +94,7 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, Region&
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateSpot& v) {
     auto& [id, required, measured, part, measured_at, point, calibration, verdict, calibrated_utc, sensor,
-           calibrated_sensor, robot, calibrated_robot] = v;
+           calibrated_sensor, robot, calibrated_robot, reference] = v;
     numbers(visit, path + ".point_workobject_mm", point);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateRequest& v) {

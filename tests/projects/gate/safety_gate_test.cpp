@@ -147,6 +147,15 @@ std::vector<Refusal> refusals() {
              for (auto& s : r.spots) s.part_id.clear();
          },
          "which part"},
+        {"FromTheDrawing",
+         [](R r) { r.spots[0].reference = r.spots[2].reference = ReferenceState::from_drawing; },
+         "spots from the drawing are not confirmed: S1, S3"},
+        {"FromTheDrawingAndNotEvenMeasured",
+         [](R r) {
+             r.spots[1].reference = ReferenceState::from_drawing;
+             r.spots[1].measured = r.spots[1].required = false;
+         },
+         "not confirmed: S2; confirm them on the part (`seamwright confirm FILE.seam`, Teach page)"},
         {"Stale", [](R r) { r.spots[0].measured_at_ns = 99; }, "stale"},
         {"FromTheFuture", [](R r) { r.spots[0].measured_at_ns = 201; }, "future"},
         {"NanDisplacement",

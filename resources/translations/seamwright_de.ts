@@ -3960,6 +3960,10 @@ A %5  B %6  C %7 Grad</translation>
         <source>Across the bead at spot %1, where it is worst: u = %2 mm (random %3, systematic %4), U = %5 mm (95 %). The shares of the variance:</source>
         <translation>Quer zur Raupe an Messstelle %1, wo es am schlechtesten ist: u = %2 mm (zufällig %3, systematisch %4), U = %5 mm (95 %). Die Anteile an der Varianz:</translation>
     </message>
+    <message>
+        <source>%1 (from the drawing, not confirmed)</source>
+        <translation>%1 (aus der Zeichnung, nicht bestätigt)</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ResidualBars</name>
@@ -4563,6 +4567,18 @@ ausgelassen</translation>
         <source>Next: regions</source>
         <translation>Weiter: Regionen</translation>
     </message>
+    <message>
+        <source>From the drawing, not confirmed on the part: nothing is pushed by it.</source>
+        <translation>Aus der Zeichnung, am Teil nicht bestätigt: nach ihm wird nichts übertragen.</translation>
+    </message>
+    <message>
+        <source>From the drawing, not confirmed: connect the devices first.</source>
+        <translation>Aus der Zeichnung, nicht bestätigt: zuerst die Geräte verbinden.</translation>
+    </message>
+    <message>
+        <source>Confirm</source>
+        <translation>Bestätigen</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::SpotTree</name>
@@ -4609,6 +4625,10 @@ ausgelassen</translation>
     <message>
         <source>%1 spots</source>
         <translation>%1 Messstellen</translation>
+    </message>
+    <message>
+        <source>from the drawing</source>
+        <translation>aus der Zeichnung</translation>
     </message>
 </context>
 <context>
@@ -4740,6 +4760,14 @@ ausgelassen</translation>
     <message>
         <source>The robot does not tell where it stands.</source>
         <translation>Der Roboter sagt nicht, wo er steht.</translation>
+    </message>
+    <message>
+        <source>Confirming</source>
+        <translation>Bestätigen</translation>
+    </message>
+    <message>
+        <source>The spot was not confirmed.</source>
+        <translation>Die Messstelle wurde nicht bestätigt.</translation>
     </message>
 </context>
 <context>
@@ -5101,6 +5129,26 @@ und %1 weitere</translation>
     <message>
         <source>Move the robot by hand (F8)</source>
         <translation>Roboter von Hand bewegen (F8)</translation>
+    </message>
+    <message>
+        <source>Confirm</source>
+        <translation>Bestätigen</translation>
+    </message>
+    <message>
+        <source>The robot measures the spot from the drawing on the part; where it is plausible, what was measured becomes its reference</source>
+        <translation>Der Roboter misst die Messstelle aus der Zeichnung am Teil; ist es plausibel, wird das Gemessene ihre Referenz</translation>
+    </message>
+    <message>
+        <source>confirmed on the part</source>
+        <translation>am Teil bestätigt</translation>
+    </message>
+    <message>
+        <source>Shift against the drawing: x %1 mm, z %2 mm</source>
+        <translation>Verschiebung gegen die Zeichnung: x %1 mm, z %2 mm</translation>
+    </message>
+    <message>
+        <source>x %1   z %2 mm in the sensor, from drawing %3, not confirmed</source>
+        <translation>x %1   z %2 mm im Sensor, aus der Zeichnung %3, nicht bestätigt</translation>
     </message>
 </context>
 <context>

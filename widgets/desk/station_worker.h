@@ -21,6 +21,7 @@
 #include "projects/acceptance/equipment/measure_trigger.h"
 #include "projects/acceptance/study/live_study.h"
 #include "projects/calibrate/session/shot.h"
+#include "projects/confirm/confirm.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/station.h"
@@ -79,6 +80,7 @@ class StationWorker : public QObject {
     void measure_robot(const MeasureRobotOptions& options);
     void measure_trigger(const MeasureTriggerOptions& options);
     void teach(const Spot& draft, int repeats);
+    void confirm(const std::string& spot_id);  // from the drawing; confirmed() brings what was found
     void record_pass(const Spot& spot, double step_mm, const AlignmentOptions& options);
     // Robot standing still: its pose, the stripe, and with `board` a second image with the laser off, exposed
     // for the surroundings; one sensor after another. An empty robot_id asks no robot.
@@ -111,6 +113,7 @@ class StationWorker : public QObject {
     void cameras_found(std::shared_ptr<const std::vector<seamwright::DiscoveredCamera>> cameras);
     void proven();  // an evidence has come into the file
     void taught(std::shared_ptr<const seamwright::TaughtSpot> taught);
+    void confirmed(std::shared_ptr<const seamwright::Confirmation> confirmation);
     void passed(std::shared_ptr<const seamwright::PassResult> pass);
     // What failed is in them: who asked for it says it.
     void shots_taken(std::shared_ptr<const seamwright::CalibrationShots> shots);

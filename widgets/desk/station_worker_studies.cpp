@@ -87,4 +87,18 @@ void StationWorker::measure_trigger(const MeasureTriggerOptions& asked) {
          });
 }
 
+void StationWorker::confirm(const std::string& spot_id) {
+    post(tr("Confirming"), [=, this](Station& station, const std::stop_token& cancelled) {
+        ConfirmOptions options;
+        options.spot_ids = {spot_id};
+        options.cancel = cancelled;
+        options.progress = progress_sink();
+        auto found = confirm_spots(station, options);
+        if (!found)
+            emit failed(shown_error(tr("The spot was not confirmed."), found.error()));
+        else
+            emit confirmed(std::make_shared<const Confirmation>(std::move(*found)));
+    });
+}
+
 }  // namespace seamwright

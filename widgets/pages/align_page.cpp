@@ -101,6 +101,7 @@ void AlignPage::do_deed(SpotDeed deed) {
         case SpotDeed::add:
         case SpotDeed::piece:
         case SpotDeed::reference:
+        case SpotDeed::confirm:
             return emit step_wanted(Step::teach);
         case SpotDeed::choose:
             return desk_.selection().select_spot(desk_.project().spots.front().id);

@@ -84,7 +84,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     connect(spots_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
         if (filling_ || !region()) return;
         Region r = *region();
-        const std::string id = item->text().toStdString();
+        const std::string id = item->data(Qt::UserRole).toString().toStdString();
         std::erase(r.spot_ids, id);
         if (item->checkState() == Qt::Checked) {  // in the order of measuring
             r.spot_ids.push_back(id);
@@ -94,8 +94,9 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
         }
         done(desk_.edit(r, tr("spots")));
     });
-    connect(spots_, &QListWidget::currentTextChanged, this, [this](const QString& id) {
-        if (!filling_ && !id.isEmpty()) desk_.selection().select_spot(id.toStdString());
+    connect(spots_, &QListWidget::currentItemChanged, this, [this](const QListWidgetItem* item) {
+        if (!filling_ && item)
+            desk_.selection().select_spot(item->data(Qt::UserRole).toString().toStdString());
     });
     in->addWidget(spots_);
 
@@ -191,7 +192,11 @@ void RegionsPage::refresh() {
         const int scroll = spots_->currentRow();
         spots_->clear();
         for (const Spot& s : p.spots) {
-            auto* item = new QListWidgetItem(QString::fromStdString(s.id), spots_);
+            const QString id = QString::fromStdString(s.id);
+            const bool drawn = s.reference_state == ReferenceState::from_drawing;
+            auto* item =
+                new QListWidgetItem(drawn ? tr("%1 (from the drawing, not confirmed)").arg(id) : id, spots_);
+            item->setData(Qt::UserRole, id);
             item->setSizeHint({0, style::kTargetPx});
             item->setFlags(item->flags() | Qt::ItemIsUserCheckable);
             const bool in = std::find(r->spot_ids.begin(), r->spot_ids.end(), s.id) != r->spot_ids.end();

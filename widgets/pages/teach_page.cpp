@@ -35,8 +35,12 @@ TeachPage::TeachPage(Desk& desk, const Views& views)
     listen_to_profile();
     connect(&desk_.worker(), &StationWorker::taught, this,
             [this](const std::shared_ptr<const TaughtSpot>& taught) { take_reference(*taught); });
+    connect(&desk_.worker(), &StationWorker::confirmed, this,
+            [this](const std::shared_ptr<const Confirmation>& found) { take_confirmed(*found); });
     connect(&desk_, &Desk::station_changed, this, [this] {
-        if (isVisible()) measure_->setEnabled(desk_.station().connected && spot());
+        if (!isVisible()) return;
+        measure_->setEnabled(desk_.station().connected && spot());
+        confirm_->setEnabled(desk_.station().connected && spot());
     });
 }
 
@@ -58,6 +62,8 @@ void TeachPage::do_deed(SpotDeed deed) {
             return window_->click();
         case SpotDeed::reference:
             return measure_->click();
+        case SpotDeed::confirm:
+            return confirm_->click();
         case SpotDeed::pass:
             return emit step_wanted(Step::align);
         case SpotDeed::next_spot:
@@ -249,7 +255,14 @@ void TeachPage::make_reference(QVBoxLayout& in) {
                     tr("The robot stands still at the spot and measures; mean and spread are shown"), [this] {
                         if (spot()) desk_.worker().teach(*spot(), repeats_->value());
                     });
-    in.addLayout(make_row({measure_}));
+    confirm_ = make_button(
+        "confirm_spot", "check", tr("Confirm"),
+        tr("The robot measures the spot from the drawing on the part; where it is plausible, what was "
+           "measured becomes its reference"),
+        [this] {
+            if (spot()) desk_.worker().confirm(spot()->id);
+        });
+    in.addLayout(make_row({measure_, confirm_}));
     spread_ = make_text({});
     spread_->setObjectName("spread");
     in.addWidget(spread_);
@@ -303,6 +316,7 @@ void TeachPage::take_reference(const TaughtSpot& taught) {
     after.reference_mm = taught.spot.reference_mm;
     after.reference_profile = taught.spot.reference_profile;
     after.reference_arrivals = taught.spot.reference_arrivals;
+    after.reference_state = taught.spot.reference_state;
     after.curve.reset();
     if (done(desk_.edit(after, tr("reference")))) {
         spread_of_ = after;
@@ -310,6 +324,35 @@ void TeachPage::take_reference(const TaughtSpot& taught) {
                              .arg(taught.measurements.size())
                              .arg(number(taught.spread_mm.x(), 4), number(taught.spread_mm.y(), 4))
                              .arg(taught.left_out));
+    }
+}
+
+void TeachPage::take_confirmed(const Confirmation& found) {
+    if (!found.ok) {
+        const SpotConfirmation& refused = found.spots.front();
+        done(input_error(refused.reason, Text("spot {}", refused.spot_id),
+                         "compare the drawing with the part, or teach the spot by hand"));
+        return;
+    }
+    for (const SpotConfirmation& c : found.spots) {
+        const Spot *is = find_spot(desk_.project(), c.spot_id), *made = find_spot(found.project, c.spot_id);
+        if (!is || is->reference_state != ReferenceState::from_drawing || !is->drawn ||
+            is->drawn->reference_mm != made->drawn->reference_mm) {
+            done(input_error("it was changed while it was confirmed", Text("spot {}", c.spot_id),
+                             "confirm it again"));
+            return;
+        }
+        // Only what was measured: weights and limits may have been edited meanwhile.
+        Spot after = *is;
+        after.feature = made->feature;
+        after.reference_mm = made->reference_mm;
+        after.reference_profile = made->reference_profile;
+        after.reference_arrivals = made->reference_arrivals;
+        after.reference_state = made->reference_state;
+        if (!done(desk_.edit(after, tr("confirmed on the part")))) return;
+        spread_of_ = after;
+        spread_->setText(tr("Shift against the drawing: x %1 mm, z %2 mm")
+                             .arg(number(c.shift_mm.x(), 3), number(c.shift_mm.y(), 3)));
     }
 }
 
@@ -377,8 +420,14 @@ void TeachPage::refresh() {
     window_->setVisible(s->feature.kind == "template");
     pick_->setVisible(s->feature.kind != "template");
     show_parameters(*s);
-    reference_->setText(s->reference_profile.size() == 0
-                            ? tr("Not measured yet.")
+    confirm_->setVisible(s->reference_state == ReferenceState::from_drawing &&
+                         s->reference_profile.size() > 0);
+    confirm_->setEnabled(connected);
+    reference_->setText(s->reference_profile.size() == 0 ? tr("Not measured yet.")
+                        : s->reference_state == ReferenceState::from_drawing
+                            ? tr("x %1   z %2 mm in the sensor, from drawing %3, not confirmed")
+                                  .arg(number(s->reference_mm.x(), 3), number(s->reference_mm.z(), 3),
+                                       QString::fromStdString(s->drawn ? s->drawn->name : std::string()))
                             : tr("x %1   z %2 mm in the sensor; %3 points of contour kept")
                                   .arg(number(s->reference_mm.x(), 3), number(s->reference_mm.z(), 3))
                                   .arg(s->reference_profile.size()));

@@ -38,6 +38,7 @@ class TeachPage : public StepPage {
     void make_fields(QVBoxLayout& in);
     void listen_to_profile();
     void take_reference(const TaughtSpot& taught);
+    void take_confirmed(const Confirmation& found);
 
     const Spot* spot() const;
     // What was measured with another pose, sensor, robot or feature goes with the edit.
@@ -55,7 +56,7 @@ class TeachPage : public StepPage {
 
     SpotHead* spot_head_;
     SpotTree* tree_;
-    QPushButton *duplicate_, *rename_, *up_, *down_, *remove_, *take_, *go_, *measure_;
+    QPushButton *duplicate_, *rename_, *up_, *down_, *remove_, *take_, *go_, *measure_, *confirm_;
     QPushButton *pick_, *window_, *click_;
     QCheckBox *enabled_, *required_, *stop_;
     PoseEditor* pose_;

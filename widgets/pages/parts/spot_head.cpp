@@ -21,7 +21,8 @@ bool pass_accepted(const Desk& desk, const Spot& s) {
 }
 
 bool is_done(const Desk& desk, const Spot& s) {
-    return !s.enabled || (s.reference_profile.size() > 0 && pass_accepted(desk, s));
+    return !s.enabled || (s.reference_profile.size() > 0 && s.reference_state == ReferenceState::measured &&
+                          pass_accepted(desk, s));
 }
 
 }  // namespace
@@ -33,7 +34,8 @@ SpotDeed next_deed(const Desk& desk, const std::string& spot_id) {
     if (!s) return SpotDeed::choose;
     if (!is_done(desk, *s)) {
         if (s->feature.kind == "template" && s->feature.template_profile.size() == 0) return SpotDeed::piece;
-        return s->reference_profile.size() == 0 ? SpotDeed::reference : SpotDeed::pass;
+        if (s->reference_profile.size() == 0) return SpotDeed::reference;
+        return s->reference_state == ReferenceState::from_drawing ? SpotDeed::confirm : SpotDeed::pass;
     }
     return next_undone(desk, spot_id) ? SpotDeed::next_spot : SpotDeed::next_step;
 }
@@ -103,6 +105,13 @@ void SpotHead::refresh() {
             state_->setText(connected ? tr("Its reference is not measured yet.")
                                       : tr("Its reference is not measured yet: connect the devices first."));
             deed_->setText(tr("Measure reference"));
+            may = may && connected;
+            break;
+        case SpotDeed::confirm:
+            state_->setText(connected
+                                ? tr("From the drawing, not confirmed on the part: nothing is pushed by it.")
+                                : tr("From the drawing, not confirmed: connect the devices first."));
+            deed_->setText(tr("Confirm"));
             may = may && connected;
             break;
         case SpotDeed::pass:

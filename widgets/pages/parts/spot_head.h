@@ -14,6 +14,7 @@ enum class SpotDeed {
     choose,     // none is selected
     piece,      // the template's piece of contour
     reference,  // to be measured
+    confirm,    // its reference is from the drawing
     pass,       // to be recorded and accepted
     next_spot,  // another one that is not done
     next_step   // all spots are done

@@ -53,10 +53,11 @@ void SpotTree::refresh() {
         return item;
     };
     const auto state_of = [](const Spot& s) {
-        return !s.enabled                        ? tr("disabled")
-               : s.reference_profile.size() == 0 ? tr("no reference")
-               : !s.curve                        ? tr("taught")
-                                                 : tr("taught, edge recorded");
+        return !s.enabled                                          ? tr("disabled")
+               : s.reference_profile.size() == 0                   ? tr("no reference")
+               : s.reference_state == ReferenceState::from_drawing ? tr("from the drawing")
+               : !s.curve                                          ? tr("taught")
+                                                                   : tr("taught, edge recorded");
     };
     auto* spots = new QTreeWidgetItem(this, {tr("Spots (%1)").arg(p.spots.size()), {}});
     spots->setSizeHint(0, {0, style::kTargetPx});

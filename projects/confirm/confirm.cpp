@@ -49,6 +49,8 @@ Expected<std::vector<std::string>> wanted(const Project& project, const ConfirmO
     for (const std::string& id : ids) {
         const Spot& spot = *find_spot(project, id);
         const Text where("spot {}", id);
+        if (spot.reference_state != ReferenceState::from_drawing && !spot.drawn)
+            return input_error("it is not from the drawing", where, "measure its reference (Teach page)");
         if (spot.reference_state != ReferenceState::from_drawing)
             return input_error("its reference is measured on the part already", where,
                                "measure it again where it is taught (Teach page)");

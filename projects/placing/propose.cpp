@@ -32,7 +32,16 @@ struct Attitude {
     Pose workobject_from_sensor = Pose::Identity();
 };
 
-std::vector<Attitude> attitudes(const EdgeChain& chain, const ProposeOptions& o, int& places) {
+// How far a place of the chain is from the piece between two others of it.
+double beyond(const EdgeChain& chain, double arc, double from, double to) {
+    if (arc >= from && arc <= to) return 0;
+    const double before = from - arc, after = arc - to, length = chain.length_mm();
+    if (!chain.closed) return std::max(before, after);
+    return std::min(before > 0 ? before : before + length, after > 0 ? after : after + length);
+}
+
+std::vector<Attitude> attitudes(const EdgeChain& chain, const std::pair<double, double>& edge,
+                                const ProposeOptions& o, int& places) {
     const double length = chain.length_mm();
     const double step = o.step_mm > 0 ? o.step_mm : std::max(kNearestMm, length / kUsualPlaces);
     places = std::max(1, static_cast<int>(length / step));
@@ -41,6 +50,7 @@ std::vector<Attitude> attitudes(const EdgeChain& chain, const ProposeOptions& o,
     std::vector<Attitude> all;
     for (int i = 0; i < places; ++i) {
         const double arc = length * (i + 0.5) / places;
+        if (beyond(chain, arc, edge.first, edge.second) > o.beyond_mm) continue;
         const DrawingPoint p = chain.at(arc);
         for (const double turn : turns)
             for (const double way : {1.0, -1.0}) {
@@ -67,6 +77,24 @@ std::optional<ContourCurve> curve_at(const EdgeChain& chain, const Attitude& a,
     auto curve = fit_contour_curve(travel);
     if (!curve) return std::nullopt;
     return *curve;
+}
+
+// The region's spots as candidates, each a place of its own.
+Expected<PlacingTask> task_of(const Project& project, const Region& region,
+                              const std::vector<BeadPoint>& bead) {
+    PlacingTask task;
+    const std::vector<SpotObservation> planned = planned_observations(project, region);
+    if (planned.size() != region.spot_ids.size())
+        return input_error("a spot of it cannot be planned", Text("region {}", region.id));
+    for (std::size_t i = 0; i < planned.size(); ++i)
+        task.candidates.push_back(
+            {planned[i], travel_window_mm(*find_spot(project, planned[i].id)), static_cast<int>(i)});
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const BeadPoint& p : bead) middle += p.point_mm / static_cast<double>(bead.size());
+    task.bead = bead;
+    task.displacements = required_displacements(project.requirements, middle);
+    task.options = correction_options(project, region);
+    return task;
 }
 
 class Proposer {
@@ -121,6 +149,7 @@ class Proposer {
         if (!(o_.noise_mm > 0 && o_.noise_mm <= 1)) return usage_error("the noise is not from 0 to 1 mm");
         if (!(o_.cone_deg >= 0 && o_.cone_deg <= 60))
             return usage_error("the cone is not from 0 to 60 degrees");
+        if (!(o_.beyond_mm >= 0)) return usage_error("how far beyond the edge spots may stand is below 0 mm");
         if (!(o_.step_mm >= 0 && o_.step_mm <= 1000) || (o_.step_mm > 0 && o_.step_mm < 1))
             return usage_error("the step between places is not from 1 to 1000 mm");
         if (given_.sensors.empty() || given_.robots.empty())
@@ -165,7 +194,7 @@ class Proposer {
                 break;
             }
         int places = 0;
-        const std::vector<Attitude> all = attitudes(chain_, o_, places);
+        const std::vector<Attitude> all = attitudes(chain_, chain_.arcs_of(drawing_, o_.edge), o_, places);
         out_.tried = static_cast<int>(all.size());
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (o_.cancel.stop_requested())
@@ -198,17 +227,9 @@ class Proposer {
         Region region = region_;
         for (const Spot& spot : project_.spots) region.spot_ids.push_back(spot.id);
         project_.regions = {region};
-        PlacingTask task;
-        const std::vector<SpotObservation> planned = planned_observations(project_, region);
-        if (planned.size() != project_.spots.size())
-            return input_error("a candidate could not be planned", drawing_.source);
-        for (std::size_t i = 0; i < planned.size(); ++i)
-            task.candidates.push_back({planned[i], travel_window_mm(project_.spots[i]), attitudes_[i].place});
-        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-        for (const BeadPoint& p : out_.bead) middle += p.point_mm / static_cast<double>(out_.bead.size());
-        task.bead = out_.bead;
-        task.displacements = required_displacements(given_.requirements, middle);
-        task.options = correction_options(project_, region);
+        SEAM_TRY(auto task, task_of(project_, region, out_.bead));
+        for (std::size_t i = 0; i < task.candidates.size(); ++i)
+            task.candidates[i].place = attitudes_[i].place;
         task.three_sigma_mm = o_.three_sigma_mm;
         task.one_may_be_lost = o_.one_may_be_lost;
         task.seed = o_.seed;
@@ -261,6 +282,15 @@ class Proposer {
 };
 
 }  // namespace
+
+Expected<PlacedSet> judge_spots(const Project& project, const Region& region,
+                                const std::vector<BeadPoint>& bead) {
+    SEAM_TRY(auto task, task_of(project, region, bead));
+    std::vector<std::size_t> all(task.candidates.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    SEAM_TRY(const auto placing, SpotPlacing::make(std::move(task)));
+    return placing.judge(all);
+}
 
 Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::string& edge, double step_mm) {
     if (!(step_mm >= 1 && step_mm <= 1000))

@@ -31,7 +31,10 @@ struct ProposeOptions {
     double three_sigma_mm = 0.1;
     int fewest = 4, most = 12;
     bool one_may_be_lost = true;
-    double step_mm = 0;      // between places; 0: 60 of them on the chain, at least 10 mm apart
+    double step_mm = 0;  // between places; 0: 60 of them on the chain, at least 10 mm apart
+    // How far beyond the ends of the edge spots may stand along its chain: a part that bends is the more another body the
+    // farther away it is looked at, and the forecast takes it for rigid.
+    double beyond_mm = std::numeric_limits<double>::infinity();
     double cone_deg = 15;    // 0: the middle of the normals alone
     double noise_mm = 0.02;  // of a profile's point, one standard deviation
     double bead_step_mm = 20;
@@ -64,6 +67,11 @@ struct Proposal {
 // cancelled.
 Expected<Proposal> propose_spots(const Project& project, const Drawing& drawing,
                                  const ProposeOptions& options);
+
+// The same measure of a region's spots as they are: 3 sigma across the bead at its worst point, and with the worst spot
+// lost. Error: what SpotPlacing refuses, a spot that cannot be planned.
+Expected<PlacedSet> judge_spots(const Project& project, const Region& region,
+                                const std::vector<BeadPoint>& bead);
 
 // The bead as it is judged: the named edge in steps.
 Expected<std::vector<BeadPoint>> bead_of(const Drawing& drawing, const std::string& edge, double step_mm);

@@ -44,8 +44,8 @@ nlohmann::json offline_json(const DemoOutcome& outcome) {
                         {"region", o.region_id},
                         {"edge", o.edge},
                         {"spots", o.proposal.spots.size()},
-                        {"forecast_sigma_mm", o.proposal.sigma_forecast_mm},
-                        {"hand_forecast_sigma_mm", o.hand_forecast_mm},
+                        {"forecast_three_sigma_mm", o.proposal.set.three_sigma_mm},
+                        {"hand_forecast_three_sigma_mm", o.hand.three_sigma_mm},
                         {"refused_before", o.refused_before.english()},
                         {"confirmation", confirmation_json(o.confirmation)},
                         {"hand_path", statistic_json({hand})},
@@ -62,9 +62,10 @@ std::string offline_text(const DemoOutcome& outcome) {
     int pushed = 0;
     for (const DemoPart& part : o.parts) pushed += part.pushed();
     std::string text = fmt::format(
-        "\nfrom the drawing: region {}, edge {} of door.step, {} spots proposed, forecast sigma {:.3f} mm "
+        "\nfrom the drawing: region {}, edge {} of door.step, {} spots proposed, forecast 3 sigma of the "
+        "bead {:.3f} mm "
         "(by hand {:.3f})\n  before: {}\n  then: {}\n",
-        o.region_id, o.edge, o.proposal.spots.size(), o.proposal.sigma_forecast_mm, o.hand_forecast_mm,
+        o.region_id, o.edge, o.proposal.spots.size(), o.proposal.set.three_sigma_mm, o.hand.three_sigma_mm,
         o.refused_before.english(), said_of(o.confirmation).english());
     if (pushed == 0) return text;
     const DemoStatistic now = statistic_of(o.parts, o.region_id, &DemoPart::path),

@@ -275,6 +275,12 @@ void add_propose(CommandLine& line) {
     command->add_option("--robot", o.robot_id, "Which robot; else the project's first");
     command->add_option("--step-mm", o.step_mm, "Between places; 0: 60 of them along the chain")
         ->capture_default_str();
+    command
+        ->add_option(
+            "--beyond-mm", o.beyond_mm,
+            "So far beyond the ends of the edge spots may stand on its chain; else all along it. A part that "
+            "bends is measured best near its bead")
+        ->check(CLI::NonNegativeNumber);
     command->add_option("--cone-deg", o.cone_deg, "How far the sensor may turn about the edge")
         ->capture_default_str();
     command->add_option("--noise-mm", o.noise_mm, "Of a profile's point, one sigma")->capture_default_str();

@@ -94,9 +94,9 @@ struct DemoTaughtSpot {
 struct DemoOffline {
     std::filesystem::path project_file;
     std::string region_id, edge;
-    Proposal proposal;            // of as many spots as the hand-made region has
-    double hand_forecast_mm = 0;  // as the safety gate judges it, one sigma: of the hand-made spots
-    Text refused_before;          // what the gate said to the unconfirmed region
+    Proposal proposal;    // of as many spots as the hand-made region has
+    PlacedSet hand;       // the hand-made spots by the same measure
+    Text refused_before;  // what the gate said to the unconfirmed region
     Confirmation confirmation;
     std::vector<DemoPart> parts;  // empty where the confirmation was refused
     double seconds = 0;

@@ -266,10 +266,11 @@ void offline_chapter(Page& page, const DemoOutcome& outcome) {
     page.table(rows);
     const DemoStatistic now = statistic_of(o.parts, o.region_id, &DemoPart::path),
                         hand = statistic_of(outcome.parts, o.region_id, &DemoPart::path);
-    page.table({{"spots", "forecast sigma (mm)", "bead after, 3 sigma (mm)", "bead after, largest (mm)"},
-                {"by hand", mm(o.hand_forecast_mm), mm(hand.after_three_sigma_mm), mm(hand.after_max_mm)},
-                {"from the drawing", mm(o.proposal.sigma_forecast_mm), mm(now.after_three_sigma_mm),
-                 mm(now.after_max_mm)}});
+    page.table(
+        {{"spots", "bead forecast, 3 sigma (mm)", "bead after, 3 sigma (mm)", "bead after, largest (mm)"},
+         {"by hand", mm(o.hand.three_sigma_mm), mm(hand.after_three_sigma_mm), mm(hand.after_max_mm)},
+         {"from the drawing", mm(o.proposal.set.three_sigma_mm), mm(now.after_three_sigma_mm),
+          mm(now.after_max_mm)}});
 }
 
 }  // namespace

@@ -697,7 +697,7 @@ TEST(Migration, VersionFiveBecomesCurrentAndTakesAcceptance) {
 
 // What was taught before there were drawings was taught on the part; a spot from the drawing is kept as such.
 TEST(Migration, SpotsOfOlderVersionsAreMeasuredAndTakeTheDrawing) {
-    for (int version = 1; version <= 5; ++version) {
+    for (int version = 1; version <= 6; ++version) {
         TemporaryFolder folder;
         const fs::path path = folder / "old.seam";
         make_old_version(path, version);

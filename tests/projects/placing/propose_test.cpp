@@ -175,7 +175,7 @@ TEST(Propose, StaysNearTheBeadWhereItIsToldTo) {
         taken.spots.push_back(p.spot), region.spot_ids.push_back(p.spot.id);
     const auto judged = judge_spots(taken, region, proposal->bead);
     ASSERT_TRUE(judged) << judged.error().sentence();
-    EXPECT_NEAR(judged->three_sigma_mm, proposal->set.three_sigma_mm, 1e-9);
+    EXPECT_NEAR(judged->three_sigma_mm, proposal->set.three_sigma_mm, 1e-6);
     o.beyond_mm = -1;
     EXPECT_FALSE(propose_spots(world().project, world().drawing, o));
     o = quick(4, 12, 0.1);

@@ -27,43 +27,6 @@ const Region* region_with(const Project& project, const std::string& id) {
     return nullptr;
 }
 
-Expected<std::vector<std::string>> wanted(const Project& project, const ConfirmOptions& o) {
-    if (!o.spot_ids.empty() && !o.region_id.empty())
-        return usage_error("spots and a region are named", "confirm", "name one or the other");
-    std::vector<std::string> ids;
-    const Region* region = region_with(project, o.region_id);
-    if (!o.region_id.empty() && !region)
-        return usage_error(Text("there is no region \"{}\"", o.region_id), project.name);
-    std::set<std::string> named(o.spot_ids.begin(), o.spot_ids.end());
-    for (const std::string& id : named)
-        if (!find_spot(project, id)) return usage_error(Text("there is no spot \"{}\"", id), project.name);
-    for (const Spot& spot : project.spots) {  // in the order of measuring
-        const bool open = spot.reference_state == ReferenceState::from_drawing;
-        const bool of_region =
-            !region || std::count(region->spot_ids.begin(), region->spot_ids.end(), spot.id);
-        if (named.empty() ? open && of_region : named.count(spot.id) > 0) ids.push_back(spot.id);
-    }
-    if (ids.empty())
-        return input_error("there is no spot from the drawing that is not confirmed",
-                           region ? Text("region {}", region->id) : Text(project.name));
-    for (const std::string& id : ids) {
-        const Spot& spot = *find_spot(project, id);
-        const Text where("spot {}", id);
-        if (spot.reference_state != ReferenceState::from_drawing && !spot.drawn)
-            return input_error("it is not from the drawing", where, "measure its reference (Teach page)");
-        if (spot.reference_state != ReferenceState::from_drawing)
-            return input_error("its reference is measured on the part already", where,
-                               "measure it again where it is taught (Teach page)");
-        if (!spot.drawn || spot.reference_profile.size() == 0)
-            return input_error("what the drawing lets expect was lost when its pose or feature was changed",
-                               where, "measure its reference (Teach page), or propose it again");
-        if (!calibration_of(project, spot))
-            return input_error(Text("sensor {} has no calibration in use", spot.sensor_id), where,
-                               "calibrate it");
-    }
-    return ids;
-}
-
 Eigen::Vector2d in_plane(const Eigen::Vector3d& p) {
     return {p.x(), p.z()};
 }
@@ -269,6 +232,44 @@ Expected<void> check_options(const ConfirmOptions& o) {
 
 }  // namespace
 
+Expected<std::vector<std::string>> spots_to_confirm(const Project& project, const ConfirmOptions& o) {
+    SEAM_OK(check_options(o));
+    if (!o.spot_ids.empty() && !o.region_id.empty())
+        return usage_error("spots and a region are named", "confirm", "name one or the other");
+    std::vector<std::string> ids;
+    const Region* region = region_with(project, o.region_id);
+    if (!o.region_id.empty() && !region)
+        return usage_error(Text("there is no region \"{}\"", o.region_id), project.name);
+    std::set<std::string> named(o.spot_ids.begin(), o.spot_ids.end());
+    for (const std::string& id : named)
+        if (!find_spot(project, id)) return usage_error(Text("there is no spot \"{}\"", id), project.name);
+    for (const Spot& spot : project.spots) {  // in the order of measuring
+        const bool open = spot.reference_state == ReferenceState::from_drawing;
+        const bool of_region =
+            !region || std::count(region->spot_ids.begin(), region->spot_ids.end(), spot.id);
+        if (named.empty() ? open && of_region : named.count(spot.id) > 0) ids.push_back(spot.id);
+    }
+    if (ids.empty())
+        return input_error("there is no spot from the drawing that is not confirmed",
+                           region ? Text("region {}", region->id) : Text(project.name));
+    for (const std::string& id : ids) {
+        const Spot& spot = *find_spot(project, id);
+        const Text where("spot {}", id);
+        if (spot.reference_state != ReferenceState::from_drawing && !spot.drawn)
+            return input_error("it is not from the drawing", where, "measure its reference (Teach page)");
+        if (spot.reference_state != ReferenceState::from_drawing)
+            return input_error("its reference is measured on the part already", where,
+                               "measure it again where it is taught (Teach page)");
+        if (!spot.drawn || spot.reference_profile.size() == 0)
+            return input_error("what the drawing lets expect was lost when its pose or feature was changed",
+                               where, "measure its reference (Teach page), or propose it again");
+        if (!calibration_of(project, spot))
+            return input_error(Text("sensor {} has no calibration in use", spot.sensor_id), where,
+                               "calibrate it");
+    }
+    return ids;
+}
+
 SpotConfirmation::SpotConfirmation()
     : shift_mm(Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN())),
       sigma_mm(shift_mm),
@@ -329,8 +330,7 @@ Expected<Confirmation> judge_confirmation(const Project& project, const std::vec
 }
 
 Expected<Confirmation> confirm_spots(Station& station, const ConfirmOptions& options) {
-    SEAM_OK(check_options(options));
-    SEAM_TRY(const auto ids, wanted(station.project(), options));
+    SEAM_TRY(const auto ids, spots_to_confirm(station.project(), options));
     std::vector<Expected<TaughtSpot>> taught;
     for (std::size_t i = 0; i < ids.size(); ++i) {
         TeachOptions teach;

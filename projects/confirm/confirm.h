@@ -78,6 +78,9 @@ struct Confirmation {
     Project project;  // with the measured references where ok; else as it was
 };
 
+// Which spots they are, in the order of measuring: known before a device is touched. Errors as below.
+Expected<std::vector<std::string>> spots_to_confirm(const Project& project, const ConfirmOptions& options);
+
 // Measures on the connected station and changes nothing; who takes the project saves it (Station::edit). Error (usage): no
 // such spot or region, options out of range; (input): nothing to confirm, a spot without its expected profile; (device);
 // cancelled.

@@ -48,6 +48,7 @@ Expected<Answer> confirm_command(const ConfirmArguments& a) {
     if (a.all && named)
         return usage_error("all spots and some of them", "--all", "name spots, a region, or all");
     SEAM_TRY(auto station, Station::open(a.file));
+    SEAM_OK(spots_to_confirm(station.project(), a.options));
     SEAM_OK(station.connect());
     ConfirmOptions options = a.options;
     options.cancel = stop_on_signal();

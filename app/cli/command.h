@@ -65,6 +65,7 @@ void add_service(CommandLine& line);
 void add_record(CommandLine& line);
 void add_proof(CommandLine& line);  // zero-shift, known-shift
 void add_budget(CommandLine& line);
+void add_collision(CommandLine& line);
 void add_hand_over(CommandLine& line);  // report, reteach
 void add_acceptance(CommandLine& line);
 void add_statistics(CommandLine& line);

@@ -225,6 +225,10 @@ Expected<LiveCalibration> calibrate_live(Station& station, const CalibrationMeth
                                          const LiveCalibrationOptions& options) {
     if (method.capture == CaptureKind::files)
         return usage_error("the data of this method are loaded from a file", method.id);
+    // Standing still is no touch.
+    if (method.capture == CaptureKind::touch)
+        return usage_error("a person says when the tip touches", method.id,
+                           "capture in the studio, or write the poses to a file");
     const SensorSetup* setup = find_sensor(station.project(), options.sensor_id);
     if (!setup) return usage_error(Text("the project has no sensor \"{}\"", options.sensor_id), "--sensor");
     ProfileSource* sensor = station.sensor(options.sensor_id);

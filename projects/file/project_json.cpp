@@ -272,6 +272,14 @@ void describe(A& a, RobotSetup& v) {
     a("required_mode", v.required_mode);
     a("arrival_covariance", v.arrival_covariance);
     a("trigger_latency_ms", v.trigger_latency_ms);
+    if (A::reading || !v.collisions.empty()) a("collisions", v.collisions);
+}
+template <class A>
+void describe(A& a, NozzleTip& v) {
+    a("flange_from_nozzle", v.flange_from_nozzle);
+    a("covariance_mm2", v.covariance_mm2);
+    a("degrees", v.degrees);
+    a("off_programmed_mm", v.off_programmed_mm);
 }
 template <class A>
 void describe(A& a, Calibration& v) {
@@ -287,6 +295,7 @@ void describe(A& a, Calibration& v) {
     a("flange_from_sensor", v.flange_from_sensor);
     a("covariance", v.covariance);
     a("verdict", v.verdict);
+    if (A::reading || v.nozzle) a("nozzle", v.nozzle);
     a("raw", v.raw);
     a("result", v.result);
 }

@@ -81,6 +81,15 @@ void judge_age(const GateRequest& request, const GateSpot& spot, Reasons& reason
                           spot.calibration_id, spot.id, age_days, request.calibration_age_days);
 }
 
+// What was calibrated before a collision is not known to hold.
+void judge_collision(const GateSpot& spot, Reasons& reasons) {
+    if (spot.collided_utc.empty()) return;
+    const auto made = utc_seconds(spot.calibrated_utc), collided = utc_seconds(spot.collided_utc);
+    reasons.refuse_unless(made && collided && *made >= *collided,
+                          "calibration {} at spot {} is older than the collision of {}", spot.calibration_id,
+                          spot.id, spot.collided_utc);
+}
+
 void judge_spots(const GateRequest& request, Reasons& reasons) {
     for (const std::string& id : request.region.spot_ids) {
         const auto count = std::count_if(request.spots.begin(), request.spots.end(),
@@ -123,6 +132,7 @@ void judge_spots(const GateRequest& request, Reasons& reasons) {
                               "calibration {} at spot {} is {}, not good or usable", spot.calibration_id,
                               spot.id, name_of(spot.calibration_verdict));
         judge_age(request, spot, reasons);
+        judge_collision(spot, reasons);
         reasons.refuse_unless(!spot.calibrated_sensor.driver.empty() && spot.sensor == spot.calibrated_sensor,
                               "the sensor at spot {} is [{}], calibrated was [{}]", spot.id,
                               name_of(spot.sensor), name_of(spot.calibrated_sensor));
@@ -251,6 +261,10 @@ void judge_correction(const GateRequest& request, Reasons& reasons) {
         sigma_known = sigma_known && std::isfinite(at_spot);
         sigma_mm = std::max(sigma_mm, at_spot);
     }
+    reasons.refuse_unless(request.nozzle_sigma_mm >= 0 && std::isfinite(request.nozzle_sigma_mm),
+                          "the sigma of the nozzle is not known");
+    reasons.refuse_unless(request.nozzle_trouble.empty(), "{}", request.nozzle_trouble);
+    if (request.nozzle_sigma_mm > 0) sigma_mm = std::hypot(sigma_mm, request.nozzle_sigma_mm);
     const double turn_sigma = deg_from_rad(worst_sigma(correction.covariance.bottomRightCorner<3, 3>()));
     const double sigma_deg = std::max(turn_sigma, correction.sigma_abc_deg.cwiseAbs().maxCoeff());
     reasons.refuse_unless(sigma_known && std::isfinite(sigma_mm) && std::isfinite(turn_sigma),

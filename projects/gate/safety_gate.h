@@ -44,6 +44,7 @@ struct GateSpot {
     std::string calibration_id;                                     // empty = none
     Verdict calibration_verdict = Verdict::undetermined;
     std::string calibrated_utc;
+    std::string collided_utc;  // when its robot collided last; empty: never. An older calibration is refused
     SensorIdentity sensor, calibrated_sensor;  // as connected; as calibrated
     RobotIdentity robot, calibrated_robot;
     // One from the drawing refuses the region, measured or not: where the part's contour is nobody has seen yet.
@@ -62,8 +63,11 @@ struct GateRequest {
     bool tells_mode = true;               // RobotLink::tells_mode()
     // unknown = any but stopped and fault; and but unknown, unless the robot cannot tell its mode.
     RobotMode required_mode = RobotMode::unknown;
-    std::string now_utc;                    // wall clock, as utc_now()
-    double calibration_age_days = 365;      // an older calibration is refused (Requirements)
+    std::string now_utc;                // wall clock, as utc_now()
+    double calibration_age_days = 365;  // an older calibration is refused (Requirements)
+    // Of the bead by its nozzle, one standard deviation; joins sigma at the path. 0: no nozzle is calibrated.
+    double nozzle_sigma_mm = 0;
+    Text nozzle_trouble;                    // why the nozzle's calibration does not hold; the gate refuses
     std::vector<std::string> other_frames;  // that the project's other regions and panel jobs write
     // What the controller holds under region.frame_name now. Absent: nothing is to be pushed, and the pass
     // is good for none; or it could not be read, then `frame_trouble` says why and the gate refuses.

@@ -7,6 +7,7 @@
 // flange_from_sensor.
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -58,9 +59,20 @@ struct RobotSetup {
     // From the instant whose pose the controller tells with a trigger to the exposure, measured by
     // measure_trigger.h: the cut lies latency times speed further along the travel. 0: not stated.
     double trigger_latency_ms = 0;
+    // When it collided, as a person said, ISO 8601, oldest first. What was calibrated before the last one is stale.
+    std::vector<std::string> collisions;
 };
 
-// A calibration that turns a sensor's frames into millimetres on the flange.
+// The nozzle's tip on the flange as it was touched (core/calibration/nozzle/nozzle.h).
+struct NozzleTip {
+    Pose flange_from_nozzle = Pose::Identity();
+    Eigen::Matrix3d covariance_mm2 = Eigen::Matrix3d::Zero();  // of the tip, flange
+    double degrees = std::numeric_limits<double>::infinity();  // of freedom of it; infinite: stated
+    double off_programmed_mm = 0;  // off the programmed tool, where that is beyond chance
+};
+
+// A calibration that turns a sensor's frames into millimetres on the flange; or, with `nozzle`, where the robot's nozzle
+// is: the newest one of a robot that serves is in use (projects/station/nozzle.h).
 struct Calibration {
     std::string id;
     std::string method;  // "simulated truth", "tcp-sphere", "stripe-camera", "factory", ...
@@ -73,6 +85,7 @@ struct Calibration {
     Pose flange_from_sensor = Pose::Identity();
     Matrix6 covariance = Matrix6::Zero();
     Verdict verdict = Verdict::undetermined;
+    std::optional<NozzleTip> nozzle;
     nlohmann::json raw =
         nlohmann::json::object();  // the data it was solved from, complete enough to solve again
     nlohmann::json result = nlohmann::json::object();

@@ -11,6 +11,7 @@
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
 #include "projects/station/measure.h"
+#include "projects/station/nozzle.h"
 #include "projects/station/run_release.h"
 
 namespace seamwright {
@@ -213,6 +214,7 @@ class Run {
                     g.calibration_id = c->id;
                     g.calibration_verdict = c->verdict;
                     g.calibrated_utc = c->created_utc;
+                    g.collided_utc = last_collision(project, job_.robot_id);
                     g.calibrated_sensor = c->sensor_identity;
                     g.calibrated_robot = c->robot_identity;
                 }

@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include "core/acceptance/distributions.h"
 #include "core/geometry/notation.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/path_direction.h"
 #include "projects/station/measure.h"
+#include "projects/station/nozzle.h"
 
 namespace seamwright {
 namespace {
@@ -91,6 +93,7 @@ std::vector<Text> not_stated(const Project& project, const CorrectionOptions& op
 bool is_type_a(const Project& project, const BudgetRow& row) {
     if (row.source == ErrorSource::feature || row.source == ErrorSource::reference)
         return std::isfinite(row.degrees);
+    if (row.source == ErrorSource::nozzle) return std::isfinite(row.degrees);
     if (row.source != ErrorSource::hand_eye) return false;
     const Calibration* c = calibration_of(project, row.owner);
     return c && c->method != "factory" && c->method != "simulated truth";
@@ -122,7 +125,8 @@ class Tables {
            const UncertaintyBudget& budget)
         : project_(project), options_(options), spots_(spots), budget_(budget) {}
 
-    MeasurandBudget table(const Measure& measure) const {
+    // `nozzle`: of the robot that lays the bead; nullptr: none, or the measurand is no bead.
+    MeasurandBudget table(const Measure& measure, const Calibration* nozzle = nullptr) const {
         struct Sum {
             BudgetRow row;
             double variance = 0, inputs = 0, n = 0, largest = -1, spread = 0;
@@ -146,6 +150,15 @@ class Tables {
         out.quantity = measure.quantity;
         double random = 0, systematic = 0;
         std::vector<MeanSquare> squares;
+        if (nozzle) {
+            Sum& sum = rows[{ErrorSource::nozzle, nozzle->robot_id}];
+            const double sigma = nozzle_sigma_mm(*nozzle);
+            sum.row.source = ErrorSource::nozzle;
+            sum.row.owner = nozzle->robot_id;
+            sum.variance = sum.inputs = sigma * sigma;
+            sum.n = 1;
+            sum.spread = sum.variance * sum.variance / nozzle->nozzle->degrees;
+        }
         for (auto& [key, sum] : rows) {
             BudgetRow& row = sum.row;
             row.u = std::sqrt(sum.variance);
@@ -187,6 +200,26 @@ class Tables {
     const std::vector<BudgetSpot>& spots_;
     const UncertaintyBudget& budget_;
 };
+
+bool is_bead(Quantity quantity) {
+    return quantity <= Quantity::binormal;
+}
+
+const Calibration* nozzle_in_use(const Project& project, const Region& region) {
+    const RobotSetup* robot = robot_of(project, region);
+    return robot ? nozzle_of(project, robot->id) : nullptr;
+}
+
+void add_nozzle_remarks(const Project& project, const Calibration& nozzle, std::vector<Text>& remarks) {
+    if (Text trouble = nozzle_trouble(project, nozzle.robot_id); !trouble.empty())
+        remarks.push_back(std::move(trouble));
+    if (nozzle.nozzle->off_programmed_mm > 0)
+        remarks.push_back(
+            Text("Robot {}: the nozzle lies {:.2f} mm off the programmed tool; the budget holds where the "
+                 "found tool is "
+                 "entered on the controller.",
+                 nozzle.robot_id, nozzle.nozzle->off_programmed_mm));
+}
 
 // Normal and binormal where either is largest.
 std::vector<Measure> worst_of(const std::vector<PathDirection>& directions, const UncertaintyBudget& budget,
@@ -238,6 +271,7 @@ struct FirstOrder {
     RegionBudget budget;
     std::vector<Measure> measures;
     std::array<PathDirection, 2> at;
+    const Calibration* nozzle = nullptr;  // of the robot that lays the bead
 };
 
 Expected<FirstOrder> first_order(const Project& project, const Region& region, const Prepared& p,
@@ -260,8 +294,11 @@ Expected<FirstOrder> first_order(const Project& project, const Region& region, c
             out.measures.push_back(
                 {static_cast<Quantity>(static_cast<int>(Quantity::x) + static_cast<int>(i))});
     const Tables tables(project, p.correction, p.spots, budget);
-    for (const Measure& m : out.measures) b.measurands.push_back(tables.table(m));
+    out.nozzle = nozzle_in_use(project, region);
+    for (const Measure& m : out.measures)
+        b.measurands.push_back(tables.table(m, is_bead(m.quantity) ? out.nozzle : nullptr));
     b.remarks = not_stated(project, p.correction, p.spots);
+    if (out.nozzle) add_nozzle_remarks(project, *out.nozzle, b.remarks);
     return out;
 }
 
@@ -332,6 +369,10 @@ Expected<RegionBudget> region_budget(const Project& project, const Region& regio
     RegionCorrector corrector(project, region);
     RegionCorrection found;
     const auto truth = printed(d);
+    // Of the bead alone, and of its own: without a nozzle the draws are what they were.
+    const double nozzle_mm = first.nozzle ? nozzle_sigma_mm(*first.nozzle) : 0;
+    std::mt19937_64 nozzle_random(options.seed + 1);
+    std::normal_distribution<double> nozzle_draw;
     const auto trial = [&](std::span<double> values) {
         if (!corrector.correct(draws.next(), found)) return false;
         if (found.status != CorrectionStatus::ok && found.status != CorrectionStatus::over_limit)
@@ -341,7 +382,8 @@ Expected<RegionBudget> region_budget(const Project& project, const Region& regio
         for (std::size_t i = 0; i < first.measures.size(); ++i) {
             const int k = static_cast<int>(first.measures[i].quantity) - static_cast<int>(Quantity::x);
             if (k < 0)
-                values[i] = first.at[i].value(estimate) - first.at[i].value(d);
+                values[i] = first.at[i].value(estimate) - first.at[i].value(d) +
+                            (nozzle_mm > 0 ? nozzle_mm * nozzle_draw(nozzle_random) : 0);
             else
                 values[i] = k < 3 ? off[k] : std::remainder(off[k], 360.0);
         }

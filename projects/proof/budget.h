@@ -8,6 +8,9 @@
 // standard uncertainty (root mean square over the row's spots), the sensitivity is u / u(x). Rows are independent:
 // the shares add up to 1.
 //
+// The nozzle, where one is calibrated, errs at the bead and not in D (projects/station/nozzle.h): a row of normal and
+// binormal alone, systematic.
+//
 // Type A: estimated from observations: the feature's covariance and the reference's, with the points that the feature
 // rests on in the reference profile less kFitted as degrees of freedom (of fewer points it counts as stated); a hand-eye that was calibrated, whose residuals are so many that its degrees count
 // as infinite. Type B: all that is stated. Effective degrees of freedom: Welch-Satterthwaite; k = t_95(nu).

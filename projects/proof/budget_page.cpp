@@ -133,6 +133,8 @@ Text name_of(ErrorSource source) {
             return Text("reference");
         case ErrorSource::robot_taught:
             return Text("arrival, taught");
+        case ErrorSource::nozzle:
+            return Text("nozzle");
         case ErrorSource::hand_eye:
             return Text("hand-eye");
         case ErrorSource::scale_x:

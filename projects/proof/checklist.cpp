@@ -10,6 +10,7 @@
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/measure.h"
+#include "projects/station/nozzle.h"
 
 namespace seamwright {
 namespace {
@@ -110,8 +111,19 @@ CheckItem check_calibrations(const Project& p, const std::string& now_utc) {
             return stale(kStep, Text("calibration {} of sensor {} is {} days old, {} are allowed", c->id,
                                      s.id, fmt::format("{:.0f}", *age),
                                      fmt::format("{:.0f}", p.requirements.calibration_age_days)));
+        if (const std::string collided = last_collision(p, c->robot_id);
+            before_collision(c->created_utc, collided))
+            return stale(kStep, Text("calibration {} of sensor {} is older than the collision of {}", c->id,
+                                     s.id, collided));
         evidence.push_back(Text("sensor {}: {} of {}, {}", s.id, c->method, date_of(c->created_utc),
                                 Text(name_of(c->verdict).data())));
+    }
+    for (const RobotSetup& r : p.robots) {
+        const Calibration* nozzle = nozzle_of(p, r.id);
+        if (!nozzle) continue;
+        if (Text trouble = nozzle_trouble(p, r.id); !trouble.empty()) return stale(kStep, std::move(trouble));
+        evidence.push_back(Text("robot {}: nozzle of {}, three sigma {} mm", r.id,
+                                date_of(nozzle->created_utc), mm(3 * nozzle_sigma_mm(*nozzle))));
     }
     return done(kStep, Text("every sensor has a fresh calibration in use"), std::move(evidence));
 }

@@ -10,6 +10,7 @@
 #include "core/correction/travel.h"
 #include "core/numbers.h"
 #include "projects/station/measure.h"
+#include "projects/station/nozzle.h"
 
 namespace seamwright {
 namespace {
@@ -44,6 +45,7 @@ class Forecaster {
         : project_(project),
           options_(correction_options(project, region)),
           spots_(std::move(spots)),
+          nozzle_mm_(nozzle_sigma_mm(project, region)),
           middle_(Eigen::Vector3d::Zero()) {
         for (SpotObservation& s : spots_) {
             middle_ += point(s) / static_cast<double>(spots_.size());
@@ -85,6 +87,8 @@ class Forecaster {
             }
             worst.deg = std::max(worst.deg, deg_from_rad(worst_sigma(covariance.bottomRightCorner<3, 3>())));
         }
+        // As the gate sums it.
+        if (nozzle_mm_ > 0) worst.mm = std::hypot(worst.mm, nozzle_mm_);
         return worst;
     }
 
@@ -137,6 +141,7 @@ class Forecaster {
     const Project& project_;
     const CorrectionOptions options_;
     Spots spots_;
+    const double nozzle_mm_;
     Eigen::Vector3d middle_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/correction/nuisance.h"
 #include "core/features/kinds/feature_registry.h"
+#include "devices/capture/capture.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"
@@ -83,6 +84,16 @@ void check_calibration(const Calibration& c, Findings& findings) {
         findings.add(where,
                      Text("its verdict is {}, nothing measured with it can be pushed", name_of(c.verdict)),
                      "calibrate again");
+    if (c.nozzle) {
+        findings.rigid(c.nozzle->flange_from_nozzle, joined(where, "", ".nozzle.flange_from_nozzle"));
+        findings.unless(
+            correction::semidefinite(c.nozzle->covariance_mm2) && c.nozzle->degrees >= 1 &&
+                c.nozzle->off_programmed_mm >= 0,
+            where,
+            "the covariance of the nozzle is none: not finite, not symmetric, or negative in some "
+            "direction",
+            "calibrate the nozzle again");
+    }
     if (!c.model) return;
     findings.rigid(c.model->camera_from_laser, joined(where, "", ".camera_from_laser"));
     if (!c.model->table)
@@ -319,6 +330,11 @@ std::vector<Error> check(const Project& project) {
             std::abs(robot.trigger_latency_ms) <= 10000, Text("robot {}", robot.id),
             Text("the trigger's latency of {} ms is not plausible (10 s at most)", robot.trigger_latency_ms),
             "measure it: seamwright measure-trigger");
+    for (const RobotSetup& robot : project.robots)
+        for (const std::string& utc : robot.collisions)
+            findings.unless(utc_seconds(utc).has_value(), Text("robot {}", robot.id),
+                            Text("the date of its collision, \"{}\", is none", utc),
+                            "mark it again: seamwright collision");
     for (const Calibration& calibration : project.calibrations) check_calibration(calibration, findings);
     for (const Spot& spot : project.spots) check_spot(project, spot, findings);
     for (const Region& region : project.regions) check_region(project, region, findings);

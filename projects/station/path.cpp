@@ -8,6 +8,7 @@
 
 #include "projects/gate/safety_gate.h"
 #include "projects/station/measure.h"
+#include "projects/station/nozzle.h"
 
 namespace seamwright {
 namespace {
@@ -95,7 +96,7 @@ class Refusals {
     std::map<std::pair<std::string, std::string>, std::size_t> index_;
 };
 
-void judge(const std::vector<const Region*>& regions, PathAnswer& answer) {
+void judge(const Project& project, const std::vector<const Region*>& regions, PathAnswer& answer) {
     Refusals refusals(answer.refusals);
     for (std::size_t i = 0; i < answer.corrected.points.size(); ++i) {
         const PathCorrection& p = answer.corrected.points[i];
@@ -107,6 +108,8 @@ void judge(const std::vector<const Region*>& regions, PathAnswer& answer) {
         const double most_mm = limit(a.limits.translation_mm, b.limits.translation_mm);
         const double most_deg = limit(a.limits.rotation_deg, b.limits.rotation_deg);
         const double most_sigma = limit(a.sigma_limit_mm, b.sigma_limit_mm);
+        const double nozzle = limit(nozzle_sigma_mm(project, a), nozzle_sigma_mm(project, b));
+        const double sigma_mm = nozzle > 0 ? std::hypot(p.sigma_mm, nozzle) : p.sigma_mm;
         const std::string& id = p.share < 0.5 ? a.id : b.id;
         // The blend is exact to rounding only; NaN refuses.
         constexpr double kRounding = 1e-9;
@@ -117,8 +120,8 @@ void judge(const std::vector<const Region*>& regions, PathAnswer& answer) {
             turn <= most_deg + kRounding, id, i, "deg",
             Text("the rotation of {:.3f} degrees is beyond the limit of {:.3f} degrees", turn, most_deg));
         refusals.refuse_unless(
-            p.sigma_mm >= 0 && p.sigma_mm <= most_sigma + kRounding, id, i, "sigma",
-            Text("sigma of {:.4f} mm at the path is over the limit of {:.4f} mm", p.sigma_mm, most_sigma));
+            sigma_mm >= 0 && sigma_mm <= most_sigma + kRounding, id, i, "sigma",
+            Text("sigma of {:.4f} mm at the path is over the limit of {:.4f} mm", sigma_mm, most_sigma));
     }
 }
 
@@ -171,7 +174,7 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
     }
     SEAM_TRY(auto corrected, correct_path(points, corrections, answer.region_ids, options));
     answer.corrected = std::move(corrected);
-    if (answer.refusals.empty()) judge(regions, answer);
+    if (answer.refusals.empty()) judge(setup, regions, answer);
 
     const Pose frame_from_workobject = workobject_from_frame.inverse();
     answer.path.regions_named = true;

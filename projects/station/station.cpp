@@ -13,6 +13,7 @@
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
 #include "projects/station/measure.h"
+#include "projects/station/nozzle.h"
 #include "projects/station/run_release.h"
 
 namespace seamwright {
@@ -192,6 +193,7 @@ struct Station::Impl {
                 g.calibration_id = calibration->id;
                 g.calibration_verdict = calibration->verdict;
                 g.calibrated_utc = calibration->created_utc;
+                g.collided_utc = last_collision(project, spot->robot_id);
                 g.calibrated_sensor = calibration->sensor_identity;
                 g.calibrated_robot = calibration->robot_identity;
             }
@@ -220,6 +222,10 @@ struct Station::Impl {
         }
         if (const RobotSetup* robot = find_robot(project, robot_id))
             request.required_mode = robot->required_mode;
+        if (const Calibration* nozzle = nozzle_of(project, robot_id)) {
+            request.nozzle_sigma_mm = nozzle_sigma_mm(*nozzle);
+            request.nozzle_trouble = nozzle_trouble(project, robot_id);
+        }
         for (const Region& other : project.regions)
             if (&other != &region) request.other_frames.push_back(other.frame_name);
         for (const PanelJob& other : project.panel_jobs) request.other_frames.push_back(other.frame_name);

@@ -2630,6 +2630,10 @@ Dieser Sensor sendet fertige Profile, oder sein Rohbild ist ausgeschaltet.</tran
         <source>Roughly is enough: it leads to the next poses and tells mirrored axes</source>
         <translation>Ungefähr genügt: sie führt zu den nächsten Posen und erkennt gespiegelte Achsen</translation>
     </message>
+    <message>
+        <source>Bring the tip to the sphere by hand or slowly by jogging, then capture. Turn the flange between touches.</source>
+        <translation>Die Spitze von Hand oder langsam verfahrend an die Kugel bringen, dann aufnehmen. Den Flansch zwischen den Berührungen drehen.</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::Histogram</name>

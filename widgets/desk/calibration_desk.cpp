@@ -331,7 +331,9 @@ bool CalibrationDesk::switches_laser() const {
 // The newest live frame through the same function that captures, so that what is outlined is what will be
 // taken.
 void CalibrationDesk::look() {
-    if (!session_ || !looking_ || look_pending_ || session_->method().capture == CaptureKind::files) return;
+    if (!session_ || !looking_ || look_pending_ || session_->method().capture == CaptureKind::files ||
+        session_->method().capture == CaptureKind::touch)
+        return;
     const SensorSetup* sensor = find_sensor(desk_.project(), session_->sensor_id());
     const auto snapshot = desk_.live().latest(session_->sensor_id());
     if (!sensor || !snapshot || !snapshot->frame || snapshot->number == looked_number_) return;

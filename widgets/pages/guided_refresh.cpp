@@ -258,8 +258,17 @@ void GuidedPage::refresh_next() {
     propose(isVisible() ? pose : std::nullopt);
     const RobotSetup* robot = find_robot(desk_.project(), s.robot_id());
     copy_next_->setVisible(pose.has_value());
-    set_target_->setVisible(simulated_sensor());
+    const bool touch = s.method().capture == CaptureKind::touch;
+    set_target_->setVisible(simulated_sensor() && !touch);
+    automatic_->setVisible(!touch);  // standing still is no touch
     go_there_->setVisible(simulated_robot() && pose);
+    if (touch) {
+        next_->setText(
+            tr("Bring the tip to the sphere by hand or slowly by jogging, then capture. Turn the flange "
+               "between touches."));
+        next_words_->hide();
+        return;
+    }
     if (!pose) {
         next_->setText(
             std::none_of(s.state().captures.begin(), s.state().captures.end(),
@@ -449,6 +458,7 @@ void GuidedPage::mark_next() {
     const bool there = !to || (at && distance_mm(*at, *to) < kWordMm);
     const auto take = [&](QPushButton* capture) {
         if (!live) return load_;
+        if (s.method().capture == CaptureKind::touch) return capture;
         if (simulated_sensor() && !target_set_) return set_target_;
         return simulated_robot() && !there ? go_there_ : capture;
     };

@@ -17,6 +17,7 @@
 #include "projects/file/project_file.h"
 #include "projects/file/stored_text.h"
 #include "projects/model/run.h"
+#include "projects/station/measure.h"
 
 namespace seamwright::cli {
 namespace {
@@ -96,9 +97,12 @@ Expected<std::string> store(const CalibrateArguments& a, const CalibrationMethod
     c.method = method.id;
     c.sensor_id = a.sensor;
     c.sensor_identity = sensor->identity;
-    if (!project.robots.empty()) {
-        c.robot_id = project.robots.front().id;
-        c.robot_identity = project.robots.front().identity;
+    // A nozzle is its sensor's robot's.
+    const RobotSetup* robot = c.nozzle && base ? find_robot(project, base->robot_id) : nullptr;
+    if (!robot && !project.robots.empty()) robot = &project.robots.front();
+    if (robot) {
+        c.robot_id = robot->id;
+        c.robot_identity = robot->identity;
     }
     c.created_utc = utc_now();
     c.source = std::filesystem::absolute(a.data).string();
@@ -297,7 +301,8 @@ void add_method(CommandLine& line, CLI::App& group, const CalibrationMethod& met
     if (method.table)
         command->add_option("--table", a->table, "Where the table itself goes")->type_name("TABLE.lut");
     if (images) add_image_options(*command, *a);
-    if (method.capture != CaptureKind::files) add_live_options(*command, method, a->live);
+    if (method.capture != CaptureKind::files && method.capture != CaptureKind::touch)
+        add_live_options(*command, method, a->live);
     line.on(command, [&method, a] { return calibrate(method, *a); });
 }
 

@@ -125,6 +125,8 @@ std::string_view to_string(ErrorSource source) {
             return "reference";
         case ErrorSource::robot_taught:
             return "robot_taught";
+        case ErrorSource::nozzle:
+            return "nozzle";
         case ErrorSource::hand_eye:
             return "hand_eye";
         case ErrorSource::scale_x:

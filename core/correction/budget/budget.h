@@ -27,6 +27,7 @@ enum class ErrorSource {
     robot_run,  // the arrival of the run
     reference,  // taught once, the same ever after, as all below
     robot_taught,
+    nozzle,  // of the bead, not of D: no term of an UncertaintyBudget (projects/proof/budget.h)
     hand_eye,
     scale_x,
     scale_z,

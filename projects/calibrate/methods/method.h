@@ -23,7 +23,8 @@ using ExcludedIds = std::vector<std::string>;
 // What is taken when the robot stands still. `files`: this method's data are measured elsewhere and loaded.
 // `apex`: of a triangular body, see apex_pair.h. `board_points`: corners of a board in the robot's base,
 // through the calibration in use. `board_chain`: one sensor's chain from the plate's place to its laser
-// plane; one stand of the robot takes those of all its sensors.
+// plane; one stand of the robot takes those of all its sensors. `touch`: the robot's pose alone, when a person says that the
+// tip touches.
 enum class CaptureKind {
     sphere_profile,
     board_and_stripe,
@@ -32,6 +33,7 @@ enum class CaptureKind {
     apex,
     board_points,
     board_chain,
+    touch,
     files
 };
 // A whole board must be in the picture, taken with the laser off where the sensor can switch it.

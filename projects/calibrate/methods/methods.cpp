@@ -8,7 +8,7 @@ const std::vector<CalibrationMethod>& calibration_methods() {
     static const std::vector<CalibrationMethod> methods{
         tcp_sphere_method(), stripe_camera_method(), hand_eye_method(), laser_plane_method(),
         lut_method(),        static_method(),        camera_method(),   lens_method(),
-        plate_method(),      drift_method(),         on_part_method()};
+        plate_method(),      drift_method(),         on_part_method(),  nozzle_method()};
     return methods;
 }
 

@@ -16,6 +16,7 @@ CalibrationMethod lens_method();
 CalibrationMethod plate_method();
 CalibrationMethod drift_method();
 CalibrationMethod on_part_method();
+CalibrationMethod nozzle_method();
 
 const std::vector<CalibrationMethod>& calibration_methods();
 const CalibrationMethod* find_method(const std::string& id);  // nullptr: unknown

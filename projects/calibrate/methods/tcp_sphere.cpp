@@ -97,6 +97,7 @@ Expected<CalibrationSolution> solve_tcp_sphere(const json& data, const ExcludedI
         sigma["radius_mm"] = solved.radius_sigma_mm;
         sigma["working_mm"] = solved.working_sigma_mm;
         result["sigma"] = std::move(sigma);
+        result["centre_covariance_mm2"] = matrix_json(solved.centre_covariance);
         result["covariance_pose"] = matrix_json(solved.covariance);
         result["working_point_mm"] = vector_json(solved.working_point_mm);
     } else {

@@ -37,6 +37,7 @@ struct Take {
 
     Expected<void> operator()(std::monostate) const { return {}; }
     Expected<void> operator()(const PlateInWorld&) const { return {}; }
+    Expected<void> operator()(const NozzleOnFlange&) const { return {}; }
     Expected<void> operator()(const SensorOnFlange& found) const {
         put_on_flange(found.flange_from_sensor, c);
         return {};
@@ -95,6 +96,10 @@ Expected<Calibration> calibration_of_solution(const CalibrationMethod& method, c
     c.verdict = judgement.verdict;
     c.raw = {{"data", data}, {"exclude", exclude}};
     c.result = solution.document;
+    if (const auto* nozzle = std::get_if<NozzleOnFlange>(&solution.found))
+        c.nozzle = NozzleTip{nozzle->flange_from_nozzle.pose,
+                             nozzle->flange_from_nozzle.covariance.topLeftCorner<3, 3>(), nozzle->degrees,
+                             nozzle->off_programmed_mm};
     if (method.use == AnswerUse::sensor) SEAM_OK(std::visit(Take{method, solution, base, c}, solution.found));
     return c;
 }

@@ -214,9 +214,9 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
                                     const Frame* board, const std::optional<Pose>& base_from_flange) {
     const Text where("sensor {}", sensor.id);
     for (const Frame* frame : {&stripe, board})
-        if (frame && frame->status != FrameStatus::ok)
+        if (method.capture != CaptureKind::touch && frame && frame->status != FrameStatus::ok)
             return input_error(Text("the frame is {}", to_string(frame->status)), where, "take it again");
-    const bool image = method.capture != CaptureKind::sphere_profile;
+    const bool image = method.capture != CaptureKind::sphere_profile && method.capture != CaptureKind::touch;
     if (image && stripe.image.empty())
         return input_error("the sensor gives no image", where, "switch its raw image on");
     if (method.robot && method.capture != CaptureKind::board_and_stripe && !base_from_flange)
@@ -249,6 +249,9 @@ Expected<TakenCapture> capture_shot(const CalibrationMethod& method, const json&
         case CaptureKind::apex:
             SEAM_OK(note_size(taken.settings, sensor, stripe));
             entry = apex_pair(taken.settings, sensor, base, stripe, base_from_flange);
+            break;
+        case CaptureKind::touch:
+            entry = json{{"base_from_flange", pose_json(*base_from_flange)}};
             break;
         case CaptureKind::files:
             return usage_error("the data of this method are loaded from a file", method.id);

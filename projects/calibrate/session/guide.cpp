@@ -22,6 +22,7 @@ const std::vector<TargetPlace>* views_of(const CalibrationMethod& method) {
             return &line_views();
         case CaptureKind::apex:
             return &apex_views();
+        case CaptureKind::touch:
         case CaptureKind::files:
             break;
     }

@@ -216,7 +216,13 @@ Expected<CalibrationFinding> finding_in(const json& document) {
          {take("flange_from_sensor", [](const UncertainPose& p) { return SensorOnFlange{p}; }),
           take("flange_from_camera", [](const UncertainPose& p) { return CameraOnFlange{p}; }),
           take("base_from_camera", [](const UncertainPose& p) { return CameraBesideRobot{p}; }),
-          take("world_from_plate", [](const UncertainPose& p) { return PlateInWorld{p}; })})
+          take("world_from_plate", [](const UncertainPose& p) { return PlateInWorld{p}; }),
+          take("flange_from_nozzle", [&](const UncertainPose& p) {
+              const double degrees = number_or_none(document, "degrees"),
+                           off = number_or_none(document, "off_programmed_mm");
+              return NozzleOnFlange{p, degrees >= 1 ? degrees : std::numeric_limits<double>::infinity(),
+                                    off > 0 ? off : 0};
+          })})
         if (!taken) return tl::unexpected(taken.error());
     return found;
 }

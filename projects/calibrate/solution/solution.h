@@ -10,6 +10,7 @@
 // an undetermined answer are null. Poses are written as by pose_json(). "notices" are sentences worth a look.
 // What a method adds stands at the head of its file.
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -46,6 +47,13 @@ struct PixelTable {
 struct PlateInWorld {
     UncertainPose world_from_plate;
 };
+// Where the nozzle's tip is (core/calibration/nozzle/nozzle.h). `degrees`: of freedom of the covariance, infinite when it
+// is stated. `off_programmed_mm`: off the programmed tool, where that is beyond chance; else 0.
+struct NozzleOnFlange {
+    UncertainPose flange_from_nozzle;
+    double degrees = std::numeric_limits<double>::infinity();
+    double off_programmed_mm = 0;
+};
 // One a sensor; without `reference_from_laser` the chain ends in the world, not on the flange.
 struct SensorChains {
     struct Chain {
@@ -56,8 +64,9 @@ struct SensorChains {
     std::vector<Chain> chains;
 };
 // monostate: nothing that another step takes over (a lens, a check, an undetermined answer).
-using CalibrationFinding = std::variant<std::monostate, SensorOnFlange, CameraOnFlange, CameraBesideRobot,
-                                        CameraAndLaser, PixelTable, PlateInWorld, SensorChains>;
+using CalibrationFinding =
+    std::variant<std::monostate, SensorOnFlange, CameraOnFlange, CameraBesideRobot, CameraAndLaser,
+                 PixelTable, PlateInWorld, NozzleOnFlange, SensorChains>;
 
 struct CalibrationSolution {
     CalibrationReport report;  // its judgement is the answer's verdict

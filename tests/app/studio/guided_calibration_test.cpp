@@ -533,6 +533,13 @@ class GuidedFile : public Guided, public testing::WithParamInterface<const char*
             points.push_back({{"plate", {on_plate.x(), on_plate.y(), on_plate.z()}},
                               {"world", {world.x(), world.y(), world.z()}}});
         }
+        if (method == "nozzle") {
+            json touches = find_method("nozzle")->example();
+            const auto pose = parse_pose(touches["touches"][4]["base_from_flange"], "").value();
+            touches["touches"][4]["base_from_flange"] =
+                pose_json(make_pose(pose.linear(), pose.translation() + Eigen::Vector3d(2, 1, 2)));
+            return touches;
+        }
         if (method == "laser-plane") return {{"pairs", pairs}};
         if (method == "lut")
             return {{"size", {cell->settings().optics.width, cell->settings().optics.height}},
@@ -614,7 +621,7 @@ TEST_P(GuidedFile, FromItsFile) {
     ASSERT_TRUE(solved(me, window));
     auto* table = me.find<QTableWidget>("captures");
     if (method != "static") {
-        const QString wrong = method == "plate" ? "5" : "14";
+        const QString wrong = method == "plate" ? "5" : method == "nozzle" ? "T5" : "14";
         int row = -1;
         for (int r = 0; r < table->rowCount(); ++r)
             if (table->item(r, 0)->text() == wrong) row = r;
@@ -637,6 +644,7 @@ TEST_P(GuidedFile, FromItsFile) {
     ASSERT_EQ(desk.project().calibrations.size(), 2U) << me.text_of("calibration_said").toStdString();
     const Calibration& made = desk.project().calibrations.back();
     EXPECT_EQ(made.method, method);
+    EXPECT_EQ(made.nozzle.has_value(), method == "nozzle");
     if (use) {
         EXPECT_EQ(desk.project().sensors.at(0).calibration_id, made.id);
         const CalibrationDifference d = difference(made, desk.project().calibrations.front());
@@ -644,7 +652,8 @@ TEST_P(GuidedFile, FromItsFile) {
         EXPECT_LT(d.largest_mm, 0.5);
     }
 }
-INSTANTIATE_TEST_SUITE_P(Methods, GuidedFile, testing::Values("laser-plane", "lut", "plate", "static"),
+INSTANTIATE_TEST_SUITE_P(Methods, GuidedFile,
+                         testing::Values("laser-plane", "lut", "plate", "static", "nozzle"),
                          [](const auto& one) {
                              std::string name = one.param;
                              std::erase(name, '-');

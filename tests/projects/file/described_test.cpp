@@ -37,8 +37,9 @@ MEMBERS(PartSetup, a, b, c, d)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
 MEMBERS(FilterOptions, a, b, c, d, e, f, g)
-MEMBERS(RobotSetup, a, b, c, d, e, f, g)
-MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+MEMBERS(RobotSetup, a, b, c, d, e, f, g, h)
+MEMBERS(NozzleTip, a, b, c, d)
+MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 MEMBERS(FeatureRecipe, a, b, c, d)
 MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u)
 MEMBERS(DrawingOrigin, a, b, c, d, e, f)
@@ -99,8 +100,14 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(sensor, c);
     whole(sensor.peaks, c["peaks"]);
     whole(sensor.filter, c["filter"]);
-    whole(RobotSetup{}, to_json_document(RobotSetup{}));
-    whole(Calibration{}, to_json_document(Calibration{}));
+    RobotSetup robot;
+    robot.collisions = {"2026-03-05T00:00:00Z"};
+    whole(robot, to_json_document(robot));
+    Calibration touched;
+    touched.nozzle.emplace();
+    const auto n = to_json_document(touched);
+    whole(touched, n);
+    whole(*touched.nozzle, n["nozzle"]);
     Spot taught;
     taught.via.resize(1, Pose::Identity());
     taught.reference_arrivals = 5;

@@ -93,18 +93,19 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, Region&
     numbers(visit, path + ".base_from_frame", frame);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateSpot& v) {
-    auto& [id, required, measured, part, measured_at, point, calibration, verdict, calibrated_utc, sensor,
-           calibrated_sensor, robot, calibrated_robot, reference] = v;
+    auto& [id, required, measured, part, measured_at, point, calibration, verdict, calibrated_utc, collided_utc,
+           sensor, calibrated_sensor, robot, calibrated_robot, reference] = v;
     numbers(visit, path + ".point_workobject_mm", point);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateRequest& v) {
     auto& [region, correction, spots, workobject, part, since, now_ns, mode, tells_mode, required_mode,
-           now_utc, age_days, other_frames, frame_now, frame_trouble] = v;
+           now_utc, age_days, nozzle_sigma, nozzle_trouble, other_frames, frame_now, frame_trouble] = v;
     numbers(visit, path + "region", region);
     numbers(visit, path + "correction", correction);
     numbers(visit, path + "spots", spots);
     numbers(visit, path + "base_from_workobject", workobject);
     numbers(visit, path + "calibration_age_days", age_days);
+    numbers(visit, path + "nozzle_sigma_mm", nozzle_sigma);
     numbers(visit, path + "base_from_frame_now", frame_now);
 }
 

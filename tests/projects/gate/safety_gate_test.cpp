@@ -216,6 +216,12 @@ std::vector<Refusal> refusals() {
          "days old"},
         {"CalibrationOfTomorrow", [](R r) { r.spots[1].calibrated_utc = "2026-11-23T12:00:00.000Z"; },
          "in the future"},
+        {"CalibrationBeforeTheCollision", [](R r) { r.spots[1].collided_utc = "2026-02-01T00:00:00.000Z"; },
+         "C1 at spot S2 is older than the collision of 2026-02-01"},
+        {"CollisionWithoutDate", [](R r) { r.spots[1].collided_utc = "soon"; }, "older than the collision"},
+        {"NozzleTooUnsure", [](R r) { r.nozzle_sigma_mm = 0.2; }, "is over the region's limit"},
+        {"NozzleNotKnown", [](R r) { r.nozzle_sigma_mm = -0.1; }, "sigma of the nozzle is not known"},
+        {"NozzleStale", [](R r) { r.nozzle_trouble = "nozzle is older"; }, "nozzle is older"},
         {"CalibrationWithoutDate", [](R r) { r.spots[1].calibrated_utc.clear(); }, "has no date"},
         {"CalibrationOfYesterday", [](R r) { r.spots[1].calibrated_utc = "yesterday"; }, "has no date"},
         {"CalibrationOfNoDay", [](R r) { r.spots[1].calibrated_utc = "2026-02-30T00:00:00Z"; },
@@ -302,7 +308,7 @@ TEST(SafetyGate, EveryNumberThatIsNotFiniteIsRefused) {
     EXPECT_THAT(passes_with_one_not_finite(
                     request, [](const GateRequest& r) { return !pass_gate(r).pass.has_value(); }, tried),
                 ElementsAre());
-    EXPECT_EQ(tried, 3 * (2 + 2 + 12 + 12 + 3 * (36 + 6) + 3 + 2 * 3 + 3 * 3 + 12 + 1 + 12));
+    EXPECT_EQ(tried, 3 * (2 + 2 + 12 + 12 + 3 * (36 + 6) + 3 + 2 * 3 + 3 * 3 + 12 + 1 + 1 + 12));
 }
 
 TEST(SafetyGate, NamesEveryReasonAtOnce) {

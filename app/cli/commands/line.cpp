@@ -81,7 +81,8 @@ Expected<void> change(Project& project, const SetArguments& a, bool types_given)
         if (a.protocol.empty())
             return usage_error("say the protocol of a new link", "--protocol",
                                "seamwright devices lists them");
-        found = project.line.insert(project.line.end(), {});
+        project.line.emplace_back();
+        found = project.line.end() - 1;
         found->id = a.id;
     }
     if (!a.protocol.empty()) found->protocol = a.protocol;

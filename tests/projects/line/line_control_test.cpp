@@ -70,6 +70,9 @@ class LineWatched : public testing::Test {
             control->take(e);
             texts += e.text.english() + "\n";
         };
+        // As the watching tells where it connects the station itself.
+        control->take(
+            {utc_now(), WatchLevel::info, watched::Connected{}, "connected", WatchState::waiting, {}});
         options.alive = [this] { control->alive(); };
     }
     static LineSetup server(const nlohmann::json& more = nlohmann::json::object(),

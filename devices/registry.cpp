@@ -22,6 +22,7 @@
 #include "devices/kuka/kvp.h"
 #include "devices/kuka/program.h"
 #include "devices/kuka/rsi.h"
+#include "devices/line/line_link.h"
 #include "devices/replay/recording.h"
 #include "devices/simulated/cell.h"
 #include "devices/simulated/gripper_cell.h"
@@ -91,6 +92,7 @@ std::optional<std::string> driver_text(std::string_view name) {
     };
     add("sensor", sensor_drivers());
     add("robot", robot_drivers());
+    add("line", line_protocols());
     if (text.empty()) return std::nullopt;
     return text;
 }
@@ -110,6 +112,7 @@ std::string settings_document() {
     };
     add(sensor_drivers());
     add(robot_drivers());
+    add(line_protocols());
     return text;
 }
 

@@ -74,6 +74,7 @@ void add_scan(CommandLine& line);
 void add_fit(CommandLine& line);
 void add_replay(CommandLine& line);
 void add_devices(CommandLine& line);
+void add_line(CommandLine& line);
 void add_sim_cell(CommandLine& line);
 void add_robot_program(CommandLine& line);
 

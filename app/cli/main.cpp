@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     add_calibrate(line);
     add_collision(line);
     add_devices(line);
+    add_line(line);
     add_sim_cell(line);
     add_robot_program(line);
     return line.run(argc, argv);

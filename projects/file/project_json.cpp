@@ -435,6 +435,14 @@ void describe(A& a, Requirements& v) {
     if (A::reading || v.acceptance != AcceptanceRequirements{}) a("acceptance", v.acceptance);
 }
 template <class A>
+void describe(A& a, LineSetup& v) {
+    a("id", v.id);
+    a("protocol", v.protocol);
+    a("enabled", v.enabled);
+    a("settings", v.settings);
+    a("part_types", v.part_types);
+}
+template <class A>
 void describe(A& a, Project& v) {
     a("name", v.name);
     a("requirements", v.requirements);
@@ -445,6 +453,7 @@ void describe(A& a, Project& v) {
     a("spots", v.spots);
     a("regions", v.regions);
     a("panel_jobs", v.panel_jobs);
+    if (A::reading || !v.line.empty()) a("line", v.line);
 }
 
 // --- runs

@@ -113,7 +113,8 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                               check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
                               check_ids(db, "spots", ids_of(project.spots), "spot"),
                               check_ids(db, "regions", ids_of(project.regions), "region"),
-                              check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job")})
+                              check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
+                              check_ids(db, "line", ids_of(project.line), "line link")})
         if (!sound) return sound;
 
     const char* name_row = R"(
@@ -195,10 +196,17 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                                  return s.run();
                              });
     if (!regions) return regions;
-    return save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs,
-                     [](Statement& s, const PanelJob& job) -> Expected<void> {
-                         SEAM_TRY(auto text, row_text(job, "panel job " + job.id, kPanelRow));
-                         s.bind(3, job.frame_name);
+    SEAM_OK(save_rows(db, "panel_jobs", {"frame_name", "body"}, project.panel_jobs,
+                      [](Statement& s, const PanelJob& job) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(job, "panel job " + job.id, kPanelRow));
+                          s.bind(3, job.frame_name);
+                          s.bind(4, text);
+                          return s.run();
+                      }));
+    return save_rows(db, "line", {"protocol", "body"}, project.line,
+                     [](Statement& s, const LineSetup& link) -> Expected<void> {
+                         SEAM_TRY(auto text, row_text(link, "line link " + link.id, kRow));
+                         s.bind(3, link.protocol);
                          s.bind(4, text);
                          return s.run();
                      });
@@ -206,7 +214,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
 
 Expected<Project> load_rows_of(Database& db) {
     for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
-                              "regions", "panel_jobs"})
+                              "regions", "panel_jobs", "line"})
         SEAM_OK(check_rows(db, table));
     Project project;
     SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
@@ -237,8 +245,8 @@ Expected<Project> load_rows_of(Database& db) {
           load_rows(db, "SELECT id, body, reference_profile, template_profile FROM spots ORDER BY position",
                     "spot", project.spots),
           load_rows(db, "SELECT id, body FROM regions ORDER BY position", "region", project.regions),
-          load_rows(db, "SELECT id, body FROM panel_jobs ORDER BY position", "panel job",
-                    project.panel_jobs)})
+          load_rows(db, "SELECT id, body FROM panel_jobs ORDER BY position", "panel job", project.panel_jobs),
+          load_rows(db, "SELECT id, body FROM line ORDER BY position", "line link", project.line)})
         if (!done) return tl::unexpected(done.error());
     return project;
 }

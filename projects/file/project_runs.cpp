@@ -176,6 +176,7 @@ Expected<RunSetup> RunSetup::of(const Project& project) {
     Project slim = project;
     slim.part.mesh_ply.clear();
     slim.requirements.acceptance = {};
+    slim.line.clear();
     for (Calibration& c : slim.calibrations) {
         c.raw = nlohmann::json::object();
         c.result = nlohmann::json::object();

@@ -18,6 +18,7 @@ struct ChecksummedTable {
     const char* name;
     const char* key;      // what a sentence names a row by
     const char* columns;  // all but the checksum, in order
+    int since = 5;        // the first version of the file that has the table, or its checksums
 };
 std::span<const ChecksummedTable> checksummed_tables();
 

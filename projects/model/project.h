@@ -133,6 +133,16 @@ struct Spot {
     std::optional<ContourCurve> curve;
 };
 
+// The PLC or broker of the line beside the station (devices/line/line_link.h); served by run --watch alone.
+struct LineSetup {
+    std::string id;  // "plc"
+    std::string protocol;
+    bool enabled = true;
+    nlohmann::json settings = nlohmann::json::object();
+    // The types that are measured here, as the line numbers them; none: all. A part of any other is refused.
+    std::vector<int> part_types;
+};
+
 // What a person decided to take off a region's displacements: the offset against a better instrument (CMM,
 // tracker). Every version stays; which one acts is in Region::offset_switches.
 struct KeptOffset {
@@ -197,6 +207,7 @@ struct Project {
     std::vector<Spot> spots;
     std::vector<Region> regions;
     std::vector<PanelJob> panel_jobs;
+    std::vector<LineSetup> line;  // no part of a run's setup: it measures nothing
 };
 
 // The region's spots that are from the drawing and not confirmed, in its order; disabled ones too.

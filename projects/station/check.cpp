@@ -6,6 +6,7 @@
 #include "core/correction/nuisance.h"
 #include "core/features/kinds/feature_registry.h"
 #include "devices/capture/capture.h"
+#include "devices/line/line_link.h"
 #include "projects/gate/safety_gate.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"
@@ -308,6 +309,21 @@ Expected<void> none_of_motion(const std::vector<Error>& findings) {
     return tl::unexpected(std::move(error));
 }
 
+namespace {
+void check_line(const LineSetup& link, Findings& findings) {
+    const LineProtocol* protocol = line_protocol(link.protocol);
+    if (!protocol)
+        return findings.add(Text("line {}", link.id),
+                            Text("there is no protocol \"{}\" of a line", link.protocol),
+                            "choose one of `seamwright devices`");
+    if (auto valid = check_settings(link.settings, "settings", protocol->settings()); !valid) {
+        Error error = valid.error();
+        error.within(Text("line {}", link.id));
+        findings.add(std::move(error));
+    }
+}
+}  // namespace
+
 std::vector<Error> check(const Project& project) {
     Findings findings;
     check_ids(project.sensors, "sensor", findings);
@@ -340,6 +356,8 @@ std::vector<Error> check(const Project& project) {
     for (const Region& region : project.regions) check_region(project, region, findings);
     check_ids(project.panel_jobs, "panel job", findings);
     for (const PanelJob& job : project.panel_jobs) check_panel_job(project, job, findings);
+    check_ids(project.line, "line link", findings);
+    for (const LineSetup& link : project.line) check_line(link, findings);
     std::vector<Error> list;
     for (auto& [concern, error] : findings.list) list.push_back(std::move(error));
     return list;

@@ -45,6 +45,7 @@ std::string_view name_of(const WatchHappening& happening) {
         std::string_view operator()(const Lost&) const { return "lost"; }
         std::string_view operator()(const Back&) const { return "back"; }
         std::string_view operator()(const RobotNotice&) const { return "robot"; }
+        std::string_view operator()(const LineNotice&) const { return "line"; }
         std::string_view operator()(const Start&) const { return "start"; }
         std::string_view operator()(const Missed&) const { return "missed"; }
         std::string_view operator()(const SpotDone&) const { return "spot"; }
@@ -55,6 +56,8 @@ std::string_view name_of(const WatchHappening& happening) {
 }
 
 namespace {
+
+constexpr std::chrono::milliseconds kLineSlice{20};
 
 class Watch {
   public:
@@ -70,7 +73,7 @@ class Watch {
             }
             SEAM_TRY(auto start, next_start());
             if (!start.has_value()) continue;
-            SEAM_OK(measure(start->part_id));
+            if (const auto part_id = named(*start)) SEAM_OK(measure(*part_id));
         }
         state_ = WatchState::stopped;
         tell(WatchLevel::info, watched::Stopped{}, Text("stopped after {} parts", counts_.parts));
@@ -84,6 +87,9 @@ class Watch {
 
     void alive() {
         if (options_.alive) options_.alive();
+        if (!options_.line.notices) return;
+        for (const Text& notice : options_.line.notices())
+            tell(WatchLevel::warning, watched::LineNotice{}, Text("line: {}", notice));
     }
 
     void tell(WatchLevel level, WatchHappening happening, Text text) {
@@ -111,7 +117,7 @@ class Watch {
             // file's Error.
             (void)station_.file().append_event(
                 {0, utc_now(), 0, EventKind::alarm, subject.english(), Text("lost: {}", error.text())});
-            tell(WatchLevel::alarm, watched::Lost{subject.english()},
+            tell(WatchLevel::alarm, watched::Lost{subject.english(), error.code},
                  Text("{} is lost: {}", subject, error.text()));
         }
         pause();
@@ -145,7 +151,9 @@ class Watch {
         const auto& robots = station_.project().robots;
         if (robots.empty())
             return usage_error("the project has no robot", station_.file().path().string(), "add one");
-        const auto slice = kCancelSlice / static_cast<int>(robots.size());
+        const bool line = options_.line.starts;
+        // A line that calls is heard as quickly as a robot.
+        const auto slice = (line ? kLineSlice : kCancelSlice) / static_cast<int>(robots.size());
         for (const RobotSetup& setup : robots) {
             RobotLink* robot = station_.robot(setup.id);
             if (!robot) return usage_error("it is not connected", Text("robot {}", setup.id), "connect it");
@@ -154,8 +162,13 @@ class Watch {
                              : robot->wait_start(slice);
             for (const Text& notice : robot->take_notices())
                 tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", setup.id, notice));
+            if (line && (start || start.error().kind == ErrorKind::usage)) {
+                if (!start) std::this_thread::sleep_for(slice);  // it has no call that could be waited for
+                continue;
+            }
             if (start) {
                 ready();
+                caller_ = setup.id;
                 newest(*robot, setup.id, *start);
                 if (expired(*robot, setup.id, *start)) return std::nullopt;
                 return std::optional(*start);
@@ -167,13 +180,47 @@ class Watch {
             }
         }
         ready();
+        return line ? line_call() : std::nullopt;
+    }
+
+    std::optional<StartSignal> line_call() {
+        auto start = options_.line.call();
+        if (!start) return std::nullopt;
+        caller_.clear();
+        const auto age = std::chrono::steady_clock::now().time_since_epoch() -
+                         std::chrono::nanoseconds(start->host_time_ns);
+        if (age <= options_.start_expiry) return start;
+        missed("line", *start, too_old(*start, age));
         return std::nullopt;
+    }
+
+    // As the line names it; nothing: it is not to be measured, and who called is told.
+    std::optional<std::string> named(const StartSignal& start) {
+        if (!options_.line.named) return start.part_id;
+        auto part_id = options_.line.named(start.part_id);
+        if (part_id) return *part_id;
+        const Text why("part {}: {}", name(start), part_id.error().text());
+        missed("line", start, why);
+        if (RobotLink* robot = caller_.empty() ? nullptr : station_.robot(caller_))
+            refuse(*robot, caller_, why);
+        return std::nullopt;
+    }
+
+    void refuse(RobotLink& robot, const std::string& id, const Text& why) {
+        if (auto told = robot.confirm(PartVerdict::refused, why.english()); !told)
+            tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", id, told.error().text()));
+    }
+
+    static Text too_old(const StartSignal& start, std::chrono::nanoseconds age) {
+        return Text("part {}: the call may be {:.0f} s old, another part may stand there; call again",
+                    name(start), std::chrono::duration<double>(age).count());
     }
 
     // The newest of the calls that wait.
     void newest(RobotLink& robot, const std::string& id, StartSignal& start) {
         while (auto newer = robot.wait_start(std::chrono::milliseconds(0))) {
-            missed(id, start, Text("part {}: a newer call came before it was measured", name(start)));
+            missed("robot " + id, start,
+                   Text("part {}: a newer call came before it was measured", name(start)));
             start = *newer;
         }
     }
@@ -184,17 +231,15 @@ class Watch {
         const auto age =
             std::chrono::steady_clock::now().time_since_epoch() - std::chrono::nanoseconds(called_ns);
         if (called_ns == 0 || age <= options_.start_expiry) return false;
-        const Text why("part {}: the call may be {:.0f} s old, another part may stand there; call again",
-                       name(start), std::chrono::duration<double>(age).count());
-        missed(id, start, why);
-        if (auto told = robot.confirm(PartVerdict::refused, why.english()); !told)
-            tell(WatchLevel::warning, watched::RobotNotice{}, Text("robot {}: {}", id, told.error().text()));
+        const Text why = too_old(start, age);
+        missed("robot " + id, start, why);
+        refuse(robot, id, why);
         return true;
     }
 
-    void missed(const std::string& id, const StartSignal& start, const Text& why) {
+    void missed(const std::string& subject, const StartSignal& start, const Text& why) {
         ++counts_.missed;
-        (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, "robot " + id, why});
+        (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, subject, why});
         tell(WatchLevel::warning, watched::Missed{start.part_id}, why);
     }
 
@@ -204,6 +249,7 @@ class Watch {
 
     Expected<void> measure(const std::string& part_id) {
         state_ = WatchState::measuring;
+        calls_heard_ = false;
         ++counts_.parts;
         tell(WatchLevel::info, watched::Start{part_id},
              Text("part {}", part_id.empty() ? Text("(no name)") : Text(part_id)));
@@ -243,6 +289,7 @@ class Watch {
     // round.
     bool part_called() {
         alive();
+        if (options_.line.starts) return line_over();
         for (const RobotSetup& setup : station_.project().robots) {
             if (called_) return true;
             if (RobotLink* robot = station_.robot(setup.id))
@@ -250,6 +297,18 @@ class Watch {
                     called_.emplace(setup.id, *start);
         }
         return called_.has_value();
+    }
+
+    // The line gave the part up, or a robot is at the start of the next one.
+    bool line_over() {
+        if (options_.line.given_up()) return true;
+        const bool first = !std::exchange(calls_heard_, true);
+        for (const RobotSetup& setup : station_.project().robots)
+            if (RobotLink* robot = station_.robot(setup.id))
+                while (robot->wait_start(std::chrono::milliseconds(1)))
+                    // What waited until now was this part's: the robot called before it was measured.
+                    if (!first) return true;
+        return false;
     }
 
     Expected<void> forget_old_runs() {
@@ -265,6 +324,8 @@ class Watch {
     const WatchOptions& options_;
     WatchState state_ = WatchState::connecting;
     WatchCounts counts_;
+    std::string caller_;  // the robot that called for the part that is about to be measured; none: the line
+    bool calls_heard_ = false;                                   // line_over() of this part
     std::optional<std::pair<std::string, StartSignal>> called_;  // by which robot, while a part was released
     std::chrono::milliseconds retry_;
 };

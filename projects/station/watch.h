@@ -36,9 +36,11 @@ namespace watched {
 struct Connected {};  // all devices answer; waiting for a call
 struct Lost {
     std::string device;  // told once, however long it lasts
+    ErrorCode code = ErrorCode::none;
 };
 struct Back {};         // all devices answer again
 struct RobotNotice {};  // a robot said something that is no call
+struct LineNotice {};   // the line beside the station did
 struct Start {
     std::string part_id;
 };
@@ -55,9 +57,9 @@ struct RunDone {
 struct Stopped {};
 }  // namespace watched
 using WatchHappening =
-    std::variant<watched::Connected, watched::Lost, watched::Back, watched::RobotNotice, watched::Start,
-                 watched::Missed, watched::SpotDone, watched::RunDone, watched::Stopped>;
-// connected | lost | back | robot | start | missed | spot | run | stopped
+    std::variant<watched::Connected, watched::Lost, watched::Back, watched::RobotNotice, watched::LineNotice,
+                 watched::Start, watched::Missed, watched::SpotDone, watched::RunDone, watched::Stopped>;
+// connected | lost | back | robot | line | start | missed | spot | run | stopped
 std::string_view name_of(const WatchHappening& happening);
 
 // One thing that happened, for a screen and a log that machines read.
@@ -70,12 +72,26 @@ struct WatchEvent {
     WatchCounts counts;
 };
 
+// The line beside the robots, as LineControl (projects/line/line_control.h) makes it. Every function returns at once.
+struct WatchLine {
+    // Its calls start the parts. A robot's own call is then taken note of, and that a part is over by it; it starts
+    // none. false: the robots' calls do.
+    bool starts = false;
+    std::function<std::optional<StartSignal>()> call;
+    std::function<bool()> given_up;  // the part that it called for
+    // How the part that was called is to be named, by what the robot or the line called it; Error: it is not to be
+    // measured, and why.
+    std::function<Expected<std::string>(const std::string& part_id)> named;
+    std::function<std::vector<Text>()> notices;
+};
+
 struct WatchOptions {
     bool push = false;
     bool keep_images = false;
     std::int64_t parts = 0;      // end after so many; 0 = never
     std::int64_t keep_runs = 0;  // older runs are deleted from the file; 0 = keep all
     AcquireLimits limits;
+    WatchLine line;
     // A call that may be older (StartSignal::not_before_ns), after an outage, is refused: another part may
     // stand there by now. Of several that wait the newest alone counts.
     std::chrono::milliseconds start_expiry{10000};

@@ -182,5 +182,55 @@ TEST_F(RunCommand, ATaughtFrameInMetresIsRefused) {
     EXPECT_EQ(answer["regions"][0]["push"]["status"], "not_pushed");
 }
 
+// The runner and a PLC that is another program's (mbpoll).
+TEST_F(RunCommand, ThePlcStartsAPart) {
+    const ProgramResult set =
+        run({"line", "set", file.string(), "plc", "--protocol", "modbus-server", "--settings",
+             R"({"port": 0, "start": "line", "call_timeout_ms": 60000})", "--json", "-"});
+    ASSERT_EQ(set.exit_code, 0) << set.err;
+    const fs::path err = folder / "watch.err";
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        if (!std::freopen("/dev/null", "w", stdout) || !std::freopen(err.c_str(), "w", stderr)) _exit(1);
+        execl(SEAMWRIGHT_PROGRAM, SEAMWRIGHT_PROGRAM, "run", file.c_str(), "--watch", "--push", "--parts",
+              "1", static_cast<char*>(nullptr));
+        _exit(127);
+    }
+    const std::string said = "line plc: modbus-server, port ";
+    const auto wait_for = [&](const auto& condition) {
+        for (int i = 0; i < 600; ++i) {
+            if (condition()) return true;
+            usleep(100000);
+        }
+        return false;
+    };
+    EXPECT_TRUE(wait_for([&] { return slurp(err).find(said) != std::string::npos; })) << slurp(err);
+    const std::string text = slurp(err);
+    const std::string port =
+        std::to_string(std::stoi("0" + text.substr(std::min(text.size(), text.find(said) + said.size()))));
+    const auto mbpoll = [&](const std::string& arguments) {
+        const fs::path out = folder / "mbpoll.txt";
+        (void)!std::system(
+            ("mbpoll -m tcp -0 -1 -a 1 -t 4 -p " + port + " " + arguments + " >'" + out.string() + "' 2>&1")
+                .c_str());
+        return slurp(out);
+    };
+    EXPECT_TRUE(wait_for([&] { return mbpoll("-r 1 127.0.0.1 0").find("Written 1") != std::string::npos; }));
+    EXPECT_TRUE(
+        wait_for([&] { return mbpoll("-r 102 -c 1 127.0.0.1").find("[102]: \t1") != std::string::npos; }));
+    mbpoll("-r 2 127.0.0.1 0 0 0 815");
+    mbpoll("-r 1 127.0.0.1 1");
+    // The part ends the watching, and the server with it: what was told is in the file.
+    int status = 0;
+    EXPECT_TRUE(wait_for([&] { return waitpid(child, &status, WNOHANG) == child; })) << slurp(err);
+    kill(child, SIGKILL);
+    EXPECT_EQ(WEXITSTATUS(status), 0) << slurp(err);
+    const auto all = ProjectFile::open(file)->runs().value();
+    ASSERT_FALSE(all.empty());
+    EXPECT_EQ(all.back().part_id, "815");
+    EXPECT_EQ(all.back().status, RunStatus::ok);
+}
+
 }  // namespace
 }  // namespace seamwright

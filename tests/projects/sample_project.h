@@ -216,6 +216,8 @@ inline Project sample_project(unsigned seed = 1) {
     job.frame_name = "BASE_DATA[9]";
     job.base_from_frame = make.pose();
     p.panel_jobs.push_back(job);
+    p.line = {{"plc", "modbus-server", true, {{"port", 1502}, {"start", "line"}}, {1, 7}},
+              {"broker", "mqtt", false, {{"address", "10.0.0.9"}}, {}}};
     return p;
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/cli/command.h"
 #include "devices/genicam/genicam.h"
+#include "devices/line/line_link.h"
 #include "devices/registry.h"
 #include "projects/station/station.h"
 
@@ -42,6 +43,7 @@ Expected<Answer> helped(const CLI::App& command, const std::string& driver) {
         for (const RobotDriver& d : robot_drivers())
             if (known.find(std::string(d.name) + ", ") == std::string::npos)
                 known += std::string(d.name) + ", ";
+        for (const LineProtocol& p : line_protocols()) known += std::string(p.name) + ", ";
         return usage_error(Text("there is no driver \"{}\"", driver), "--help",
                            Text("known are {}all", known));
     }
@@ -83,6 +85,13 @@ void add_devices(CommandLine& line) {
             answer.json["robot_drivers"].push_back(
                 {{"name", d.name}, {"help", d.help}, {"settings", settings_json(d.settings())}});
             answer.text += fmt::format("  {:<12} {}\n", d.name, d.help);
+        }
+        answer.json["line_protocols"] = json::array();
+        answer.text += "line protocols\n";
+        for (const LineProtocol& p : line_protocols()) {
+            answer.json["line_protocols"].push_back(
+                {{"name", p.name}, {"help", p.help}, {"settings", settings_json(p.settings())}});
+            answer.text += fmt::format("  {:<13} {}\n", p.name, p.help);
         }
         if (*search) {
             answer.json["cameras"] = json::array();

@@ -18,6 +18,7 @@
 #include "app/cli/watch_outputs.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
+#include "projects/line/line_control.h"
 #include "projects/proof/replay.h"
 #include "projects/station/check.h"
 #include "projects/station/station.h"
@@ -60,6 +61,7 @@ struct HappeningJson {
     json operator()(const watched::Connected&) const { return json::object(); }
     json operator()(const watched::Back&) const { return json::object(); }
     json operator()(const watched::RobotNotice&) const { return json::object(); }
+    json operator()(const watched::LineNotice&) const { return json::object(); }
     json operator()(const watched::Stopped&) const { return json::object(); }
     json operator()(const watched::Lost& lost) const { return {{"device", lost.device}}; }
     json operator()(const watched::Start& start) const { return {{"part", start.part_id}}; }
@@ -131,12 +133,19 @@ Expected<Answer> watch_project(const RunArguments& a) {
     SEAM_TRY(auto recorder, open_recorder(a.record, {.images = true}));
     station.record_to(recorder);
     SEAM_TRY(auto outputs, WatchOutputs::open(a.outputs, station, a.push));
-    options.alive = [&] { outputs.alive(); };
+    SEAM_TRY(auto line, LineControl::open(station.project()));
+    for (const std::string& link : line.described()) fmt::print(stderr, "{}\n", link);
+    options.line = line.watch_line();
+    options.alive = [&] {
+        outputs.alive();
+        line.alive();
+    };
     bool proven = false;
     Expected<void> proof;
     options.tell = [&](const WatchEvent& e) {
         print_status(e);
         outputs.tell(e);
+        line.take(e);
         if (log) log->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
         // The first good part proves it; one a part would only fill the file.
         const auto* run = std::get_if<watched::RunDone>(&e.happening);

@@ -133,6 +133,33 @@ TEST_F(Furniture, ASpotIsToldToStandStillAtTheTrigger) {
     EXPECT_FALSE(box->isChecked());
 }
 
+TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {
+    start(true);
+    Desk& desk = studio->desk();
+    desk.selection().select_spot(desk.project().spots.at(0).id);
+    const auto spot = [&]() -> const Spot& { return desk.project().spots.at(0); };
+    Person me(window());
+    me.step(3);
+    ASSERT_GT(spot().reference_profile.size(), 0U);
+    // As a proposal leaves it: drawn a little beside where the part is.
+    Spot drawn = spot();
+    drawn.reference_state = ReferenceState::from_drawing;
+    drawn.reference_mm += Eigen::Vector3d(0.2, 0, -0.1);
+    drawn.drawn = DrawingOrigin{"door.step", 1000, 1, "e1", 100, drawn.reference_mm};
+    ASSERT_TRUE(desk.edit(drawn, "taken from the drawing"));
+    auto* text = me.find<QLabel>("reference");
+    ASSERT_TRUE(text);
+    EXPECT_TRUE(text->text().contains("not confirmed")) << text->text().toStdString();
+    window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/spot_from_drawing.png");
+    me.click("confirm_spot");
+    EXPECT_TRUE(me.wait([&] { return spot().reference_state == ReferenceState::measured; }));
+    EXPECT_NEAR(spot().reference_mm.x(), drawn.reference_mm.x() - 0.2, 0.1);
+    EXPECT_FALSE(window().findChild<QPushButton*>("confirm_spot")->isVisible());
+    window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/spot_confirmed.png");
+    me.shortcut(Qt::Key_Z);
+    EXPECT_EQ(spot().reference_state, ReferenceState::from_drawing) << "one step back";
+}
+
 TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {
     start(true);
     Desk& desk = studio->desk();

@@ -228,7 +228,9 @@ class Stored : public testing::Test {
         project.part.name = "door left";
         project.sensors.push_back(
             {"A", "simulated", json::object(), {"simulated", "Seamwright", "S", "0001"}, {}, {}, "C"});
-        project.robots.push_back({"R", "simulated", json::object(), {"simulated", "KUKA", "KR", "0002"}, {}});
+        RobotSetup robot;
+        robot.id = "R", robot.driver = "simulated", robot.identity = {"simulated", "KUKA", "KR", "0002"};
+        project.robots.push_back(robot);
         Calibration c;
         c.id = "C";
         c.sensor_id = "A";

@@ -129,8 +129,12 @@ Expected<TaughtSpot> taught_from(const Spot& draft, std::vector<SpotMeasurement>
     if (kept.size() > 1) taught.spread_mm = (squares / static_cast<double>(kept.size() - 1)).cwiseSqrt();
     taught.spot.reference_mm = {mean.x(), 0.0, mean.y()};
     taught.spot.reference_state = ReferenceState::measured;
-    const auto typical = std::min_element(kept.begin(), kept.end(), [&](std::size_t i, std::size_t k) {
-        return (point(i) - mean).squaredNorm() < (point(k) - mean).squaredNorm();
+    // The profile that is kept states the middle one of the sigmas: the forecast judges by it, and the surest of ten would
+    // promise what the others do not keep.
+    std::vector<std::size_t> by_sigma = kept;
+    const auto typical = by_sigma.begin() + static_cast<std::ptrdiff_t>(by_sigma.size() / 2);
+    std::nth_element(by_sigma.begin(), typical, by_sigma.end(), [&](std::size_t i, std::size_t k) {
+        return taught.measurements[i].sigma_mm < taught.measurements[k].sigma_mm;
     });
     taught.spot.reference_profile = profiles[*typical];
     // An arrival counts where one of its measurements does; those of a robot that stands still are one.

@@ -41,8 +41,8 @@ struct TeachOptions {
     std::function<void(const RunProgress&)> progress;
 };
 
-// `spot` comes back with reference_mm (mean of the measurements, y = 0; ReferenceState::measured), reference_arrivals and reference_profile (the one's
-// whose point is the most typical).
+// `spot` comes back with reference_mm (mean of the measurements, y = 0; ReferenceState::measured), reference_arrivals and reference_profile (that
+// whose sigma is the middle one).
 struct TaughtSpot {
     Spot spot;
     std::vector<SpotMeasurement> measurements;            // all, in order

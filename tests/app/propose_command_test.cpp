@@ -134,7 +134,7 @@ TEST_F(ProposeCommand, BadArgumentsAreOneSentence) {
     refused({"confirm", file, "--region", "nowhere"}, "there is no region \"nowhere\"");
     refused({"confirm", file, "--all", "--spot", "T1"}, "some of them");
     refused({"confirm", file, "--spot", "T1"}, "it is not from the drawing");
-    refused({"confirm", file, "--shift-limit-mm", "nan"}, "--shift-limit-mm");
+    refused({"confirm", file, "--shift-limit-mm", "nan"}, "the limit of the shift");
 }
 
 }  // namespace

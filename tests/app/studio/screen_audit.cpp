@@ -25,6 +25,7 @@
 #include <QTextDocument>
 #include <QToolButton>
 #include <QTreeView>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -230,17 +231,26 @@ Picture picture_of(QWidget* whole) {
     return p;
 }
 
+// Shades within a sixteenth of the scale count as one: a button's ground runs from one to the next, a line of pixels each.
 QColor ground_of(const QImage& image, const QRect& part) {
-    std::map<QRgb, int> count;
+    std::map<QRgb, std::map<QRgb, int>> shades;
     const qreal ratio = image.devicePixelRatio();
     const QRect box =
         QRectF(QPointF(part.topLeft()) * ratio, QSizeF(part.size()) * ratio).toRect() & image.rect();
     for (int y = box.top(); y <= box.bottom(); ++y)
-        for (int x = box.left(); x <= box.right(); ++x) ++count[image.pixel(x, y)];
+        for (int x = box.left(); x <= box.right(); ++x) {
+            const QRgb colour = image.pixel(x, y);
+            ++shades[colour & 0xF0F0F0][colour];
+        }
     QRgb most = 0;
     int times = 0;
-    for (const auto& [colour, n] : count)
-        if (n > times) most = colour, times = n;
+    for (const auto& [about, colours] : shades) {
+        int all = 0;
+        const auto commonest = std::max_element(
+            colours.begin(), colours.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        for (const auto& [colour, n] : colours) all += n;
+        if (all > times) most = commonest->first, times = all;
+    }
     return QColor::fromRgb(most);
 }
 

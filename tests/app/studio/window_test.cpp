@@ -149,12 +149,13 @@ TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {
     ASSERT_TRUE(desk.edit(drawn, "taken from the drawing"));
     auto* text = me.find<QLabel>("reference");
     ASSERT_TRUE(text);
-    EXPECT_TRUE(text->text().contains("not confirmed")) << text->text().toStdString();
+    EXPECT_TRUE(me.wait([&] { return text->text().contains("not confirmed"); }))
+        << text->text().toStdString();
     window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/spot_from_drawing.png");
     me.click("confirm_spot");
     EXPECT_TRUE(me.wait([&] { return spot().reference_state == ReferenceState::measured; }));
     EXPECT_NEAR(spot().reference_mm.x(), drawn.reference_mm.x() - 0.2, 0.1);
-    EXPECT_FALSE(window().findChild<QPushButton*>("confirm_spot")->isVisible());
+    EXPECT_TRUE(me.wait([&] { return !window().findChild<QPushButton*>("confirm_spot")->isVisible(); }));
     window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/spot_confirmed.png");
     me.shortcut(Qt::Key_Z);
     EXPECT_EQ(spot().reference_state, ReferenceState::from_drawing) << "one step back";

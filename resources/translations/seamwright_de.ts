@@ -4572,16 +4572,16 @@ ausgelassen</translation>
         <translation>Weiter: Regionen</translation>
     </message>
     <message>
-        <source>From the drawing, not confirmed on the part: nothing is pushed by it.</source>
-        <translation>Aus der Zeichnung, am Teil nicht bestätigt: nach ihm wird nichts übertragen.</translation>
-    </message>
-    <message>
-        <source>From the drawing, not confirmed: connect the devices first.</source>
-        <translation>Aus der Zeichnung, nicht bestätigt: zuerst die Geräte verbinden.</translation>
-    </message>
-    <message>
         <source>Confirm</source>
         <translation>Bestätigen</translation>
+    </message>
+    <message>
+        <source>From the drawing: nothing is pushed by it yet.</source>
+        <translation>Aus der Zeichnung: noch wird damit nichts geschrieben.</translation>
+    </message>
+    <message>
+        <source>From the drawing: connect, then confirm it.</source>
+        <translation>Aus der Zeichnung: verbinden, dann bestätigen.</translation>
     </message>
 </context>
 <context>

@@ -435,16 +435,21 @@ TEST_F(Guided, EveryPageFitsTheScreenInGerman) {
         if (method.id == "drift") continue;  // needs a calibration made with the sphere
         const QString id = QString::fromStdString(method.id);
         go_to_page(me, desk, id);
-        me.click("calibration_set_target");
-        me.click("calibration_go");
+        const bool files = method.capture == CaptureKind::files;
+        const bool looks =
+            !files && method.capture != CaptureKind::touch;  // the nozzle is brought there by hand
+        if (looks) {
+            me.click("calibration_set_target");
+            me.click("calibration_go");
+        }
         ASSERT_TRUE(me.wait([&] { return !desk.worker().busy(); }));
-        if (method.id != "static") {  // which asks for the plate's place first
+        if (looks && method.id != "static") {  // which asks for the plate's place first
             EXPECT_TRUE(me.wait([&] { return me.find<TargetView>("target_view")->seen(); })) << method.id;
         }
         for (const QSize size : {QSize(1280, 800), QSize(1920, 1080)}) {
             window.resize(size);
             QTest::qWait(300);
-            me.look_at(me.find<QPushButton>("calibration_capture"));
+            if (!files) me.look_at(me.find<QPushButton>("calibration_capture"));
             for (auto* area : window.findChildren<QScrollArea*>())
                 if (area->isVisible() && area->isAncestorOf(me.find<QLabel>("guided_title"))) {
                     EXPECT_LE(area->widget()->minimumSizeHint().width(), area->viewport()->width())

@@ -109,8 +109,8 @@ void SpotHead::refresh() {
             break;
         case SpotDeed::confirm:
             state_->setText(connected
-                                ? tr("From the drawing, not confirmed on the part: nothing is pushed by it.")
-                                : tr("From the drawing, not confirmed: connect the devices first."));
+                                ? tr("From the drawing: nothing is pushed by it yet.")
+                                : tr("From the drawing: connect, then confirm it."));
             deed_->setText(tr("Confirm"));
             may = may && connected;
             break;

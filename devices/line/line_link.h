@@ -118,8 +118,9 @@ class LineLink {
     virtual std::optional<LineCall> take_call() = 0;
     // The line has given up the part that it called for: no permission is to wait for it any longer.
     virtual bool given_up() const = 0;
-    // The part that the line speaks of just now.
-    virtual LinePart announced() const = 0;
+    // The part that the line speaks of, for one call of the robot: registers hold it as long as the line lets them, a
+    // message counts once. Taken too late it would name the next part after this one.
+    virtual LinePart take_announced() = 0;
     virtual bool starts_parts() const = 0;
     virtual bool connected() const = 0;
     // What there is to tell since the last call, a sentence each.

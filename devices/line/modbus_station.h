@@ -38,7 +38,7 @@ class ModbusStation {
     void alive();
     std::optional<LineCall> take_call();
     bool given_up() const;
-    LinePart announced() const;
+    LinePart announced() const;  // as the registers stand
     bool starts_parts() const { return options_.line_starts; }
 
     // The link's thread.
@@ -64,7 +64,7 @@ class ModbusLink : public LineLink {
     void alive() override { station_.alive(); }
     std::optional<LineCall> take_call() override { return station_.take_call(); }
     bool given_up() const override { return station_.given_up(); }
-    LinePart announced() const override { return station_.announced(); }
+    LinePart take_announced() override { return station_.announced(); }
     bool starts_parts() const override { return station_.starts_parts(); }
     bool connected() const override { return connected_; }
     std::vector<Text> take_notices() override { return notices_.take(); }

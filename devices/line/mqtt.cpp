@@ -132,9 +132,9 @@ class Mqtt : public LineLink {
         return call;
     }
     bool given_up() const override { return given_up_; }
-    LinePart announced() const override {
+    LinePart take_announced() override {
         const std::lock_guard lock(mutex_);
-        return announced_;
+        return std::exchange(announced_, {});
     }
     bool starts_parts() const override { return settings_.line_starts; }
     bool connected() const override { return connected_; }

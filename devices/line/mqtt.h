@@ -7,7 +7,7 @@
 //
 // NCMD. "id" is the sender's and another one each time: the same one again is a repetition of QoS 1 and does nothing.
 // Retained commands are not obeyed. "start" true calls for the part (setting start: line), false gives it up; without
-// "start" the part is announced for the robot's call. What is no such object is told and dropped.
+// "start" the part is announced for the robot's next call, and for that one alone. What is no such object is told and dropped.
 //
 // While the broker is away results wait in a queue of `queue` messages, the oldest go first when it is full, which is
 // told. A result may come twice after an outage; "run" says so. Of the state only the newest is sent.

@@ -137,9 +137,11 @@ Expected<std::string> LineControl::named(const std::string& part_id) {
     LinePart part = starter ? called_ : LinePart{};
     for (const Link& l : links_) {
         if (starter) break;
-        speaker = &l;
-        part = l.link->announced();
-        if (part != LinePart{}) break;
+        const LinePart announced = l.link->take_announced();  // of all: what is said now is of no later part
+        if (speaker == nullptr || part == LinePart{}) {
+            speaker = &l;
+            part = announced;
+        }
     }
     state_.part = part;
     state_.part_id = part_id.empty() ? part.id() : part_id;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/cli/answers/result_json.h"
 #include "app/cli/demo/demo.h"
-#include "app/cli/result_json.h"
 #include "devices/simulated/scene/door.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"

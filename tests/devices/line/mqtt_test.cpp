@@ -114,7 +114,8 @@ TEST_F(MqttLine, CommandsCallForParts) {
     command(R"({"id":"4","start":true})");  // QoS 1 may say it twice
     EXPECT_FALSE(call(300ms));
     command(R"({"id":"5","part_number":9})");
-    EXPECT_TRUE(soon([&] { return link->announced().number == 9; }));
+    EXPECT_TRUE(soon([&] { return link->take_announced().number == 9; }));
+    EXPECT_EQ(link->take_announced(), LinePart{});  // not the next part too
 }
 
 TEST_F(MqttLine, WhatIsNoCommandStartsNothing) {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "app/cli/command.h"
-#include "app/cli/commands/calibrate_live.h"
+#include "app/cli/commands/calibrate/calibrate_live.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/lookup_table_file.h"

@@ -10,12 +10,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/cli/answers/result_json.h"
+#include "app/cli/answers/run_text.h"
 #include "app/cli/command.h"
+#include "app/cli/commands/production/watch_outputs.h"
 #include "app/cli/recording.h"
-#include "app/cli/result_json.h"
-#include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
-#include "app/cli/watch_outputs.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "projects/line/line_control.h"

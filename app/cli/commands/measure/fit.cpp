@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
-#include "app/cli/pose_argument.h"
 #include "app/cli/signal_watch.h"
 #include "devices/drawing/drawing.h"
 #include "devices/exchange/cloud/cloud_file.h"

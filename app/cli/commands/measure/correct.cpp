@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "app/cli/answers/result_json.h"
 #include "app/cli/command.h"
-#include "app/cli/result_json.h"
 #include "core/correction/correction.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"

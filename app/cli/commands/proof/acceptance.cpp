@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/acceptance_live.h"
 #include "app/cli/command.h"
+#include "app/cli/commands/proof/acceptance_live.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/quality/study_csv.h"

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
-#include "app/cli/pose_argument.h"
 #include "app/cli/signal_watch.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"

@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "app/cli/answers/result_json.h"
+#include "app/cli/answers/run_text.h"
+#include "app/cli/arguments/feature_setting.h"
 #include "app/cli/command.h"
-#include "app/cli/feature_setting.h"
-#include "app/cli/result_json.h"
-#include "app/cli/run_text.h"
 #include "app/cli/signal_watch.h"
 #include "core/panel/panel_fit.h"
 #include "devices/exchange/files.h"

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/cli/answers/result_json.h"
 #include "app/cli/command.h"
 #include "app/cli/recording.h"
-#include "app/cli/result_json.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
 #include "projects/proof/checklist.h"

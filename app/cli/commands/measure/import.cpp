@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/cli/arguments/feature_setting.h"
+#include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
-#include "app/cli/feature_setting.h"
-#include "app/cli/pose_argument.h"
 #include "core/profile/stripe/peaks.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"

@@ -1,8 +1,8 @@
-#include "app/cli/watch_outputs.h"
+#include "app/cli/commands/production/watch_outputs.h"
 
 #include <fmt/format.h>
 
-#include "app/cli/service_manager.h"
+#include "app/cli/commands/production/service_manager.h"
 #include "devices/capture/capture.h"
 #include "devices/exchange/files.h"
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/arguments/pose_argument.h"
 #include "app/cli/command.h"
-#include "app/cli/pose_argument.h"
 #include "devices/exchange/files.h"
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/reteach.h"

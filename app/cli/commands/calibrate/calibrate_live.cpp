@@ -1,8 +1,8 @@
-#include "app/cli/commands/calibrate_live.h"
+#include "app/cli/commands/calibrate/calibrate_live.h"
 
 #include <fmt/format.h>
 
-#include "app/cli/feature_setting.h"
+#include "app/cli/arguments/feature_setting.h"
 #include "app/cli/signal_watch.h"
 #include "projects/calibrate/live.h"
 #include "projects/calibrate/session/answer.h"

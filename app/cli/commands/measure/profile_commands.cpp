@@ -8,10 +8,10 @@
 #include <optional>
 #include <set>
 
+#include "app/cli/answers/result_json.h"
+#include "app/cli/arguments/feature_setting.h"
+#include "app/cli/arguments/no_return_option.h"
 #include "app/cli/command.h"
-#include "app/cli/feature_setting.h"
-#include "app/cli/no_return_option.h"
-#include "app/cli/result_json.h"
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/filter.h"
 #include "core/profile/units.h"

@@ -1,4 +1,4 @@
-#include "app/cli/service_manager.h"
+#include "app/cli/commands/production/service_manager.h"
 
 #include <sys/socket.h>
 #include <sys/un.h>

@@ -1,4 +1,4 @@
-#include "app/cli/pose_argument.h"
+#include "app/cli/arguments/pose_argument.h"
 
 #include "devices/exchange/files.h"
 #include "devices/exchange/json_fields.h"

@@ -1,4 +1,4 @@
-#include "app/cli/no_return_option.h"
+#include "app/cli/arguments/no_return_option.h"
 
 #include <fmt/format.h>
 

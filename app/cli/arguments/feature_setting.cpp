@@ -1,4 +1,4 @@
-#include "app/cli/feature_setting.h"
+#include "app/cli/arguments/feature_setting.h"
 #include "core/features/kinds/feature_registry.h"
 
 #include <fmt/format.h>

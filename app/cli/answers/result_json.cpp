@@ -1,4 +1,4 @@
-#include "app/cli/result_json.h"
+#include "app/cli/answers/result_json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

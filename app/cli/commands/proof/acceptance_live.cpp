@@ -1,4 +1,4 @@
-#include "app/cli/acceptance_live.h"
+#include "app/cli/commands/proof/acceptance_live.h"
 
 #include <fmt/format.h>
 

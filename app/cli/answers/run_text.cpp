@@ -1,8 +1,8 @@
-#include "app/cli/run_text.h"
+#include "app/cli/answers/run_text.h"
 
 #include <fmt/format.h>
 
-#include "app/cli/result_json.h"
+#include "app/cli/answers/result_json.h"
 #include "devices/exchange/pose_json.h"
 
 namespace seamwright::cli {

@@ -255,11 +255,8 @@ class Mqtt : public LineLink {
     void farewell() {
         if (!client_ || !connected_) return;
         send();
-        const std::string bye = dump({{"version", kMqttVersion}, {"online", false}});
-        int mid = 0;
-        mosquitto_publish(client_, &mid, state_topic_.c_str(), static_cast<int>(bye.size()), bye.data(), 1,
-                          true);
-        flying_.push_back(mid);
+        if (const auto mid = say(state_topic_, dump({{"version", kMqttVersion}, {"online", false}})))
+            flying_.push_back(*mid);
         const auto until = Clock::now() + std::chrono::milliseconds(500);
         while (!flying_.empty() && Clock::now() < until)
             if (mosquitto_loop(client_, 20, 1) != MOSQ_ERR_SUCCESS) return;
@@ -275,17 +272,16 @@ class Mqtt : public LineLink {
             notices_.add(Text("the broker at {}:{} answers again", settings_.address, settings_.port));
         told_away_ = false;
         mosquitto_subscribe(client_, nullptr, command_topic_.c_str(), 1);
+        flights_.clear();
+        flying_.clear();  // all that was not acknowledged is sent again
         const std::lock_guard lock(mutex_);
         state_changed_ = true;
         lost_ = 0;
-        flights_.clear();
-        flying_.clear();  // all that was not acknowledged is sent again
         sent_ = first_;
     }
 
     // The results are acknowledged in their order; the state has no place in the queue.
     void heard_publish(int mid) {
-        const std::lock_guard lock(mutex_);
         const auto state = std::find(flying_.begin(), flying_.end(), mid);
         if (state != flying_.end()) flying_.erase(state);
         const auto result =
@@ -293,6 +289,7 @@ class Mqtt : public LineLink {
         if (result == flights_.end()) return;
         const std::uint64_t number = result->second;
         flights_.erase(result);
+        const std::lock_guard lock(mutex_);
         while (first_ <= number && !results_.empty()) {
             results_.pop_front();
             ++first_;
@@ -330,27 +327,46 @@ class Mqtt : public LineLink {
         }
     }
 
+    // Never under our lock: libmosquitto holds its own while it calls us. nullopt: not taken, later again.
+    std::optional<int> say(const std::string& topic, const std::string& text) {
+        int mid = 0;
+        if (mosquitto_publish(client_, &mid, topic.c_str(), static_cast<int>(text.size()), text.data(), 1,
+                              true) != MOSQ_ERR_SUCCESS)
+            return std::nullopt;
+        return mid;
+    }
+
+    std::optional<std::string> changed_state() {
+        const std::lock_guard lock(mutex_);
+        if (!std::exchange(state_changed_, false)) return std::nullopt;
+        return dump(mqtt_state(state_));
+    }
+
+    // The next result that was not sent, sent_ its number.
+    std::optional<std::string> next_result() {
+        const std::lock_guard lock(mutex_);
+        sent_ = std::max(sent_, first_);
+        if (sent_ - first_ >= results_.size()) return std::nullopt;
+        return results_[sent_ - first_];
+    }
+
     // A few at a time wait for their acknowledgement.
     void send() {
         constexpr std::size_t kFlights = 10;
-        const std::lock_guard lock(mutex_);
-        if (std::exchange(state_changed_, false)) {
-            const std::string text = dump(mqtt_state(state_));
-            int mid = 0;
-            if (mosquitto_publish(client_, &mid, state_topic_.c_str(), static_cast<int>(text.size()),
-                                  text.data(), 1, true) == MOSQ_ERR_SUCCESS)
-                flying_.push_back(mid);
-            else
+        if (const auto state = changed_state()) {
+            if (const auto mid = say(state_topic_, *state)) {
+                flying_.push_back(*mid);
+            } else {
+                const std::lock_guard lock(mutex_);
                 state_changed_ = true;
+            }
         }
-        sent_ = std::max(sent_, first_);
-        while (sent_ - first_ < results_.size() && flights_.size() < kFlights) {
-            const std::string& text = results_[sent_ - first_];
-            int mid = 0;
-            if (mosquitto_publish(client_, &mid, result_topic_.c_str(), static_cast<int>(text.size()),
-                                  text.data(), 1, true) != MOSQ_ERR_SUCCESS)
-                return;
-            flights_.emplace_back(mid, sent_++);
+        while (flights_.size() < kFlights) {
+            const auto result = next_result();
+            if (!result) return;
+            const auto mid = say(result_topic_, *result);
+            if (!mid) return;
+            flights_.emplace_back(*mid, sent_++);
         }
     }
 
@@ -365,17 +381,17 @@ class Mqtt : public LineLink {
     int refused_ = 0;
     bool told_away_ = false;
     Clock::time_point give_up_{};
+    std::uint64_t sent_ = 0;                             // number of the next result to be sent
+    std::deque<std::pair<int, std::uint64_t>> flights_;  // results that wait for their acknowledgement
+    std::deque<int> flying_;                             // states that do
 
     // Both.
     mutable std::mutex mutex_;
     LineState state_;
     bool state_changed_ = true, measuring_ = false;
     std::deque<std::string> results_;
-    std::uint64_t first_ = 0,
-                  sent_ = 0;  // numbers of results: of results_.front(), and of the next to be sent
+    std::uint64_t first_ = 0;  // number of results_.front()
     std::uint64_t lost_ = 0;
-    std::deque<std::pair<int, std::uint64_t>> flights_;  // results that wait for their acknowledgement
-    std::deque<int> flying_;                             // states that do
     std::string last_id_;
     std::optional<LineCall> call_;
     LinePart announced_;

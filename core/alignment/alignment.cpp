@@ -92,7 +92,9 @@ Eigen::Vector2d straight_direction(const Profile& p) {
 // A registration is taken over when the contour was found and, for a straight one, only across it.
 bool accept(const Registration& r, const Eigen::Vector2d& reference, const Eigen::Vector2d& straight,
             Registered& out) {
-    if ((r.status != RegistrationStatus::ok && r.status != RegistrationStatus::sliding) ||
+    // A contour that becomes another one while the robot travels is what is looked for here.
+    if ((r.status != RegistrationStatus::ok && r.status != RegistrationStatus::sliding &&
+         r.status != RegistrationStatus::other_shape) ||
         r.inlier_share < kSmallestShare)
         return false;
     out.shift = r.scene_from_template * reference - reference;

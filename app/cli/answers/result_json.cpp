@@ -154,6 +154,7 @@ json registration_json(const Registration& r) {
               {"phi_deg", deg_from_rad(r.scene_from_template.phi_rad)}}},
             {"rms_mm", r.rms_mm},
             {"inliers", r.inlier_share},
+            {"replaced", r.replaced_share},
             {"iterations", r.iterations},
             {"sigma",
              {{"x_mm", std::sqrt(covariance(0, 0))},

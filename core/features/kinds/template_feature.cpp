@@ -58,6 +58,10 @@ class TemplateFeature final : public FeatureFinder {
                 feature.status = FeatureStatus::ill_conditioned;
                 feature.message = "the contour may slide along itself: the template needs an edge or a bend";
                 break;
+            case RegistrationStatus::other_shape:
+                feature.status = FeatureStatus::not_found;
+                feature.message = "where a part of the template belongs stands another contour";
+                return feature;
         }
         if (feature.status == FeatureStatus::ok && r.inlier_share < minimum_share_) {
             feature.status = FeatureStatus::not_found;

@@ -279,6 +279,8 @@ std::string_view to_string(RegistrationStatus status) {
             return "ambiguous";
         case RegistrationStatus::sliding:
             return "sliding";
+        case RegistrationStatus::other_shape:
+            return "other_shape";
     }
     return "no_match";
 }

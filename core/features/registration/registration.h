@@ -24,7 +24,8 @@ enum class RegistrationStatus {
     no_points,
     no_match,
     ambiguous,
-    sliding /* a direction is undetermined: straight line */
+    sliding,     // a direction is undetermined: straight line
+    other_shape  // placed by the rest of it: where more than a quarter of the template belongs is another contour
 };
 std::string_view to_string(RegistrationStatus status);
 
@@ -38,6 +39,9 @@ struct Registration {
     // template's pitch, which a curve through its points may be off.
     double noise_mm = 0;
     double inlier_share = 0;  // share of template points with a partner in the scene
+    // Of the template's length the share at whose x the scene shows a surface elsewhere, not none: that has another
+    // shape, or something lies before it. Looked for where the inlier share is below 0.85, else 0.
+    double replaced_share = 0;
     int inliers = 0;          // scene points that the pose rests on
     int iterations = 0;
 };

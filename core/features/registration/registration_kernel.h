@@ -103,6 +103,7 @@ struct ContourMatcher::Impl {
     mutable std::vector<Eigen::Vector3d> wall_gradient;  // [edges]
     mutable std::vector<double> sizes;
     mutable std::vector<float> bin_residual2;  // [bins] negative: no partner
+    mutable std::vector<char> seen_x;          // whether the scene has a point in the cell along x
     mutable std::vector<std::array<Eigen::Vector3d, 3>> influence;
     mutable int iterations = 0;
 
@@ -144,6 +145,8 @@ struct ContourMatcher::Impl {
         bool held = false;
         double shift = 0, variance = 0;
     };
+    // Registration::replaced_share at the pose.
+    double replaced(const Finish& finish, double sigma) const;
     Held held(const Finish& finish, const Support& here, double sigma, const Eigen::Vector3d& twist) const;
     void follow(Finish& finish, Support& support, double sigma) const;
     // By how much the cost of the second must exceed that of the first to be told from it.

@@ -176,6 +176,34 @@ ContourMatcher::Impl::Support ContourMatcher::Impl::support(const Finish& found,
     return result;
 }
 
+double ContourMatcher::Impl::replaced(const Finish& found, double sigma) const {
+    support(found, sigma, 1);  // marks the bins
+    const double cell = 2 * std::max(scene.pitch.along_x, model.pitch().along_x);
+    const auto [lo, hi] = std::minmax_element(scene.x.begin(), scene.x.end());
+    const double origin = *lo;
+    seen_x.assign(static_cast<std::size_t>(std::min((*hi - origin) / cell, double(kMostBins))) + 1, 0);
+    const auto cell_of = [&](double x) { return static_cast<std::size_t>((x - origin) / cell); };
+    for (const double x : scene.x)
+        if (cell_of(x) < seen_x.size()) seen_x[cell_of(x)] = 1;
+    const double bin = model.length_mm() / bins;
+    double all = 0, elsewhere = 0;
+    std::size_t e = 0;
+    for (int b = 0; b < bins; ++b) {
+        const double s = (b + 0.5) * bin;
+        while (e + 1 < model.edges().size() &&
+               (model.edges()[e].wall || s > arc[e] + 2 * model.edges()[e].half))
+            ++e;
+        const double points = std::max(bin_across[b], 0.25F);
+        all += points;
+        if (bin_residual2[b] >= 0 && bin_residual2[b] < kContradicted) continue;
+        const auto& edge = model.edges()[e];
+        const double u = std::clamp(s - arc[e] - edge.half, -edge.half, edge.half);
+        const double x = (found.pose * Eigen::Vector2d(edge.cx + u * edge.tx, edge.cz + u * edge.tz)).x();
+        if (x >= origin && x <= *hi && cell_of(x) < seen_x.size() && seen_x[cell_of(x)]) elsewhere += points;
+    }
+    return all > 0 ? elsewhere / all : 0;
+}
+
 ContourMatcher::Impl::Held ContourMatcher::Impl::held(const Finish& found, const Support& here, double sigma,
                                                       const Eigen::Vector3d& twist) const {
     constexpr int kSide = 20;

@@ -14,6 +14,9 @@ constexpr double kSmallestShare = 0.5;
 // ... and at least this share of what fixes each of its directions.
 constexpr double kSmallestInformationShare = 0.35;
 
+// What else is there in the template's place is asked below this share, and this much of it is another contour.
+constexpr double kMuchSeen = 0.85, kMostReplaced = 0.25;
+
 // Slopes worth fewer points than this may be chance.
 constexpr double kFewPoints = 10;
 
@@ -180,6 +183,7 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
     };
     set_pose();
     result.inlier_share = rating.share;
+    if (rating.share < kMuchSeen) result.replaced_share = replaced(found, sigma);
     result.iterations = iterations;
     collect(pose, rating.gate, 1);
     drop_sparse_walls();
@@ -238,7 +242,8 @@ Registration ContourMatcher::Impl::conclude(const Finish& found, const Support& 
         result.sliding_direction =
             motion.norm() > 0 ? Eigen::Vector2d(motion.normalized()) : Eigen::Vector2d(1, 0);
     } else {
-        result.status = RegistrationStatus::ok;
+        result.status =
+            result.replaced_share > kMostReplaced ? RegistrationStatus::other_shape : RegistrationStatus::ok;
     }
     return result;
 }

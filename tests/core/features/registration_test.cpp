@@ -403,6 +403,75 @@ TEST(Registration, GarbageIsNoMatch) {
     }
 }
 
+// A flat, a ramp, a flat. Of the part in the scene the ramp is of another length: the flats lie as taught and place the
+// template by themselves, while the ramp, by which a person would place it, stands elsewhere.
+Shape joggle(double first_deg, double second_deg, double run, double height, double ramp_scale) {
+    const double first = std::tan(rad_from_deg(first_deg)), second = std::tan(rad_from_deg(second_deg));
+    Shape s;
+    s.line_to(-40, -40 * first);
+    s.line_to(0, 0);
+    s.line_to(run * ramp_scale, height + run * (ramp_scale - 1) * second);
+    s.line_to(40, height + (40 - run) * second);
+    return s;
+}
+
+Shape piece(const Shape& whole, double from, double to) {
+    Shape s;
+    for (std::size_t i = 0; i < whole.x.size(); ++i)
+        if (whole.x[i] > from && whole.x[i] < to) {
+            s.x.push_back(whole.x[i]);
+            s.z.push_back(whole.z[i]);
+        }
+    return s;
+}
+
+// Share of the taught contour, put where it was found, that lies more than `far_mm` over or under the scene's.
+double share_elsewhere(const Shape& taught, const Shape& scene, const PlanarMotion& found, double far_mm) {
+    const Shape put = taught.moved(found);
+    std::size_t beside = 0;
+    for (std::size_t i = 0; i < put.x.size(); ++i) {
+        const auto right = std::lower_bound(scene.x.begin(), scene.x.end(), put.x[i]) - scene.x.begin();
+        if (right == 0 || right == static_cast<std::ptrdiff_t>(scene.x.size())) continue;
+        if (std::abs(scene.z[static_cast<std::size_t>(right)] - put.z[i]) > far_mm) ++beside;
+    }
+    return double(beside) / double(put.x.size());
+}
+
+TEST(Registration, APartOfAnotherShapeIsNotOk) {
+    Random random(606);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    SearchWindow window;
+    window.dx_mm = window.dz_mm = 20;
+    window.phi_rad = rad_from_deg(5);
+    int right = 0, same_shape = 0, other = 0;
+    for (int trial = 0; trial < 240; ++trial) {
+        const double first = 5 * unit(random), second = first + 25 * unit(random);
+        const double run = 10 + 5 * unit(random), height = 6 * unit(random),
+                     flat = run * (0.8 + 0.2 * unit(random));
+        const PlanarMotion moved{8 * unit(random), 5 * unit(random), rad_from_deg(3 * unit(random))};
+        const double scale = trial % 4 == 0 ? 1 : (trial % 2 ? 0.5 : 1.7) + 0.2 * unit(random);
+        const Shape taught = piece(joggle(first, second, run, height, 1), -flat, run + flat);
+        const Shape scene = joggle(first, second, run, height, scale).moved(moved);
+        Profile contour = sample(taught, 0.1), seen = sample(scene, 0.1, 0.3);
+        add_noise(contour, 0.04, random);
+        add_noise(seen, 0.04, random);
+        const auto matcher = ContourMatcher::make(contour, {0, 0});
+        ASSERT_TRUE(matcher);
+        const Registration r = matcher->match(seen, window);
+        if (scale == 1) {
+            ++same_shape;
+            right += r.status == RegistrationStatus::ok &&
+                     std::abs(r.scene_from_template.dx_mm - moved.dx_mm) < 0.5;
+        } else if (r.status == RegistrationStatus::ok) {
+            EXPECT_LT(share_elsewhere(taught, scene, r.scene_from_template, 0.5), 0.3) << trial;
+        } else {
+            ++other;
+        }
+    }
+    EXPECT_GE(right, same_shape * 9 / 10);
+    EXPECT_GT(other, 60);
+}
+
 TEST(Registration, HostileInput) {
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();

@@ -97,6 +97,10 @@ class Mqtt : public LineLink {
         state_topic_ = mqtt_topic(settings_.group, "STATE", settings_.node);
         result_topic_ = mqtt_topic(settings_.group, "NDATA", settings_.node);
         command_topic_ = mqtt_topic(settings_.group, "NCMD", settings_.node);
+        const bool stays_here = settings_.address == "localhost" || settings_.address.starts_with("127.");
+        if (!settings_.username.empty() && !settings_.tls && !stays_here)
+            notices_.add(Text("the password goes to {}:{} unencrypted; set \"tls\": true", settings_.address,
+                              settings_.port));
         static const int begun = mosquitto_lib_init();  // once a program
         (void)begun;
         thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });

@@ -257,6 +257,10 @@ TEST_F(MqttLine, APasswordIsAskedForAndNeverSaid) {
     EXPECT_FALSE(link->connected());
     EXPECT_THAT(said, HasSubstr("not authorised"));
     EXPECT_THAT(said, testing::Not(HasSubstr("secret")));
+    EXPECT_THAT(said, testing::Not(HasSubstr("unencrypted"))) << "it stays on this machine";
+    said.clear();
+    open({{"address", "192.0.2.1"}, {"username", "door"}, {"password_env", "SEAMWRIGHT_TEST_PASSWORD"}});
+    EXPECT_THAT(notices(), HasSubstr("unencrypted"));
 }
 
 TEST_F(MqttLine, TalksTlsAndChecksTheCertificate) {

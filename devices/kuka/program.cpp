@@ -131,7 +131,10 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
             "; region {}: SW_ACTIVATE({}) before its path\nSW_NAME[{},]=\"{}\"\nSW_FRAME[{}]={}\n",
             program_comment(frame.region_id), k, k, frame.name, k, krl_frame(frame.base_from_frame));
     }
-    setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", k, program_signature(request.moves));
+    if (!request.part_type.empty()) SEAM_OK(krl_text(request.part_type, "part type"));
+    setup +=
+        fmt::format("SW_FRAMES={}\nSW_TYPE[]=\"{}\"\nSW_SIGNATURE[]=\"{}\"\n", k,
+                    request.part_type.empty() ? "-" : request.part_type, program_signature(request.moves));
     const std::string signature = program_signature(request.moves);
     const std::string program =
         "&ACCESS RVO1\n&COMMENT Measuring program of " + program_comment(request.project).substr(0, 60) +

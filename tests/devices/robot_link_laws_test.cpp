@@ -276,10 +276,22 @@ TEST_P(RobotLaws, TheLinesCallIsHeardOnce) {
     auto start = link->wait_start(std::chrono::seconds(5));
     ASSERT_TRUE(start) << start.error().sentence();
     EXPECT_EQ(start->part_id, "CAR-0815");
+    EXPECT_EQ(start->part_type, "") << "a program of a project without part types says none";
     none = link->wait_start(std::chrono::milliseconds(50));
     ASSERT_FALSE(none);
     EXPECT_TRUE(is_silence(none.error()));
     measure_all();
+}
+
+TEST_P(RobotLaws, TheTypeComesWithTheCall) {
+    for (const char* type : {"wagon_long-16-ch", "2"}) {
+        controller->press_start("CAR-0815", type);
+        auto start = link->wait_start(std::chrono::seconds(5));
+        ASSERT_TRUE(start) << start.error().sentence();
+        EXPECT_EQ(start->part_id, "CAR-0815");
+        EXPECT_EQ(start->part_type, type);
+        measure_all();
+    }
 }
 
 // The robot waits at the part; whoever heard the call and died has not measured it.

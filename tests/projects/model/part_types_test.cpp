@@ -34,6 +34,12 @@ Project two_types() {
     return clone_part_type(*add_part_type(p, {"left", "door left", 1}), "left", {"right", "", 2}).value();
 }
 
+RunValuesWanted only(const std::string& type) {
+    RunValuesWanted wanted;
+    wanted.type_id = type;
+    return wanted;
+}
+
 template <class T>
 std::vector<std::string> ids(const std::vector<T>& items) {
     std::vector<std::string> all;
@@ -70,8 +76,8 @@ TEST(PartTypes, ACloneHasIdsOfItsOwnAndNothingThatWasMeasured) {
     }
     EXPECT_TRUE(right.regions[0].offsets.empty());
     EXPECT_TRUE(right.regions[0].offset_switches.empty());
-    for (const Spot& spot : of_type(p, "left").spots)
-        EXPECT_EQ(spot.reference_state, ReferenceState::measured);
+    const Project left = of_type(p, "left");
+    for (const Spot& spot : left.spots) EXPECT_EQ(spot.reference_state, ReferenceState::measured);
     // A clone of the clone does not pile names up.
     const auto third = clone_part_type(p, "right", {"wagon", "", 3});
     ASSERT_TRUE(third) << third.error().sentence();
@@ -234,14 +240,14 @@ TEST(PartTypes, ComeBackFromTheFile) {
     EXPECT_EQ(runs->at(1).type_id, "left");
     EXPECT_EQ(file->load_run(3)->type_id, "right");
     EXPECT_THAT(ids(file->load_run_setup(3)->regions), ElementsAre("inner-right", "outer-right"));
-    const auto values = file->run_values({.type_id = "right"});
+    const auto values = file->run_values(only("right"));
     ASSERT_TRUE(values) << values.error().sentence();
     ASSERT_EQ(values->size(), 1u);
     EXPECT_EQ(values->front().number, 3);
     EXPECT_EQ(file->run_values()->size(), 3u);
     ASSERT_TRUE(file->delete_run(3));
     EXPECT_TRUE(file->check().empty());
-    EXPECT_TRUE(file->run_values({.type_id = "right"})->empty());
+    EXPECT_TRUE(file->run_values(only("right"))->empty());
 }
 
 TEST(PartTypes, TwoTypesMayShareAFrameTwoRegionsOfOneMayNot) {

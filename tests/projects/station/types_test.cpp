@@ -55,6 +55,12 @@ class MixedTypes : public testing::Test {
         cell->starts.push_back(StartSignal{id, now, 0, type});
         cell->starts.push_back(device_error(ErrorCode::silence, kNoAnswer));
     }
+    Expected<RunRecord> push(const std::string& type) {
+        RunOptions run;
+        run.part_type = type;
+        run.push = true;
+        return station->run(run);
+    }
     Pose wanted(const std::string& region) const {
         for (const Region& r : cell->project.regions)
             if (r.id == region)
@@ -149,7 +155,8 @@ TEST_F(MixedTypes, WhoSaysATypeSaysTheSame) {
     EXPECT_EQ(counts->missed, 1);
     EXPECT_EQ(counts->corrected, 2);
     EXPECT_THAT(texts, HasSubstr("--type says part type right, before it was left"));
-    for (const RunSummary& run : *station->file().runs()) EXPECT_EQ(run.type_id, "right");
+    const auto runs = station->file().runs();
+    for (const RunSummary& run : *runs) EXPECT_EQ(run.type_id, "right");
 }
 
 TEST_F(MixedTypes, ATypeThatCannotBeRunIsRefusedAndTheOthersGoOn) {
@@ -170,18 +177,18 @@ TEST_F(MixedTypes, AClonedReferenceIsMeasuredAndNeverPushed) {
         if (spot.id == "S3-right") spot.reference_state = ReferenceState::from_type;
     open();
     const auto before = cell->frames;
-    auto run = station->run({.part_type = "right", .push = true});
+    auto run = push("right");
     ASSERT_TRUE(run) << run.error().sentence();
     EXPECT_EQ(run->status, RunStatus::refused);
     EXPECT_THAT(run->message.english(), HasSubstr("another part type's: S3-right; teach them"));
     EXPECT_EQ(cell->writes, 0);
-    EXPECT_EQ(station->run({.part_type = "left", .push = true})->status, RunStatus::ok);
+    EXPECT_EQ(push("left")->status, RunStatus::ok);
 }
 
 // What stands on the controller must be a part of one of the types; anything else is still a jump.
 TEST_F(MixedTypes, AFrameOfNoTypeIsStillAJump) {
     cell->frames["BASE_inner"].translation().y() += 250;
-    const auto run = station->run({.part_type = "right", .push = true});
+    const auto run = push("right");
     ASSERT_TRUE(run);
     EXPECT_EQ(run->status, RunStatus::refused);
     EXPECT_THAT(run->message.english(), HasSubstr("the path would jump"));
@@ -192,14 +199,14 @@ TEST_F(MixedTypes, AFrameOfNoTypeIsStillAJump) {
     Project p = station->project();
     p.regions[0].limits = {std::numeric_limits<double>::infinity(), 180};  // left, inner
     station->use(p);
-    const auto again = station->run({.part_type = "right", .push = true});
+    const auto again = push("right");
     ASSERT_TRUE(again);
     EXPECT_EQ(again->status, RunStatus::refused);
 }
 
 TEST_F(MixedTypes, ARunWithoutATypeDoesNotBegin) {
     for (const char* type : {"", "wagon"}) {
-        const auto run = station->run({.part_type = type, .push = true});
+        const auto run = push(type);
         ASSERT_FALSE(run);
         EXPECT_EQ(run.error().kind, ErrorKind::input);
     }

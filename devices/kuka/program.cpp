@@ -132,9 +132,8 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
             program_comment(frame.region_id), k, k, frame.name, k, krl_frame(frame.base_from_frame));
     }
     if (!request.part_type.empty()) SEAM_OK(krl_text(request.part_type, "part type"));
-    setup +=
-        fmt::format("SW_FRAMES={}\nSW_TYPE[]=\"{}\"\nSW_SIGNATURE[]=\"{}\"\n", k,
-                    request.part_type.empty() ? "-" : request.part_type, program_signature(request.moves));
+    if (!request.part_type.empty()) setup += fmt::format("SW_TYPE[]=\"{}\"\n", request.part_type);
+    setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", k, program_signature(request.moves));
     const std::string signature = program_signature(request.moves);
     const std::string program =
         "&ACCESS RVO1\n&COMMENT Measuring program of " + program_comment(request.project).substr(0, 60) +

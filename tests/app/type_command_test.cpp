@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "projects/file/project_file.h"
+#include "projects/file/project_json.h"
 #include "tests/app/run_program.h"
 #include "tests/projects/door_project.h"
 

@@ -111,7 +111,7 @@ TEST_F(TypeCommand, AnExportedProjectWithTypesComesBack) {
     said({"type", "add", f, "left", "--number", "1"});
     said({"type", "clone", f, "left", "right"});
     said({"export", f, "--out", out, "--with-taught"});
-    said({"import", out, "--out", again});
+    said({"import", again, "--from", out});
     EXPECT_EQ(said({"type", "list", again})["types"], said({"type", "list", f})["types"]);
 }
 

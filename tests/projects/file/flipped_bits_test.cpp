@@ -47,9 +47,9 @@ std::optional<std::string> all_of(const fs::path& path) {
     const auto runs = file->runs();
     if (!runs) return std::nullopt;
     for (const RunSummary& summary : *runs) {
-        all << summary.number << summary.part_id << summary.type_id << summary.started_utc << summary.finished_utc
-            << summary.push << to_string(summary.status) << summary.message << summary.spots
-            << summary.captures << summary.setup;
+        all << summary.number << summary.part_id << summary.type_id << summary.started_utc
+            << summary.finished_utc << summary.push << to_string(summary.status) << summary.message
+            << summary.spots << summary.captures << summary.setup;
         const auto run = file->load_run(summary.number);
         const auto setup = file->load_setup(summary.setup);
         if (!run || !setup) return std::nullopt;

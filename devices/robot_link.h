@@ -55,6 +55,8 @@ struct StartSignal {
     // It was not called before this instant, when the controller was last heard without the call: a moment
     // ago between two parts, before the outage after one. 0: nothing is known of before.
     std::int64_t not_before_ns = 0;
+    // The part's type, by the id or the number that the project knows it by; empty where the controller says none.
+    std::string part_type = {};
 };
 
 // How a part ended, as the controller is told. Only `corrected` lets the application run with the frames

@@ -22,6 +22,8 @@ struct ProgramRequest {
     std::vector<ApplicationFrame> frames;
     nlohmann::json settings = nlohmann::json::object();  // of the project's robot: addresses, ports, numbers
     std::string driver = {};                             // of the project's robot
+    std::string part_type =
+        {};  // id of the part type whose moves these are, told with the start signal; empty: none
 };
 
 struct ProgramFile {

@@ -56,6 +56,7 @@ void add_align(CommandLine& line);
 void add_calibrate(CommandLine& line);
 void add_demo(CommandLine& line);
 void add_project_commands(CommandLine& line);  // new, info, check, export, mirror
+void add_type(CommandLine& line);
 void add_import(CommandLine& line);
 void add_drawing(CommandLine& line);
 void add_propose(CommandLine& line);

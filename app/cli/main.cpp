@@ -5,6 +5,7 @@ int main(int argc, char** argv) {
     CommandLine line;
     add_demo(line);
     add_project_commands(line);
+    add_type(line);
     add_import(line);
     add_drawing(line);
     add_propose(line);

@@ -213,12 +213,14 @@ Expected<std::vector<ProgramFile>> write_abb_program(const ProgramRequest& reque
     }
     const std::string spots = fmt::format(
         "MODULE SeamwrightSpots\n    ! Measuring program of {}\n    PERS string swSignature:=\"{}\";\n    "
+        "! The part type that it measures, told with the call for a part\n    PERS string swType:=\"{}\";\n  "
+        "  "
         "PERS num "
         "swCount:={};\n    PERS string swSpotName{{64}}:=[\n        {}];\n{}{}{}\n    PROC SW_Load()\n{}    "
         "ENDPROC\n\n"
         "    PROC SW_Spots()\n{}    ENDPROC\nENDMODULE\n",
-        plain(request.project), program_signature(request.moves), request.moves.size(), names,
-        load_lines(load), objects, targets,
+        plain(request.project), program_signature(request.moves), plain(request.part_type),
+        request.moves.size(), names, load_lines(load), objects, targets,
         load.tool.empty() ? "" : fmt::format("        swTool.tload:={}.tload;\n", load.tool), passes);
     return std::vector<ProgramFile>{
         {"SeamwrightServer.mod",

@@ -286,7 +286,7 @@ class AbbRapidLink final : public RobotLink {
             start_count_ = *count;
             starts_.clear();  // the robot calls for one part at a time: an older call is over
             const std::int64_t now = host_now_ns();
-            starts_.push_back({event.line2, now, quiet_ns_ == 0 ? now : quiet_ns_});
+            starts_.push_back({event.line2, now, quiet_ns_ == 0 ? now : quiet_ns_, event.line3});
             return {};
         }
         if (event.word == "END") {

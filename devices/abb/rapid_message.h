@@ -23,7 +23,7 @@
 //   n PING                            n PING
 //   any of them                       n NO word + text of the reason
 //   event                             0 TRIGGER count index spot + pose
-//   event                             0 START count + part in line 2
+//   event                             0 START count + part in line 2, its type in line 3
 //   event                             0 END count        the measuring program has ended after so many
 //   triggers
 // Here HELLO's answer has the serial number in line 2 and the type in line 3.

@@ -91,7 +91,9 @@ class RecordedRobot final : public RobotLink {
     }
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         auto signal = robot_->wait_start(timeout);
-        if (signal) note("start signal for part \"" + signal->part_id + "\"");
+        if (signal)
+            note("start signal for part \"" + signal->part_id + "\"" +
+                 (signal->part_type.empty() ? "" : " of type \"" + signal->part_type + "\""));
         return signal;
     }
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {

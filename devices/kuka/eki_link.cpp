@@ -59,7 +59,7 @@ class EkiLink final : public RobotLink {
 
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         SEAM_TRY(auto start, wait_event(starts_, Clock::now() + timeout));
-        return StartSignal{start.telegram.part, start.time_ns, start.not_before_ns};
+        return StartSignal{start.telegram.part, start.time_ns, start.not_before_ns, start.telegram.name};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {

@@ -11,7 +11,7 @@
 //     Seamwright -> robot   <Sensor Kind="write" Id="18" Name="BASE_left" Text=""><Pos X=".." .../></Sensor>
 //
 // Kind from the robot: hello (first on every connection; Name serial number, Part robot model, Text
-// software), start (Part: its name), trigger (Name: spot, Id: counts up by one through a program, Pos: flange
+// software), start (Part: its name, Name: its type), trigger (Name: spot, Id: counts up by one through a program, Pos: flange
 // in base at the trigger), answer (Id of the command; Name, Pos, Mode as asked), error (Id of the command;
 // Text: why; it begins with "not ready" where the same command may be done a moment later), done (the
 // measuring program has ended). Kind to the robot: state (answer: Mode, Pos; Part: none, given or taken, as

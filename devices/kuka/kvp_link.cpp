@@ -91,6 +91,7 @@ class KvpLink final : public RobotLink {
     Expected<StartSignal> wait_start(std::chrono::milliseconds timeout) override {
         SEAM_OK(poll_until(timeout, [&] { return called_now(); }));
         SEAM_TRY(auto part, read({"SW_PART[]"}));
+        SEAM_TRY(auto type, try_read({"SW_TYPE[]"}));  // a module of before it has none
         SEAM_OK(begin_part());
         SEAM_OK(write({{"SW_CALL", "FALSE"}}));
         // A module of before SW_CALLED refuses that, and a call that is lost with its connection stays lost.
@@ -99,7 +100,9 @@ class KvpLink final : public RobotLink {
         call_taken_here_ = true;
         const std::string id = string_from_krl(part[0]);
         const std::int64_t now = host_now_ns();
-        return StartSignal{id == "-" ? "" : id, now, std::exchange(quiet_ns_, now)};
+        std::string part_type = type[0].done ? string_from_krl(type[0].value) : "";
+        if (part_type == "-") part_type.clear();
+        return StartSignal{id == "-" ? "" : id, now, std::exchange(quiet_ns_, now), std::move(part_type)};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {

@@ -131,6 +131,8 @@ Expected<std::vector<ProgramFile>> write_kuka_program(const ProgramRequest& requ
             "; region {}: SW_ACTIVATE({}) before its path\nSW_NAME[{},]=\"{}\"\nSW_FRAME[{}]={}\n",
             program_comment(frame.region_id), k, k, frame.name, k, krl_frame(frame.base_from_frame));
     }
+    if (!request.part_type.empty()) SEAM_OK(krl_text(request.part_type, "part type"));
+    if (!request.part_type.empty()) setup += fmt::format("SW_TYPE[]=\"{}\"\n", request.part_type);
     setup += fmt::format("SW_FRAMES={}\nSW_SIGNATURE[]=\"{}\"\n", k, program_signature(request.moves));
     const std::string signature = program_signature(request.moves);
     const std::string program =

@@ -9,7 +9,7 @@
 //
 // The application calls SW_SETUP() once, SEAMWRIGHT_SPOTS() for each part and SW_ACTIVATE(n) before each
 // region's path, where n counts the regions from 1. SEAMWRIGHT_SPOTS() calls for the part (its name in
-// SW_PART[]), waits until Seamwright lets it go and measures; the first SW_ACTIVATE waits for the verdict and
+// SW_PART[], its type in SW_TYPE[], which SW_SETUP() sets to the program's), waits until Seamwright lets it go and measures; the first SW_ACTIVATE waits for the verdict and
 // takes the permission (RobotLink). SW_CALLS=FALSE: it waits without a call; the line sets SW_CALL, or
 // Seamwright measures by command. SW_VERDICT tells an application that goes on without correction how the
 // part ended.

@@ -41,9 +41,9 @@ std::optional<ControllerFault> controller_fault_from(std::string_view name) {
     return std::nullopt;
 }
 
-void SimulatedController::press_start(const std::string& part_id) {
+void SimulatedController::press_start(const std::string& part_id, const std::string& part_type) {
     const std::lock_guard lock(mutex_);
-    start_ = part_id;
+    start_ = Call{part_id, part_type};
 }
 
 std::optional<PartVerdict> SimulatedController::verdict() const {
@@ -51,7 +51,7 @@ std::optional<PartVerdict> SimulatedController::verdict() const {
     return verdict_;
 }
 
-std::optional<std::string> SimulatedController::take_start() {
+std::optional<SimulatedController::Call> SimulatedController::take_start() {
     const std::lock_guard lock(mutex_);
     return std::exchange(start_, std::nullopt);
 }

@@ -41,7 +41,7 @@ class SimulatedController {
     // Where it listens; of a robot that is the client, where it connects to.
     virtual std::uint16_t port() const = 0;
     // Somebody calls for the next part, as the line's PLC does.
-    virtual void press_start(const std::string& part_id);
+    virtual void press_start(const std::string& part_id, const std::string& part_type = {});
     void set_fault(ControllerFault fault) { fault_ = fault; }
     ControllerFault fault() const { return fault_; }
     // May the application run with the frames as they are? See RobotLink. False from the making, from a start
@@ -54,7 +54,10 @@ class SimulatedController {
 
   protected:
     // For the protocols: the call for a part is told once.
-    std::optional<std::string> take_start();
+    struct Call {
+        std::string part_id, part_type;  // no type: the program says its own
+    };
+    std::optional<Call> take_start();
     void part_begins();  // no verdict, not released
     void withdraw();     // not released, unless the application has taken it
     bool take();         // by the application, once it is released; says whether it was
@@ -66,7 +69,7 @@ class SimulatedController {
     std::atomic<ControllerFault> fault_ = ControllerFault::none;
     std::atomic<bool> released_ = false, taken_ = false;
     mutable std::mutex mutex_;
-    std::optional<std::string> start_;
+    std::optional<Call> start_;
     std::optional<PartVerdict> verdict_;
 };
 

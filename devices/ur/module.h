@@ -21,7 +21,11 @@
 namespace seamwright::ur {
 
 inline constexpr int kFirstRegister = 24, kLastRegister = 47;
-inline constexpr std::int32_t kModuleVersion = 530201;  // in kModule while the module runs
+// In kModule while the module runs; one of before part types leaves kType to others.
+inline constexpr std::int32_t kModuleVersion = 530202, kModuleWithoutTypes = 530201;
+inline bool is_module(std::int32_t version) {
+    return version == kModuleVersion || version == kModuleWithoutTypes;
+}
 inline constexpr int kMostSpots = 64, kMostFrames = 32;
 
 // Integer registers that the module writes, counted from the first.
@@ -35,7 +39,8 @@ enum Output : int {
     kCall,               // the number of the line's call for a part, 0 = none
     kPart,               // its id in 4 registers, part_registers()
     kState = kPart + 4,  // Permitted + 10 * Phase
-    kOutputs
+    kType,               // the part's type, as its id
+    kOutputs = kType + 4
 };
 // Of the permission to run paths, and what the robot program is at.
 enum class Permitted : std::int32_t { no, given, taken, used_up };

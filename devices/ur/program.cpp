@@ -119,12 +119,13 @@ Expected<std::vector<ProgramFile>> write_ur_program(const ProgramRequest& reques
     const std::vector<std::string> spots(std::max<std::size_t>(1, request.moves.size()),
                                          "p[0, 0, 0, 0, 0, 0]");
     const std::string project = fmt::format(
-        "# project {}\n{}global sw_signature_high = {}\nglobal sw_signature_low = {}\nglobal sw_frame_count "
+        "# project {}\n{}global sw_type = \"{}\"\nglobal sw_signature_high = {}\nglobal sw_signature_low = "
+        "{}\nglobal sw_frame_count "
         "= {}\n"
         "global sw_spot_count = {}\n"
         "global sw_names = [{}]\nglobal sw_frames = [{}]\nglobal sw_spot_at = [{}]\n",
-        program_comment(request.project), list, high, low, count, n, fmt::join(numbers, ", "),
-        fmt::join(frames, ", "), fmt::join(spots, ", "));
+        program_comment(request.project), list, request.part_type, high, low, count, n,
+        fmt::join(numbers, ", "), fmt::join(frames, ", "), fmt::join(spots, ", "));
     return std::vector<ProgramFile>{
         {"seamwright.script",
          filled(resources::seamwright_script, {{"ALPHABET", std::string(ur::part_alphabet())},

@@ -122,8 +122,12 @@ class RtdeLink final : public RobotLink {
         const std::int32_t call = state_->numbers[ur::kCall];
         std::array<std::int32_t, 4> part{};
         std::copy_n(state_->numbers.begin() + ur::kPart, 4, part.begin());
+        std::array<std::int32_t, 4> type{};
+        if (state_->numbers[ur::kModule] == ur::kModuleVersion)
+            std::copy_n(state_->numbers.begin() + ur::kType, 4, type.begin());
         SEAM_OK(ask(Command::taken, call));
-        return StartSignal{ur::part_from_registers(part), host_now_ns(), not_before};
+        return StartSignal{ur::part_from_registers(part), host_now_ns(), not_before,
+                           ur::part_from_registers(type)};
     }
 
     Expected<void> start_measuring(const std::vector<MeasuringMove>& moves) override {
@@ -195,7 +199,7 @@ class RtdeLink final : public RobotLink {
         const std::lock_guard lock(mutex_);
         SEAM_TRY(auto now, coming());
         const State& s = *now;
-        if (s.numbers[ur::kModule] != ur::kModuleVersion || s.runtime != kPlaying) return Permission::none;
+        if (!ur::is_module(s.numbers[ur::kModule]) || s.runtime != kPlaying) return Permission::none;
         const auto state = ur::state_from(s.numbers[ur::kState]);
         if (!state)
             return fail({ErrorKind::device,
@@ -533,7 +537,7 @@ class RtdeLink final : public RobotLink {
                        std::int32_t low = 0, const std::array<double, 6>& pose = {},
                        std::optional<Timeout> timeout = {}) {
         SEAM_TRY(auto state, newest());
-        if (state->numbers[ur::kModule] != ur::kModuleVersion)
+        if (!ur::is_module(state->numbers[ur::kModule]))
             return device_error(
                 "the module seamwright.script does not run", where_,
                 "load what `seamwright robot-program --brand ur` writes and start the program");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "projects/model/part_types.h"
 #include "projects/proof/checklist.h"
 
 namespace seamwright {
@@ -19,7 +20,10 @@ Expected<std::optional<StudyProgress>> newest_progress(const ProjectFile& file, 
         const auto* plan = std::get_if<StudyPlan>(&e->what);
         if (!plan || plan->study != to_string(study) || plan->region_id != region_id) continue;
         SEAM_TRY(auto then, file.load_setup(e->setup));
-        if (!changed_since(then, project).empty()) return std::nullopt;
+        const auto region = std::ranges::find(project.regions, region_id, &Region::id);
+        if (region == project.regions.end() ||
+            !changed_since(then, of_type(project, region->type_id)).empty())
+            return std::nullopt;
         LiveStudyOptions options;
         options.study = study;
         options.region = region_id;

@@ -49,6 +49,7 @@ enum class FileAccess { read_write, read_only };
 struct RunSummary {
     std::int64_t number = 0;
     std::string part_id, started_utc, finished_utc;
+    std::string type_id;  // empty: of a project without part types
     bool push = false;
     RunStatus status = RunStatus::ok;
     Text message;
@@ -101,7 +102,7 @@ class ProjectFile {
 
     Expected<Project> load() const;
     // Only rows that changed are written. Refuses (input) two entities of one id, empty ids and new ones of
-    // more than kLongestId bytes.
+    // more than kLongestId bytes, and what check_part_types() does.
     Expected<void> save(const Project& project);
 
     // A whole run. Returns its number; events of the record get it too.

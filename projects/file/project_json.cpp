@@ -13,7 +13,7 @@ namespace seamwright {
     }
 SEAMWRIGHT_WORDS(ScanLines, "columns", "rows");
 SEAMWRIGHT_WORDS(PeakMethod, "centre_of_gravity", "gaussian", "steger");
-SEAMWRIGHT_WORDS(ReferenceState, "measured", "from_drawing");
+SEAMWRIGHT_WORDS(ReferenceState, "measured", "from_drawing", "from_type");
 SEAMWRIGHT_WORDS(RobotMode, "unknown", "manual_reduced", "manual_full", "automatic", "external", "stopped",
                  "fault");
 SEAMWRIGHT_WORDS(FeatureStatus, "ok", "no_points", "not_found", "ambiguous", "ill_conditioned");
@@ -248,6 +248,12 @@ void describe(A& a, RegionCorrection& v) {
 // --- the project
 
 template <class A>
+void describe(A& a, PartType& v) {
+    a("id", v.id);
+    a("name", v.name);
+    a("number", v.number);
+}
+template <class A>
 void describe(A& a, PartSetup& v) {
     a("name", v.name);
     a("mesh_source", v.mesh_source);
@@ -311,6 +317,8 @@ void describe(A& a, DrawingOrigin& v) {
 template <class A>
 void describe(A& a, Spot& v) {
     a("id", v.id);
+    // Absent where there is none, so that a setup of before is the same setup.
+    if (A::reading || !v.type_id.empty()) a("type_id", v.type_id);
     a("sensor_id", v.sensor_id);
     a("robot_id", v.robot_id);
     a("enabled", v.enabled);
@@ -344,6 +352,7 @@ void describe(A& a, KeptOffset& v) {
 template <class A>
 void describe(A& a, Region& v) {
     a("id", v.id);
+    if (A::reading || !v.type_id.empty()) a("type_id", v.type_id);
     a("spot_ids", v.spot_ids);
     a("free", v.free);
     a("limits", v.limits);
@@ -447,6 +456,7 @@ void describe(A& a, Project& v) {
     a("name", v.name);
     a("requirements", v.requirements);
     a("part", v.part);
+    if (A::reading || !v.part_types.empty()) a("part_types", v.part_types);
     a("sensors", v.sensors);
     a("robots", v.robots);
     a("calibrations", v.calibrations);
@@ -691,6 +701,7 @@ Expected<T> from_json_document(const nlohmann::json& document, const std::string
     template Expected<T> from_json_document(const nlohmann::json&, const std::string&, const ArchiveOptions&)
 SEAMWRIGHT_DOCUMENT(Project);
 SEAMWRIGHT_DOCUMENT(PartSetup);
+SEAMWRIGHT_DOCUMENT(PartType);
 SEAMWRIGHT_DOCUMENT(SensorSetup);
 SEAMWRIGHT_DOCUMENT(RobotSetup);
 SEAMWRIGHT_DOCUMENT(Calibration);

@@ -9,7 +9,7 @@
 
 namespace seamwright {
 
-// T: Project, PartSetup, SensorSetup, RobotSetup, Calibration, Spot, Region, PanelJob, SpotMeasurement,
+// T: Project, PartSetup, PartType, SensorSetup, RobotSetup, Calibration, Spot, Region, PanelJob, SpotMeasurement,
 // RegionRecord, PanelMeasurement, PanelRecord, Requirements, FrozenContour, ZeroShift, KnownShift,
 // HeadlessRun, RobotReturns, TriggerPasses. Meshes and captures are never part of the JSON; profiles when the options say so.
 template <class T>

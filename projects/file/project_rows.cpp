@@ -5,6 +5,7 @@
 #include "devices/capture/profile_blob.h"
 #include "projects/file/project_file_detail.h"
 #include "projects/file/row_checksum.h"
+#include "projects/model/part_types.h"
 
 namespace seamwright {
 namespace {
@@ -108,13 +109,15 @@ Expected<void> load_rows(Database& db, const char* sql, const char* kind, std::v
 }  // namespace
 
 Expected<void> save_rows_of(Database& db, const Project& project) {
-    for (const auto& sound : {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
-                              check_ids(db, "robots", ids_of(project.robots), "robot"),
-                              check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
-                              check_ids(db, "spots", ids_of(project.spots), "spot"),
-                              check_ids(db, "regions", ids_of(project.regions), "region"),
-                              check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
-                              check_ids(db, "line", ids_of(project.line), "line link")})
+    for (const auto& sound :
+         {check_ids(db, "sensors", ids_of(project.sensors), "sensor"),
+          check_ids(db, "robots", ids_of(project.robots), "robot"),
+          check_ids(db, "calibrations", ids_of(project.calibrations), "calibration"),
+          check_ids(db, "spots", ids_of(project.spots), "spot"),
+          check_ids(db, "regions", ids_of(project.regions), "region"),
+          check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
+          check_ids(db, "line", ids_of(project.line), "line link"),
+          check_ids(db, "part_types", ids_of(project.part_types), "part type"), check_part_types(project)})
         if (!sound) return sound;
 
     const char* name_row = R"(
@@ -203,6 +206,12 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                           s.bind(4, text);
                           return s.run();
                       }));
+    SEAM_OK(save_rows(db, "part_types", {"body"}, project.part_types,
+                      [](Statement& s, const PartType& type) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(type, "part type " + type.id, kRow));
+                          s.bind(3, text);
+                          return s.run();
+                      }));
     return save_rows(db, "line", {"protocol", "body"}, project.line,
                      [](Statement& s, const LineSetup& link) -> Expected<void> {
                          SEAM_TRY(auto text, row_text(link, "line link " + link.id, kRow));
@@ -214,7 +223,7 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
 
 Expected<Project> load_rows_of(Database& db) {
     for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
-                              "regions", "panel_jobs", "line"})
+                              "regions", "panel_jobs", "line", "part_types"})
         SEAM_OK(check_rows(db, table));
     Project project;
     SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
@@ -246,7 +255,9 @@ Expected<Project> load_rows_of(Database& db) {
                     "spot", project.spots),
           load_rows(db, "SELECT id, body FROM regions ORDER BY position", "region", project.regions),
           load_rows(db, "SELECT id, body FROM panel_jobs ORDER BY position", "panel job", project.panel_jobs),
-          load_rows(db, "SELECT id, body FROM line ORDER BY position", "line link", project.line)})
+          load_rows(db, "SELECT id, body FROM line ORDER BY position", "line link", project.line),
+          load_rows(db, "SELECT id, body FROM part_types ORDER BY position", "part type",
+                    project.part_types)})
         if (!done) return tl::unexpected(done.error());
     return project;
 }

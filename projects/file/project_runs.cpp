@@ -235,6 +235,12 @@ Expected<std::int64_t> ProjectFile::insert_run(const RunRecord& run, const RunSe
     SEAM_OK(s.run());
     const std::int64_t number = impl_->db.last_rowid();
     SEAM_OK(seal_row(impl_->db, "runs", "number", number));
+    if (run.type_id.empty()) return number;
+    SEAM_TRY(auto type, impl_->db.prepare("INSERT INTO run_types (run, type_id, checksum) VALUES (?1, ?2, "
+                                          "row_checksum(?1, ?2))"));
+    type.bind(1, number);
+    type.bind(2, utf8_text(run.type_id));
+    SEAM_OK(type.run());
     return number;
 }
 
@@ -391,11 +397,12 @@ Expected<std::vector<Evidence>> ProjectFile::evidence(std::int64_t after) const 
 }
 
 Expected<std::vector<RunSummary>> ProjectFile::runs() const {
-    SEAM_OK(check_rows(impl_->db, "runs"));
+    for (const char* table : {"runs", "run_types"}) SEAM_OK(check_rows(impl_->db, table));
     SEAM_TRY(auto s, impl_->db.prepare(
                          "SELECT number, part_id, started_utc, finished_utc, push, status, message, setup, "
                          "(SELECT count(*) FROM run_spots WHERE run = number), (SELECT ifnull(sum(captures), "
-                         "0) FROM captures WHERE run = number) FROM runs ORDER BY number"));
+                         "0) FROM captures WHERE run = number), ifnull((SELECT type_id FROM run_types WHERE "
+                         "run = number), '') FROM runs ORDER BY number"));
     std::vector<RunSummary> runs;
     SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
         RunSummary run;
@@ -413,6 +420,7 @@ Expected<std::vector<RunSummary>> ProjectFile::runs() const {
         run.setup = row.integer(7);
         run.spots = static_cast<int>(row.integer(8));
         run.captures = static_cast<int>(row.integer(9));
+        run.type_id = row.text(10);
         runs.push_back(std::move(run));
         return {};
     }));
@@ -422,12 +430,13 @@ Expected<std::vector<RunSummary>> ProjectFile::runs() const {
 Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_captures) const {
     Database& db = impl_->db;
     SEAM_OK(check_rows(db, "runs", "number", number));
-    for (const char* table : {"run_spots", "run_regions", "run_panels"})
+    for (const char* table : {"run_spots", "run_regions", "run_panels", "run_types"})
         SEAM_OK(check_rows(db, table, "run", number));
     SEAM_TRY(
         auto s,
         db.prepare(
-            "SELECT part_id, started_utc, finished_utc, push, status, message FROM runs WHERE number = ?"));
+            "SELECT part_id, started_utc, finished_utc, push, status, message, ifnull((SELECT type_id FROM "
+            "run_types WHERE run = number), '') FROM runs WHERE number = ?"));
     s.bind(1, number);
     RunRecord run;
     SEAM_OK(for_each_row(s, [&](Statement& row) -> Expected<void> {
@@ -442,6 +451,7 @@ Expected<RunRecord> ProjectFile::load_run(std::int64_t number, bool with_capture
                               Text("{}: run {}", impl_->path.string(), number));
         run.status = *status;
         run.message = text_from_stored(row.text(5));
+        run.type_id = row.text(6);
         return {};
     }));
     if (run.number != number || number < 1)

@@ -11,22 +11,26 @@
 namespace seamwright {
 namespace {
 
-constexpr const char* kWhichRuns = "started_utc >= ?1 AND (?2 = '' OR started_utc < ?2)";
+constexpr const char* kWhichRuns =
+    "started_utc >= ?1 AND (?2 = '' OR started_utc < ?2) AND (?3 = '' OR EXISTS (SELECT 1 FROM run_types "
+    "WHERE "
+    "run_types.run = number AND type_id = ?3))";
 
 class ValuesReader {
   public:
     ValuesReader(Database& db, const RunValuesWanted& wanted) : db_(db), wanted_(wanted) {}
 
     Expected<std::vector<RunValues>> read() {
-        for (const char* table : {"runs", "run_regions", "run_panels"}) SEAM_OK(check_rows(db_, table));
+        for (const char* table : {"runs", "run_regions", "run_panels", "run_types"})
+            SEAM_OK(check_rows(db_, table));
         const auto regions = [&](Statement& row) { return region(row); };
         const auto panels = [&](Statement& row) { return panel(row); };
         const auto spots = [&](Statement& row) { return spot(row); };
         for (Expected<void> done :
-             {query(
-                  "SELECT number, part_id, started_utc, finished_utc, push, status, setup FROM runs WHERE {} "
-                  "ORDER BY number",
-                  [&](Statement& row) { return run(row); }),
+             {query("SELECT number, part_id, started_utc, finished_utc, push, status, setup, "
+                    "ifnull((SELECT type_id FROM run_types WHERE run = number), '') FROM runs WHERE {} ORDER "
+                    "BY number",
+                    [&](Statement& row) { return run(row); }),
               query("SELECT run, region_id, run_regions.gate_passed, "
                     "ifnull(json_extract(body, '$.correction.status'), ''), "
                     "ifnull(json_extract(body, '$.correction.workobject_from_movedworkobject'), ''), "
@@ -52,6 +56,7 @@ class ValuesReader {
         SEAM_TRY(auto s, db_.prepare(fmt::format(fmt::runtime(sql), kWhichRuns)));
         s.bind(1, wanted_.since_utc);
         s.bind(2, wanted_.until_utc);
+        s.bind(3, wanted_.type_id);
         return for_each_row(s, read);
     }
 
@@ -71,6 +76,7 @@ class ValuesReader {
         if (!status) return wrong(r.number);
         r.status = *status;
         r.setup = row.integer(6);
+        r.type_id = row.text(7);
         at_.emplace(r.number, runs_.size());
         runs_.push_back(std::move(r));
         return {};

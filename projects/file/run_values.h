@@ -16,6 +16,7 @@ namespace seamwright {
 struct RunValuesWanted {
     // Of runs started then or later, and before; as utc_now() writes it. Empty: all.
     std::string since_utc, until_utc;
+    std::string type_id = {};  // of this part type alone; empty: all
 };
 
 struct RegionValue {
@@ -39,6 +40,7 @@ struct PanelValue {
 struct RunValues {
     std::int64_t number = 0;
     std::string part_id, started_utc, finished_utc;
+    std::string type_id;
     bool push = false;
     RunStatus status = RunStatus::ok;
     std::int64_t setup = 0;

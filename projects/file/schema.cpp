@@ -211,13 +211,30 @@ CREATE TABLE line (
 ) STRICT;
 )sql";
 
-constexpr std::array<Migration, 7> kMigrations{{{1, kVersion1},
+// Part types, and of which one a run is. In the bodies of spots and regions, whose they are: a program that knew nothing of
+// it would measure all of them at once.
+constexpr const char* kVersion8 = R"sql(
+CREATE TABLE part_types (
+    id TEXT PRIMARY KEY NOT NULL,
+    position INTEGER NOT NULL,
+    body TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+CREATE TABLE run_types (
+    run INTEGER PRIMARY KEY REFERENCES runs (number) ON DELETE CASCADE,
+    type_id TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array<Migration, 8> kMigrations{{{1, kVersion1},
                                                 {2, kVersion2},
                                                 {3, kVersion3},
                                                 {4, kVersion4},
                                                 {5, kVersion5},
                                                 {6, kVersion6},
-                                                {7, kVersion7}}};
+                                                {7, kVersion7},
+                                                {8, kVersion8}}};
 
 // The tables of a fresh file of that version; made once for each version, since making them costs more than
 // checking a file does.

@@ -57,9 +57,9 @@ std::string name_of(const RobotIdentity& id) {
 
 // The displacement that leads from the taught frame to this one, in the work object: corrected_frame() turned
 // round.
-Pose displacement_to(const GateRequest& request, const Pose& base_from_frame) {
-    return request.base_from_workobject.inverse() * base_from_frame *
-           request.region.base_from_frame.inverse() * request.base_from_workobject;
+Pose displacement_to(const GateRequest& request, const Region& region, const Pose& base_from_frame) {
+    return request.base_from_workobject.inverse() * base_from_frame * region.base_from_frame.inverse() *
+           request.base_from_workobject;
 }
 
 void judge_age(const GateRequest& request, const GateSpot& spot, Reasons& reasons) {
@@ -97,10 +97,16 @@ void judge_spots(const GateRequest& request, Reasons& reasons) {
         reasons.refuse_unless(count == 1, "spot {} of the region is {}", id,
                               count ? "given twice" : "not known");
     }
-    std::string unconfirmed;
-    for (const GateSpot& spot : request.spots)
-        if (spot.reference != ReferenceState::measured)
-            unconfirmed += (unconfirmed.empty() ? "" : ", ") + spot.id;
+    std::string unconfirmed, of_other_type;
+    for (const GateSpot& spot : request.spots) {
+        if (spot.reference == ReferenceState::measured) continue;
+        std::string& list = spot.reference == ReferenceState::from_type ? of_other_type : unconfirmed;
+        list += (list.empty() ? "" : ", ") + spot.id;
+    }
+    reasons.refuse_unless(
+        of_other_type.empty(),
+        "the references of spots are another part type's: {}; teach them on a part of this type",
+        of_other_type);
     reasons.refuse_unless(
         unconfirmed.empty(),
         "spots from the drawing are not confirmed: {}; confirm them on the part (`seamwright "
@@ -208,7 +214,14 @@ void judge_jump(const GateRequest& request, Reasons& reasons) {
         return;
     }
     const Region& region = request.region;
-    const Pose d = displacement_to(request, now);
+    for (const Region& other : request.frame_of_other_types) {
+        if (!limits_that_are_none(other).empty() || !rigid(other.base_from_frame)) continue;
+        const Pose theirs = displacement_to(request, other, now);
+        if (theirs.translation().norm() <= other.limits.translation_mm &&
+            deg_from_rad(angle_rad(theirs, Pose::Identity())) <= other.limits.rotation_deg)
+            return;  // as their last part left it
+    }
+    const Pose d = displacement_to(request, region, now);
     const double length = d.translation().norm(), turn = deg_from_rad(angle_rad(d, Pose::Identity()));
     const Pose target = corrected_frame(request.base_from_workobject, request.correction.displacement,
                                         region.base_from_frame);

@@ -73,6 +73,10 @@ struct GateRequest {
     // is good for none; or it could not be read, then `frame_trouble` says why and the gate refuses.
     std::optional<Pose> base_from_frame_now;
     Text frame_trouble;
+    // Those of other part types that are pushed into the same frame of this robot: the part before may have been
+    // theirs, so the frame that stands there is judged by theirs too, within their own limits. One whose limits are
+    // none (limits_that_are_none()) counts for nothing.
+    std::vector<Region> frame_of_other_types = {};
 };
 
 // Limits beyond these are none.

@@ -130,7 +130,7 @@ WatchLine LineControl::watch_line() {
 }
 
 // The robot's name for the part stays; the line's is taken where it has none.
-Expected<std::string> LineControl::named(const std::string& part_id) {
+Expected<NamedPart> LineControl::named(const std::string& part_id) {
     const Link* starter = caller();
     // Of several links the first one that says anything.
     const Link* speaker = starter;
@@ -151,7 +151,7 @@ Expected<std::string> LineControl::named(const std::string& part_id) {
         return input_error(Text("its type {} is none that is measured here", part.type),
                            Text("line {}", speaker->setup.id), "name it in the link's part_types");
     }
-    return state_.part_id;
+    return NamedPart{state_.part_id, part.type};
 }
 
 void LineControl::take(const WatchEvent& e) {
@@ -181,7 +181,8 @@ void LineControl::take(const WatchEvent& e) {
         state_.regions.clear();
         state_.run = 0;
         state_.seconds = 0;
-        const LineAlarm why = std::exchange(refused_, LineAlarm::none);
+        LineAlarm why = std::exchange(refused_, LineAlarm::none);
+        if (missed->part_type) why = LineAlarm::part_type_unknown;
         if (why == LineAlarm::none) {
             state_.part_id = missed->part_id;
             state_.part = caller() ? called_ : LinePart{};

@@ -42,7 +42,7 @@ class LineControl {
         LineSetup setup;
         std::unique_ptr<LineLink> link;
     };
-    Expected<std::string> named(const std::string& part_id);
+    Expected<NamedPart> named(const std::string& part_id);
     void publish();
 
     std::vector<Link> links_;

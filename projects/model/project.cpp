@@ -5,12 +5,27 @@
 namespace seamwright {
 
 std::string_view to_string(ReferenceState state) {
-    return state == ReferenceState::from_drawing ? "from_drawing" : "measured";
+    switch (state) {
+        case ReferenceState::from_drawing:
+            return "from_drawing";
+        case ReferenceState::from_type:
+            return "from_type";
+        case ReferenceState::measured:
+            break;
+    }
+    return "measured";
 }
 
 Text name_of(ReferenceState state) {
-    return state == ReferenceState::from_drawing ? Text("from the drawing, not confirmed")
-                                                 : Text("measured on the part");
+    switch (state) {
+        case ReferenceState::from_drawing:
+            return "from the drawing, not confirmed";
+        case ReferenceState::from_type:
+            return "of another part type, not taught on this one";
+        case ReferenceState::measured:
+            break;
+    }
+    return "measured on the part";
 }
 
 std::vector<std::string> unconfirmed_spots(const Project& project, const Region& region) {

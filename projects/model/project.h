@@ -29,6 +29,16 @@
 
 namespace seamwright {
 
+// A kind of part that comes down the line: door left, door right. It has spots, regions and with them references,
+// limits and frames of its own; sensors, robots, calibrations and the work object's place are all types'. A run is of
+// one type and measures its spots alone. A project without types is of one kind of part, as if it were its only type.
+struct PartType {
+    std::string id;    // "left", as robots, --type and stored runs say it
+    std::string name;  // "door left", for people
+    int number = 0;    // as a PLC says it, 1..65535; 0: it is known by its id alone
+    bool operator==(const PartType&) const = default;
+};
+
 struct PartSetup {
     std::string name;                 // "door left"
     std::string mesh_source;          // where the mesh came from, for people
@@ -93,8 +103,9 @@ struct Calibration {
 
 // Where a spot's reference comes from.
 enum class ReferenceState {
-    measured,     // on the part; or nowhere yet, then there is no reference_profile
-    from_drawing  // expected from the drawing, not confirmed: the spot is measured, but nothing is pushed by it
+    measured,      // on the part; or nowhere yet, then there is no reference_profile
+    from_drawing,  // expected from the drawing, not confirmed: the spot is measured, but nothing is pushed by it
+    from_type      // another part type's, copied with its spot: the same, until it is taught on this one
 };
 std::string_view to_string(ReferenceState state);  // "from_drawing"
 Text name_of(ReferenceState state);                // "from the drawing, not confirmed"
@@ -110,7 +121,8 @@ struct DrawingOrigin {
 };
 
 struct Spot {
-    std::string id;  // "S1"
+    std::string id;       // "S1", one of a kind in the project, whatever its type
+    std::string type_id;  // the part type; empty: of a project without types
     std::string sensor_id, robot_id;
     bool enabled = true;
     bool required = true;                      // a region with a required spot missing is not pushed
@@ -156,7 +168,8 @@ struct KeptOffset {
 };
 
 struct Region {
-    std::string id;  // "R1"
+    std::string id;       // "R1"
+    std::string type_id;  // as that of its spots
     std::vector<std::string> spot_ids;
     FreeDof free = kAllFree;
     CorrectionLimits limits{25.0, 3.0};
@@ -201,6 +214,7 @@ struct Project {
     std::string name;
     Requirements requirements;
     PartSetup part;
+    std::vector<PartType> part_types;
     std::vector<SensorSetup> sensors;
     std::vector<RobotSetup> robots;
     std::vector<Calibration> calibrations;

@@ -158,6 +158,7 @@ std::optional<RunStatus> run_status_from(std::string_view name);
 struct RunRecord {
     std::int64_t number = 0;  // given by the file, 1..
     std::string part_id;
+    std::string type_id;  // of the part; empty: of a project without types
     std::string started_utc, finished_utc;
     bool push = false;  // false = dry run
     RunStatus status = RunStatus::ok;

@@ -6,6 +6,7 @@
 
 #include "devices/capture/capture.h"
 #include "projects/file/project_json.h"
+#include "projects/model/part_types.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
@@ -135,6 +136,9 @@ CheckItem check_taught(const Project& p) {
         if (!spot.enabled) continue;
         if (spot.reference_profile.size() == 0)
             return missing(kStep, Text("measure the reference of spot {}", spot.id));
+        if (spot.reference_state == ReferenceState::from_type)
+            return missing(kStep,
+                           Text("teach spot {} on its own part: its reference is another type's", spot.id));
         if (spot.reference_state == ReferenceState::from_drawing)
             return missing(kStep,
                            Text("confirm spot {} on the part: its reference is from the drawing", spot.id));
@@ -471,7 +475,9 @@ Expected<void> gather(const ProjectFile& file, Facts& facts) {
     return {};
 }
 
-std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
+namespace {
+
+std::vector<CheckItem> checklist_of_one(const Project& project, const Facts& facts) {
     std::vector<CheckItem> items{
         check_sensors(project, facts),
         check_robots(project, facts),
@@ -483,6 +489,48 @@ std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
         check_known_shift(project, facts)};
     items.push_back(check_limits(project, facts, items.back()));
     items.push_back(check_headless(project, facts));
+    return items;
+}
+
+// What was proven of one type: with a setup of it alone; a contour is known by its spot.
+Facts facts_of(const std::string& type, const Facts& facts) {
+    Facts its = facts;
+    std::erase_if(its.evidence, [&](const Evidence& e) {
+        if (std::holds_alternative<FrozenContour>(e.what)) return false;
+        const auto setup = facts.setups.find(e.setup);
+        if (setup == facts.setups.end()) return true;
+        const auto& types = setup->second->part_types;
+        return types.size() != 1 || types.front().id != type;
+    });
+    return its;
+}
+
+}  // namespace
+
+std::vector<CheckItem> checklist(const Project& project, const Facts& facts) {
+    if (project.part_types.empty()) return checklist_of_one(project, facts);
+    std::vector<CheckItem> items;
+    for (const PartType& type : project.part_types) {
+        std::vector<CheckItem> its = checklist_of_one(of_type(project, type.id), facts_of(type.id, facts));
+        for (CheckItem& item : its) {
+            item.why = Text("part type {}: {}", type.id, item.why);
+            for (Text& line : item.evidence) line = Text("part type {}: {}", type.id, line);
+        }
+        if (items.empty()) {
+            items = std::move(its);
+            continue;
+        }
+        // The first type with something open speaks for the step.
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (!items[i].done()) continue;
+            if (!its[i].done()) {
+                items[i] = std::move(its[i]);
+                continue;
+            }
+            items[i].why = joined(items[i].why, "; ", its[i].why);
+            items[i].evidence.insert(items[i].evidence.end(), its[i].evidence.begin(), its[i].evidence.end());
+        }
+    }
     return items;
 }
 

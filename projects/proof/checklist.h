@@ -73,6 +73,7 @@ struct Facts {
 // edited, so that a second call reads little. Facts of another file must be emptied first.
 Expected<void> gather(const ProjectFile& file, Facts& facts);
 
+// In a project with part types a step is done when it is for each of them; else the first that it is not for speaks.
 std::vector<CheckItem> checklist(const Project& project, const Facts& facts);
 
 // The newest evidence of a kind; of a spot for FrozenContour. nullptr when there is none.

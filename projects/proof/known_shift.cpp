@@ -7,6 +7,7 @@
 
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
+#include "projects/model/part_types.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/measure.h"
 
@@ -231,7 +232,8 @@ std::vector<ShiftOutcome> judge_shift(const Project& setup, const RunRecord& run
 }
 
 Expected<KnownShift> prove_known_shift(Station& station, const KnownShiftOptions& options) {
-    const Project setup = station.project();
+    SEAM_TRY(const auto type, called_type(station.project(), options.part_type));
+    const Project setup = of_type(station.project(), type);
     SEAM_OK(fits(setup, options));
     SEAM_TRY(auto tests, shift_tests(setup, options.grid));
     KnownShift proof;
@@ -259,6 +261,7 @@ Expected<KnownShift> prove_known_shift(Station& station, const KnownShiftOptions
             const std::string name = shift_name(test, proof);
             RunOptions run_options;
             run_options.part_id = kKnownShiftPrefix + name;
+            run_options.part_type = type;
             run_options.cancel = options.cancel;
             SEAM_TRY(auto run, station.run(run_options));
             if (options.measured) options.measured(run);

@@ -43,6 +43,7 @@ std::string shift_name(const ShiftTest& test, const KnownShift& proof);
 struct KnownShiftOptions {
     ShiftBy by = ShiftBy::simulated_part;
     ShiftGrid grid;
+    std::string part_type;  // of the part (RunOptions::part_type); the evidence is that type's
     std::stop_token cancel;
     std::function<void(const RunProgress&)> progress;    // tests
     std::function<void(const RunRecord& run)> measured;  // after each run

@@ -7,6 +7,7 @@
 
 #include "core/evaluation/statistics.h"
 #include "core/geometry/notation.h"
+#include "projects/model/part_types.h"
 #include "projects/station/measure.h"
 
 namespace seamwright {
@@ -64,11 +65,13 @@ ZeroShift summarise_zero_shift(const Project& setup, const std::vector<RunRecord
 Expected<ZeroShift> measure_zero_shift(Station& station, const ZeroShiftOptions& options) {
     if (options.runs < 2 || options.runs > 1000)
         return usage_error(Text("{} runs", options.runs), "zero shift", "give 2 to 1000");
-    const Project setup = station.project();
+    SEAM_TRY(const auto type, called_type(station.project(), options.part_type));
+    const Project setup = of_type(station.project(), type);
     std::vector<RunRecord> runs;
     for (int n = 0; n < options.runs; ++n) {
         RunOptions run_options;
         run_options.part_id = fmt::format("{}{}", kZeroShiftPrefix, n + 1);
+        run_options.part_type = type;
         run_options.cancel = options.cancel;
         if (options.progress)
             run_options.progress = [&](const RunProgress& p) {

@@ -15,7 +15,8 @@ namespace seamwright {
 inline constexpr const char* kZeroShiftPrefix = "zero shift ";
 
 struct ZeroShiftOptions {
-    int runs = 5;  // 2 to 1000
+    int runs = 5;           // 2 to 1000
+    std::string part_type;  // of the part (RunOptions::part_type); the evidence is that type's
     std::stop_token cancel;
     std::function<void(const RunProgress&)> progress;    // spots of all runs
     std::function<void(const RunRecord& run)> measured;  // after each run

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -8,6 +9,7 @@
 #include "devices/capture/capture.h"
 #include "devices/line/line_link.h"
 #include "projects/gate/safety_gate.h"
+#include "projects/model/part_types.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"
 #include "projects/station/fields.h"
@@ -201,6 +203,7 @@ void check_region(const Project& project, const Region& region, Findings& findin
     findings.rigid(region.base_from_frame, joined(where, "", ".base_from_frame"));
     for (const Region& other : project.regions) {
         if (&other == &region) break;
+        if (other.type_id != region.type_id) continue;  // one part is of one type
         findings.unless(!same_frame(other.frame_name, region.frame_name), where,
                         Text("region {} writes the same frame {}", other.id, other.frame_name),
                         "give each region its own frame");
@@ -301,6 +304,21 @@ std::vector<Error> motion_findings(const Project& project, const PanelJob& job, 
     return of_motion(std::move(findings), push);
 }
 
+Expected<std::string> runnable_type(const Project& project, const std::string& id_or_number, bool push) {
+    SEAM_TRY(auto type, called_type(project, id_or_number));
+    if (type.empty()) return type;
+    const Project one = of_type(project, type);
+    if (std::ranges::none_of(one.spots, &Spot::enabled))
+        return input_error("no spot of it is enabled", Text("part type {}", type),
+                           "teach a spot of it first");
+    if (auto sound = none_of_motion(motion_findings(one, push)); !sound) {
+        Error error = sound.error();
+        error.within(Text("part type {}", type));
+        return tl::unexpected(std::move(error));
+    }
+    return type;
+}
+
 Expected<void> none_of_motion(const std::vector<Error>& findings) {
     if (findings.empty()) return {};
     Error error = findings.front();
@@ -310,6 +328,20 @@ Expected<void> none_of_motion(const std::vector<Error>& findings) {
 }
 
 namespace {
+// In a project with types nothing that belongs to none is ever run.
+void check_types(const Project& project, Findings& findings) {
+    if (auto sound = check_part_types(project); !sound) findings.add(sound.error());
+    if (project.part_types.empty()) return;
+    const auto owned = [&](const auto& items, const char* kind) {
+        for (const auto& item : items)
+            findings.unless(!item.type_id.empty(), Text::chosen(kind, item.id),
+                            "it is of no part type, and is not run: the project has several kinds of parts",
+                            "seamwright type take FILE.seam TYPE ID");
+    };
+    owned(project.spots, "spot {}");
+    owned(project.regions, "region {}");
+}
+
 void check_line(const LineSetup& link, Findings& findings) {
     const LineProtocol* protocol = line_protocol(link.protocol);
     if (!protocol)
@@ -358,6 +390,7 @@ std::vector<Error> check(const Project& project) {
     for (const PanelJob& job : project.panel_jobs) check_panel_job(project, job, findings);
     check_ids(project.line, "line link", findings);
     for (const LineSetup& link : project.line) check_line(link, findings);
+    check_types(project, findings);
     std::vector<Error> list;
     for (auto& [concern, error] : findings.list) list.push_back(std::move(error));
     return list;

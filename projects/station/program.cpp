@@ -2,11 +2,15 @@
 
 #include <algorithm>
 
+#include "projects/model/part_types.h"
 #include "projects/station/acquire.h"
 
 namespace seamwright {
 
-Expected<ProgramRequest> program_request(const Project& project, const std::string& robot_id) {
+Expected<ProgramRequest> program_request(const Project& whole, const std::string& robot_id,
+                                         const std::string& part_type) {
+    SEAM_TRY(const auto type, called_type(whole, part_type));
+    const Project project = of_type(whole, type);
     const auto& robots = project.robots;
     if (robots.empty()) return input_error("the project has no robot", project.name, "add one");
     if (robot_id.empty() && robots.size() > 1)
@@ -19,6 +23,7 @@ Expected<ProgramRequest> program_request(const Project& project, const std::stri
                            Text("its first is \"{}\"", robots.front().id));
     ProgramRequest request;
     request.project = project.name;
+    request.part_type = type;
     request.settings = robot->settings;
     request.driver = robot->driver;
     request.moves = measuring_program(project, robot->id);

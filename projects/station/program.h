@@ -9,8 +9,10 @@
 namespace seamwright {
 
 // The enabled spots of a robot as moves, and the frames of the regions that they correct. `robot_id` may be
-// empty when the project has one robot. Error (input): no such robot, no enabled spot, a frame without name,
-// one name for two regions.
-Expected<ProgramRequest> program_request(const Project& project, const std::string& robot_id);
+// empty when the project has one robot, `part_type` (id or number) where it has no part types: the program is of one type,
+// and says so with its start signal. Error (input): no such robot, a type that called_type() refuses, no enabled spot, a
+// frame without name, one name for two regions.
+Expected<ProgramRequest> program_request(const Project& project, const std::string& robot_id,
+                                         const std::string& part_type = {});
 
 }  // namespace seamwright

@@ -10,6 +10,7 @@
 #include "devices/registry.h"
 #include "projects/file/file_use.h"
 #include "projects/gate/safety_gate.h"
+#include "projects/model/part_types.h"
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
 #include "projects/station/measure.h"
@@ -44,6 +45,7 @@ struct Station::Impl {
     // One run in the making.
     struct Job {
         const RunOptions& options;
+        Project project;  // of the part's type
         RunRecord run{};
         std::map<std::string, SpotMeasurer> measurers{};
         std::map<std::string, TriggeredFrames> frames{};  // by sensor
@@ -115,10 +117,10 @@ struct Station::Impl {
     // All spots of one robot, in the project's order.
     Expected<void> measure_robot(Job& job, const std::string& robot_id) {
         std::vector<const Spot*> spots;
-        for (const Spot& spot : project.spots)
+        for (const Spot& spot : job.project.spots)
             if (spot.enabled && spot.robot_id == robot_id) spots.push_back(&spot);
         RobotLink& robot = *robots.at(robot_id);
-        SEAM_OK(robot.start_measuring(measuring_program(project, robot_id)));
+        SEAM_OK(robot.start_measuring(measuring_program(job.project, robot_id)));
         job.started_robots.push_back(robot_id);
         std::set<std::string> open;
         for (const Spot* spot : spots) open.insert(spot->id);
@@ -145,7 +147,7 @@ struct Station::Impl {
 
     Expected<void> measure_all(Job& job) {
         std::vector<std::string> robot_ids, sensor_ids;
-        for (const Spot& spot : project.spots) {
+        for (const Spot& spot : job.project.spots) {
             if (!spot.enabled) continue;
             if (std::find(robot_ids.begin(), robot_ids.end(), spot.robot_id) == robot_ids.end())
                 robot_ids.push_back(spot.robot_id);
@@ -154,7 +156,7 @@ struct Station::Impl {
         }
         for (const std::string& id : sensor_ids) {
             SEAM_OK(job.started_sensors.start(*sensors.at(id), job.options.cancel));
-            job.frames.try_emplace(id, *sensors.at(id), *find_sensor(project, id));
+            job.frames.try_emplace(id, *sensors.at(id), *find_sensor(job.project, id));
         }
         for (const std::string& id : robot_ids) {
             if (job.options.cancel.stop_requested()) return {};
@@ -169,13 +171,13 @@ struct Station::Impl {
         GateRequest request;
         request.region = region;
         request.correction = *record.correction;
-        request.base_from_workobject = project.part.base_from_workobject;
+        request.base_from_workobject = job.project.part.base_from_workobject;
         request.part_id = job.run.part_id;
         request.part_since_ns = job.part_since_ns;
         std::string robot_id;
         std::map<std::string, RobotIdentity> answered;  // by robot; a question may be a round trip
         for (const std::string& id : region.spot_ids) {
-            const Spot* spot = find_spot(project, id);
+            const Spot* spot = find_spot(job.project, id);
             if (!spot) continue;  // the gate misses it
             GateSpot g;
             g.id = id;
@@ -187,13 +189,14 @@ struct Station::Impl {
                     g.part_id = m.part_id;
                     g.measured_at_ns = m.host_time_ns;
                 }
-            if (const Calibration* calibration = calibration_of(project, *spot)) {
-                g.point_workobject_mm = project.part.base_from_workobject.inverse() * spot->base_from_flange *
-                                        calibration->flange_from_sensor * spot->reference_mm;
+            if (const Calibration* calibration = calibration_of(job.project, *spot)) {
+                g.point_workobject_mm = job.project.part.base_from_workobject.inverse() *
+                                        spot->base_from_flange * calibration->flange_from_sensor *
+                                        spot->reference_mm;
                 g.calibration_id = calibration->id;
                 g.calibration_verdict = calibration->verdict;
                 g.calibrated_utc = calibration->created_utc;
-                g.collided_utc = last_collision(project, spot->robot_id);
+                g.collided_utc = last_collision(job.project, spot->robot_id);
                 g.calibrated_sensor = calibration->sensor_identity;
                 g.calibrated_robot = calibration->robot_identity;
             }
@@ -220,16 +223,22 @@ struct Station::Impl {
                     request.frame_trouble = now.error().text();
             }
         }
-        if (const RobotSetup* robot = find_robot(project, robot_id))
+        if (const RobotSetup* robot = find_robot(job.project, robot_id))
             request.required_mode = robot->required_mode;
-        if (const Calibration* nozzle = nozzle_of(project, robot_id)) {
+        if (const Calibration* nozzle = nozzle_of(job.project, robot_id)) {
             request.nozzle_sigma_mm = nozzle_sigma_mm(*nozzle);
-            request.nozzle_trouble = nozzle_trouble(project, robot_id);
+            request.nozzle_trouble = nozzle_trouble(job.project, robot_id);
         }
-        for (const Region& other : project.regions)
+        for (const Region& other : job.project.regions)
             if (&other != &region) request.other_frames.push_back(other.frame_name);
-        for (const PanelJob& other : project.panel_jobs) request.other_frames.push_back(other.frame_name);
-        request.calibration_age_days = project.requirements.calibration_age_days;
+        for (const Region& other : project.regions) {
+            const Spot* first = other.spot_ids.empty() ? nullptr : find_spot(project, other.spot_ids.front());
+            if (other.type_id != region.type_id && same_frame(other.frame_name, region.frame_name) && first &&
+                first->robot_id == robot_id)
+                request.frame_of_other_types.push_back(other);
+        }
+        for (const PanelJob& other : job.project.panel_jobs) request.other_frames.push_back(other.frame_name);
+        request.calibration_age_days = job.project.requirements.calibration_age_days;
         request.now_utc = utc_now();
         request.now_ns = host_now_ns();
         return request;
@@ -240,11 +249,11 @@ struct Station::Impl {
         std::vector<std::optional<GatePass>> passes;
         for (std::size_t i = 0; i < job.run.regions.size(); ++i) {
             RegionRecord& record = job.run.regions[i];
-            const Region& region = project.regions[i];
+            const Region& region = job.project.regions[i];
             passes.emplace_back();
             if (record.correction) {
                 record.base_from_frame =
-                    corrected_frame(project.part.base_from_workobject, record.correction->displacement,
+                    corrected_frame(job.project.part.base_from_workobject, record.correction->displacement,
                                     region.base_from_frame);
                 GateVerdict verdict = pass_gate(gate_request(job, region, record));
                 record.refusals = std::move(verdict.reasons);
@@ -258,8 +267,8 @@ struct Station::Impl {
     }
 
     // Which robot holds the frame of a region: that of its spots.
-    RobotLink& robot_of(const Region& region) {
-        return *robots.at(find_spot(project, region.spot_ids.front())->robot_id);
+    RobotLink& robot_of(const Job& job, const Region& region) {
+        return *robots.at(find_spot(job.project, region.spot_ids.front())->robot_id);
     }
 
     // The run as judged, durable with all its events.
@@ -306,7 +315,7 @@ struct Station::Impl {
     // Asks the person, then the gate again: meanwhile the robot's mode may have changed.
     bool confirmed(Job& job, std::vector<std::optional<GatePass>>& passes) {
         for (std::size_t k = 0; k < passes.size(); ++k) {
-            auto before = robot_of(project.regions[k]).read_frame(project.regions[k].frame_name);
+            auto before = robot_of(job, job.project.regions[k]).read_frame(job.project.regions[k].frame_name);
             if (before) job.run.regions[k].push.before = *before;
         }
         const bool yes = job.options.confirm_push(job.run) && !job.options.cancel.stop_requested();
@@ -346,8 +355,9 @@ struct Station::Impl {
                 region.push.message = "not pushed: the push of another region went wrong";
                 continue;
             }
-            region.push = push_region(std::move(*passes[i]), robot_of(project.regions[i]), sink(job));
-            region.push.robot_id = find_spot(project, project.regions[i].spot_ids.front())->robot_id;
+            region.push =
+                push_region(std::move(*passes[i]), robot_of(job, job.project.regions[i]), sink(job));
+            region.push.robot_id = find_spot(job.project, job.project.regions[i].spot_ids.front())->robot_id;
             alarm = region.push.status != PushStatus::written;
             if (alarm) job.run.message = Text("alarm: region {}: {}", region.region_id, region.push.message);
             job.progress(Text("region {}: {}", region.region_id, to_string(region.push.status)));
@@ -541,12 +551,14 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     if (!i.connected)
         return usage_error("the station is not connected to its devices", i.file.path().string(),
                            "connect first");
-    SEAM_OK(none_of_motion(motion_findings(i.project, options.push)));
-    Impl::Job job{.options = options};
+    SEAM_OK(check_part_types(i.project));
+    SEAM_TRY(const auto type, called_type(i.project, options.part_type));
+    Impl::Job job{.options = options, .project = of_type(i.project, type)};
+    SEAM_OK(none_of_motion(motion_findings(job.project, options.push)));
     RunRecord& run = job.run;
-    for (const Spot& spot : i.project.spots) {
+    for (const Spot& spot : job.project.spots) {
         if (!spot.enabled) continue;
-        SEAM_TRY(auto measurer, SpotMeasurer::make(i.project, spot.id));
+        SEAM_TRY(auto measurer, SpotMeasurer::make(job.project, spot.id));
         if (!i.sensors.count(spot.sensor_id) || !i.robots.count(spot.robot_id))
             return input_error("its sensor or robot is not connected", Text("spot {}", spot.id));
         job.measurers.insert_or_assign(spot.id, std::move(measurer));
@@ -555,15 +567,19 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
         m.message = "no frame came";
         run.spots.push_back(std::move(m));
     }
+    if (run.spots.empty() && !type.empty())
+        return input_error(Text("no spot of part type {} is enabled", type), i.file.path().string(),
+                           "teach a spot of it first");
     if (run.spots.empty())
         return input_error("no spot is enabled", i.file.path().string(),
                            i.project.panel_jobs.empty()
                                ? "teach a spot first"
                                : "teach a spot, or run its panel job (seamwright panel)");
 
-    SEAM_TRY(const auto setup, RunSetup::of(i.project));
+    SEAM_TRY(const auto setup, RunSetup::of(job.project));
 
     run.part_id = options.part_id;
+    run.type_id = type;
     run.push = options.push;
     run.started_utc = run.finished_utc = utc_now();
     run.status = RunStatus::interrupted;
@@ -578,7 +594,7 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
 
     auto measured = i.measure_all(job);
     const bool cancelled = options.cancel.stop_requested();
-    run.regions = correct_regions(i.project, run.spots);
+    run.regions = correct_regions(job.project, run.spots);
     for (const RegionRecord& region : run.regions)
         if (region.offset) job.event(EventKind::note, region.region_id, said_of(*region.offset));
     std::vector<std::optional<GatePass>> passes;
@@ -601,9 +617,9 @@ Expected<RunRecord> Station::run(const RunOptions& options) {
     }
     for (std::size_t k = 0; k < run.regions.size(); ++k)
         if (run.regions[k].correction)
-            run.regions[k].base_from_frame =
-                corrected_frame(i.project.part.base_from_workobject, run.regions[k].correction->displacement,
-                                i.project.regions[k].base_from_frame);
+            run.regions[k].base_from_frame = corrected_frame(job.project.part.base_from_workobject,
+                                                             run.regions[k].correction->displacement,
+                                                             job.project.regions[k].base_from_frame);
 
     // The judged run is in the file before the first frame goes to a robot. If one region is refused none is
     // pushed: half a part corrected is worse than a stopped line.

@@ -36,6 +36,7 @@ struct RunProgress {
 
 struct RunOptions {
     std::string part_id;       // empty = "run <number>"
+    std::string part_type;     // id or number of its type, where the project has types (called_type())
     bool push = false;         // false = dry run: everything but writing
     bool keep_images = false;  // raw images with the run, beside candidates and profiles
     AcquireLimits limits;
@@ -92,7 +93,7 @@ class Station {
     // record is in the file when this returns. RunStatus::ok of a push: the application runs in the frames,
     // and the link may end. The one record that may be newer than the file: of an application that began
     // while the file could not be written any more, which leaves it `pushed`; an event of the record says so.
-    // Error: not connected, no enabled spot, a recipe that cannot be prepared, findings of check() that
+    // Error: not connected, a part type that called_type() refuses, no enabled spot of it, a recipe that cannot be prepared, findings of check() that
     // concern motion, the file.
     Expected<RunRecord> run(const RunOptions& options);
 

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "devices/silence.h"
+#include "projects/model/part_types.h"
+#include "projects/station/check.h"
 
 namespace seamwright {
 
@@ -73,7 +75,7 @@ class Watch {
             }
             SEAM_TRY(auto start, next_start());
             if (!start.has_value()) continue;
-            if (const auto part_id = named(*start)) SEAM_OK(measure(*part_id));
+            if (const auto part = named(*start)) SEAM_OK(measure(*part));
         }
         state_ = WatchState::stopped;
         tell(WatchLevel::info, watched::Stopped{}, Text("stopped after {} parts", counts_.parts));
@@ -194,16 +196,48 @@ class Watch {
         return std::nullopt;
     }
 
-    // As the line names it; nothing: it is not to be measured, and who called is told.
-    std::optional<std::string> named(const StartSignal& start) {
-        if (!options_.line.named) return start.part_id;
-        auto part_id = options_.line.named(start.part_id);
-        if (part_id) return *part_id;
-        const Text why("part {}: {}", name(start), part_id.error().text());
-        missed("line", start, why);
+    struct Part {
+        std::string id, type;
+    };
+
+    // As the line names it and of which type; nothing: it is not to be measured, and who called is told.
+    std::optional<Part> named(const StartSignal& start) {
+        NamedPart part{start.part_id};
+        if (options_.line.named) {
+            auto by_line = options_.line.named(start.part_id);
+            if (!by_line) return refused(start, by_line.error(), false);
+            part = std::move(*by_line);
+        }
+        auto type = type_of(start, part);
+        if (!type) return refused(start, type.error(), true);
+        return Part{std::move(part.part_id), std::move(*type)};
+    }
+
+    std::nullopt_t refused(const StartSignal& start, const Error& error, bool part_type) {
+        const Text why("part {}: {}", name(start), error.text());
+        missed(part_type && !caller_.empty() ? "robot " + caller_ : "line", start, why, part_type);
         if (RobotLink* robot = caller_.empty() ? nullptr : station_.robot(caller_))
             refuse(*robot, caller_, why);
         return std::nullopt;
+    }
+
+    // What robot, line and person say must be one type.
+    Expected<std::string> type_of(const StartSignal& start, const NamedPart& part) {
+        const Project& project = station_.project();
+        // A line numbers its parts for others too.
+        const std::string line = part.type && !project.part_types.empty() ? std::to_string(part.type) : "";
+        std::string type;
+        for (const auto& [who, said] :
+             {std::pair{Text("robot {}", caller_), start.part_type}, std::pair{Text("line"), line},
+              std::pair{Text("--type"), options_.part_type}}) {
+            if (said.empty()) continue;
+            SEAM_TRY(auto one, called_type(project, said));
+            if (!type.empty() && one != type)
+                return input_error(Text("{} says part type {}, before it was {}", who, one, type),
+                                   "part types", "let all who say a type say the same");
+            type = std::move(one);
+        }
+        return runnable_type(project, type, options_.push);
     }
 
     void refuse(RobotLink& robot, const std::string& id, const Text& why) {
@@ -237,24 +271,30 @@ class Watch {
         return true;
     }
 
-    void missed(const std::string& subject, const StartSignal& start, const Text& why) {
+    void missed(const std::string& subject, const StartSignal& start, const Text& why,
+                bool part_type = false) {
         ++counts_.missed;
         (void)station_.file().append_event({0, utc_now(), 0, EventKind::refusal, subject, why});
-        tell(WatchLevel::warning, watched::Missed{start.part_id}, why);
+        tell(WatchLevel::warning, watched::Missed{start.part_id, part_type}, why);
     }
 
     static std::string name(const StartSignal& start) {
         return start.part_id.empty() ? "(no name)" : start.part_id;
     }
 
-    Expected<void> measure(const std::string& part_id) {
+    static Text named_part(const Part& part) {
+        const Text id = part.id.empty() ? Text("(no name)") : Text(part.id);
+        return part.type.empty() ? Text("part {}", id) : Text("part {} of type {}", id, part.type);
+    }
+
+    Expected<void> measure(const Part& part) {
         state_ = WatchState::measuring;
         calls_heard_ = false;
         ++counts_.parts;
-        tell(WatchLevel::info, watched::Start{part_id},
-             Text("part {}", part_id.empty() ? Text("(no name)") : Text(part_id)));
+        tell(WatchLevel::info, watched::Start{part.id, part.type}, named_part(part));
         RunOptions run;
-        run.part_id = part_id;
+        run.part_id = part.id;
+        run.part_type = part.type;
         run.push = options_.push;
         run.keep_images = options_.keep_images;
         run.limits = options_.limits;
@@ -281,7 +321,8 @@ class Watch {
         tell(alarm || status == RunStatus::device ? WatchLevel::alarm
              : status == RunStatus::ok            ? WatchLevel::info
                                                   : WatchLevel::warning,
-             watched::RunDone{done, took.count()}, Text("part {}: {}", done->part_id, done->message));
+             watched::RunDone{done, took.count()},
+             Text("{}: {}", named_part({done->part_id, done->type_id}), done->message));
         return forget_old_runs();
     }
 

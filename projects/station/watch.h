@@ -43,9 +43,11 @@ struct RobotNotice {};  // a robot said something that is no call
 struct LineNotice {};   // the line beside the station did
 struct Start {
     std::string part_id;
+    std::string type_id = {};  // empty: the project has no part types
 };
 struct Missed {
-    std::string part_id;  // called, but not measured
+    std::string part_id;     // called, but not measured
+    bool part_type = false;  // because of its type: unknown, not said, or none that can be run
 };
 struct SpotDone {
     int done, total;
@@ -72,6 +74,12 @@ struct WatchEvent {
     WatchCounts counts;
 };
 
+// A part as the line names it.
+struct NamedPart {
+    std::string part_id;
+    int type = 0;  // PartType::number; 0: the line says none
+};
+
 // The line beside the robots, as LineControl (projects/line/line_control.h) makes it. Every function returns at once.
 struct WatchLine {
     // Its calls start the parts. A robot's own call is then taken note of, and that a part is over by it; it starts
@@ -81,7 +89,7 @@ struct WatchLine {
     std::function<bool()> given_up;  // the part that it called for
     // How the part that was called is to be named, by what the robot or the line called it; Error: it is not to be
     // measured, and why.
-    std::function<Expected<std::string>(const std::string& part_id)> named;
+    std::function<Expected<NamedPart>(const std::string& part_id)> named;
     std::function<std::vector<Text>()> notices;
 };
 
@@ -90,6 +98,10 @@ struct WatchOptions {
     bool keep_images = false;
     std::int64_t parts = 0;      // end after so many; 0 = never
     std::int64_t keep_runs = 0;  // older runs are deleted from the file; 0 = keep all
+    // Where neither robot nor line says a part's type: its id or number. All who say one must say the same, or the part
+    // is refused, as one is of an unknown type, of none, and of one that motion_findings() refuses: the robot is told,
+    // the frames stay as they are.
+    std::string part_type;
     AcquireLimits limits;
     WatchLine line;
     // A call that may be older (StartSignal::not_before_ns), after an outage, is refused: another part may

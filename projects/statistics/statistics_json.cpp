@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 
 #include "projects/statistics/statistics_page.h"
 
@@ -143,6 +144,9 @@ nlohmann::json statistics_json(const Statistics& s) {
                            {"characteristics", std::move(list)},
                            {"refusals", std::move(refusals)}});
     }
+    std::map<std::string, int> by_type;  // of runs that have one
+    for (const ProductionRun& run : s.production.runs)
+        if (!run.values.type_id.empty()) ++by_type[run.values.type_id];
     for (const UnmeasuredSpot& u : s.unmeasured)
         unmeasured.push_back({{"spot", u.spot_id}, {"status", to_string(u.status)}, {"count", u.count}});
     json cycle;
@@ -155,21 +159,23 @@ nlohmann::json statistics_json(const Statistics& s) {
                  {"longest_s", s.cycle->longest_s},
                  {"median_between_starts_s", s.cycle->between_s}};
     const auto& runs = s.production.runs;
-    return {{"status", runs.empty() ? "no_production" : "ok"},
-            {"files", std::move(files)},
-            {"first_utc", runs.empty() ? json() : json(runs.front().values.started_utc)},
-            {"last_utc", runs.empty() ? json() : json(runs.back().values.started_utc)},
-            {"runs", runs.size()},
-            {"by_status", std::move(status)},
-            {"left_out",
-             {{"proofs", s.production.proofs},
-              {"studies", s.production.studies},
-              {"unfinished", s.production.unfinished}}},
-            {"setups", s.production.setups},
-            {"regions", std::move(regions)},
-            {"unmeasured", std::move(unmeasured)},
-            {"cycle", std::move(cycle)},
-            {"caveats", s.caveats}};
+    json out = {{"status", runs.empty() ? "no_production" : "ok"},
+                {"files", std::move(files)},
+                {"first_utc", runs.empty() ? json() : json(runs.front().values.started_utc)},
+                {"last_utc", runs.empty() ? json() : json(runs.back().values.started_utc)},
+                {"runs", runs.size()},
+                {"by_status", std::move(status)},
+                {"left_out",
+                 {{"proofs", s.production.proofs},
+                  {"studies", s.production.studies},
+                  {"unfinished", s.production.unfinished}}},
+                {"setups", s.production.setups},
+                {"regions", std::move(regions)},
+                {"unmeasured", std::move(unmeasured)},
+                {"cycle", std::move(cycle)},
+                {"caveats", s.caveats}};
+    if (!by_type.empty()) out["by_type"] = by_type;
+    return out;
 }
 
 }  // namespace seamwright

@@ -66,6 +66,15 @@ class Writer {
                                 std::to_string(s_.by_status[i]),
                                 number(100.0 * s_.by_status[i] / static_cast<double>(runs.size()), 2)});
         page_.table(rows);
+        std::map<std::string, int> types;  // runs of before part types have none
+        for (const ProductionRun& run : runs)
+            if (!run.values.type_id.empty()) ++types[run.values.type_id];
+        if (types.empty()) return;
+        Rows by_type{{t("Part type"), t("Parts"), t("Share (%)")}};
+        for (const auto& [type, parts] : types)
+            by_type.push_back(
+                {type, std::to_string(parts), number(100.0 * parts / static_cast<double>(runs.size()), 2)});
+        page_.table(by_type);
     }
 
     void region(const RegionStatistics& r) {

@@ -3968,6 +3968,10 @@ A %5  B %6  C %7 Grad</translation>
         <source>%1 (from the drawing, not confirmed)</source>
         <translation>%1 (aus der Zeichnung, nicht bestätigt)</translation>
     </message>
+    <message>
+        <source>%1 (of another part type, not taught on this one)</source>
+        <translation>%1 (von einem anderen Teiletyp, an diesem nicht eingelernt)</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::ResidualBars</name>
@@ -4634,6 +4638,10 @@ ausgelassen</translation>
         <source>from the drawing</source>
         <translation>aus der Zeichnung</translation>
     </message>
+    <message>
+        <source>of another part type</source>
+        <translation>von anderem Teiletyp</translation>
+    </message>
 </context>
 <context>
     <name>seamwright::StationWorker</name>
@@ -5153,6 +5161,10 @@ und %1 weitere</translation>
     <message>
         <source>x %1   z %2 mm in the sensor, from drawing %3, not confirmed</source>
         <translation>x %1   z %2 mm im Sensor, aus der Zeichnung %3, nicht bestätigt</translation>
+    </message>
+    <message>
+        <source>Another part type&apos;s: measure it on a part of this type.</source>
+        <translation>Von einem anderen Teiletyp: an einem Teil dieses Typs messen.</translation>
     </message>
 </context>
 <context>

@@ -276,9 +276,19 @@ TEST_P(RobotLaws, TheLinesCallIsHeardOnce) {
     auto start = link->wait_start(std::chrono::seconds(5));
     ASSERT_TRUE(start) << start.error().sentence();
     EXPECT_EQ(start->part_id, "CAR-0815");
+    EXPECT_EQ(start->part_type, "") << "a program of a project without part types says none";
     none = link->wait_start(std::chrono::milliseconds(50));
     ASSERT_FALSE(none);
     EXPECT_TRUE(is_silence(none.error()));
+    measure_all();
+}
+
+TEST_P(RobotLaws, TheTypeComesWithTheCall) {
+    controller->press_start("CAR-0815", "wagon_long-16-ch");
+    auto start = link->wait_start(std::chrono::seconds(5));
+    ASSERT_TRUE(start) << start.error().sentence();
+    EXPECT_EQ(start->part_id, "CAR-0815");
+    EXPECT_EQ(start->part_type, "wagon_long-16-ch");
     measure_all();
 }
 

@@ -195,7 +195,11 @@ void RegionsPage::refresh() {
             const QString id = QString::fromStdString(s.id);
             const bool drawn = s.reference_state == ReferenceState::from_drawing;
             auto* item =
-                new QListWidgetItem(drawn ? tr("%1 (from the drawing, not confirmed)").arg(id) : id, spots_);
+                new QListWidgetItem(drawn ? tr("%1 (from the drawing, not confirmed)").arg(id)
+                                    : s.reference_state == ReferenceState::from_type
+                                        ? tr("%1 (of another part type, not taught on this one)").arg(id)
+                                        : id,
+                                    spots_);
             item->setData(Qt::UserRole, id);
             item->setSizeHint({0, style::kTargetPx});
             item->setFlags(item->flags() | Qt::ItemIsUserCheckable);

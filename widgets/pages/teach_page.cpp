@@ -424,6 +424,8 @@ void TeachPage::refresh() {
                          s->reference_profile.size() > 0);
     confirm_->setEnabled(connected);
     reference_->setText(s->reference_profile.size() == 0 ? tr("Not measured yet.")
+                        : s->reference_state == ReferenceState::from_type
+                            ? tr("Another part type's: measure it on a part of this type.")
                         : s->reference_state == ReferenceState::from_drawing
                             ? tr("x %1   z %2 mm in the sensor, from drawing %3, not confirmed")
                                   .arg(number(s->reference_mm.x(), 3), number(s->reference_mm.z(), 3),

@@ -153,6 +153,7 @@ json run_json(const RunRecord& run) {
                 {"spots", spots},
                 {"regions", regions},
                 {"events", events}};
+    if (!run.type_id.empty()) out["type"] = run.type_id;
     if (run.panel) out["panel"] = panel_json(*run.panel);
     if (run.push) {
         out["release"] = json::object();
@@ -163,7 +164,8 @@ json run_json(const RunRecord& run) {
 
 std::string run_text(const RunRecord& run) {
     std::string text =
-        fmt::format("run {}  part {}  {}: {}\n", run.number, run.part_id, to_string(run.status), run.message);
+        fmt::format("run {}  part {}{}  {}: {}\n", run.number, run.part_id,
+                    run.type_id.empty() ? "" : " of type " + run.type_id, to_string(run.status), run.message);
     for (const SpotMeasurement& s : run.spots) {
         if (s.status == SpotStatus::measured)
             text += fmt::format("  spot {:<8} x {:9.3f}  z {:9.3f} mm  ± {:.3f}\n", s.spot_id,

@@ -240,14 +240,17 @@ void KukaCell::operate(const std::stop_token& stop) {
 
 // The line's controller: names the part and calls, as a submit program of the plant would.
 void KukaCell::line_calls() {
-    const auto part = take_start();
-    if (!part) return;
-    std::string name = *part;
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c < ' ' || c > '~' || c == '"'; }, '?');
+    const auto call = take_start();
+    if (!call) return;
+    const auto text = [](std::string said) {
+        std::replace_if(
+            said.begin(), said.end(), [](char c) { return c < ' ' || c > '~' || c == '"'; }, '?');
+        return "\"" + (said.empty() ? "-" : said.substr(0, 79)) + "\"";
+    };
     const std::lock_guard lock(machine_.mutex());
     try {
-        machine_.set(*robot_, "SW_PART[]", "\"" + (name.empty() ? "-" : name.substr(0, 79)) + "\"");
+        machine_.set(*robot_, "SW_PART[]", text(call->part_id));
+        if (!call->part_type.empty()) machine_.set(*robot_, "SW_TYPE[]", text(call->part_type));
         machine_.set(*robot_, "SW_CALL", "TRUE");
     } catch (const KrlError& e) {
         robot_->told(e.what());

@@ -36,7 +36,7 @@ struct ControllerSettings {
 
     double cycle_s() const { return cb3 ? 0.008 : 0.002; }
     // Where the line's controller writes: in the field bus's half, unless the module is there.
-    std::size_t line() const { return first_register >= 24 ? 20 : 44; }
+    std::size_t line() const { return first_register >= 24 ? 16 : 40; }  // eight of them
 };
 
 class UrController final : public SimulatedController {
@@ -179,9 +179,12 @@ class UrController final : public SimulatedController {
             return;
         }
         if (robot_.outputs.bits[0]) return;
-        if (const auto part = take_start()) {
-            const auto words = ur::part_registers(*part);
-            for (std::size_t i = 0; i < 4; ++i) inputs_.registers.ints[settings_.line() + i] = words[i];
+        if (const auto call = take_start()) {
+            const auto part = ur::part_registers(call->part_id), type = ur::part_registers(call->part_type);
+            for (std::size_t i = 0; i < 4; ++i) {
+                inputs_.registers.ints[settings_.line() + i] = part[i];
+                inputs_.registers.ints[settings_.line() + 4 + i] = type[i];
+            }
             bits[0] = true;
         }
     }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "projects/file/project_json.h"
+#include "projects/model/part_types.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 
@@ -153,10 +154,18 @@ Text what_is_missing(const StudyProgress& progress) {
     return Text("{} of {} runs are made", progress.made(), progress.wanted());
 }
 
+// Of the parts that are measured for it: its region's.
+std::string type_of(const Project& project, const StudyPlan& plan) {
+    for (const Region& region : project.regions)
+        if (region.id == plan.region_id) return region.type_id;
+    return {};
+}
+
 // Goes on with what was begun, or begins: then the plan is in the file before the first run.
 Expected<StudyProgress> begin(Station& station, const LiveStudyOptions& options) {
     SEAM_TRY(auto asked, plan_of(station.project(), options));
-    SEAM_TRY(auto setup, station.file().setup_of(station.project()));
+    const Project with = of_type(station.project(), type_of(station.project(), asked));
+    SEAM_TRY(auto setup, station.file().setup_of(with));
     int other_setup = 0;
     if (!options.anew) {
         SEAM_TRY(auto newest, newest_plan(station.file(), asked));
@@ -168,7 +177,7 @@ Expected<StudyProgress> begin(Station& station, const LiveStudyOptions& options)
     }
     SEAM_TRY(auto runs, station.file().runs());
     if (!runs.empty()) asked.after_run = runs.back().number;
-    SEAM_OK(station.file().append_evidence({0, {}, 0, asked}, station.project()));
+    SEAM_OK(station.file().append_evidence({0, {}, 0, asked}, with));
     StudyProgress progress;
     progress.plan = std::move(asked);
     progress.setup = setup;
@@ -226,6 +235,7 @@ Expected<StudyProgress> measure_study(Station& station, const LiveStudyOptions& 
             run_options.part_id = step.part.empty()
                                       ? fmt::format("{}{}", kZeroShiftPrefix, step.made + step.refused + 1)
                                       : run_name(progress->plan, step);
+            run_options.part_type = type_of(station.project(), progress->plan);
             run_options.cancel = options.cancel;
             if (options.progress)
                 run_options.progress = [&](const RunProgress& p) {

@@ -1,6 +1,7 @@
 MODULE Seamwright
     ! What measuring and application programs of T_ROB1 call; SeamwrightServer.mod shares this data. For each part:
     !   swPart:="CAR-0815";       where the line's controller knows the part
+    !   swType:="left";           its type, where the project has part types and this is not SeamwrightSpots.mod's own
     !   SW_Measure;               calls for the measurement, waits for it and runs through the spots
     !   SW_Activate;              before the first path: waits for the permission and takes it, or stops
     !   MoveL p1,v100,z1,gun\WObj:=BASE_left;      the path in its work object, which was shifted

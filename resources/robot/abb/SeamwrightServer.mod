@@ -9,6 +9,7 @@ MODULE SeamwrightServer
     PERS num swTick;
     PERS num swCalls;
     PERS string swPart;
+    PERS string swType;
     PERS bool swAsk;
     PERS bool swGo;
     PERS bool swEnded;
@@ -177,7 +178,7 @@ MODULE SeamwrightServer
         ENDIF
         IF calls<>calls_told THEN
             starts:=starts+1;
-            Say "0 START "+NumToStr(starts,0),swPart,"";
+            Say "0 START "+NumToStr(starts,0),swPart,swType;
             calls_told:=calls;
         ENDIF
     ERROR

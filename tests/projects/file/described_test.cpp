@@ -34,6 +34,7 @@ MEMBERS(PanelFit, a, b, c, d, e, f, g, h, i, j, k, l, m)
 MEMBERS(PanelSpotResult, a, b, c, d, e, f, g)
 MEMBERS(PanelRecord, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(PartSetup, a, b, c, d)
+MEMBERS(PartType, a, b, c)
 MEMBERS(SensorSetup, a, b, c, d, e, f, g)
 MEMBERS(PeakOptions, a, b, c, d, e, f, g)
 MEMBERS(FilterOptions, a, b, c, d, e, f, g)
@@ -41,9 +42,9 @@ MEMBERS(RobotSetup, a, b, c, d, e, f, g, h)
 MEMBERS(NozzleTip, a, b, c, d)
 MEMBERS(Calibration, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 MEMBERS(FeatureRecipe, a, b, c, d)
-MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u)
+MEMBERS(Spot, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
 MEMBERS(DrawingOrigin, a, b, c, d, e, f)
-MEMBERS(Region, a, b, c, d, e, f, g, h, i, j)
+MEMBERS(Region, a, b, c, d, e, f, g, h, i, j, k)
 MEMBERS(KeptOffset, a, b, c, d, e)
 MEMBERS(PanelPlace, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 MEMBERS(PanelJob, a, b, c, d, e, f, g, h, i, j, k, l, m)
@@ -93,6 +94,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(*panel.fit, p["fit"]);
     whole(panel.fit->spots[0], p["fit"]["spots"][0]);
 
+    whole(PartType{}, to_json_document(PartType{}));
     whole(PartSetup{}, to_json_document(PartSetup{}), 1);  // the mesh is a row of its own
     SensorSetup sensor;
     sensor.filter.as_delivered = true;
@@ -109,6 +111,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(touched, n);
     whole(*touched.nozzle, n["nozzle"]);
     Spot taught;
+    taught.type_id = "left";
     taught.via.resize(1, Pose::Identity());
     taught.reference_arrivals = 5;
     taught.reference_state = ReferenceState::from_drawing;
@@ -118,6 +121,7 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     whole(*taught.drawn, t["drawn"]);
     whole(taught.feature, t["feature"]);
     Region kept;
+    kept.type_id = "left";
     kept.offsets.resize(1);
     kept.offset_switches = {0};
     const auto k = to_json_document(kept);

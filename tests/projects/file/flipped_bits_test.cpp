@@ -18,11 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 
 void make_full_file(const fs::path& path) {
-    const Project project = sample_project();
+    Project project = sample_project();
+    project.part_types = {{"left", "door left", 1}, {"right", "", 0}};
     auto file = ProjectFile::create(path, project);
     ASSERT_TRUE(file) << file.error().sentence();
     for (unsigned i = 1; i <= 2; ++i) ASSERT_TRUE(file->append_run(sample_run(i, 3, 40), project));
     RunRecord panel = sample_run(3, 1, 20);
+    panel.type_id = "left";
     panel.panel = sample_panel_record(3);
     ASSERT_TRUE(file->append_run(panel, project));
     for (int kind = 0; kind < kSampleEvidence; ++kind)
@@ -45,9 +47,9 @@ std::optional<std::string> all_of(const fs::path& path) {
     const auto runs = file->runs();
     if (!runs) return std::nullopt;
     for (const RunSummary& summary : *runs) {
-        all << summary.number << summary.part_id << summary.started_utc << summary.finished_utc
-            << summary.push << to_string(summary.status) << summary.message << summary.spots
-            << summary.captures << summary.setup;
+        all << summary.number << summary.part_id << summary.type_id << summary.started_utc
+            << summary.finished_utc << summary.push << to_string(summary.status) << summary.message
+            << summary.spots << summary.captures << summary.setup;
         const auto run = file->load_run(summary.number);
         const auto setup = file->load_setup(summary.setup);
         if (!run || !setup) return std::nullopt;

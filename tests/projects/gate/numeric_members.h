@@ -85,7 +85,8 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, RegionC
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, Region& v) {
     // Kept offsets are in the correction before the gate sees it.
-    auto& [id, spot_ids, free, limits, sigma_mm, sigma_deg, frame_name, frame, offsets, switches] = v;
+    auto& [id, type_id, spot_ids, free, limits, sigma_mm, sigma_deg, frame_name, frame, offsets, switches] =
+        v;
     numbers(visit, path + ".free", free);
     numbers(visit, path + ".limits", limits);
     numbers(visit, path + ".sigma_limit_mm", sigma_mm);
@@ -93,13 +94,14 @@ inline void numbers(const NumberVisitor& visit, const std::string& path, Region&
     numbers(visit, path + ".base_from_frame", frame);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateSpot& v) {
-    auto& [id, required, measured, part, measured_at, point, calibration, verdict, calibrated_utc, collided_utc,
-           sensor, calibrated_sensor, robot, calibrated_robot, reference] = v;
+    auto& [id, required, measured, part, measured_at, point, calibration, verdict, calibrated_utc,
+           collided_utc, sensor, calibrated_sensor, robot, calibrated_robot, reference] = v;
     numbers(visit, path + ".point_workobject_mm", point);
 }
 inline void numbers(const NumberVisitor& visit, const std::string& path, GateRequest& v) {
     auto& [region, correction, spots, workobject, part, since, now_ns, mode, tells_mode, required_mode,
-           now_utc, age_days, nozzle_sigma, nozzle_trouble, other_frames, frame_now, frame_trouble] = v;
+           now_utc, age_days, nozzle_sigma, nozzle_trouble, other_frames, frame_now, frame_trouble,
+           of_other_types] = v;
     numbers(visit, path + "region", region);
     numbers(visit, path + "correction", correction);
     numbers(visit, path + "spots", spots);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "devices/net/socket.h"
+#include "projects/reuse/part_type_edits.h"
 #include "tests/devices/line/wait.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/sample_project.h"
@@ -131,6 +132,52 @@ TEST_F(LineWatched, ThePlcStartsPartsAndReadsWhatBecameOfThem) {
     ASSERT_EQ(runs->size(), 2u);
     EXPECT_EQ(runs->at(0).part_id, "801");
     EXPECT_EQ(runs->at(1).part_id, "803");
+}
+
+// The number of the line's type is that of the project's.
+TEST_F(LineWatched, ThePlcsTypeDecidesWhatIsMeasuredAndPushed) {
+    Project& p = cell->project;
+    p = *clone_part_type(*add_part_type(p, {"left", "", 1}), "left", {"right", "", 2});
+    for (Spot& spot : p.spots) spot.reference_state = ReferenceState::measured;
+    for (Region& region : p.regions)
+        if (region.type_id == "right") region.base_from_frame.translation() += Eigen::Vector3d(0, 500, 0);
+    watch_with({server(nlohmann::json::object(), {1, 2, 3})}, 2);
+    const double left_mm = cell->frames.at("BASE_inner").translation().y();
+    std::vector<std::pair<int, int>> done;  // result and alarm
+    std::vector<double> y_mm;
+    std::jthread line([&] {
+        Plc plc(port);
+        plc.write(1, 0);
+        for (const int type :
+             {1, 3, 0, 2}) {  // the station is set up for 3, the project does not know it; 0: not said
+            EXPECT_TRUE(soon([&] { return plc.read(102) == 1; })) << "ready";
+            plc.write(2, type);
+            plc.write(5, 900 + type);
+            plc.write(1, 1);
+            EXPECT_TRUE(soon([&] { return plc.read(104) == 1; })) << "done";
+            EXPECT_EQ(plc.read(107), type);
+            done.emplace_back(plc.read(105), plc.read(106));
+            y_mm.push_back(cell->frames.at("BASE_inner").translation().y());
+            plc.write(1, 0);
+            EXPECT_TRUE(soon([&] { return plc.read(104) == 0 || type == 2; }));
+        }
+    });
+    const auto counts = watch(*station, options);
+    line.join();
+    ASSERT_TRUE(counts) << counts.error().sentence();
+    EXPECT_EQ(counts->corrected, 2);
+    EXPECT_EQ(counts->missed, 2);
+    using Done = std::pair<int, int>;
+    EXPECT_THAT(done, testing::ElementsAre(Done(1, 0), Done(8, 32), Done(8, 32), Done(1, 0)));
+    ASSERT_EQ(y_mm.size(), 4u);
+    EXPECT_NEAR(y_mm[0], left_mm, 25);
+    EXPECT_EQ(y_mm[1], y_mm[0]);
+    EXPECT_EQ(y_mm[2], y_mm[0]);
+    EXPECT_NEAR(y_mm[3], left_mm + 500, 25);
+    const auto runs = station->file().runs();
+    ASSERT_EQ(runs->size(), 2u);
+    EXPECT_EQ(runs->at(0).type_id, "left");
+    EXPECT_EQ(runs->at(1).type_id, "right");
 }
 
 // The robots' calls start nothing where the line does, and end nothing but a part that waits for its application.

@@ -34,7 +34,8 @@ SpotDeed next_deed(const Desk& desk, const std::string& spot_id) {
     if (!s) return SpotDeed::choose;
     if (!is_done(desk, *s)) {
         if (s->feature.kind == "template" && s->feature.template_profile.size() == 0) return SpotDeed::piece;
-        if (s->reference_profile.size() == 0) return SpotDeed::reference;
+        if (s->reference_profile.size() == 0 || s->reference_state == ReferenceState::from_type)
+            return SpotDeed::reference;
         return s->reference_state == ReferenceState::from_drawing ? SpotDeed::confirm : SpotDeed::pass;
     }
     return next_undone(desk, spot_id) ? SpotDeed::next_spot : SpotDeed::next_step;
@@ -108,9 +109,8 @@ void SpotHead::refresh() {
             may = may && connected;
             break;
         case SpotDeed::confirm:
-            state_->setText(connected
-                                ? tr("From the drawing: nothing is pushed by it yet.")
-                                : tr("From the drawing: connect, then confirm it."));
+            state_->setText(connected ? tr("From the drawing: nothing is pushed by it yet.")
+                                      : tr("From the drawing: connect, then confirm it."));
             deed_->setText(tr("Confirm"));
             may = may && connected;
             break;

@@ -56,6 +56,7 @@ void SpotTree::refresh() {
         return !s.enabled                                          ? tr("disabled")
                : s.reference_profile.size() == 0                   ? tr("no reference")
                : s.reference_state == ReferenceState::from_drawing ? tr("from the drawing")
+               : s.reference_state == ReferenceState::from_type    ? tr("of another part type")
                : !s.curve                                          ? tr("taught")
                                                                    : tr("taught, edge recorded");
     };

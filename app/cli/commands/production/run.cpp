@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "app/cli/answers/result_json.h"
 #include "app/cli/answers/run_text.h"
@@ -19,6 +20,7 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/registry.h"
 #include "projects/line/line_control.h"
+#include "projects/model/part_types.h"
 #include "projects/proof/replay.h"
 #include "projects/station/check.h"
 #include "projects/station/station.h"
@@ -30,7 +32,7 @@ namespace {
 using nlohmann::json;
 
 struct RunArguments {
-    std::string file, part;
+    std::string file, part, type;
     bool push = false, dry_run = false, keep_images = false, watch = false;
     int hold_s = static_cast<int>(kHold.count() / 1000);
     std::string log, record;
@@ -64,7 +66,11 @@ struct HappeningJson {
     json operator()(const watched::LineNotice&) const { return json::object(); }
     json operator()(const watched::Stopped&) const { return json::object(); }
     json operator()(const watched::Lost& lost) const { return {{"device", lost.device}}; }
-    json operator()(const watched::Start& start) const { return {{"part", start.part_id}}; }
+    json operator()(const watched::Start& start) const {
+        json out = {{"part", start.part_id}};
+        if (!start.type_id.empty()) out["type"] = start.type_id;
+        return out;
+    }
     json operator()(const watched::Missed& missed) const { return {{"part", missed.part_id}}; }
     json operator()(const watched::SpotDone& spot) const {
         return {{"done", spot.done}, {"total", spot.total}};
@@ -77,11 +83,13 @@ struct HappeningJson {
                                {"push", to_string(region.push.status)},
                                {"release", to_string(region.push.release)},
                                {"refusals", region.refusals}});
-        return {{"part", run.record->part_id},
-                {"run", run.record->number},
-                {"status", to_string(run.record->status)},
-                {"seconds", run.seconds},
-                {"regions", std::move(regions)}};
+        json out = {{"part", run.record->part_id},
+                    {"run", run.record->number},
+                    {"status", to_string(run.record->status)},
+                    {"seconds", run.seconds},
+                    {"regions", std::move(regions)}};
+        if (!run.record->type_id.empty()) out["type"] = run.record->type_id;
+        return out;
     }
 };
 
@@ -112,18 +120,31 @@ std::string host_name() {
 }
 
 // What the commissioning checklist asks for: this project has run without a screen.
-Expected<void> keep_headless_proof(Station& station, std::int64_t run, const std::string& part_id,
-                                   bool push) {
-    const HeadlessRun proof{run, part_id, push, host_name()};
-    SEAM_OK(station.file().append_evidence({0, {}, 0, proof}, station.project()));
+Expected<void> keep_headless_proof(Station& station, const RunRecord& run) {
+    const HeadlessRun proof{run.number, run.part_id, run.push, host_name()};
+    SEAM_OK(station.file().append_evidence({0, {}, 0, proof}, of_type(station.project(), run.type_id)));
+    return {};
+}
+
+// Of a project with part types the watching runs those that are sound, and refuses the parts of the others.
+std::vector<Error> findings_of_watching(const Project& project, const RunArguments& a) {
+    if (project.part_types.empty()) return motion_findings(project, a.push);
+    std::vector<Error> findings;
+    for (const PartType& type : project.part_types)
+        if (auto sound = runnable_type(project, type.id, a.push); !sound) findings.push_back(sound.error());
+    if (findings.size() == project.part_types.size()) return findings;
+    for (const Error& finding : findings)
+        fmt::print(stderr, "its parts will be refused: {}\n", finding.sentence());
     return {};
 }
 
 Expected<Answer> watch_project(const RunArguments& a) {
     SEAM_TRY(auto log, open_log(a.log));
     SEAM_TRY(auto station, Station::open(a.file));
-    if (auto refused = refuse_unsafe(station, motion_findings(station.project(), a.push))) return *refused;
+    if (!a.type.empty()) SEAM_OK(called_type(station.project(), a.type));
+    if (auto refused = refuse_unsafe(station, findings_of_watching(station.project(), a))) return *refused;
     WatchOptions options;
+    options.part_type = a.type;
     options.push = a.push;
     options.keep_images = a.keep_images;
     options.parts = a.parts;
@@ -140,18 +161,18 @@ Expected<Answer> watch_project(const RunArguments& a) {
         outputs.alive();
         line.alive();
     };
-    bool proven = false;
+    std::set<std::string> proven;  // types
     Expected<void> proof;
     options.tell = [&](const WatchEvent& e) {
         print_status(e);
         outputs.tell(e);
         line.take(e);
         if (log) log->info(event_json(e).dump(-1, ' ', false, json::error_handler_t::replace));
-        // The first good part proves it; one a part would only fill the file.
+        // The first good part of a type proves it; one a part would only fill the file.
         const auto* run = std::get_if<watched::RunDone>(&e.happening);
-        if (proven || !run || run->record->status != RunStatus::ok) return;
-        proof = keep_headless_proof(station, run->record->number, run->record->part_id, a.push);
-        proven = true;
+        if (!run || run->record->status != RunStatus::ok || !proven.insert(run->record->type_id).second)
+            return;
+        if (auto kept = keep_headless_proof(station, *run->record); !kept) proof = kept;
     };
     auto counts = watch(station, options);
     if (isatty(fileno(stderr))) fmt::print(stderr, "\n");
@@ -170,11 +191,14 @@ Expected<Answer> watch_project(const RunArguments& a) {
 
 Expected<Answer> run(const RunArguments& a) {
     SEAM_TRY(auto station, Station::open(a.file));
-    if (auto refused = refuse_unsafe(station, motion_findings(station.project(), a.push))) return *refused;
+    SEAM_TRY(const auto type, called_type(station.project(), a.type));
+    if (auto refused = refuse_unsafe(station, motion_findings(of_type(station.project(), type), a.push)))
+        return *refused;
     SEAM_TRY(auto recorder, open_recorder(a.record, {.images = true}));
     station.record_to(recorder);
     RunOptions options;
     options.part_id = a.part;
+    options.part_type = type;
     options.push = a.push;
     options.keep_images = a.keep_images;
     options.hold = std::chrono::seconds(a.hold_s);
@@ -188,7 +212,7 @@ Expected<Answer> run(const RunArguments& a) {
     SEAM_TRY(auto record, station.run(options));
     // A proof that the file does not take is no reason to call a part failed whose application runs.
     if (record.status == RunStatus::ok)
-        if (auto kept = keep_headless_proof(station, record.number, record.part_id, record.push); !kept) {
+        if (auto kept = keep_headless_proof(station, record); !kept) {
             if (!record.push) return tl::unexpected(kept.error());
             fmt::print(stderr, "the headless run is not kept as evidence: {}\n", kept.error().sentence());
         }
@@ -253,6 +277,12 @@ void add_run(CommandLine& line) {
                  "seamwright run door_left.seam --part CAR-0815 --push");
     command->add_option("file", a->file, "The project")->required()->type_name("FILE.seam");
     auto* part = command->add_option("--part", a->part, "Name of the part in front of the robot");
+    command
+        ->add_option(
+            "--type", a->type,
+            "Its type, by id or number, in a project with part types; with --watch where neither robot "
+            "nor line says one")
+        ->type_name("ID");
     auto* push =
         command->add_flag("--push", a->push, "Write the corrected frames, if the safety gate passes them");
     command->add_flag("--dry-run", a->dry_run, "Everything but writing (the default)")->excludes(push);

@@ -11,6 +11,7 @@
 #include "app/cli/recording.h"
 #include "devices/exchange/files.h"
 #include "projects/file/project_file.h"
+#include "projects/model/part_types.h"
 #include "projects/proof/checklist.h"
 #include "projects/reuse/exchange.h"
 #include "projects/reuse/mirror.h"
@@ -62,6 +63,13 @@ Expected<Answer> info(const std::string& path) {
                            s.enabled ? "" : ", switched off",
                            s.reference_profile.size() > 0 ? ", " + state.english() : "");
     });
+    if (!project.part_types.empty())
+        lines("part types", project.part_types, [&](const PartType& type) {
+            const Project one = of_type(project, type.id);
+            return fmt::format("{}{}: {} spots, {} regions", name_of(type),
+                               type.number ? fmt::format(", number {}", type.number) : "", one.spots.size(),
+                               one.regions.size());
+        });
     json unconfirmed = json::array();
     for (const Spot& s : project.spots)
         if (s.reference_state == ReferenceState::from_drawing) unconfirmed.push_back(s.id);
@@ -72,7 +80,8 @@ Expected<Answer> info(const std::string& path) {
     });
     text += fmt::format("{} runs\n", runs.size());
     for (const RunSummary& r : runs) {
-        text += fmt::format("  {}  part {}  {}  {}  {}\n", r.number, r.part_id, r.started_utc,
+        text += fmt::format("  {}  part {}{}  {}  {}  {}\n", r.number, r.part_id,
+                            r.type_id.empty() ? "" : " of type " + r.type_id, r.started_utc,
                             r.push ? "push" : "dry run", to_string(r.status));
         list.push_back({{"number", r.number},
                         {"part", r.part_id},
@@ -82,6 +91,7 @@ Expected<Answer> info(const std::string& path) {
                         {"message", r.message},
                         {"spots", r.spots},
                         {"captures", r.captures}});
+        if (!r.type_id.empty()) list.back()["type"] = r.type_id;
     }
     Answer answer;
     answer.json = {{"status", "ok"},
@@ -91,6 +101,7 @@ Expected<Answer> info(const std::string& path) {
                    {"calibrations", project.calibrations.size()},
                    {"spots", project.spots.size()},
                    {"regions", project.regions.size()},
+                   {"part_types", project.part_types.size()},
                    {"unconfirmed_spots", unconfirmed},
                    {"runs", list},
                    {"project", export_project(project)}};

@@ -15,20 +15,21 @@ namespace seamwright::cli {
 namespace {
 
 struct ProgramArguments {
-    std::string file, brand, robot;
+    std::string file, brand, robot, type;
     std::filesystem::path folder;
 };
 
 Expected<Answer> write_program(const ProgramArguments& a) {
     SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
-    SEAM_TRY(auto request, program_request(project, a.robot));
+    SEAM_TRY(auto request, program_request(project, a.robot, a.type));
     SEAM_TRY(auto files, write_robot_program(a.brand, request));
     Answer answer;
     answer.json = {{"status", "ok"}, {"brand", a.brand}};
     SEAM_OK(write_program_files(a.folder, files, answer));
     answer.json["spots"] = request.moves.size();
     answer.json["frames"] = request.frames.size();
+    if (!request.part_type.empty()) answer.json["type"] = request.part_type;
     answer.text += fmt::format("{} spots, {} frames\n", request.moves.size(), request.frames.size());
     return answer;
 }
@@ -49,6 +50,11 @@ void add_robot_program(CommandLine& line) {
     command->add_option("--brand", a->brand, fmt::format("{}", fmt::join(brands, " | ")))->required();
     command->add_option("--out", a->folder, "Folder to write into")->required()->type_name("DIR");
     command->add_option("--robot", a->robot, "Which robot of the project, when it has several")
+        ->type_name("ID");
+    command
+        ->add_option(
+            "--type", a->type,
+            "Of which part type, when the project has types; the program says it with its start signal")
         ->type_name("ID");
     line.on(command, [a] { return write_program(*a); });
 }

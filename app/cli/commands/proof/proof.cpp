@@ -31,10 +31,11 @@ Expected<Station> open_connected(const std::string& file) {
     return station;
 }
 
-Expected<Answer> zero_shift(const std::string& file, int runs) {
+Expected<Answer> zero_shift(const std::string& file, int runs, const std::string& type) {
     SEAM_TRY(auto station, open_connected(file));
     ZeroShiftOptions options;
     options.runs = runs;
+    options.part_type = type;
     options.cancel = stop_on_signal();
     options.progress = [](const RunProgress& p) {
         fmt::print(stderr, "[{}/{}] {}\n", p.done, p.total, p.text);
@@ -69,7 +70,7 @@ Expected<Answer> zero_shift(const std::string& file, int runs) {
 }
 
 struct KnownShiftArguments {
-    std::string file, by, csv;
+    std::string file, by, csv, type;
     ShiftGrid grid;
 };
 
@@ -112,6 +113,7 @@ Expected<Answer> known_shift(const KnownShiftArguments& a) {
     const Project project = station.project();
     KnownShiftOptions options;
     options.grid = a.grid;
+    options.part_type = a.type;
     options.by = a.by == "part"   ? ShiftBy::simulated_part
                  : a.by == "base" ? ShiftBy::robot_moves
                                   : ShiftBy::by_hand;
@@ -211,7 +213,9 @@ void add_proof(CommandLine& line) {
                               "seamwright zero-shift door_left.seam --runs 10");
     zero->add_option("file", *file, "The project")->required()->type_name("FILE.seam");
     zero->add_option("--runs", *runs, "How often")->check(CLI::Range(2, 1000))->capture_default_str();
-    line.on(zero, [file, runs] { return zero_shift(*file, *runs); });
+    auto type = std::make_shared<std::string>();
+    zero->add_option("--type", *type, "Of which part type, when the project has types")->type_name("ID");
+    line.on(zero, [file, runs, type] { return zero_shift(*file, *runs, *type); });
 
     auto a = std::make_shared<KnownShiftArguments>();
     CLI::App* known = line.add(
@@ -231,6 +235,7 @@ void add_proof(CommandLine& line) {
     known->add_option("--range-deg", a->grid.range_deg, "Largest rotation")->capture_default_str();
     known->add_option("--step-deg", a->grid.step_deg, "Its step")->capture_default_str();
     known->add_option("--csv", a->csv, "Every deviation, one row a spot and displacement")->type_name("FILE");
+    known->add_option("--type", a->type, "Of which part type, when the project has types")->type_name("ID");
     line.on(known, [a] { return known_shift(*a); });
 }
 

@@ -83,6 +83,7 @@ void add_statistics(CommandLine& line) {
         "Runs from then on: 2024-05-01, 2024-05-01T06:00 (local time), ...Z (UTC), or 8h, 7d");
     command->add_option("--until", a->until, "Runs before then");
     command->add_option("--region", a->options.region, "Only this region or panel job");
+    command->add_option("--type", a->options.runs.type_id, "Only parts of this type (id)")->type_name("ID");
     a->tolerance = command->add_option("--tolerance-mm", a->tolerance_mm,
                                        "T = USL - LSL of the deviation across the bead at path points");
     command->add_option("--subgroup", a->options.subgroup, "Parts that make one point of the control chart")

@@ -239,6 +239,27 @@ void put_modes(const Model& model, const MatrixXd& basis, std::span<const Told> 
     }
 }
 
+// The number by hold-out; its gains are kept in `out`.
+int number_of_modes(std::span<const Told> rows, int most, const LearnOptions& options, ElasticModes& out) {
+    const int folds = std::min(options.folds, out.parts);
+    std::vector<double> before = held_out(rows, out.parts, 0, folds);
+    int modes = 0;
+    for (; modes < most; ++modes) {
+        const std::vector<double> after = held_out(rows, out.parts, modes + 1, folds);
+        double mean = 0, square = 0;
+        for (std::size_t p = 0; p < after.size(); ++p) mean += (after[p] - before[p]) / out.parts;
+        for (std::size_t p = 0; p < after.size(); ++p)
+            square += (after[p] - before[p] - mean) * (after[p] - before[p] - mean) / (out.parts - 1);
+        out.gain.push_back(mean);
+        out.gain_sigma.push_back(std::sqrt(square / out.parts));
+        const bool told =
+            mean > options.gain_sigmas * out.gain_sigma.back() && mean * out.parts > options.least_gain;
+        if (!told) break;
+        before = after;
+    }
+    return modes;
+}
+
 }  // namespace
 
 Expected<ElasticModes> learn_modes(std::span<const ElasticSpot> spots, std::span<const ElasticRow> rows,
@@ -283,21 +304,7 @@ Expected<ElasticModes> learn_modes(std::span<const ElasticSpot> spots, std::span
         put_modes(model, basis, inner, out.parts, out);
         return out;
     }
-    const int folds = std::min(options.folds, out.parts);
-    std::vector<double> before = held_out(inner, out.parts, 0, folds);
-    int modes = 0;
-    for (; modes < most; ++modes) {
-        const std::vector<double> after = held_out(inner, out.parts, modes + 1, folds);
-        double mean = 0, square = 0;
-        for (std::size_t p = 0; p < after.size(); ++p) mean += (after[p] - before[p]) / out.parts;
-        for (std::size_t p = 0; p < after.size(); ++p)
-            square += (after[p] - before[p] - mean) * (after[p] - before[p] - mean) / (out.parts - 1);
-        out.gain.push_back(mean);
-        out.gain_sigma.push_back(std::sqrt(square / out.parts));
-        if (!(mean > options.gain_sigmas * out.gain_sigma.back() && mean * out.parts > options.least_gain))
-            break;
-        before = after;
-    }
+    const int modes = number_of_modes(inner, most, options, out);
     model = fit_model(inner, modes);
     out.noise_factor = std::sqrt(model.kappa);
     put_modes(model, basis, inner, out.parts, out);

@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 17> kTables{{
+constexpr std::array<ChecksummedTable, 18> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -20,6 +20,7 @@ constexpr std::array<ChecksummedTable, 17> kTables{{
     {"regions", "id", "id, position, frame_name, body"},
     {"panel_jobs", "id", "id, position, frame_name, body"},
     {"line", "id", "id, position, protocol, body", 7},
+    {"elastic", "id", "id, position, body", 8},
     {"setups", "id", "id, crc, body"},
     {"runs", "number", "number, part_id, started_utc, finished_utc, push, status, message, setup"},
     {"run_spots", "run", "run, position, spot_id, status, body"},

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
     add_hand_over(line);
     add_acceptance(line);
     add_statistics(line);
+    add_modes(line);
     add_device_studies(line);
     add_scan(line);
     add_fit(line);

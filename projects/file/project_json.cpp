@@ -452,6 +452,55 @@ void describe(A& a, LineSetup& v) {
     a("part_types", v.part_types);
 }
 template <class A>
+void describe(A& a, ElasticSpot& v) {
+    a("id", v.id);
+    a("workobject_from_sensor", v.workobject_from_sensor);
+    a("reference_mm", v.reference_mm);
+    a("weights", v.weights);
+    a("seen", v.seen);
+    a("common_mm", v.common_mm);
+}
+template <class A>
+void describe(A& a, ElasticMode& v) {
+    a("shape", v.shape);
+    a("variance_mm2", v.variance_mm2);
+    a("variance_low_mm2", v.variance_low_mm2);
+    a("variance_high_mm2", v.variance_high_mm2);
+    a("mean_mm", v.mean_mm);
+    a("lowest_mm", v.lowest_mm);
+    a("highest_mm", v.highest_mm);
+}
+template <class A>
+void describe(A& a, ElasticModes& v) {
+    a("spots", v.spots);
+    a("modes", v.modes);
+    a("noise_factor", v.noise_factor);
+    a("rows", v.rows);
+    a("parts", v.parts);
+    a("gain", v.gain);
+    a("gain_sigma", v.gain_sigma);
+    a("message", v.message);
+}
+template <class A>
+void describe(A& a, LearntRun& v) {
+    a("run", v.run);
+    a("part_id", v.part_id);
+    a("utc", v.utc);
+}
+template <class A>
+void describe(A& a, RegionModes& v) {
+    a("id", v.id);
+    a("on", v.on);
+    a("learnt_utc", v.learnt_utc);
+    a("switched_utc", v.switched_utc);
+    a("most_added_mm", v.most_added_mm);
+    a("modes", v.modes);
+    a("learnt_from", v.learnt_from);
+    if constexpr (A::reading) {
+        if (!(v.most_added_mm > 0)) a.fail("the limit of what the modes may add is no positive number");
+    }
+}
+template <class A>
 void describe(A& a, Project& v) {
     a("name", v.name);
     a("requirements", v.requirements);
@@ -464,6 +513,7 @@ void describe(A& a, Project& v) {
     a("regions", v.regions);
     a("panel_jobs", v.panel_jobs);
     if (A::reading || !v.line.empty()) a("line", v.line);
+    if (A::reading || !v.elastic.empty()) a("elastic", v.elastic);
 }
 
 // --- runs
@@ -497,6 +547,16 @@ void describe(A& a, ActingOffset& v) {
     a("offset_mm", v.offset_mm);
 }
 template <class A>
+void describe(A& a, ActingModes& v) {
+    a("acted", v.acted);
+    a("why", v.why);
+    a("amplitudes_mm", v.amplitudes_mm);
+    a("sigma_mm", v.sigma_mm);
+    a("largest_added_mm", v.largest_added_mm);
+    a("probability", v.probability);
+    a("covariance", v.covariance);
+}
+template <class A>
 void describe(A& a, RegionRecord& v) {
     a("region_id", v.region_id);
     a("correction", v.correction);
@@ -505,6 +565,7 @@ void describe(A& a, RegionRecord& v) {
     a("refusals", v.refusals);
     a("push", v.push);
     if (A::reading || v.offset) a("offset", v.offset);
+    if (A::reading || v.modes) a("modes", v.modes);
 }
 
 template <class A>
@@ -707,6 +768,7 @@ SEAMWRIGHT_DOCUMENT(RobotSetup);
 SEAMWRIGHT_DOCUMENT(Calibration);
 SEAMWRIGHT_DOCUMENT(Spot);
 SEAMWRIGHT_DOCUMENT(Region);
+SEAMWRIGHT_DOCUMENT(RegionModes);
 SEAMWRIGHT_DOCUMENT(PanelJob);
 SEAMWRIGHT_DOCUMENT(PanelMeasurement);
 SEAMWRIGHT_DOCUMENT(PanelRecord);

@@ -117,7 +117,8 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
           check_ids(db, "regions", ids_of(project.regions), "region"),
           check_ids(db, "panel_jobs", ids_of(project.panel_jobs), "panel job"),
           check_ids(db, "line", ids_of(project.line), "line link"),
-          check_ids(db, "part_types", ids_of(project.part_types), "part type"), check_part_types(project)})
+          check_ids(db, "part_types", ids_of(project.part_types), "part type"),
+          check_ids(db, "elastic", ids_of(project.elastic), "region with mode"), check_part_types(project)})
         if (!sound) return sound;
 
     const char* name_row = R"(
@@ -212,18 +213,24 @@ Expected<void> save_rows_of(Database& db, const Project& project) {
                           s.bind(3, text);
                           return s.run();
                       }));
-    return save_rows(db, "line", {"protocol", "body"}, project.line,
-                     [](Statement& s, const LineSetup& link) -> Expected<void> {
-                         SEAM_TRY(auto text, row_text(link, "line link " + link.id, kRow));
-                         s.bind(3, link.protocol);
-                         s.bind(4, text);
+    SEAM_OK(save_rows(db, "line", {"protocol", "body"}, project.line,
+                      [](Statement& s, const LineSetup& link) -> Expected<void> {
+                          SEAM_TRY(auto text, row_text(link, "line link " + link.id, kRow));
+                          s.bind(3, link.protocol);
+                          s.bind(4, text);
+                          return s.run();
+                      }));
+    return save_rows(db, "elastic", {"body"}, project.elastic,
+                     [](Statement& s, const RegionModes& modes) -> Expected<void> {
+                         SEAM_TRY(auto text, row_text(modes, "modes of region " + modes.id, kRow));
+                         s.bind(3, text);
                          return s.run();
                      });
 }
 
 Expected<Project> load_rows_of(Database& db) {
     for (const char* table : {"project", "requirements", "part", "sensors", "robots", "calibrations", "spots",
-                              "regions", "panel_jobs", "line", "part_types"})
+                              "regions", "panel_jobs", "line", "part_types", "elastic"})
         SEAM_OK(check_rows(db, table));
     Project project;
     SEAM_TRY(auto name, db.prepare("SELECT name FROM project"));
@@ -256,8 +263,10 @@ Expected<Project> load_rows_of(Database& db) {
           load_rows(db, "SELECT id, body FROM regions ORDER BY position", "region", project.regions),
           load_rows(db, "SELECT id, body FROM panel_jobs ORDER BY position", "panel job", project.panel_jobs),
           load_rows(db, "SELECT id, body FROM line ORDER BY position", "line link", project.line),
-          load_rows(db, "SELECT id, body FROM part_types ORDER BY position", "part type",
-                    project.part_types)})
+          load_rows(db, "SELECT id, body FROM part_types ORDER BY position", "part type", project.part_types),
+
+          load_rows(db, "SELECT id, body FROM elastic ORDER BY position", "modes of region",
+                    project.elastic)})
         if (!done) return tl::unexpected(done.error());
     return project;
 }

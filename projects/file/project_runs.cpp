@@ -177,6 +177,7 @@ Expected<RunSetup> RunSetup::of(const Project& project) {
     slim.part.mesh_ply.clear();
     slim.requirements.acceptance = {};
     slim.line.clear();
+    std::erase_if(slim.elastic, [](const RegionModes& modes) { return !modes.on; });
     for (Calibration& c : slim.calibrations) {
         c.raw = nlohmann::json::object();
         c.result = nlohmann::json::object();

@@ -9,7 +9,7 @@
 namespace seamwright {
 namespace {
 
-constexpr std::array<ChecksummedTable, 19> kTables{{
+constexpr std::array<ChecksummedTable, 20> kTables{{
     {"project", "name", "id, name, created_utc"},
     {"requirements", "id", "id, body"},
     {"part", "id", "id, body, mesh"},
@@ -22,6 +22,7 @@ constexpr std::array<ChecksummedTable, 19> kTables{{
     {"line", "id", "id, position, protocol, body", 7},
     {"part_types", "id", "id, position, body", 8},
     {"run_types", "run", "run, type_id", 8},
+    {"elastic", "id", "id, position, body", 9},
     {"setups", "id", "id, crc, body"},
     {"runs", "number", "number, part_id, started_utc, finished_utc, push, status, message, setup"},
     {"run_spots", "run", "run, position, spot_id, status, body"},

@@ -38,4 +38,10 @@ std::vector<std::string> unconfirmed_spots(const Project& project, const Region&
     return ids;
 }
 
+const RegionModes* modes_of(const Project& project, const std::string& region_id) {
+    for (const RegionModes& modes : project.elastic)
+        if (modes.id == region_id) return &modes;
+    return nullptr;
+}
+
 }  // namespace seamwright

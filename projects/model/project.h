@@ -25,6 +25,7 @@
 #include "core/text.h"
 #include "devices/profile_source.h"
 #include "devices/robot_link.h"
+#include "projects/model/elastic_modes.h"
 #include "projects/model/panel_job.h"
 
 namespace seamwright {
@@ -222,7 +223,11 @@ struct Project {
     std::vector<Region> regions;
     std::vector<PanelJob> panel_jobs;
     std::vector<LineSetup> line;  // no part of a run's setup: it measures nothing
+    std::vector<RegionModes> elastic;
 };
+
+// A region's modes; nullptr: none were learnt.
+const RegionModes* modes_of(const Project& project, const std::string& region_id);
 
 // The region's spots that are from the drawing and not confirmed, in its order; disabled ones too.
 std::vector<std::string> unconfirmed_spots(const Project& project, const Region& region);

@@ -19,6 +19,12 @@ Text said_of(const ActingOffset& offset) {
                 by.y(), by.z());
 }
 
+Text said_of(const ActingModes& modes) {
+    if (!modes.acted) return Text("the modes do not act, the part is taken for rigid: {}", modes.why);
+    return Text("{} modes act: at most {:.3f} mm are added at a spot", modes.amplitudes_mm.size(),
+                modes.largest_added_mm);
+}
+
 namespace {
 
 constexpr auto kSpotStatus = std::to_array<std::string_view>(

@@ -15,6 +15,7 @@
 #include "core/profile/profile.h"
 #include "core/text.h"
 #include "devices/capture/capture.h"
+#include "projects/model/elastic_modes.h"
 
 namespace seamwright {
 
@@ -88,6 +89,7 @@ struct RegionRecord {
     std::vector<Text> refusals;  // why the gate refuses, in words; empty when passed
     PushRecord push;
     std::optional<ActingOffset> offset;
+    std::optional<ActingModes> modes;  // where they were switched on
 };
 
 // One place of a panel job (panel_job.h), in the place's frame.

@@ -30,6 +30,7 @@ RegionRecord computed_part(const RegionRecord& record) {
     part.region_id = record.region_id;
     part.correction = record.correction;
     part.base_from_frame = record.base_from_frame;
+    part.modes = record.modes;
     return part;
 }
 

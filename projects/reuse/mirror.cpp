@@ -179,6 +179,7 @@ Expected<Project> mirrored_project(const Project& project, const MirrorPlane& pl
         if (spot.curve) spot.curve->x_coefficients = -spot.curve->x_coefficients;
     }
 
+    out.elastic.clear();  // the other part's; this one's are learnt from its own runs
     for (Region& region : out.regions) {
         region.offsets.clear();  // found on the other part
         region.offset_switches.clear();

@@ -404,7 +404,55 @@ void take_off(const KeptOffset& kept, RegionRecord& record) {
     record.offset = ActingOffset{kept.version, kept.offset_mm};
 }
 
+// The frame stays the rigid answer, which fits an unbent path best; a path that is corrected point by point is bent too
+// (path.h).
+void bend(const RegionModes& modes, const CorrectionOptions& options,
+          const std::vector<SpotObservation>& observations, RegionRecord& record) {
+    ActingModes& said = record.modes.emplace();
+    ElasticOptions limits;
+    limits.most_added_mm = modes.most_added_mm;
+    auto solved = solve_elastic(observations, options, modes.modes, limits);
+    if (!solved) {
+        said.why = solved.error().text();
+        return;
+    }
+    said.acted = solved->acted;
+    said.why = modes.modes.modes.empty() ? Text("none were found when they were learnt") : solved->why;
+    for (const ElasticAmplitude& a : solved->amplitudes) {
+        said.amplitudes_mm.push_back(a.value_mm);
+        said.sigma_mm.push_back(a.sigma_mm);
+    }
+    said.largest_added_mm = solved->largest_added_mm;
+    said.probability = solved->probability;
+    if (!said.acted) return;
+    const Eigen::MatrixXd& c = solved->covariance;
+    for (Eigen::Index r = 0; r < c.rows(); ++r)
+        for (Eigen::Index k = 0; k < c.cols(); ++k) said.covariance.push_back(c(r, k));
+}
+
 }  // namespace
+
+std::vector<SpotObservation> region_observations(const Project& project, const Region& region,
+                                                 std::span<const SpotMeasurement> measurements,
+                                                 int* uncalibrated) {
+    std::vector<SpotObservation> observations;
+    for (const std::string& id : region.spot_ids) {
+        const Spot* spot = find_spot(project, id);
+        const auto measured = std::find_if(
+            measurements.begin(), measurements.end(),
+            [&](const SpotMeasurement& m) { return m.spot_id == id && m.status == SpotStatus::measured; });
+        const Calibration* calibration = spot ? calibration_of(project, *spot) : nullptr;
+        if (!spot || !spot->enabled || measured == measurements.end()) continue;
+        if (!calibration) {
+            if (uncalibrated) ++*uncalibrated;
+            continue;
+        }
+        observations.push_back(observation(*spot, project.part.base_from_workobject,
+                                           calibration->flange_from_sensor, *measured));
+        add_repeating(project, *spot, *calibration, feature_at_reference(*spot), observations.back());
+    }
+    return observations;
+}
 
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements) {
@@ -414,24 +462,9 @@ std::vector<RegionRecord> correct_regions(const Project& project,
         record.region_id = region.id;
         record.base_from_frame = region.base_from_frame;
         record.push.frame_name = region.frame_name;
-        std::vector<SpotObservation> observations;
         int uncalibrated = 0;
-        for (const std::string& id : region.spot_ids) {
-            const Spot* spot = find_spot(project, id);
-            const auto measured =
-                std::find_if(measurements.begin(), measurements.end(), [&](const SpotMeasurement& m) {
-                    return m.spot_id == id && m.status == SpotStatus::measured;
-                });
-            const Calibration* calibration = spot ? calibration_of(project, *spot) : nullptr;
-            if (!spot || !spot->enabled || measured == measurements.end()) continue;
-            if (!calibration) {
-                ++uncalibrated;
-                continue;
-            }
-            observations.push_back(observation(*spot, project.part.base_from_workobject,
-                                               calibration->flange_from_sensor, *measured));
-            add_repeating(project, *spot, *calibration, feature_at_reference(*spot), observations.back());
-        }
+        std::vector<SpotObservation> observations =
+            region_observations(project, region, measurements, &uncalibrated);
         if (observations.empty()) {
             record.refusals.push_back(uncalibrated
                                           ? Text("the sensors at the region's spots have no calibration")
@@ -444,6 +477,8 @@ std::vector<RegionRecord> correct_regions(const Project& project,
             continue;
         }
         record.correction = std::move(correction);
+        if (const RegionModes* modes = modes_of(project, region.id); modes && modes->on)
+            bend(*modes, correction_options(project, region), observations, record);
         if (const KeptOffset* kept = acting_offset(region)) take_off(*kept, record);
     }
     return records;

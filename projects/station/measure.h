@@ -116,10 +116,17 @@ class RegionCorrector {
     RegionSolver solver_;
 };
 
+// What the measured, enabled and calibrated spots of a region say; without the travel, which RegionCorrector adds.
+// Spots without a calibration are counted.
+std::vector<SpotObservation> region_observations(const Project& project, const Region& region,
+                                                 std::span<const SpotMeasurement> measurements,
+                                                 int* uncalibrated = nullptr);
+
 // Corrections of all regions from the measurements of a part: pure, the same for a run and for its replay.
 // What repeats is stated as in planned_observations().
 // Spots that are not measured are left out; a region without any, or whose solver refuses the input, has no
-// correction and says why in `refusals`. A kept offset that acts is taken off, and said in RegionRecord::offset.
+// correction and says why in `refusals`. Where a region's modes are switched on, RegionRecord::modes says
+// whether they act; the frame stays rigid, a path is bent (path.h). A kept offset that acts is taken off, and said in RegionRecord::offset.
 std::vector<RegionRecord> correct_regions(const Project& project,
                                           std::span<const SpotMeasurement> measurements);
 

@@ -9,6 +9,7 @@
 #include "projects/gate/safety_gate.h"
 #include "projects/station/measure.h"
 #include "projects/station/nozzle.h"
+#include "projects/station/path_modes.h"
 
 namespace seamwright {
 namespace {
@@ -96,7 +97,8 @@ class Refusals {
     std::map<std::pair<std::string, std::string>, std::size_t> index_;
 };
 
-void judge(const Project& project, const std::vector<const Region*>& regions, PathAnswer& answer) {
+void judge(const Project& project, const std::vector<const Region*>& regions,
+           const std::vector<double>& added, PathAnswer& answer) {
     Refusals refusals(answer.refusals);
     for (std::size_t i = 0; i < answer.corrected.points.size(); ++i) {
         const PathCorrection& p = answer.corrected.points[i];
@@ -113,6 +115,14 @@ void judge(const Project& project, const std::vector<const Region*>& regions, Pa
         const std::string& id = p.share < 0.5 ? a.id : b.id;
         // The blend is exact to rounding only; NaN refuses.
         constexpr double kRounding = 1e-9;
+        const auto most_added = [&](const Region& r) {
+            const RegionModes* modes = modes_of(project, r.id);
+            return modes ? modes->most_added_mm : 0;
+        };
+        const double most = std::max(most_added(a), most_added(b));
+        refusals.refuse_unless(
+            added[i] <= most + kRounding, id, i, "modes",
+            Text("the modes add {:.3f} mm, over their limit of {:.3f} mm", added[i], most));
         refusals.refuse_unless(
             length <= most_mm + kRounding, id, i, "mm",
             Text("the displacement of {:.3f} mm is beyond the limit of {:.3f} mm", length, most_mm));
@@ -140,6 +150,7 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
     PathAnswer answer;
     std::vector<PathRegion> corrections;
     std::vector<const Region*> regions;
+    std::vector<std::optional<ElasticCorrection>> bent;
     std::vector<int> index(setup.regions.size(), -1);
     for (const int r : region_of) {
         if (r < 0 || index[static_cast<std::size_t>(r)] >= 0) continue;
@@ -165,6 +176,19 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
             correction.displacement = found->correction->displacement;
             correction.covariance = found->correction->covariance;
         }
+        bent.emplace_back();
+        if (solved && found->modes && found->modes->acted) {
+            auto joint = joint_again(setup, region, run);
+            if (joint) {
+                correction.displacement = joint->correction.displacement;
+                correction.covariance = joint->correction.covariance;
+                bent.back() = std::move(*joint);
+            } else {
+                answer.refusals.push_back(
+                    {region.id, 0, 0,
+                     Text("its modes acted in the run and cannot be found again: {}", joint.error().text())});
+            }
+        }
         corrections.push_back(correction);
     }
     std::vector<PathPoint> points;
@@ -174,7 +198,9 @@ Expected<PathAnswer> correct_application_path(const Project& setup, const RunRec
     }
     SEAM_TRY(auto corrected, correct_path(points, corrections, answer.region_ids, options));
     answer.corrected = std::move(corrected);
-    if (answer.refusals.empty()) judge(setup, regions, answer);
+    SEAM_TRY(const std::vector<double> added,
+             bend_path(setup, regions, bent, points, options.closed, answer));
+    if (answer.refusals.empty()) judge(setup, regions, added, answer);
 
     const Pose frame_from_workobject = workobject_from_frame.inverse();
     answer.path.regions_named = true;

@@ -5,6 +5,9 @@
 //   - every region that the path uses must have passed the safety gate in that run;
 //   - at every point, the displacement's translation and angle and the point's sigma must keep the limits of
 //     its region; within a transition the limits go over from one region's to the next's with the blend.
+// Where a region's modes acted in the run (run.h), the joint solution is found again from the run's spots, the path is
+// moved by its displacement and then bent by the modes across itself (core/elastic/bead_shape.h), with their sigma; what they
+// add keeps RegionModes::most_added_mm.
 
 #include <string>
 #include <vector>

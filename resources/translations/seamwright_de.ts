@@ -5217,6 +5217,17 @@ und %1 weitere</translation>
     </message>
 </context>
 <context>
+    <name>seamwright::TypeChooser</name>
+    <message>
+        <source>Part type</source>
+        <translation>Teiletyp</translation>
+    </message>
+    <message>
+        <source>Whose spots are measured and whose regions are pushed; those of the other types stay</source>
+        <translation>Wessen Messstellen gemessen und wessen Bereiche übertragen werden; die der anderen Typen bleiben</translation>
+    </message>
+</context>
+<context>
     <name>seamwright::ViewFeeder</name>
     <message>
         <source>sensor %1   %2 /s   %3 dropped</source>

@@ -218,6 +218,23 @@ inline Project sample_project(unsigned seed = 1) {
     p.panel_jobs.push_back(job);
     p.line = {{"plc", "modbus-server", true, {{"port", 1502}, {"start", "line"}}, {1, 7}},
               {"broker", "mqtt", false, {{"address", "10.0.0.9"}}, {}}};
+    RegionModes bends;
+    bends.id = p.regions[0].id;
+    bends.on = true;
+    bends.learnt_utc = "2026-05-01T10:00:00.000Z";
+    bends.switched_utc = "2026-05-02T10:00:00.000Z";
+    bends.most_added_mm = 0.7;
+    bends.modes.spots.push_back({"S1", make.pose(), Eigen::Vector3d(1, 2, 3)});
+    bends.modes.spots[0].seen = Eigen::Vector3d(400, 0, 1.0 / 3).asDiagonal();
+    bends.modes.modes.push_back({{Eigen::Vector3d(0.1, 0, 1)}, 0.09, 0.05, 0.2, 0.01, -0.5, 0.6});
+    bends.modes.noise_factor = 1.1;
+    bends.modes.rows = 30;
+    bends.modes.parts = 28;
+    bends.modes.gain = {12.5, -0.1};
+    bends.modes.gain_sigma = {1.5, 0.2};
+    bends.modes.message = Text("{} modes from {} parts", 1, 28);
+    bends.learnt_from = {{7, "door 7", "2026-04-30T08:00:00.000Z"}};
+    p.elastic = {bends};
     return p;
 }
 

@@ -9,6 +9,7 @@
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/calibrate/session/session.h"
 #include "projects/file/project_json.h"
+#include "projects/model/part_types.h"
 #include "projects/station/fields.h"
 #include "projects/station/measure.h"
 #include "widgets/shown_text.h"
@@ -172,9 +173,17 @@ void Desk::changed() {
         selection_.select_spot("");
     if (!selection_.region().empty() && index_of<Region>(project_, selection_.region()) < 0)
         selection_.select_region("");
+    select_measured_type();
     set_recipes();
     derive();
     emit project_changed();
+}
+
+// One of the project's: what is measured without a type in a project with types is refused.
+void Desk::select_measured_type() {
+    const auto& types = project_.part_types;
+    if (!find_type(project_, selection_.part_type()))
+        selection_.select_part_type(types.empty() ? "" : types.front().id);
 }
 
 void Desk::take_over(ProjectFile file, Project project) {
@@ -189,6 +198,7 @@ void Desk::take_over(ProjectFile file, Project project) {
     selection_.select_spot(project_.spots.empty() ? "" : project_.spots.front().id);
     selection_.select_region(project_.regions.empty() ? "" : project_.regions.front().id);
     selection_.select_sensor(project_.sensors.empty() ? "" : project_.sensors.front().id);
+    select_measured_type();
     was_modified_ = false;
     set_recipes();
     derive();

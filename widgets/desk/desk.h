@@ -128,6 +128,7 @@ class Desk : public QObject {
     Expected<void> together(const QString& text, const std::function<Expected<void>()>& edits);
     void derive();
     void look_again();
+    void select_measured_type();
     void set_recipes();
     void take_identities(const StationState& state);
 

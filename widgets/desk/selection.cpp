@@ -17,5 +17,10 @@ void Selection::select_sensor(const std::string& id) {
     sensor_ = id;
     emit changed();
 }
+void Selection::select_part_type(const std::string& id) {
+    if (id == part_type_) return;
+    part_type_ = id;
+    emit changed();
+}
 
 }  // namespace seamwright

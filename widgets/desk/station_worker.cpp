@@ -140,10 +140,12 @@ void StationWorker::run_one(Station& station, const RunOptions& options) {
     emit measured(std::make_shared<const RunRecord>(std::move(*run)));
 }
 
-void StationWorker::measure(const std::string& part_id, bool push, bool keep_images) {
+void StationWorker::measure(const std::string& part_id, bool push, bool keep_images,
+                            const std::string& part_type) {
     post(tr("Measuring"), [=, this](Station& station, const std::stop_token& cancelled) {
         RunOptions options;
         options.part_id = part_id;
+        options.part_type = part_type;
         options.push = push;
         options.keep_images = keep_images;
         options.cancel = cancelled;
@@ -156,10 +158,11 @@ void StationWorker::measure(const std::string& part_id, bool push, bool keep_ima
     });
 }
 
-void StationWorker::zero_shift(int runs) {
+void StationWorker::zero_shift(int runs, const std::string& part_type) {
     post(tr("Zero shift"), [=, this](Station& station, const std::stop_token& cancelled) {
         ZeroShiftOptions options;
         options.runs = runs;
+        options.part_type = part_type;
         options.cancel = cancelled;
         options.progress = progress_sink();
         options.measured = [this](const RunRecord& run) {
@@ -171,7 +174,7 @@ void StationWorker::zero_shift(int runs) {
     });
 }
 
-void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid) {
+void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid, const std::string& part_type) {
     post(tr("Known shift"), [=, this](Station& station, const std::stop_token& cancelled) {
         feed_.detach();  // the proof opens the devices for itself
         KnownShift naming;
@@ -179,6 +182,7 @@ void StationWorker::known_shift(ShiftBy by, const ShiftGrid& grid) {
         naming.range_deg = grid.range_deg;
         KnownShiftOptions options;
         options.by = by;
+        options.part_type = part_type;
         options.grid = grid;
         options.cancel = cancelled;
         options.progress = progress_sink();

@@ -69,10 +69,11 @@ class StationWorker : public QObject {
 
     void connect_devices();
     void disconnect_devices();
-    void measure(const std::string& part_id, bool push, bool keep_images);
-    void zero_shift(int runs);
+    // `part_type`: of the part that stands there; empty where the project has no types.
+    void measure(const std::string& part_id, bool push, bool keep_images, const std::string& part_type = {});
+    void zero_shift(int runs, const std::string& part_type = {});
     // by_hand: place_part() asks before each displacement, answer_push() answers.
-    void known_shift(ShiftBy by, const ShiftGrid& grid);
+    void known_shift(ShiftBy by, const ShiftGrid& grid, const std::string& part_type = {});
     // Goes on with what was begun (projects/acceptance/study/live_study.h). place_study_part() asks before each part,
     // answer_push() answers; on a simulated cell the simulation puts them in.
     void measure_study(const LiveStudyOptions& options);

@@ -7,6 +7,7 @@
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
 #include "widgets/editors/number_box.h"
+#include "widgets/pages/parts/type_chooser.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -61,6 +62,7 @@ ProvePage::ProvePage(Desk& desk, const Views& views)
 }
 
 void ProvePage::make_zero_shift() {
+    box().addWidget(new TypeChooser(desk_));
     box().addWidget(make_heading(tr("Zero shift")));
     count_ = new QSpinBox;
     count_->setObjectName("zero_runs");
@@ -70,7 +72,7 @@ void ProvePage::make_zero_shift() {
     start_zero_ = make_button("start_zero", "play", tr("Start zero shift"),
                               tr("Measures; nothing is written to the robot"), [this] {
                                   show_known_ = false;
-                                  desk_.worker().zero_shift(count_->value());
+                                  desk_.worker().zero_shift(count_->value(), desk_.selection().part_type());
                               });
     box().addLayout(make_row({start_zero_}));
     zero_verdict_ = make_text({});
@@ -139,7 +141,8 @@ void ProvePage::make_known_shift() {
                         chosen.step_mm = step_mm_->value();
                         chosen.range_deg = range_deg_->value();
                         chosen.step_deg = step_deg_->value();
-                        desk_.worker().known_shift(static_cast<ShiftBy>(by_->currentData().toInt()), chosen);
+                        desk_.worker().known_shift(static_cast<ShiftBy>(by_->currentData().toInt()), chosen,
+                                                   desk_.selection().part_type());
                     });
     auto* charts = make_button("show_known", "window", tr("In the charts"),
                                tr("Deviation against displacement in the charts beside"), [this] {

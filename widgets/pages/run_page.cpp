@@ -14,6 +14,7 @@
 #include "devices/exchange/tables/csv_table.h"
 #include "projects/proof/zero_shift.h"
 #include "projects/station/measure.h"
+#include "widgets/pages/parts/type_chooser.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -109,6 +110,7 @@ RunPage::RunPage(Desk& desk, const Views& views)
     verdict_ = make_text({});
     verdict_->setObjectName("run_verdict");
     head.addWidget(verdict_);
+    box().addWidget(new TypeChooser(desk));
     part_ = new QLineEdit;
     part_->setObjectName("part_id");
     part_->setPlaceholderText(tr("run number"));
@@ -233,7 +235,8 @@ void RunPage::entered() {
 
 void RunPage::measure(bool push) {
     if (!desk_.station().connected || desk_.worker().busy()) return;
-    desk_.worker().measure(part_->text().trimmed().toStdString(), push, images_->isChecked());
+    desk_.worker().measure(part_->text().trimmed().toStdString(), push, images_->isChecked(),
+                           desk_.selection().part_type());
 }
 
 std::int64_t RunPage::chosen() const {

@@ -180,6 +180,7 @@ std::string run_text(const RunRecord& run) {
             text += "  D  " + pose_text(r.correction->displacement.workobject_from_movedworkobject) + "\n" +
                     correction_sigma_text(*r.correction);
         if (r.offset) text += "  " + said_of(*r.offset).english() + "\n";
+        if (r.modes) text += "  " + said_of(*r.modes).english() + "\n";
         for (const Text& reason : r.refusals) text += "  refused: " + reason.english() + "\n";
         if (run.push)
             text += fmt::format("  push of {}: {}{}{}\n", r.push.frame_name, to_string(r.push.status),

@@ -22,6 +22,7 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/file/project_file.h"
+#include "projects/reuse/part_type_edits.h"
 #include "projects/station/acquire.h"
 #include "tests/app/studio/person.h"
 
@@ -159,6 +160,43 @@ TEST_F(Furniture, ASpotFromTheDrawingIsConfirmedOnThePart) {
     window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/spot_confirmed.png");
     me.shortcut(Qt::Key_Z);
     EXPECT_EQ(spot().reference_state, ReferenceState::from_drawing) << "one step back";
+}
+
+TEST_F(Furniture, OfSeveralKindsOfPartsTheChosenOneIsMeasured) {
+    start(true);
+    Desk& desk = studio->desk();
+    Person me(window());
+    me.step(8);
+    for (const auto* hidden : window().findChildren<QComboBox*>("part_type"))
+        EXPECT_FALSE(hidden->isVisible()) << "a project of one kind of part";
+    const auto add = [&](const char* id, const char* of) {
+        const auto after = *of ? clone_part_type(desk.project(), of, {id, "", 0})
+                               : add_part_type(desk.project(), {id, "", 0});
+        ASSERT_TRUE(after) << after.error().sentence();
+        ASSERT_TRUE(desk.edit_project([&](Project& p) { p = *after; }, "part type"));
+    };
+    add("left", "");
+    add("right", "left");
+    QApplication::processEvents();
+    auto* types = me.find<QComboBox>("part_type");
+    ASSERT_TRUE(types);
+    EXPECT_EQ(types->currentText(), "left");
+    me.choose("part_type", "right");
+    EXPECT_EQ(desk.selection().part_type(), "right");
+    window().grab().save(QString(SEAMWRIGHT_SCREENS) + "/part_type.png");
+    const auto runs = desk.runs()->size();
+    me.click("measure");
+    ASSERT_TRUE(me.wait([&] { return desk.runs()->size() > runs && !desk.worker().busy(); }));
+    const RunRecord run = desk.run(desk.runs()->front().number).value();
+    EXPECT_EQ(run.type_id, "right");
+    ASSERT_FALSE(run.spots.empty());
+    for (const SpotMeasurement& m : run.spots)
+        EXPECT_EQ(find_spot(desk.project(), m.spot_id)->type_id, "right") << m.spot_id;
+    // The chosen type is gone: one that there is takes its place.
+    const auto without = remove_part_type(desk.project(), "right", true);
+    ASSERT_TRUE(without) << without.error().sentence();
+    ASSERT_TRUE(desk.edit_project([&](Project& p) { p = *without; }, "part type"));
+    EXPECT_EQ(desk.selection().part_type(), "left");
 }
 
 TEST_F(Furniture, ViaPointsAreAddedWhereTheRobotStandsAndTakenOut) {

@@ -27,7 +27,13 @@ MEMBERS(RegionCorrection, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
 MEMBERS(Feature, a, b, c, d, e, f, g, h)
 MEMBERS(SpotMeasurement, a, b, c, d, e, f, g, h, i, j)
 MEMBERS(PushRecord, a, b, c, d, e, f, g)
-MEMBERS(RegionRecord, a, b, c, d, e, f, g)
+MEMBERS(RegionRecord, a, b, c, d, e, f, g, h)
+MEMBERS(ActingModes, a, b, c, d, e, f, g)
+MEMBERS(RegionModes, a, b, c, d, e, f, g)
+MEMBERS(ElasticModes, a, b, c, d, e, f, g, h)
+MEMBERS(ElasticMode, a, b, c, d, e, f, g)
+MEMBERS(ElasticSpot, a, b, c, d, e, f)
+MEMBERS(LearntRun, a, b, c)
 MEMBERS(ActingOffset, a, b)
 MEMBERS(PanelMeasurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 MEMBERS(PanelFit, a, b, c, d, e, f, g, h, i, j, k, l, m)
@@ -71,9 +77,11 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     region.correction.emplace();
     region.correction->spots.resize(1);
     region.offset.emplace();
+    region.modes.emplace();
     const auto r = to_json_document(region);
     whole(region, r);
     whole(*region.offset, r["offset"]);
+    whole(*region.modes, r["modes"]);
     whole(region.push, r["push"]);
     whole(*region.correction, r["correction"]);
     whole(region.correction->sigma_random, r["correction"]["sigma_random"]);
@@ -127,6 +135,16 @@ TEST(Described, EveryMemberOfWhatIsStored) {
     const auto k = to_json_document(kept);
     whole(kept, k);
     whole(kept.offsets[0], k["offsets"][0]);
+    RegionModes modes;
+    modes.modes.spots.resize(1);
+    modes.modes.modes.resize(1);
+    modes.learnt_from.resize(1);
+    const auto m = to_json_document(modes);
+    whole(modes, m);
+    whole(modes.modes, m["modes"]);
+    whole(modes.modes.spots[0], m["modes"]["spots"][0]);
+    whole(modes.modes.modes[0], m["modes"]["modes"][0]);
+    whole(modes.learnt_from[0], m["learnt_from"][0]);
     whole(StudyPlan{}, to_json_document(StudyPlan{}));
     PanelJob job;
     job.places.resize(1);

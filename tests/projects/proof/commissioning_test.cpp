@@ -51,7 +51,7 @@ TEST(Commissioning, WhatIsForecastSureEnoughIsNeverRefused) {
         const RegionForecast forecast = door.forecast();
         EXPECT_TRUE(forecast.enough()) << forecast.sigma_mm;
         EXPECT_TRUE(door.item(CheckStep::observable).done());
-        ASSERT_TRUE(measure_zero_shift(*door.station, {3, {}, {}, {}}));
+        ASSERT_TRUE(measure_zero_shift(*door.station, {3, {}, {}, {}, {}}));
         EXPECT_TRUE(door.item(CheckStep::zero_shift).done());
         KnownShiftOptions options;
         options.grid.step_mm = 10;
@@ -79,7 +79,7 @@ TEST(Commissioning, WhatIsNotSureEnoughIsSaidBeforehandWithItsCure) {
     ASSERT_FALSE(forecast.cures.empty());
     for (const Cure& cure : forecast.cures) EXPECT_LT(cure.sigma_mm, forecast.sigma_mm);
     // It would indeed have been refused.
-    const auto zero = measure_zero_shift(*door.station, {3, {}, {}, {}});
+    const auto zero = measure_zero_shift(*door.station, {3, {}, {}, {}, {}});
     ASSERT_TRUE(zero);
     EXPECT_GE(zero->refused, 1);
     // The cure does what it promises: the second spot by a template.

@@ -60,16 +60,19 @@ void SpotTree::refresh() {
                : !s.curve                                          ? tr("taught")
                                                                    : tr("taught, edge recorded");
     };
+    const auto owned = [](const std::string& type_id, const QString& state) {
+        return type_id.empty() ? state : QString::fromStdString(type_id) + ": " + state;
+    };
     auto* spots = new QTreeWidgetItem(this, {tr("Spots (%1)").arg(p.spots.size()), {}});
     spots->setSizeHint(0, {0, style::kTargetPx});
     QTreeWidgetItem* current = nullptr;
     for (const Spot& s : p.spots) {
-        auto* item = make(spots, "spot", s.id, state_of(s));
+        auto* item = make(spots, "spot", s.id, owned(s.type_id, state_of(s)));
         if (s.id == desk_.selection().spot()) current = item;
     }
     auto* regions = new QTreeWidgetItem(this, {tr("Regions (%1)").arg(p.regions.size()), {}});
     for (const Region& r : p.regions) {
-        auto* item = make(regions, "region", r.id, tr("%1 spots").arg(r.spot_ids.size()));
+        auto* item = make(regions, "region", r.id, owned(r.type_id, tr("%1 spots").arg(r.spot_ids.size())));
         for (const std::string& id : r.spot_ids)
             if (const Spot* s = find_spot(p, id)) make(item, "spot", id, state_of(*s));
         if (region_current && r.id == desk_.selection().region()) current = item;

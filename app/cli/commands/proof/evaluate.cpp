@@ -4,6 +4,7 @@
 
 #include "app/cli/command.h"
 #include "devices/exchange/files.h"
+#include "projects/evaluate/elastic_experiment.h"
 #include "projects/evaluate/panel_experiment.h"
 #include "projects/evaluate/report.h"
 
@@ -57,9 +58,11 @@ void add_evaluate(CommandLine& line) {
     };
     auto a = std::make_shared<Arguments>();
     command
-        ->add_option("--experiment", a->experiment,
-                     "1 to 5, online (against offline), all, or panel (single step against servoing)")
-        ->check(CLI::IsMember({"1", "2", "3", "4", "5", "online", "all", "panel"}));
+        ->add_option(
+            "--experiment", a->experiment,
+            "1 to 5, online (against offline), all, panel (single step against servoing), or elastic "
+            "(bent doors: rigid regions against learnt modes)")
+        ->check(CLI::IsMember({"1", "2", "3", "4", "5", "online", "all", "panel", "elastic"}));
     command->add_option("--trials", a->settings.trials, "Trials of efficiency and NEES [2000]")
         ->check(CLI::Range(10, 1000000));
     command->add_option("--seed", a->settings.seed, "Of every random number [1]");
@@ -74,6 +77,10 @@ void add_evaluate(CommandLine& line) {
         ->type_name("FILE.html");
     line.on(command, [a]() -> Expected<Answer> {
         if (a->experiment == "panel") return panel_answer(a->settings.trials, a->settings.seed);
+        if (a->experiment == "elastic") {
+            SEAM_TRY(const auto elastic, elastic_experiment(a->settings));
+            return Answer{elastic_json(elastic), elastic_text(elastic), kExitOk};
+        }
         a->settings.experiment = a->experiment == "all"      ? 0
                                  : a->experiment == "online" ? kOnline
                                                              : a->experiment[0] - '0';

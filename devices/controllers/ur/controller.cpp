@@ -76,7 +76,7 @@ class UrController final : public SimulatedController {
         s.cycle_s = settings_.cycle_s();
         if (settings_.cb3) s.version = {3, 15, 8, 106339};
         s.elsewhere.insert("input_bit_registers0_to_31");
-        for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t i = 0; i < 8; ++i)
             s.elsewhere.insert(fmt::format("input_int_register_{}", settings_.line() + i));
         s.slow_ms = settings_.slow_ms;
         return s;

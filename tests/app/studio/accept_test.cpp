@@ -9,6 +9,7 @@
 #include <QSpinBox>
 #include <QUndoStack>
 #include <fstream>
+#include <set>
 
 #include "app/studio/studio.h"
 #include "tests/app/studio/person.h"
@@ -115,7 +116,14 @@ TEST_F(AcceptWay, FromTheToleranceToTheReport) {
     ASSERT_TRUE(me.wait([&] { return desk().worker().busy(); }));
     ASSERT_TRUE(idle());
     ASSERT_TRUE(me.wait([&] { return state(me, kType1) == "done"; })) << state(me, kType1).toStdString();
-    EXPECT_LE(desk().runs()->size(), 26U) << "nothing was made twice";
+    // What was cancelled, or could not be measured on a busy machine, is measured again, and nothing else.
+    std::set<std::string> parts;
+    const auto all = desk().runs().value();
+    for (const RunSummary& run : all) {
+        if (run.status != RunStatus::ok) continue;
+        EXPECT_TRUE(parts.insert(run.part_id).second) << run.part_id << " was made twice";
+    }
+    EXPECT_GE(parts.size(), 20U);
     EXPECT_GT(static_cast<int>(desk().runs()->size()), before);
     EXPECT_TRUE(me.text_of("study_result").contains("Cgk"));
     EXPECT_TRUE(me.text_of("study_forecast").contains("predicted"));

@@ -5,8 +5,8 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/mesh_file.h"
+#include "projects/measure/measure.h"
 #include "projects/reuse/simulated_truth.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

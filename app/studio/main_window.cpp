@@ -26,7 +26,7 @@
 #include "projects/hand_over/hand_over.h"
 #include "projects/reuse/exchange.h"
 #include "widgets/jog/jog_panel.h"
-#include "widgets/pages/accept_page.h"
+#include "widgets/pages/accept/accept_page.h"
 #include "widgets/pages/align_page.h"
 #include "widgets/pages/calibrate_page.h"
 #include "widgets/pages/cell_page.h"

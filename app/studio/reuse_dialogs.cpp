@@ -3,7 +3,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"

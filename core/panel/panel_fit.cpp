@@ -158,6 +158,124 @@ void fill_spots(std::span<const PanelSpot> spots, std::span<const SpotObservatio
     fit.rms_mm = weights > 0 ? std::sqrt(squares / weights) : 0;
 }
 
+// Both sides' measures, and what they say of gap and flush before anything moves.
+Expected<void> read_spots(std::span<const PanelSpot> spots, std::vector<SpotObservation>& panel,
+                          std::vector<SpotObservation>& body, PanelFit& fit) {
+    for (const PanelSpot& s : spots) {
+        if (!std::isfinite(s.surface_rad))
+            return input_error("the surface's direction is not a finite number", Text("spot {}", s.id));
+        panel.push_back(observation_of(s, s.panel));
+        body.push_back(observation_of(s, s.body));
+        PanelSpotResult out;
+        out.id = s.id;
+        out.taught = gap_and_flush(s, s.panel.reference_mm, s.body.reference_mm);
+        const GapFlushValue seen = gap_and_flush(s, s.panel.measured_mm, s.body.measured_mm);
+        out.before = {seen.gap_mm - out.taught.gap_mm, seen.flush_mm - out.taught.flush_mm};
+        fit.spots.push_back(out);
+    }
+    return {};
+}
+
+CorrectionOptions side_options(const PanelOptions& options) {
+    CorrectionOptions each;
+    each.sigma_limit_mm = options.sigma_limit_mm;
+    each.sigma_limit_deg = options.sigma_limit_deg;
+    each.reject_outliers = options.deviation == PanelDeviation::leave_out;
+    each.outlier_significance = options.outlier_significance;
+    return each;
+}
+
+// What the two sides' own answers say of the whole.
+void say_of_sides(PanelFit& fit) {
+    for (const auto& [side, solved] :
+         {std::pair<const char*, const RegionCorrection*>{"panel", &fit.panel}, {"body", &fit.body}}) {
+        if (solved->status != CorrectionStatus::ok) {
+            if (fit.message.empty() || solved->status == CorrectionStatus::under_determined)
+                fit.status = solved->status;
+            for (const Text& direction : solved->unobservable)
+                if (std::find(fit.unobservable.begin(), fit.unobservable.end(), direction) ==
+                    fit.unobservable.end())
+                    fit.unobservable.push_back(direction);
+            fit.covariance += solved->covariance;
+        } else if (solved->message.empty()) {
+            continue;
+        }
+        fit.message = joined(fit.message, "; ", with_side(side, *solved));
+    }
+}
+
+// A side is not known: its spots as far as they go, and the sigmas of both sides alone.
+void fill_unsolved(PanelFit& fit) {
+    fit.sigma_xyz_mm = (fit.panel.sigma_xyz_mm.cwiseAbs2() + fit.body.sigma_xyz_mm.cwiseAbs2()).cwiseSqrt();
+    fit.sigma_abc_deg =
+        (fit.panel.sigma_abc_deg.cwiseAbs2() + fit.body.sigma_abc_deg.cwiseAbs2()).cwiseSqrt();
+    fit.sigma_at_spots_mm = std::hypot(fit.panel.sigma_at_spots_mm, fit.body.sigma_at_spots_mm);
+}
+
+// The joint form: the panel is fitted to where the body asks for it, r_P - e_B. A spot whose body is left out asks for
+// nothing but the taught place; a spot whose panel is left out does not count.
+struct JointSpots {
+    std::vector<SpotObservation> asked, counted;
+    std::vector<char> follows;  // the body, one a spot
+};
+JointSpots joint_spots(std::span<const PanelSpot> spots, const std::vector<SpotObservation>& panel,
+                       const std::vector<SpotObservation>& body, const Pose& b, const PanelFit& fit) {
+    JointSpots joint;
+    for (std::size_t n = 0; n < spots.size(); ++n) {
+        SpotObservation o = panel[n];
+        const bool from_body = fit.spots[n].body_used;
+        if (from_body) o.reference_mm -= observed(spots[n], residual(body[n], b));
+        joint.follows.push_back(from_body);
+        joint.asked.push_back(o);
+        if (fit.spots[n].panel_used) joint.counted.push_back(o);
+    }
+    return joint;
+}
+
+// The gripper's motion b p^-1 with the noise of both sides:
+// dB = -K_B n_B, e_B changes by (I - J_B K_B) n_B, so the panel's residual does by the negative of that.
+void set_covariance(std::span<const PanelSpot> spots, const std::vector<SpotObservation>& body,
+                    const JointSpots& joint, const Pose& b, const Pose& p, PanelFit& fit) {
+    const Response from_body = respond(body, fit.body.spots, b);
+    const Response from_panel = respond(joint.asked, fit.panel.spots, p);
+    const Eigen::Index rows = from_body.jacobian.rows();
+    Eigen::VectorXd variance(rows), observes(rows), passes(rows);
+    for (std::size_t n = 0; n < spots.size(); ++n)
+        for (int i = 0; i < 3; ++i) {
+            const Eigen::Index k = static_cast<Eigen::Index>(3 * n) + i;
+            variance[k] = std::pow(spots[n].sigma_mm, 2);
+            observes[k] = spots[n].weights[i] > 0 ? 1 : 0;
+            passes[k] = observes[k] * (joint.follows[n] ? 1 : 0);
+        }
+    Matrix6 by_b, by_p;
+    motion_jacobians(b, p, by_b, by_p);
+    const Eigen::MatrixXd k_b = from_body.gain, k_p = from_panel.gain;
+    const Eigen::MatrixXd remains =
+        passes.asDiagonal() * (Eigen::MatrixXd::Identity(rows, rows) - from_body.jacobian * k_b);
+    const Rows from_n_body = -by_b * k_b + by_p * k_p * remains;
+    const Rows from_n_panel = -by_p * k_p;
+    const Eigen::VectorXd spread = variance.cwiseProduct(observes);
+    fit.covariance = from_n_body * spread.asDiagonal() * from_n_body.transpose() +
+                     from_n_panel * spread.asDiagonal() * from_n_panel.transpose();
+    fit.sigma_xyz_mm = fit.covariance.diagonal().head<3>().cwiseSqrt();
+    const Eigen::Matrix3d to_abc = kuka_jacobian(fit.gripper_motion.linear());
+    const Eigen::Matrix3d abc = to_abc * fit.covariance.bottomRightCorner<3, 3>() * to_abc.transpose();
+    fit.sigma_abc_deg = abc.diagonal().cwiseSqrt() * deg_from_rad(1);
+}
+
+void judge_motion(const PanelOptions& options, PanelFit& fit) {
+    const double moved = fit.gripper_motion.translation().norm();
+    const double turned = deg_from_rad(rotation_log(fit.gripper_motion.linear()).norm());
+    if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {
+        fit.status = CorrectionStatus::over_limit;
+        const Text sentence(
+            "the gripper would move by {:.3f} mm and {:.3f} degrees, beyond the limits of {:g} mm and {:g} "
+            "degrees: check the seat of panel and body",
+            moved, turned, options.limits.translation_mm, options.limits.rotation_deg);
+        fit.message = joined(sentence, "; ", fit.message);
+    }
+}
+
 }  // namespace
 
 GapFlushObserved observed_gap_flush(const Eigen::Vector3d& weights, double surface_rad) {
@@ -183,23 +301,8 @@ GapFlushValue gap_and_flush(const PanelSpot& spot, const Eigen::Vector3d& panel_
 Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOptions& options) {
     std::vector<SpotObservation> panel, body;
     PanelFit fit;
-    for (const PanelSpot& s : spots) {
-        if (!std::isfinite(s.surface_rad))
-            return input_error("the surface's direction is not a finite number", Text("spot {}", s.id));
-        panel.push_back(observation_of(s, s.panel));
-        body.push_back(observation_of(s, s.body));
-        PanelSpotResult out;
-        out.id = s.id;
-        out.taught = gap_and_flush(s, s.panel.reference_mm, s.body.reference_mm);
-        const GapFlushValue seen = gap_and_flush(s, s.panel.measured_mm, s.body.measured_mm);
-        out.before = {seen.gap_mm - out.taught.gap_mm, seen.flush_mm - out.taught.flush_mm};
-        fit.spots.push_back(out);
-    }
-    CorrectionOptions each;
-    each.sigma_limit_mm = options.sigma_limit_mm;
-    each.sigma_limit_deg = options.sigma_limit_deg;
-    each.reject_outliers = options.deviation == PanelDeviation::leave_out;
-    each.outlier_significance = options.outlier_significance;
+    SEAM_OK(read_spots(spots, panel, body, fit));
+    const CorrectionOptions each = side_options(options);
     auto solved_body = solve_region(body, each);
     if (!solved_body) return tl::unexpected(on_side(solved_body.error(), "body"));
     auto solved_panel = solve_region(panel, each);
@@ -212,50 +315,20 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     }
     const Pose b = fit.body.displacement.workobject_from_movedworkobject;
     const Pose p_alone = fit.panel.displacement.workobject_from_movedworkobject;
-    for (const auto& [side, solved] :
-         {std::pair<const char*, const RegionCorrection*>{"panel", &fit.panel}, {"body", &fit.body}}) {
-        if (solved->status != CorrectionStatus::ok) {
-            if (fit.message.empty() || solved->status == CorrectionStatus::under_determined)
-                fit.status = solved->status;
-            for (const Text& direction : solved->unobservable)
-                if (std::find(fit.unobservable.begin(), fit.unobservable.end(), direction) ==
-                    fit.unobservable.end())
-                    fit.unobservable.push_back(direction);
-            fit.covariance += solved->covariance;
-        } else if (solved->message.empty()) {
-            continue;
-        }
-        fit.message = joined(fit.message, "; ", with_side(side, *solved));
-    }
+    say_of_sides(fit);
     if (fit.panel.status != CorrectionStatus::ok || fit.body.status != CorrectionStatus::ok) {
         fill_spots(spots, panel, body, p_alone, b, fit);
-        fit.sigma_xyz_mm =
-            (fit.panel.sigma_xyz_mm.cwiseAbs2() + fit.body.sigma_xyz_mm.cwiseAbs2()).cwiseSqrt();
-        fit.sigma_abc_deg =
-            (fit.panel.sigma_abc_deg.cwiseAbs2() + fit.body.sigma_abc_deg.cwiseAbs2()).cwiseSqrt();
-        fit.sigma_at_spots_mm = std::hypot(fit.panel.sigma_at_spots_mm, fit.body.sigma_at_spots_mm);
+        fill_unsolved(fit);
         return fit;
     }
     fit.single_step = b * p_alone.inverse();
 
-    // The joint form: the panel is fitted to where the body asks for it, r_P - e_B. A spot whose body is
-    // left out asks for nothing but the taught place; a spot whose panel is left out does not count.
-    std::vector<SpotObservation> joint, asked;
-    std::vector<SpotResidual> joint_used, body_used;
-    std::vector<char> follows;
-    for (std::size_t n = 0; n < spots.size(); ++n) {
-        SpotObservation o = panel[n];
-        const bool from_body = fit.spots[n].body_used;
-        if (from_body) o.reference_mm -= observed(spots[n], residual(body[n], b));
-        follows.push_back(from_body);
-        asked.push_back(o);
-        if (fit.spots[n].panel_used) joint.push_back(o);
-    }
+    const JointSpots joint = joint_spots(spots, panel, body, b, fit);
     CorrectionOptions plain = each;
     plain.reject_outliers = false;
     plain.sigma_limit_mm = 1e6;  // judged below, for the motion as a whole
     plain.sigma_limit_deg = 1e6;
-    auto solved = solve_region(joint, plain);
+    auto solved = solve_region(joint.counted, plain);
     if (!solved) return tl::unexpected(on_side(solved.error(), "panel to body"));
     if (solved->status != CorrectionStatus::ok) {
         fit.status = solved->status;
@@ -267,32 +340,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
     const Pose p = solved->displacement.workobject_from_movedworkobject;
     fit.gripper_motion = b * p.inverse();
 
-    // dB = -K_B n_B, e_B changes by (I - J_B K_B) n_B, so the panel's residual does by the negative of that.
-    const Response from_body = respond(body, fit.body.spots, b);
-    const Response from_panel = respond(asked, fit.panel.spots, p);
-    const Eigen::Index rows = from_body.jacobian.rows();
-    Eigen::VectorXd variance(rows), observes(rows), passes(rows);
-    for (std::size_t n = 0; n < spots.size(); ++n)
-        for (int i = 0; i < 3; ++i) {
-            const Eigen::Index k = static_cast<Eigen::Index>(3 * n) + i;
-            variance[k] = std::pow(spots[n].sigma_mm, 2);
-            observes[k] = spots[n].weights[i] > 0 ? 1 : 0;
-            passes[k] = observes[k] * (follows[n] ? 1 : 0);
-        }
-    Matrix6 by_b, by_p;
-    motion_jacobians(b, p, by_b, by_p);
-    const Eigen::MatrixXd k_b = from_body.gain, k_p = from_panel.gain;
-    const Eigen::MatrixXd remains =
-        passes.asDiagonal() * (Eigen::MatrixXd::Identity(rows, rows) - from_body.jacobian * k_b);
-    const Rows from_n_body = -by_b * k_b + by_p * k_p * remains;
-    const Rows from_n_panel = -by_p * k_p;
-    const Eigen::VectorXd spread = variance.cwiseProduct(observes);
-    fit.covariance = from_n_body * spread.asDiagonal() * from_n_body.transpose() +
-                     from_n_panel * spread.asDiagonal() * from_n_panel.transpose();
-    fit.sigma_xyz_mm = fit.covariance.diagonal().head<3>().cwiseSqrt();
-    const Eigen::Matrix3d to_abc = kuka_jacobian(fit.gripper_motion.linear());
-    const Eigen::Matrix3d abc = to_abc * fit.covariance.bottomRightCorner<3, 3>() * to_abc.transpose();
-    fit.sigma_abc_deg = abc.diagonal().cwiseSqrt() * deg_from_rad(1);
+    set_covariance(spots, body, joint, b, p, fit);
 
     fill_spots(spots, panel, body, p, b, fit);
     bool observable = true;
@@ -317,16 +365,7 @@ Expected<PanelFit> fit_panel(std::span<const PanelSpot> spots, const PanelOption
                     joined(fit.message, "; ",
                            Text("the {} deviates from its taught shape at {}: shared out over the spots",
                                 Text(side), fmt::format("{}", fmt::join(names, ", "))));
-    const double moved = fit.gripper_motion.translation().norm();
-    const double turned = deg_from_rad(rotation_log(fit.gripper_motion.linear()).norm());
-    if (moved > options.limits.translation_mm || turned > options.limits.rotation_deg) {
-        fit.status = CorrectionStatus::over_limit;
-        const Text sentence(
-            "the gripper would move by {:.3f} mm and {:.3f} degrees, beyond the limits of {:g} mm and {:g} "
-            "degrees: check the seat of panel and body",
-            moved, turned, options.limits.translation_mm, options.limits.rotation_deg);
-        fit.message = joined(sentence, "; ", fit.message);
-    }
+    judge_motion(options, fit);
     return fit;
 }
 

@@ -41,9 +41,9 @@ std::optional<ControllerFault> controller_fault_from(std::string_view name) {
     return std::nullopt;
 }
 
-void SimulatedController::press_start(const std::string& part_id, const std::string& part_type) {
+void SimulatedController::press_start(const PartId& part, const PartTypeId& type) {
     const std::lock_guard lock(mutex_);
-    start_ = Call{part_id, part_type};
+    start_ = Call{part.text(), type.text()};
 }
 
 std::optional<PartVerdict> SimulatedController::verdict() const {

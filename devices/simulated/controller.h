@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/ids.h"
 #include "devices/robot_link.h"
 
 namespace seamwright {
@@ -41,7 +42,7 @@ class SimulatedController {
     // Where it listens; of a robot that is the client, where it connects to.
     virtual std::uint16_t port() const = 0;
     // Somebody calls for the next part, as the line's PLC does.
-    virtual void press_start(const std::string& part_id, const std::string& part_type = {});
+    virtual void press_start(const PartId& part, const PartTypeId& type = {});
     void set_fault(ControllerFault fault) { fault_ = fault; }
     ControllerFault fault() const { return fault_; }
     // May the application run with the frames as they are? See RobotLink. False from the making, from a start

@@ -8,8 +8,8 @@
 #include "projects/calibrate/session/answer.h"
 #include "projects/calibrate/session/guide.h"
 #include "projects/calibrate/session/shot.h"
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {
@@ -143,7 +143,7 @@ class Live {
         SEAM_TRY(auto settings, capture_settings(session_, station_.project(), sensors));
         CalibrationShots shots;
         for (const std::string& id : sensors)
-            shots.push_back(take_shot(station_, id, session_.robot_id(),
+            shots.push_back(take_shot(station_, SensorId(id), RobotId(session_.robot_id()),
                                       shows_board(session_.method().capture), options_.cancel));
         if (!shots.front() && shots.front().error().kind == ErrorKind::device)
             return tl::unexpected(shots.front().error());
@@ -238,8 +238,8 @@ Expected<LiveCalibration> calibrate_live(Station& station, const CalibrationMeth
     SEAM_TRY(const auto robot, robot_of(station.project(), method, options.robot_id));
     RobotLink* link = station.robot(robot);
     if (!link) return device_error("the robot is not connected", Text("robot {}", robot), "connect it");
-    SEAM_TRY(auto session,
-             CalibrationSession::open(station.file().path(), method.id, options.sensor_id, robot));
+    SEAM_TRY(auto session, CalibrationSession::open(station.file().path(), MethodId(method.id),
+                                                    SensorId(options.sensor_id), RobotId(robot)));
     if (options.anew || session.stage() == SessionStage::used) SEAM_OK(session.begin_anew());
     for (const auto& [name, value] : options.settings) SEAM_OK(session.set(name, value));
     std::optional<ShownTarget> shown;

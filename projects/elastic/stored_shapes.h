@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "projects/file/project_file.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 

@@ -17,7 +17,7 @@
 #include "devices/simulated/scene/mesh.h"
 #include "devices/simulated/scene/random.h"
 #include "devices/simulated/scene/renderer.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright::evaluation {
 

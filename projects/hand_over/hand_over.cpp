@@ -5,7 +5,7 @@
 #include "core/geometry/notation.h"
 #include "projects/file/stored_text.h"
 #include "projects/hand_over/hand_over_detail.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

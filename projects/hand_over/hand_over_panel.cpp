@@ -3,8 +3,8 @@
 
 #include "projects/file/project_json.h"
 #include "projects/hand_over/hand_over_detail.h"
+#include "projects/measure/measure.h"
 #include "projects/panel/panel_measure.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -2,10 +2,10 @@
 #include <map>
 
 #include "projects/hand_over/hand_over_detail.h"
+#include "projects/measure/measure.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -83,7 +83,7 @@ struct NozzleTip {
 };
 
 // A calibration that turns a sensor's frames into millimetres on the flange; or, with `nozzle`, where the robot's nozzle
-// is: the newest one of a robot that serves is in use (projects/station/nozzle.h).
+// is: the newest one of a robot that serves is in use (projects/measure/nozzle.h).
 struct Calibration {
     std::string id;
     std::string method;  // "simulated truth", "tcp-sphere", "stripe-camera", "factory", ...

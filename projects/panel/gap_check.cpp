@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -9,8 +9,8 @@
 #include "core/geometry/notation.h"
 #include "core/panel/double_head.h"
 #include "projects/gate/safety_gate.h"
-#include "projects/station/fields.h"
-#include "projects/station/measure.h"
+#include "projects/measure/fields.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

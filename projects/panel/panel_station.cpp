@@ -7,11 +7,11 @@
 
 #include "devices/host_time.h"
 #include "projects/gate/safety_gate.h"
+#include "projects/measure/measure.h"
+#include "projects/measure/nozzle.h"
 #include "projects/panel/panel_measure.h"
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
-#include "projects/station/measure.h"
-#include "projects/station/nozzle.h"
 #include "projects/station/run_release.h"
 
 namespace seamwright {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "devices/simulated/scene/random.h"
+#include "projects/measure/measure.h"
 #include "projects/placing/expected_profile.h"
 #include "projects/proof/forecast.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

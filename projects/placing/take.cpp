@@ -9,8 +9,8 @@
 #include <set>
 
 #include "projects/gate/safety_gate.h"
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "core/acceptance/distributions.h"
 #include "core/geometry/notation.h"
+#include "projects/measure/measure.h"
+#include "projects/measure/nozzle.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/path_direction.h"
-#include "projects/station/measure.h"
-#include "projects/station/nozzle.h"
 
 namespace seamwright {
 namespace {

@@ -8,7 +8,7 @@
 // standard uncertainty (root mean square over the row's spots), the sensitivity is u / u(x). Rows are independent:
 // the shares add up to 1.
 //
-// The nozzle, where one is calibrated, errs at the bead and not in D (projects/station/nozzle.h): a row of normal and
+// The nozzle, where one is calibrated, errs at the bead and not in D (projects/measure/nozzle.h): a row of normal and
 // binormal alone, systematic.
 //
 // Type A: estimated from observations: the feature's covariance and the reference's, with the points that the feature

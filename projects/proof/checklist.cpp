@@ -6,12 +6,12 @@
 
 #include "devices/capture/capture.h"
 #include "projects/file/project_json.h"
+#include "projects/measure/measure.h"
+#include "projects/measure/nozzle.h"
 #include "projects/model/part_types.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/zero_shift.h"
-#include "projects/station/measure.h"
-#include "projects/station/nozzle.h"
 
 namespace seamwright {
 namespace {

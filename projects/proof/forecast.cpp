@@ -9,8 +9,8 @@
 #include "core/correction/sigma.h"
 #include "core/correction/travel.h"
 #include "core/numbers.h"
-#include "projects/station/measure.h"
-#include "projects/station/nozzle.h"
+#include "projects/measure/measure.h"
+#include "projects/measure/nozzle.h"
 
 namespace seamwright {
 namespace {

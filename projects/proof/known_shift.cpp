@@ -7,9 +7,9 @@
 
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
+#include "projects/measure/measure.h"
 #include "projects/model/part_types.h"
 #include "projects/proof/zero_shift.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -1,6 +1,6 @@
 #include "projects/proof/path_direction.h"
 
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 

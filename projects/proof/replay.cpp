@@ -10,8 +10,8 @@
 
 #include "projects/file/project_json.h"
 #include "projects/gate/safety_gate.h"
+#include "projects/measure/measure.h"
 #include "projects/panel/panel_measure.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

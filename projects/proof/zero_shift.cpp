@@ -7,8 +7,8 @@
 
 #include "core/evaluation/statistics.h"
 #include "core/geometry/notation.h"
+#include "projects/measure/measure.h"
 #include "projects/model/part_types.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 

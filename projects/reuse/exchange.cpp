@@ -12,7 +12,7 @@
 #include "devices/exchange/tables/point_table.h"
 #include "devices/exchange/tables/profile_csv.h"
 #include "projects/file/project_json.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

@@ -9,8 +9,8 @@
 #include "core/profile/units.h"
 #include "devices/registry.h"
 #include "devices/replay/recording.h"
+#include "projects/measure/measure.h"
 #include "projects/reuse/exchange.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

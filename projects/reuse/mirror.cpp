@@ -8,7 +8,7 @@
 #include "core/features/kinds/feature_registry.h"
 #include "core/number_text.h"
 #include "devices/simulated/scene/mesh_file.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "devices/silence.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

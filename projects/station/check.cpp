@@ -9,11 +9,11 @@
 #include "devices/capture/capture.h"
 #include "devices/line/line_link.h"
 #include "projects/gate/safety_gate.h"
+#include "projects/measure/fields.h"
+#include "projects/measure/measure.h"
 #include "projects/model/part_types.h"
 #include "projects/model/project.h"
 #include "projects/station/check.h"
-#include "projects/station/fields.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

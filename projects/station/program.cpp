@@ -7,19 +7,20 @@
 
 namespace seamwright {
 
-Expected<ProgramRequest> program_request(const Project& whole, const std::string& robot_id,
-                                         const std::string& part_type) {
-    SEAM_TRY(const auto type, called_type(whole, part_type));
+Expected<ProgramRequest> program_request(const Project& whole, const RobotId& robot_id,
+                                         const PartTypeId& part_type) {
+    SEAM_TRY(const auto type, called_type(whole, part_type.text()));
     const Project project = of_type(whole, type);
     const auto& robots = project.robots;
     if (robots.empty()) return input_error("the project has no robot", project.name, "add one");
     if (robot_id.empty() && robots.size() > 1)
         return input_error("the project has several robots", project.name, "say which with --robot");
-    const auto robot = robot_id.empty() ? robots.begin()
-                                        : std::find_if(robots.begin(), robots.end(),
-                                                       [&](const RobotSetup& r) { return r.id == robot_id; });
+    const auto robot = robot_id.empty()
+                           ? robots.begin()
+                           : std::find_if(robots.begin(), robots.end(),
+                                          [&](const RobotSetup& r) { return r.id == robot_id.text(); });
     if (robot == robots.end())
-        return input_error(Text("the project has no robot \"{}\"", robot_id), project.name,
+        return input_error(Text("the project has no robot \"{}\"", robot_id.text()), project.name,
                            Text("its first is \"{}\"", robots.front().id));
     ProgramRequest request;
     request.project = project.name;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/ids.h"
 #include "devices/robot_program.h"
 #include "projects/model/project.h"
 
@@ -12,7 +13,7 @@ namespace seamwright {
 // empty when the project has one robot, `part_type` (id or number) where it has no part types: the program is of one type,
 // and says so with its start signal. Error (input): no such robot, a type that called_type() refuses, no enabled spot, a
 // frame without name, one name for two regions.
-Expected<ProgramRequest> program_request(const Project& project, const std::string& robot_id,
-                                         const std::string& part_type = {});
+Expected<ProgramRequest> program_request(const Project& project, const RobotId& robot_id,
+                                         const PartTypeId& part_type = {});
 
 }  // namespace seamwright

@@ -10,11 +10,11 @@
 #include "devices/registry.h"
 #include "projects/file/file_use.h"
 #include "projects/gate/safety_gate.h"
+#include "projects/measure/measure.h"
+#include "projects/measure/nozzle.h"
 #include "projects/model/part_types.h"
 #include "projects/station/acquire.h"
 #include "projects/station/check.h"
-#include "projects/station/measure.h"
-#include "projects/station/nozzle.h"
 #include "projects/station/run_release.h"
 
 namespace seamwright {

@@ -8,8 +8,8 @@
 
 #include "core/median.h"
 #include "core/profile/taught_profile.h"
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

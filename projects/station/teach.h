@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/alignment/alignment.h"
+#include "projects/measure/measure.h"
 #include "projects/model/evidence.h"
 #include "projects/model/run.h"
-#include "projects/station/measure.h"
 #include "projects/station/station.h"
 
 namespace seamwright {

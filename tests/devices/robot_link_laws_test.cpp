@@ -272,7 +272,7 @@ TEST_P(RobotLaws, TheLinesCallIsHeardOnce) {
     auto none = link->wait_start(std::chrono::milliseconds(50));
     ASSERT_FALSE(none);
     EXPECT_TRUE(is_silence(none.error())) << none.error().sentence();
-    controller->press_start("CAR-0815");
+    controller->press_start(PartId("CAR-0815"));
     auto start = link->wait_start(std::chrono::seconds(5));
     ASSERT_TRUE(start) << start.error().sentence();
     EXPECT_EQ(start->part_id, "CAR-0815");
@@ -284,7 +284,7 @@ TEST_P(RobotLaws, TheLinesCallIsHeardOnce) {
 }
 
 TEST_P(RobotLaws, TheTypeComesWithTheCall) {
-    controller->press_start("CAR-0815", "wagon_long-16-ch");
+    controller->press_start(PartId("CAR-0815"), PartTypeId("wagon_long-16-ch"));
     auto start = link->wait_start(std::chrono::seconds(5));
     ASSERT_TRUE(start) << start.error().sentence();
     EXPECT_EQ(start->part_id, "CAR-0815");
@@ -295,7 +295,7 @@ TEST_P(RobotLaws, TheTypeComesWithTheCall) {
 // The robot waits at the part; whoever heard the call and died has not measured it.
 TEST_P(RobotLaws, ACallThatWasNotServedIsMadeAgainToTheNextRunner) {
     ASSERT_TRUE(recovers());
-    controller->press_start("CAR-0816");
+    controller->press_start(PartId("CAR-0816"));
     auto heard = link->wait_start(std::chrono::seconds(5));
     ASSERT_TRUE(heard) << heard.error().sentence();
     link.reset();

@@ -5,8 +5,8 @@
 
 #include "core/alignment/alignment.h"
 #include "devices/simulated/scene/door.h"
+#include "projects/measure/measure.h"
 #include "projects/reuse/simulated_truth.h"
-#include "projects/station/measure.h"
 #include "projects/station/teach.h"
 
 namespace seamwright {

@@ -11,7 +11,7 @@
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/session/answer.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {
@@ -83,11 +83,10 @@ void CalibrationDesk::set_doing(const QString& what) {
     emit busy_changed();
 }
 
-Expected<void> CalibrationDesk::open(const std::string& method, const std::string& sensor_id,
-                                     const std::string& robot_id) {
+Expected<void> CalibrationDesk::open(const MethodId& method, const SensorId& sensor, const RobotId& robot) {
     if (!desk_.is_open()) return usage_error("no project is open", {}, "open or make one");
     close();
-    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor_id, robot_id));
+    SEAM_TRY(auto session, CalibrationSession::open(desk_.path(), method, sensor, robot));
     session_ = std::move(session);
     for (const Text& notice : session_->notices()) emit refused(shown(notice));
     if (session_->state().captures.empty())

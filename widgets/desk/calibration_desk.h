@@ -19,6 +19,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "core/ids.h"
 #include "projects/calibrate/session/capture.h"
 #include "projects/calibrate/session/guide.h"
 #include "widgets/desk/desk.h"
@@ -40,7 +41,7 @@ class CalibrationDesk : public QObject {
     ~CalibrationDesk() override;
 
     // The session of this method, sensor and its robot: resumed where there is one.
-    Expected<void> open(const std::string& method, const std::string& sensor_id, const std::string& robot_id);
+    Expected<void> open(const MethodId& method, const SensorId& sensor, const RobotId& robot);
     void close();
     bool is_open() const { return session_.has_value(); }
     const CalibrationSession& session() const { return *session_; }

@@ -9,9 +9,9 @@
 #include "devices/simulated/scene/mesh_file.h"
 #include "projects/calibrate/session/session.h"
 #include "projects/file/project_json.h"
+#include "projects/measure/fields.h"
+#include "projects/measure/measure.h"
 #include "projects/model/part_types.h"
-#include "projects/station/fields.h"
-#include "projects/station/measure.h"
 #include "widgets/shown_text.h"
 
 namespace seamwright {
@@ -460,34 +460,35 @@ Expected<void> Desk::set_spot_enabled(const std::string& id, bool enabled) {
     return {};
 }
 
-Expected<void> Desk::set_spot_field(const std::string& id, const std::string& field, double value) {
-    const Spot* spot = find_spot(project_, id);
-    if (!spot) return input_error(Text("there is no spot \"{}\"", id));
+Expected<void> Desk::set_spot_field(const SpotId& id, const std::string& field, double value) {
+    const Spot* spot = find_spot(project_, id.text());
+    if (!spot) return input_error(Text("there is no spot \"{}\"", id.text()));
     Spot after = *spot;
     SEAM_OK(set_field(after, field, value));
     return edit(after, QString::fromStdString(field));
 }
 
-Expected<void> Desk::set_region_field(const std::string& id, const std::string& field, double value) {
-    const int at = index_of<Region>(project_, id);
-    if (at < 0) return input_error(Text("there is no region \"{}\"", id));
+Expected<void> Desk::set_region_field(const RegionId& id, const std::string& field, double value) {
+    const int at = index_of<Region>(project_, id.text());
+    if (at < 0) return input_error(Text("there is no region \"{}\"", id.text()));
     Region after = project_.regions[static_cast<std::size_t>(at)];
     SEAM_OK(set_field(after, field, value));
     return edit(after, QString::fromStdString(field));
 }
 
-Expected<void> Desk::use_calibration(const std::string& sensor_id, const std::string& calibration_id) {
-    const int at = index_of<SensorSetup>(project_, sensor_id);
-    if (at < 0) return input_error(Text("there is no sensor \"{}\"", sensor_id));
+Expected<void> Desk::use_calibration(const SensorId& sensor_id, const CalibrationId& calibration_id) {
+    const int at = index_of<SensorSetup>(project_, sensor_id.text());
+    if (at < 0) return input_error(Text("there is no sensor \"{}\"", sensor_id.text()));
     const SensorSetup& sensor = project_.sensors[static_cast<std::size_t>(at)];
-    if (sensor.calibration_id == calibration_id) return {};
-    const int c = index_of<Calibration>(project_, calibration_id);
+    if (sensor.calibration_id == calibration_id.text()) return {};
+    const int c = index_of<Calibration>(project_, calibration_id.text());
     if (!calibration_id.empty() && c < 0)
-        return input_error(Text("there is no calibration \"{}\"", calibration_id));
-    if (c >= 0 && project_.calibrations[static_cast<std::size_t>(c)].sensor_id != sensor_id)
-        return input_error(Text("calibration {} belongs to another sensor", calibration_id),
-                           Text("sensor {}", sensor_id));
-    push(std::make_unique<CmdCalibrationUse>(editor(), sensor, static_cast<std::size_t>(at), calibration_id));
+        return input_error(Text("there is no calibration \"{}\"", calibration_id.text()));
+    if (c >= 0 && project_.calibrations[static_cast<std::size_t>(c)].sensor_id != sensor_id.text())
+        return input_error(Text("calibration {} belongs to another sensor", calibration_id.text()),
+                           Text("sensor {}", sensor_id.text()));
+    push(std::make_unique<CmdCalibrationUse>(editor(), sensor, static_cast<std::size_t>(at),
+                                             calibration_id.text()));
     return {};
 }
 
@@ -503,7 +504,7 @@ Expected<void> Desk::take_calibrations(std::vector<Calibration> made, bool use) 
             const std::string id = c.id, sensor = c.sensor_id;
             SEAM_OK(add(std::move(c)));
             if (!use) continue;
-            SEAM_OK(use_calibration(sensor, id));
+            SEAM_OK(use_calibration(SensorId(sensor), CalibrationId(id)));
         }
         return {};
     });

@@ -12,13 +12,14 @@
 #include <memory>
 #include <optional>
 
+#include "core/ids.h"
 #include "projects/file/file_use.h"
 #include "projects/reuse/reteach.h"
 #include "widgets/desk/commands.h"
 #include "widgets/desk/recovery.h"
 #include "widgets/desk/selection.h"
-#include "widgets/desk/station_worker.h"
 #include "widgets/desk/steps.h"
+#include "widgets/worker/station_worker.h"
 
 namespace seamwright {
 
@@ -65,9 +66,9 @@ class Desk : public QObject {
     template <class T>
     Expected<void> edit(const T& after, const QString& what = {});
     Expected<void> set_spot_enabled(const std::string& id, bool enabled);
-    Expected<void> set_spot_field(const std::string& id, const std::string& field, double value);
-    Expected<void> set_region_field(const std::string& id, const std::string& field, double value);
-    Expected<void> use_calibration(const std::string& sensor_id, const std::string& calibration_id);
+    Expected<void> set_spot_field(const SpotId& id, const std::string& field, double value);
+    Expected<void> set_region_field(const RegionId& id, const std::string& field, double value);
+    Expected<void> use_calibration(const SensorId& sensor_id, const CalibrationId& calibration_id);
     // Adds calibrations, and with `use` has each sensor use its own: all or none, one step of undo.
     Expected<void> take_calibrations(std::vector<Calibration> made, bool use);
     Expected<void> edit_part(const PartSetup& after, const QString& text);

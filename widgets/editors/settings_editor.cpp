@@ -58,19 +58,21 @@ QString text_of(const json& value) {
 
 }  // namespace
 
+struct SettingsEditor::Row {
+    SettingInfo info;
+    Pointer at;
+    bool essential = false;
+    QWidget* line = nullptr;  // with its label and its reason
+    QLineEdit* text = nullptr;
+    QComboBox* choice = nullptr;
+    QCheckBox* yes_no = nullptr;
+    PoseEditor* pose = nullptr;
+    QLabel* problem = nullptr;
+    QString reason;
+};
+
 struct SettingsEditor::Impl {
-    struct Row {
-        SettingInfo info;
-        Pointer at;
-        bool essential = false;
-        QWidget* line = nullptr;  // with its label and its reason
-        QLineEdit* text = nullptr;
-        QComboBox* choice = nullptr;
-        QCheckBox* yes_no = nullptr;
-        PoseEditor* pose = nullptr;
-        QLabel* problem = nullptr;
-        QString reason;
-    };
+    using Row = SettingsEditor::Row;
 
     QVBoxLayout* box = nullptr;
     QLabel* help = nullptr;
@@ -235,6 +237,123 @@ void SettingsEditor::set_value(const json& settings) {
     impl_->show_rows();
 }
 
+QLabel* SettingsEditor::heading_for(const SettingInfo& s, int depth) {
+    auto* heading = new QLabel(name_of(s.name).name, this);
+    heading->setToolTip(Impl::help_of(s));
+    heading->setContentsMargins(depth * kIndent_px, 6, 0, 0);
+    QFont bold = heading->font();
+    bold.setBold(true);
+    heading->setFont(bold);
+    return heading;
+}
+
+// The editor of a row's kind; what is written with it goes into the settings.
+QWidget* SettingsEditor::editor_of(Row* r) {
+    const SettingInfo& s = r->info;
+    QWidget* editor = nullptr;
+    const auto wrote = [this, r](const json& value) {
+        impl_->write(r->at, value);
+        impl_->show_rows(r);
+        emit edited();
+    };
+    if (s.kind == SettingKind::choice) {
+        editor = r->choice = new QComboBox(r->line);
+        for (const std::string& one : s.choices)
+            r->choice->addItem(shown_word(one), QString::fromStdString(one));
+        connect(r->choice, &QComboBox::activated, this,
+                [r, wrote](int index) { wrote(r->choice->itemData(index).toString().toStdString()); });
+    } else if (s.kind == SettingKind::yes_no) {
+        editor = r->yes_no = new QCheckBox(tr("yes"), r->line);
+        connect(r->yes_no, &QCheckBox::clicked, this, [wrote](bool yes) { wrote(yes); });
+    } else if (s.kind == SettingKind::pose) {
+        editor = r->pose = new PoseEditor(r->line);
+        connect(r->pose, &PoseEditor::committed, this, [r, wrote] { wrote(pose_json(r->pose->pose())); });
+    } else {
+        editor = r->text = new QLineEdit(r->line);
+        if (s.kind == SettingKind::number || s.kind == SettingKind::whole)
+            r->text->setAlignment(Qt::AlignRight);
+        const QString absent = text_of(s.otherwise);
+        r->text->setPlaceholderText(absent.isEmpty() ? QStringLiteral("–") : absent);
+        connect(r->text, &QLineEdit::editingFinished, this, [this, r, wrote] {
+            if (!r->text->isModified()) return;
+            r->text->setModified(false);
+            QString why;
+            const json value = Impl::typed(*r, why);
+            impl_->refuse(*r, why, palette());
+            if (why.isEmpty())
+                wrote(value);
+            else
+                emit edited();
+        });
+    }
+    return editor;
+}
+
+void SettingsEditor::add_row(const SettingInfo& s, const nlohmann::json::json_pointer& at, int depth,
+                             bool essential) {
+    auto row = std::make_unique<Row>();
+    row->info = s;
+    row->at = at;
+    row->essential = essential;
+    row->line = new QWidget(this);
+    auto* lines = new QVBoxLayout(row->line);
+    lines->setContentsMargins(depth * kIndent_px, 0, 0, 0);
+    lines->setSpacing(2);
+    auto* across = new QHBoxLayout;
+    across->setSpacing(6);
+    lines->addLayout(across);
+    const Name name = name_of(s.name);
+    const QString help = Impl::help_of(s);
+    auto* label = new QLabel(name.name, row->line);
+    label->setWordWrap(true);
+    label->setFixedWidth(fontMetrics().averageCharWidth() * kSettingSigns - depth * kIndent_px);
+    QWidget* editor = editor_of(row.get());
+    editor->setObjectName("setting" + QString::fromStdString(at.to_string()).replace('/', '_'));
+    editor->setMinimumHeight(style::kTargetPx);
+    editor->setAccessibleName(name.unit.isEmpty() ? name.name : name.name + ", " + name.unit);
+    editor->setAccessibleDescription(help);
+    editor->setToolTip(help);
+    editor->installEventFilter(this);
+    label->setBuddy(editor);
+    label->setToolTip(help);
+    if (row->pose) {
+        lines->addWidget(editor);
+        across->addWidget(label);
+        across->addStretch(1);
+    } else {
+        across->addWidget(label);
+        across->addWidget(editor, 1);
+        auto* unit = new QLabel(name.unit, row->line);
+        unit->setMinimumWidth(fontMetrics().averageCharWidth() * 5);
+        across->addWidget(unit);
+    }
+    row->problem = new QLabel(row->line);
+    row->problem->setWordWrap(true);
+    row->problem->setAccessibleName(tr("Why the value is refused"));
+    row->problem->hide();
+    lines->addWidget(row->problem);
+    impl_->box->addWidget(row->line);
+    impl_->rows.push_back(std::move(row));
+}
+
+void SettingsEditor::add_rows(const SettingTable& fields, const nlohmann::json::json_pointer& under,
+                              int depth) {
+    std::size_t n = 0;
+    for (const SettingInfo& s : fields) {
+        const Pointer at = under / s.name;
+        if (s.kind == SettingKind::object && !s.fields.empty()) {
+            auto* heading = heading_for(s, depth);
+            impl_->box->addWidget(heading);
+            impl_->headings.emplace_back(heading, at);
+            add_rows(s.fields, at, depth + 1);
+            continue;
+        }
+        const bool named =
+            s.kind == SettingKind::text || s.kind == SettingKind::number || s.kind == SettingKind::whole;
+        add_row(s, at, depth, depth == 0 && (n++ < kAlwaysShown || (s.otherwise.is_null() && named)));
+    }
+}
+
 void SettingsEditor::set_table(const SettingTable& table) {
     impl_->table = table;
     impl_->settings = json::object();
@@ -245,109 +364,7 @@ void SettingsEditor::set_table(const SettingTable& table) {
         delete item;
     }
     impl_->help->clear();
-    const auto add = [&](const auto& self, const SettingTable& fields, const Pointer& under,
-                         int depth) -> void {
-        std::size_t n = 0;
-        for (const SettingInfo& s : fields) {
-            const Pointer at = under / s.name;
-            if (s.kind == SettingKind::object && !s.fields.empty()) {
-                auto* heading = new QLabel(name_of(s.name).name, this);
-                heading->setToolTip(Impl::help_of(s));
-                heading->setContentsMargins(depth * kIndent_px, 6, 0, 0);
-                QFont bold = heading->font();
-                bold.setBold(true);
-                heading->setFont(bold);
-                impl_->box->addWidget(heading);
-                impl_->headings.emplace_back(heading, at);
-                self(self, s.fields, at, depth + 1);
-                continue;
-            }
-            auto row = std::make_unique<Impl::Row>();
-            row->info = s;
-            row->at = at;
-            const bool named =
-                s.kind == SettingKind::text || s.kind == SettingKind::number || s.kind == SettingKind::whole;
-            row->essential = depth == 0 && (n++ < kAlwaysShown || (s.otherwise.is_null() && named));
-            row->line = new QWidget(this);
-            auto* lines = new QVBoxLayout(row->line);
-            lines->setContentsMargins(depth * kIndent_px, 0, 0, 0);
-            lines->setSpacing(2);
-            auto* across = new QHBoxLayout;
-            across->setSpacing(6);
-            lines->addLayout(across);
-            const Name name = name_of(s.name);
-            const QString help = Impl::help_of(s);
-            auto* label = new QLabel(name.name, row->line);
-            label->setWordWrap(true);
-            label->setFixedWidth(fontMetrics().averageCharWidth() * kSettingSigns - depth * kIndent_px);
-            QWidget* editor = nullptr;
-            Impl::Row* r = row.get();
-            const auto wrote = [this, r](const json& value) {
-                impl_->write(r->at, value);
-                impl_->show_rows(r);
-                emit edited();
-            };
-            if (s.kind == SettingKind::choice) {
-                editor = row->choice = new QComboBox(row->line);
-                for (const std::string& one : s.choices)
-                    row->choice->addItem(shown_word(one), QString::fromStdString(one));
-                connect(row->choice, &QComboBox::activated, this, [r, wrote](int index) {
-                    wrote(r->choice->itemData(index).toString().toStdString());
-                });
-            } else if (s.kind == SettingKind::yes_no) {
-                editor = row->yes_no = new QCheckBox(tr("yes"), row->line);
-                connect(row->yes_no, &QCheckBox::clicked, this, [wrote](bool yes) { wrote(yes); });
-            } else if (s.kind == SettingKind::pose) {
-                editor = row->pose = new PoseEditor(row->line);
-                connect(row->pose, &PoseEditor::committed, this,
-                        [r, wrote] { wrote(pose_json(r->pose->pose())); });
-            } else {
-                editor = row->text = new QLineEdit(row->line);
-                if (s.kind == SettingKind::number || s.kind == SettingKind::whole)
-                    row->text->setAlignment(Qt::AlignRight);
-                const QString absent = text_of(s.otherwise);
-                row->text->setPlaceholderText(absent.isEmpty() ? QStringLiteral("–") : absent);
-                connect(row->text, &QLineEdit::editingFinished, this, [this, r, wrote] {
-                    if (!r->text->isModified()) return;
-                    r->text->setModified(false);
-                    QString why;
-                    const json value = Impl::typed(*r, why);
-                    impl_->refuse(*r, why, palette());
-                    if (why.isEmpty())
-                        wrote(value);
-                    else
-                        emit edited();
-                });
-            }
-            editor->setObjectName("setting" + QString::fromStdString(at.to_string()).replace('/', '_'));
-            editor->setMinimumHeight(style::kTargetPx);
-            editor->setAccessibleName(name.unit.isEmpty() ? name.name : name.name + ", " + name.unit);
-            editor->setAccessibleDescription(help);
-            editor->setToolTip(help);
-            editor->installEventFilter(this);
-            label->setBuddy(editor);
-            label->setToolTip(help);
-            if (row->pose) {
-                lines->addWidget(editor);
-                across->addWidget(label);
-                across->addStretch(1);
-            } else {
-                across->addWidget(label);
-                across->addWidget(editor, 1);
-                auto* unit = new QLabel(name.unit, row->line);
-                unit->setMinimumWidth(fontMetrics().averageCharWidth() * 5);
-                across->addWidget(unit);
-            }
-            row->problem = new QLabel(row->line);
-            row->problem->setWordWrap(true);
-            row->problem->setAccessibleName(tr("Why the value is refused"));
-            row->problem->hide();
-            lines->addWidget(row->problem);
-            impl_->box->addWidget(row->line);
-            impl_->rows.push_back(std::move(row));
-        }
-    };
-    add(add, table, Pointer(), 0);
+    add_rows(table, Pointer(), 0);
     for (const auto& row : impl_->rows) impl_->show_value(*row);
     impl_->show_rows();
 }

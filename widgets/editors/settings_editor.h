@@ -12,6 +12,8 @@
 
 #include "devices/exchange/settings.h"
 
+class QLabel;
+
 namespace seamwright {
 
 class SettingsEditor : public QWidget {
@@ -32,7 +34,12 @@ class SettingsEditor : public QWidget {
     bool eventFilter(QObject* watched, QEvent* event) override;
 
   private:
+    struct Row;
     struct Impl;
+    QLabel* heading_for(const SettingInfo& s, int depth);
+    QWidget* editor_of(Row* row);
+    void add_row(const SettingInfo& s, const nlohmann::json::json_pointer& at, int depth, bool essential);
+    void add_rows(const SettingTable& fields, const nlohmann::json::json_pointer& under, int depth);
     std::unique_ptr<Impl> impl_;
 };
 

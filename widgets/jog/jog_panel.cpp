@@ -8,7 +8,7 @@
 
 #include "core/geometry/notation.h"
 #include "devices/registry.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "projects/station/teach.h"
 #include "widgets/editors/number_box.h"
 #include "widgets/shown_text.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "devices/registry.h"
+#include "projects/measure/measure.h"
 #include "projects/reuse/simulated_truth.h"
-#include "projects/station/measure.h"
 #include "widgets/calibrate/verdict_word.h"
 #include "widgets/shown_text.h"
 
@@ -85,7 +85,8 @@ CalibratePage::CalibratePage(Desk& desk, const Views& views)
 }
 
 void CalibratePage::begin(const std::string& method) {
-    if (!guided_->begin(method, sensor_->currentText().toStdString(), robot_->currentText().toStdString()))
+    if (!guided_->begin(MethodId(method), SensorId(sensor_->currentText().toStdString()),
+                        RobotId(robot_->currentText().toStdString())))
         return;
     overview_->hide();
     guided_->show();
@@ -132,8 +133,9 @@ void CalibratePage::refresh() {
     fill(*robot_, p.robots);
     for (auto& [method, button] : begins_) {
         button->setEnabled(sensor_->count() > 0);
-        button->setText(desk_.is_open() && CalibrationSession::exists(desk_.path(), method,
-                                                                      sensor_->currentText().toStdString())
+        button->setText(desk_.is_open() &&
+                                CalibrationSession::exists(desk_.path(), MethodId(method),
+                                                           SensorId(sensor_->currentText().toStdString()))
                             ? tr("Go on")
                             : tr("Begin"));
     }
@@ -177,9 +179,11 @@ void CalibratePage::refresh() {
                         Tone::alarm);
         }
         const bool used = sensor && sensor->calibration_id == c.id;
-        auto* use = make_button("use_calibration", "check", used ? tr("In use") : tr("Use"),
-                                tr("Measure with this calibration from now on"),
-                                [this, id = c.id, s = c.sensor_id] { done(desk_.use_calibration(s, id)); });
+        auto* use =
+            make_button("use_calibration", "check", used ? tr("In use") : tr("Use"),
+                        tr("Measure with this calibration from now on"), [this, id = c.id, s = c.sensor_id] {
+                            done(desk_.use_calibration(SensorId(s), CalibrationId(id)));
+                        });
         use->setEnabled(sensor && !used);
         box->addLayout(make_row({use}));
         cards_->addWidget(card);

@@ -4,7 +4,7 @@
 
 #include <QComboBox>
 
-#include "widgets/pages/guided_page.h"
+#include "widgets/pages/guided/guided_page.h"
 #include "widgets/pages/parts/step_page.h"
 
 namespace seamwright {

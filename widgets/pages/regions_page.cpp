@@ -3,12 +3,12 @@
 #include <QInputDialog>
 #include <cmath>
 
+#include "projects/measure/fields.h"
+#include "projects/measure/measure.h"
 #include "projects/proof/budget.h"
 #include "projects/proof/budget_page.h"
 #include "projects/proof/forecast.h"
 #include "projects/proof/known_shift.h"
-#include "projects/station/fields.h"
-#include "projects/station/measure.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -146,7 +146,7 @@ RegionsPage::RegionsPage(Desk& desk, const Views& views)
     for (const Field<Region>& f : region_fields()) {
         auto* editor = new ParameterEditor(f.info);
         connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
-            if (region()) done(desk_.set_region_field(region()->id, name, value));
+            if (region()) done(desk_.set_region_field(RegionId(region()->id), name, value));
         });
         editors_.push_back(editor);
         in->addWidget(editor);

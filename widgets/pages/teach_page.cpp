@@ -6,8 +6,8 @@
 #include "core/features/kinds/feature_registry.h"
 #include "core/profile/taught_profile.h"
 #include "devices/registry.h"
-#include "projects/station/fields.h"
-#include "projects/station/measure.h"
+#include "projects/measure/fields.h"
+#include "projects/measure/measure.h"
 #include "widgets/shown_text.h"
 #include "widgets/style.h"
 #include "widgets/words.h"
@@ -275,7 +275,7 @@ void TeachPage::make_fields(QVBoxLayout& in) {
     for (const Field<Spot>& f : spot_fields()) {
         auto* editor = new ParameterEditor(f.info);
         connect(editor, &ParameterEditor::committed, this, [this, name = f.info.name](double value) {
-            if (spot()) done(desk_.set_spot_field(spot()->id, name, value));
+            if (spot()) done(desk_.set_spot_field(SpotId(spot()->id), name, value));
         });
         field_editors_.push_back(editor);
         fields_->addWidget(editor);

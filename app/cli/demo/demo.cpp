@@ -16,8 +16,8 @@
 #include "devices/net/socket.h"
 #include "devices/simulated/scene/door.h"
 #include "projects/file/project_file.h"
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 #include "projects/station/station.h"
 #include "projects/station/teach.h"
 

@@ -269,15 +269,13 @@ bool clean(const LensData& data, const Intrinsics& k, Lines& lines, std::vector<
     return changed;
 }
 
-}  // namespace
-}  // namespace lens_lines
+// Corners of the image: how well their distortion must be known at all, and how well to be good.
+constexpr double kCornerKnown_px = 3, kCornerGood_px = 0.5;
+constexpr double kStraight_px = 2;  // lines that stay more bent than this belong to no lens of this model
 
-Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options) {
-    using namespace lens_lines;
-    if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
-        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height), "size",
-                           "give [width, height] in pixels");
-    LensResult result;
+// The lines as they are given, which of them count, and which of their points lie on them.
+Expected<Lines> read_lines(const LensData& data, const LensOptions& options,
+                           std::vector<PoseResidual>& poses) {
     std::vector<char> excluded(data.lines.size(), 0);
     for (const int e : options.exclude) {
         if (e < 0 || static_cast<std::size_t>(e) >= data.lines.size())
@@ -285,7 +283,6 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         excluded[static_cast<std::size_t>(e)] = 1;
     }
     Lines lines(data);
-    auto& poses = result.report.poses;
     for (std::size_t i = 0; i < data.lines.size(); ++i) {
         const std::string where = fmt::format("lines[{}]", i);
         const auto& line = data.lines[i];
@@ -315,6 +312,97 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         poses[i].note = Text("left out: only {} of its {} points lie on one line", on, lines.on[i].size());
     }
 
+    return lines;
+}
+
+void describe_lines(const LensData& data, const Intrinsics& k, Lines& lines,
+                    std::vector<PoseResidual>& poses) {
+    for (std::size_t i = 0; i < data.lines.size(); ++i) {
+        poses[i].used = lines.used[i];
+        // Lines that took no part judge the lens as well, with all their points.
+        if (!lines.used[i]) lines.on[i].assign(data.lines[i].size(), 1);
+        const std::vector<double> off = lines.all_distances(i, k);
+        double sum = 0, on = 0;
+        for (std::size_t j = 0; j < off.size(); ++j)
+            if (lines.on[i][j]) sum += off[j] * off[j], on += 1;
+        if (on > 0) poses[i].rms_px = std::sqrt(sum / on);
+        const auto left_out = static_cast<double>(data.lines[i].size()) - on;
+        if (lines.used[i] && left_out > 0)
+            poses[i].note =
+                Text("{:.0f} of its {} points lie off it and took no part", left_out, data.lines[i].size());
+    }
+}
+
+// Shift of the image's corners by the distortion, and its sigma by the covariance.
+void state_corners(const LensData& data, const Intrinsics& k, double half, const std::vector<int>& free,
+                   LensResult& result) {
+    const auto n = static_cast<Eigen::Index>(free.size());
+    for (const Eigen::Vector2d& corner :
+         {Eigen::Vector2d(0, 0), Eigen::Vector2d(data.width, 0), Eigen::Vector2d(0, data.height),
+          Eigen::Vector2d(data.width, data.height)}) {
+        const auto shift = [&](const Intrinsics& q) {
+            return Eigen::Vector2d(
+                corner - (half * camera_of(q, data.width, data.height).undistort(corner) + q.segment<2>(2)));
+        };
+        const Eigen::Vector2d s = shift(k);
+        Eigen::MatrixXd j(2, n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const int p = free[static_cast<std::size_t>(i)];
+            const double h = p < 4 ? 0.05 : 1e-5;
+            Intrinsics a = k, b = k;
+            a(p) += h, b(p) -= h;
+            j.col(i) = (shift(a) - shift(b)) / (2 * h);
+        }
+        const double sigma = std::sqrt((j * result.report.covariance * j.transpose()).trace());
+        result.corner_shift_px = std::max(result.corner_shift_px, s.norm());
+        result.corner_sigma_px = std::isfinite(sigma) ? std::max(result.corner_sigma_px, sigma) : kInfinity;
+    }
+}
+
+bool spans_the_field(const LensResult& result, const Lines& lines, bool converged) {
+    return lines.count() >= 3 && converged && result.corner_sigma_px < kCornerKnown_px &&
+           result.report.covariance.allFinite();
+}
+
+Judgement judged(const LensResult& result, int lines_used, bool converged, bool spans) {
+    const CalibrationReport& report = result.report;
+    const char* cure = "take lines in all parts of the image, in two directions, from edge to edge";
+    const std::string without = left_out(report.poses);
+    const auto say = [&](const Text& reason) {
+        return without.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, without);
+    };
+    if (!spans)
+        return {Verdict::undetermined,
+                say(lines_used < 3 ? Text("{} line(s) do not determine a lens", lines_used)
+                    : !converged   ? Text("no lens makes the lines straight")
+                                   : Text("the lines do not span the field: the distortion in the "
+                                            "corners is known to {:.1f} px only",
+                                          result.corner_sigma_px)),
+                cure};
+    if (result.straightness_after_px > kStraight_px)
+        return {Verdict::poor, say(Text("the lines stay bent by {:.2f} px", result.straightness_after_px)),
+                "check that the lines lie on a flat plane"};
+    if (result.corner_sigma_px > kCornerGood_px)
+        return {Verdict::usable,
+                say(Text("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px)),
+                cure};
+    return {Verdict::good,
+            say(Text("{} lines, straight to {:.2f} px (before: {:.2f} px)", lines_used,
+                     result.straightness_after_px, result.straightness_before_px)),
+            ""};
+}
+
+}  // namespace
+}  // namespace lens_lines
+
+Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& options) {
+    using namespace lens_lines;
+    if (data.width < 16 || data.height < 16 || data.width > 100000 || data.height > 100000)
+        return input_error(Text("an image of {}x{} pixels is not possible", data.width, data.height), "size",
+                           "give [width, height] in pixels");
+    LensResult result;
+    auto& poses = result.report.poses;
+    SEAM_TRY(auto lines, read_lines(data, options, poses));
     const double half = 0.5 * std::hypot(data.width, data.height);
     Intrinsics k;
     k << half, half, 0.5 * (data.width - 1), 0.5 * (data.height - 1), 0, 0, 0, 0, 0;
@@ -342,20 +430,7 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
     result.k1_px = k(4) / (half * half);
     result.k2_px = k(5) / std::pow(half, 4);
     result.straightness_after_px = std::sqrt(solved.squares / points);
-    for (std::size_t i = 0; i < data.lines.size(); ++i) {
-        poses[i].used = lines.used[i];
-        // Lines that took no part judge the lens as well, with all their points.
-        if (!lines.used[i]) lines.on[i].assign(data.lines[i].size(), 1);
-        const std::vector<double> off = lines.all_distances(i, k);
-        double sum = 0, on = 0;
-        for (std::size_t j = 0; j < off.size(); ++j)
-            if (lines.on[i][j]) sum += off[j] * off[j], on += 1;
-        if (on > 0) poses[i].rms_px = std::sqrt(sum / on);
-        const auto left_out = static_cast<double>(data.lines[i].size()) - on;
-        if (lines.used[i] && left_out > 0)
-            poses[i].note =
-                Text("{:.0f} of its {} points lie off it and took no part", left_out, data.lines[i].size());
-    }
+    describe_lines(data, k, lines, poses);
     static constexpr const char* names[] = {"", "", "centre_u", "centre_v", "k1", "k2", "p1", "p2", "k3"};
     auto& report = result.report;
     for (const int p : free) report.parameters.push_back({names[p], k(p), p < 4 ? "px" : "1", 0});
@@ -363,59 +438,13 @@ Expected<LensResult> calibrate_lens(const LensData& data, const LensOptions& opt
         report.covariance = solved.variance * inverse_matrix(solved.information);
     else
         report.covariance.setConstant(n, n, kInfinity);
-    // Shift of the image's corners and its sigma, by the covariance.
-    for (const Eigen::Vector2d& corner :
-         {Eigen::Vector2d(0, 0), Eigen::Vector2d(data.width, 0), Eigen::Vector2d(0, data.height),
-          Eigen::Vector2d(data.width, data.height)}) {
-        const auto shift = [&](const Intrinsics& q) {
-            return Eigen::Vector2d(
-                corner - (half * camera_of(q, data.width, data.height).undistort(corner) + q.segment<2>(2)));
-        };
-        const Eigen::Vector2d s = shift(k);
-        Eigen::MatrixXd j(2, n);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const int p = free[static_cast<std::size_t>(i)];
-            const double h = p < 4 ? 0.05 : 1e-5;
-            Intrinsics a = k, b = k;
-            a(p) += h, b(p) -= h;
-            j.col(i) = (shift(a) - shift(b)) / (2 * h);
-        }
-        const double sigma = std::sqrt((j * report.covariance * j.transpose()).trace());
-        result.corner_shift_px = std::max(result.corner_shift_px, s.norm());
-        result.corner_sigma_px = std::isfinite(sigma) ? std::max(result.corner_sigma_px, sigma) : kInfinity;
-    }
-    const char* cure = "take lines in all parts of the image, in two directions, from edge to edge";
-    const std::string without = left_out(poses);
-    const auto say = [&](const Text& reason) {
-        return without.empty() ? reason : Text("{}; left out as no straight lines: {}", reason, without);
-    };
-    if (lines.count() < 3 || !solved.converged || !(result.corner_sigma_px < 3) ||
-        !report.covariance.allFinite()) {
-        report.covariance.resize(0, 0);
-        report.judgement = {
-            Verdict::undetermined,
-            say(lines.count() < 3   ? Text("{} line(s) do not determine a lens", lines.count())
-                : !solved.converged ? Text("no lens makes the lines straight")
-                                    : Text("the lines do not span the field: the distortion in the "
-                                           "corners is known to {:.1f} px only",
-                                           result.corner_sigma_px)),
-            cure};
-        return result;
-    }
-    finish_statistics(report);
-    if (result.straightness_after_px > 2)
-        report.judgement = {Verdict::poor,
-                            say(Text("the lines stay bent by {:.2f} px", result.straightness_after_px)),
-                            "check that the lines lie on a flat plane"};
-    else if (result.corner_sigma_px > 0.5)
-        report.judgement = {
-            Verdict::usable,
-            say(Text("the distortion in the corners is known to {:.2f} px", result.corner_sigma_px)), cure};
+    state_corners(data, k, half, free, result);
+    const bool spans = spans_the_field(result, lines, solved.converged);
+    report.judgement = judged(result, lines.count(), solved.converged, spans);
+    if (spans)
+        finish_statistics(report);
     else
-        report.judgement = {Verdict::good,
-                            say(Text("{} lines, straight to {:.2f} px (before: {:.2f} px)", lines.count(),
-                                     result.straightness_after_px, result.straightness_before_px)),
-                            ""};
+        report.covariance.resize(0, 0);
     return result;
 }
 

@@ -15,6 +15,12 @@
 namespace seamwright {
 namespace {
 
+constexpr double kThinPlate = 1e-3;      // of its length: narrower is a line
+constexpr double kStretch_mm = 0.2;      // over the plate: less than this is no wrong scale
+constexpr double kSmallestScale = 2e-4;  // and less than this of the scale neither
+// A reflection must take this share of the misfit away, and the misfit be this large a point: noise reflects too.
+constexpr double kMirrorGain = 0.8, kMirrorMisfit_mm2 = 0.25;
+
 constexpr double kGoodPlate_mm = 0.1, kUsablePlate_mm = 0.5;  // three sigma anywhere on the plate
 constexpr double kNoiseFloor_mm = 0.01;  // of a world point, for what three points can promise
 constexpr double kSmallestOutlier_mm = 0.05;
@@ -132,6 +138,125 @@ Expected<void> check_input(const std::vector<PlatePoint>& points, const PlateOpt
     return {};
 }
 
+// Pairs of points, and which of them count.
+struct Pairs {
+    Points plate, world;
+    std::vector<bool> use;
+    double size = 0;  // of the plate
+
+    // To a thousandth of its length: the turn about it hangs on the noise.
+    bool on_a_line() const {
+        return across_line(plate, use) < kThinPlate * size || across_line(world, use) < kThinPlate * size;
+    }
+    double used() const { return static_cast<double>(std::count(use.begin(), use.end(), true)); }
+    Pose fit() const { return fit_rigid(world, plate, use); }
+    double squares(const Pose& pose) const { return squares_of(world, plate, pose, use); }
+};
+
+struct PairsFit {
+    Pose pose;
+    double squares = 0;
+};
+
+// Wrong points, one after the other: the one whose absence explains the misfit (F test of its three numbers). Marks them
+// in `report`; their names.
+std::string drop_wrong(const std::vector<PlatePoint>& points, Pairs& pairs, PairsFit& fit,
+                       CalibrationReport& report) {
+    std::string wrong;
+    for (;;) {
+        const double redundancy = 3 * (pairs.used() - 1) - 6;
+        if (redundancy < 3) break;
+        size_t suspect = points.size();
+        PairsFit best = fit;
+        for (size_t i = 0; i < points.size(); ++i) {
+            if (!pairs.use[i]) continue;
+            pairs.use[i] = false;
+            const Pose candidate = pairs.fit();
+            const double rest = pairs.squares(candidate);
+            if (rest < best.squares && !pairs.on_a_line()) {
+                best = {candidate, rest};
+                suspect = i;
+            }
+            pairs.use[i] = true;
+        }
+        if (suspect == points.size()) break;
+        const double f = (fit.squares - best.squares) / 3 / (std::max(best.squares, 1e-12) / redundancy);
+        const double miss = (pairs.world[suspect] - best.pose * pairs.plate[suspect]).norm();
+        if (f < outlier_limit(redundancy) || miss < kSmallestOutlier_mm) break;
+        pairs.use[suspect] = false;
+        fit = best;
+        report.poses[suspect].used = false;
+        report.poses[suspect].note = Text("contradicts the other points by {:.2f} mm", miss);
+        wrong += (wrong.empty() ? "" : ", ") + points[suspect].id;
+    }
+    return wrong;
+}
+
+// Each point by the others.
+void leave_one_out(Pairs pairs, CalibrationReport& report) {
+    double sum = 0, largest = 0;
+    for (size_t i = 0; i < pairs.use.size(); ++i) {
+        if (!pairs.use[i]) continue;
+        pairs.use[i] = false;
+        const double miss = (pairs.world[i] - pairs.fit() * pairs.plate[i]).norm();
+        const bool fixed = !pairs.on_a_line();
+        pairs.use[i] = true;
+        if (!fixed) continue;
+        sum += miss * miss;
+        largest = std::max(largest, miss);
+        ++report.hold_out.folds;
+    }
+    if (report.hold_out.folds == 0) return;
+    report.hold_out.left_out = 1;
+    report.hold_out.rms_mm = std::sqrt(sum / report.hold_out.folds);
+    report.hold_out.max_mm = largest;
+}
+
+// A reflection that fits far better than any rotation: one set has a flipped axis.
+bool mirrored(const PairMoments& m, double squares, double count) {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const bool reflects = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0;
+    const double gain = 4 * svd.singularValues()[2];  // by how much the reflection lowers the sum of squares
+    return reflects && gain > kMirrorGain * squares && squares > count * kMirrorMisfit_mm2;
+}
+
+// Largest sigma of a point on the plate.
+double worst_sigma_mm(const Points& plate, const Pose& pose, const Matrix6& covariance) {
+    double worst = 0;
+    for (const auto& point : plate) {
+        Eigen::Matrix<double, 3, 6> j;
+        j.leftCols<3>().setIdentity();
+        j.rightCols<3>() = -skew(pose.linear() * point);
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+            Eigen::Matrix3d(j * covariance * j.transpose()));
+        worst = std::max(worst, std::sqrt(std::max(0.0, eigen.eigenvalues()[2])));
+    }
+    return worst;
+}
+
+Judgement judged(const PlateResult& result, double worst_mm, double size, double spread, double count) {
+    const double stretch = std::abs(result.scale - 1) * size;
+    const double stretch_sigma =
+        std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(1e-12, spread));
+    const Text fit("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst_mm);
+    if (result.mirrored) {
+        return {Verdict::poor, "the world points fit a mirrored plate",
+                "check for an axis that is flipped or swapped"};
+    } else if (stretch > kStretch_mm && stretch > 4 * stretch_sigma &&
+               std::abs(result.scale - 1) > kSmallestScale) {
+        return {Verdict::poor,
+                Text("distances in the world are {:.5f} times those on the plate", result.scale),
+                "check the plate's drawing, the scale of the measuring system and the order of the points"};
+    } else if (3 * worst_mm > kUsablePlate_mm || result.rms_mm > kUsablePlate_mm) {
+        return {Verdict::poor, fit, "check the order of the points and measure again, with more points"};
+    } else if (3 * worst_mm > kGoodPlate_mm || count < 4) {
+        return {Verdict::usable, count < 4 ? Text("three points leave little to check with; {}", fit) : fit,
+                "measure more points, spread over the whole plate"};
+    } else {
+        return {Verdict::good, fit, ""};
+    }
+}
+
 }  // namespace
 
 Pose fit_rigid(const Points& to, const Points& from, const std::vector<bool>& use) {
@@ -149,29 +274,21 @@ std::string_view name_of(PlateStatus status) {
 }
 
 Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, const PlateOptions& options) {
-    std::vector<bool> use;
-    SEAM_OK(check_input(points, options, use));
-    const std::vector<bool> wanted = use;
-    Points plate, world;
-    for (const auto& point : points) {
-        plate.push_back(point.plate);
-        world.push_back(point.world);
-    }
+    Pairs pairs;
+    SEAM_OK(check_input(points, options, pairs.use));
     PlateResult result;
     auto& report = result.report;
     report.poses.resize(points.size());
     for (size_t i = 0; i < points.size(); ++i) {
+        pairs.plate.push_back(points[i].plate);
+        pairs.world.push_back(points[i].world);
         report.poses[i].id = points[i].id;
-        report.poses[i].used = use[i];
-        report.poses[i].excluded = !use[i];
-        if (!use[i]) report.poses[i].note = "excluded by the user";
+        report.poses[i].used = pairs.use[i];
+        report.poses[i].excluded = !pairs.use[i];
+        if (!pairs.use[i]) report.poses[i].note = "excluded by the user";
     }
-    const double size = extent(plate);
-    // On a line (to a thousandth of its length) the turn about it hangs on the noise.
-    const auto on_a_line = [&](const std::vector<bool>& some) {
-        return across_line(plate, some) < 1e-3 * size || across_line(world, some) < 1e-3 * size;
-    };
-    if (on_a_line(use)) {
+    pairs.size = extent(pairs.plate);
+    if (pairs.on_a_line()) {
         result.status = PlateStatus::undetermined;
         report.judgement = {Verdict::undetermined,
                             "the points lie on one line: the turn about it is not determined",
@@ -179,121 +296,35 @@ Expected<PlateResult> calibrate_plate(const std::vector<PlatePoint>& points, con
         return result;
     }
 
-    Pose pose = fit_rigid(world, plate, use);
-    double squares = squares_of(world, plate, pose, use);
-    // A wrong point: the one whose absence explains the misfit (F test of its three numbers).
-    std::string wrong;
-    for (;;) {
-        const auto count = std::count(use.begin(), use.end(), true);
-        const double redundancy = 3.0 * static_cast<double>(count - 1) - 6;
-        if (redundancy < 3) break;
-        size_t suspect = points.size();
-        double least = squares;
-        Pose without = pose;
-        for (size_t i = 0; i < points.size(); ++i) {
-            if (!use[i]) continue;
-            use[i] = false;
-            const Pose candidate = fit_rigid(world, plate, use);
-            const double rest = squares_of(world, plate, candidate, use);
-            if (rest < least && !on_a_line(use)) {
-                least = rest;
-                suspect = i;
-                without = candidate;
-            }
-            use[i] = true;
-        }
-        if (suspect == points.size()) break;
-        const double f = (squares - least) / 3 / (std::max(least, 1e-12) / redundancy);
-        const double miss = (world[suspect] - without * plate[suspect]).norm();
-        if (f < outlier_limit(redundancy) || miss < kSmallestOutlier_mm) break;
-        use[suspect] = false;
-        pose = without;
-        squares = least;
-        report.poses[suspect].used = false;
-        report.poses[suspect].note = Text("contradicts the other points by {:.2f} mm", miss);
-        wrong += (wrong.empty() ? "" : ", ") + points[suspect].id;
-    }
-    if (!wrong.empty()) result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
+    PairsFit fit;
+    fit.pose = pairs.fit();
+    fit.squares = pairs.squares(fit.pose);
+    if (const std::string wrong = drop_wrong(points, pairs, fit, report); !wrong.empty())
+        result.notices.push_back(Text("not used, contradicting the others: {}", wrong));
 
-    const double count = static_cast<double>(std::count(use.begin(), use.end(), true));
+    const double count = pairs.used();
     const double redundancy = 3 * count - 6;
     result.status = PlateStatus::ok;
-    result.world_from_plate = pose;
-    result.rms_mm = std::sqrt(squares / count);
-    result.sigma_mm = options.sigma_mm.value_or(std::sqrt(squares / redundancy));
+    result.world_from_plate = fit.pose;
+    result.rms_mm = std::sqrt(fit.squares / count);
+    result.sigma_mm = options.sigma_mm.value_or(std::sqrt(fit.squares / redundancy));
     const double student = options.sigma_mm ? 1 : student_quantile(0.975, redundancy) / 1.959964;
-    result.covariance = inverse_matrix(information_of(plate, pose, use)) *
-                        (result.sigma_mm * result.sigma_mm * student * student);
-    const PairMoments m = moments_of(world, plate, use);
+    const Matrix6 unit = inverse_matrix(information_of(pairs.plate, fit.pose, pairs.use));
+    result.covariance = unit * (result.sigma_mm * result.sigma_mm * student * student);
+    const PairMoments m = moments_of(pairs.world, pairs.plate, pairs.use);
     result.scale = std::sqrt(m.spread_to / m.spread_from);
+    result.mirrored = mirrored(m, fit.squares, count);
 
-    for (size_t i = 0; i < points.size(); ++i) report.poses[i].rms_mm = (world[i] - pose * plate[i]).norm();
-    add_pose(report, pose);
+    for (size_t i = 0; i < points.size(); ++i)
+        report.poses[i].rms_mm = (pairs.world[i] - fit.pose * pairs.plate[i]).norm();
+    add_pose(report, fit.pose);
     state_covariance(report, result.covariance);
+    if (count >= 4) leave_one_out(pairs, report);
 
-    // Leave-one-out.
-    if (count >= 4) {
-        double sum = 0, largest = 0;
-        for (size_t i = 0; i < points.size(); ++i) {
-            if (!use[i]) continue;
-            use[i] = false;
-            const double miss = (world[i] - fit_rigid(world, plate, use) * plate[i]).norm();
-            const bool fixed = !on_a_line(use);
-            use[i] = true;
-            if (!fixed) continue;
-            sum += miss * miss;
-            largest = std::max(largest, miss);
-            ++report.hold_out.folds;
-        }
-        if (report.hold_out.folds > 0) {
-            report.hold_out.left_out = 1;
-            report.hold_out.rms_mm = std::sqrt(sum / report.hold_out.folds);
-            report.hold_out.max_mm = largest;
-        }
-    }
-
-    // A reflection that fits far better than any rotation: one set has a flipped axis.
-    {
-        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const bool reflects = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0;
-        const double gain =
-            4 * svd.singularValues()[2];  // by how much the reflection lowers the sum of squares
-        result.mirrored = reflects && gain > 0.8 * squares && squares > count * 0.25;
-    }
-
-    // Largest sigma on the plate, with a floor: three points fit anything.
-    const Matrix6 honest = inverse_matrix(information_of(plate, pose, use)) *
-                           std::pow(std::max(result.sigma_mm * student, kNoiseFloor_mm), 2);
-    double worst = 0;
-    for (size_t i = 0; i < points.size(); ++i) {
-        Eigen::Matrix<double, 3, 6> j;
-        j.leftCols<3>().setIdentity();
-        j.rightCols<3>() = -skew(pose.linear() * plate[i]);
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-            Eigen::Matrix3d(j * honest * j.transpose()));
-        worst = std::max(worst, std::sqrt(std::max(0.0, eigen.eigenvalues()[2])));
-    }
-    const double stretch = std::abs(result.scale - 1) * size;
-    const double stretch_sigma =
-        std::max(result.sigma_mm, kNoiseFloor_mm) * size / std::sqrt(std::max(1e-12, m.spread_from));
-    const Text fit("rms {:.3f} mm, three sigma on the plate {:.3f} mm", result.rms_mm, 3 * worst);
-    if (result.mirrored) {
-        report.judgement = {Verdict::poor, "the world points fit a mirrored plate",
-                            "check for an axis that is flipped or swapped"};
-    } else if (stretch > 0.2 && stretch > 4 * stretch_sigma && std::abs(result.scale - 1) > 2e-4) {
-        report.judgement = {
-            Verdict::poor, Text("distances in the world are {:.5f} times those on the plate", result.scale),
-            "check the plate's drawing, the scale of the measuring system and the order of the points"};
-    } else if (3 * worst > kUsablePlate_mm || result.rms_mm > kUsablePlate_mm) {
-        report.judgement = {Verdict::poor, fit,
-                            "check the order of the points and measure again, with more points"};
-    } else if (3 * worst > kGoodPlate_mm || count < 4) {
-        report.judgement = {Verdict::usable,
-                            count < 4 ? Text("three points leave little to check with; {}", fit) : fit,
-                            "measure more points, spread over the whole plate"};
-    } else {
-        report.judgement = {Verdict::good, fit, ""};
-    }
+    // With a floor: three points fit anything.
+    const Matrix6 honest = unit * std::pow(std::max(result.sigma_mm * student, kNoiseFloor_mm), 2);
+    report.judgement =
+        judged(result, worst_sigma_mm(pairs.plate, fit.pose, honest), pairs.size, m.spread_from, count);
     return result;
 }
 

@@ -119,7 +119,12 @@ class SmoothMap {
         if (!knots_.empty()) out += (kernel(c) * bend_).transpose();
         return out;
     }
+    bool set_frame(const Samples& s, std::vector<Eigen::Vector2d>& places, Eigen::MatrixXd& y);
     void choose_knots(const std::vector<Eigen::Vector2d>& places);
+    bool spline_columns(const std::vector<Eigen::Vector2d>& places, Eigen::MatrixXd& columns,
+                        Eigen::MatrixXd& transform) const;
+    struct Modes;
+    void try_stiffnesses(const Modes& m, int degree, const Eigen::MatrixXd& transform, double& best);
 };
 
 }  // namespace seamwright::lookup_table

@@ -23,6 +23,12 @@
 namespace seamwright {
 namespace {
 
+constexpr double kApexGate = 3.5;    // standard deviations from the first parabola
+constexpr double kLeastBow = 5;      // standard deviations: flatter is no bow
+constexpr double kRidgeNoise = 1.4;  // times the contour's noise, and
+constexpr double kRidgeSag = 0.045;  // of the parabola's own sag: a misfit beyond both is an edge
+constexpr double kLeastSide = 0.15;  // of the fitted length that must be seen on either side
+
 enum class Which { highest, lowest, leftmost, rightmost };
 constexpr int kFewestForApex = 6;
 
@@ -47,111 +53,47 @@ class Extremum final : public FeatureFinder {
         : window_(window), which_(which), fit_length_(fit_length_mm) {}
 
     Feature find(const Profile& profile) const override {
-        Feature feature;
         points_.gather(profile, window_);
         const std::size_t n = points_.x.size();
-        if (n < kFewestForApex) {
-            feature.status = FeatureStatus::no_points;
-            feature.message = Text("{} points in the window, an extremum needs {}", n, kFewestForApex);
-            return feature;
-        }
+        if (n < kFewestForApex)
+            return refused(FeatureStatus::no_points,
+                           Text("{} points in the window, an extremum needs {}", n, kFewestForApex));
         const bool upright = which_ == Which::highest || which_ == Which::lowest;
         const double sign = which_ == Which::highest || which_ == Which::rightmost ? 1 : -1;
         const std::vector<double>& t = upright ? points_.x : points_.z;
         const std::vector<double>& h = upright ? points_.z : points_.x;
-        // The median of three neighbours decides, so a single spike is no summit. Neighbours share medians:
-        // the middle of equal ones is taken, the same seen from left and right.
-        int top = 0, top_last = 0;
-        double best = -std::numeric_limits<double>::infinity();
-        const FeaturePoints::Piece* piece = nullptr;
-        for (const auto& p : points_.pieces) {
-            if (p.count < kFewestForApex) continue;
-            for (int i = p.first; i < p.first + p.count; ++i) {
-                const int a = std::max(i - 1, p.first), b = std::min(i + 1, p.first + p.count - 1);
-                const double value = std::max(std::min(sign * h[a], sign * h[i]),
-                                              std::min(std::max(sign * h[a], sign * h[i]), sign * h[b]));
-                if (value > best) {
-                    best = value;
-                    top = top_last = i;
-                    piece = &p;
-                } else if (value == best && piece == &p && i - top_last <= 2) {
-                    top_last = i;
-                }
-            }
-        }
-        if (!piece) {
+        const Top top = top_of(h, sign);
+        if (!top.piece)
+            return refused(FeatureStatus::no_points,
+                           Text("no unbroken piece of {} points in the window", kFewestForApex));
+        const Parabola fit = parabola_at(t, h, sign, top);
+        Feature feature;
+        feature.points_used = fit.used;
+        if (fit.used < kFewestForApex) {
             feature.status = FeatureStatus::no_points;
-            feature.message = Text("no unbroken piece of {} points in the window", kFewestForApex);
-            return feature;
-        }
-        const int first = piece->first, last = first + piece->count - 1;
-        double centre = 0.5 * (t[static_cast<std::size_t>(top)] + t[static_cast<std::size_t>(top_last)]);
-        const double origin_h = sign * best;
-        Eigen::Vector3d coefficient = Eigen::Vector3d::Zero();
-        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-        double sigma2 = 0;
-        int used = 0;
-        bool bent = false;
-        double low = 0, high = 0;
-        for (int round = 0; round < 4; ++round) {
-            // Two passes: all points, then those within 3.5 sigma of the first.
-            double gate = std::numeric_limits<double>::infinity();
-            for (int pass = 0; pass < 2; ++pass) {
-                normal.setZero();
-                Eigen::Vector3d right = Eigen::Vector3d::Zero();
-                double hh = 0;
-                used = 0;
-                low = high = 0;
-                for (int i = first; i <= last; ++i) {
-                    const double u = (t[i] - centre) / fit_length_, v = sign * (h[i] - origin_h);
-                    if (std::abs(u) > 0.5 || std::abs(h[i] - origin_h) > fit_length_) continue;
-                    const Eigen::Vector3d row(u * u, u, 1);
-                    if (pass > 0 && std::abs(row.dot(coefficient) - v) > gate) continue;
-                    normal += row * row.transpose();
-                    right += v * row;
-                    hh += v * v;
-                    low = std::min(low, u);
-                    high = std::max(high, u);
-                    ++used;
-                }
-                if (used < kFewestForApex) break;
-                coefficient = normal.ldlt().solve(right);
-                sigma2 = std::max(0.0, hh - right.dot(coefficient)) / (used - 3);
-                gate = 3.5 * std::sqrt(sigma2) + 1e-9;
-            }
-            if (used < kFewestForApex) break;
-            bent = coefficient[0] < 0;
-            if (!bent) break;
-            const double vertex = -coefficient[1] / (2 * coefficient[0]);
-            if (std::abs(vertex) > 0.5) break;
-            if (round < 3) centre += vertex * fit_length_;
-            if (std::abs(vertex) < 1e-3 && round > 0) break;
-        }
-        feature.points_used = used;
-        if (used < kFewestForApex) {
-            feature.status = FeatureStatus::no_points;
-            feature.message = Text("{} points within {} mm of the extremum, the parabola needs {}", used,
+            feature.message = Text("{} points within {} mm of the extremum, the parabola needs {}", fit.used,
                                    fit_length_, kFewestForApex);
             return feature;
         }
-        feature.rms_mm = std::sqrt(sigma2 * (used - 3) / used);
-        const double a = coefficient[0], b = coefficient[1], c = coefficient[2];
-        const Eigen::Matrix3d covariance = sigma2 * normal.ldlt().solve(Eigen::Matrix3d::Identity());
-        const double vertex = bent ? -b / (2 * a) : 0;
+        feature.rms_mm = std::sqrt(fit.sigma2 * (fit.used - 3) / fit.used);
+        const double a = fit.coefficient[0], b = fit.coefficient[1], c = fit.coefficient[2];
+        const Eigen::Matrix3d covariance = fit.sigma2 * fit.normal.ldlt().solve(Eigen::Matrix3d::Identity());
+        const double vertex = fit.bent ? -b / (2 * a) : 0;
         const double bow = std::abs(a) / std::sqrt(std::max(covariance(0, 0), 1e-300));
-        if (bow < 5) {
+        if (bow < kLeastBow) {
             feature.status = FeatureStatus::ill_conditioned;
             feature.message = "the contour is flat there: no bow is seen above the noise";
             feature.point_mm =
-                upright ? Eigen::Vector2d(centre, origin_h) : Eigen::Vector2d(origin_h, centre);
+                upright ? Eigen::Vector2d(fit.centre, fit.origin) : Eigen::Vector2d(fit.origin, fit.centre);
             feature.covariance_mm2 = Eigen::Matrix2d::Identity() * 1e12;
             return feature;
         }
         // A ridge is no summit: the parabola's misfit stands out against both the noise and its own bow.
         const double noise = contour_noise_mm(points_.x, points_.z, scratch_);
         const double sag = std::abs(a) * 0.25;
-        const bool ridge = feature.rms_mm > std::max(1.4 * noise, 0.045 * sag);
-        if (!bent || ridge || vertex < low || vertex > high || low > -0.15 || high < 0.15) {
+        const bool ridge = feature.rms_mm > std::max(kRidgeNoise * noise, kRidgeSag * sag);
+        const bool seen_on_both_sides = fit.low <= -kLeastSide && fit.high >= kLeastSide;
+        if (!fit.bent || ridge || vertex < fit.low || vertex > fit.high || !seen_on_both_sides) {
             feature.message = "the contour has no smooth extremum there, it ends or has an edge";
             return feature;
         }
@@ -159,8 +101,8 @@ class Extremum final : public FeatureFinder {
         j << b / (2 * a * a), -1 / (2 * a), 0, b * b / (4 * a * a), -b / (2 * a), 1;
         j.row(0) *= fit_length_;
         Eigen::Matrix2d c_th = j * covariance * j.transpose();
-        const double place = centre + vertex * fit_length_;
-        const double height = origin_h + sign * (c - b * b / (4 * a));
+        const double place = fit.centre + vertex * fit_length_;
+        const double height = fit.origin + sign * (c - b * b / (4 * a));
         c_th(0, 1) *= sign;
         c_th(1, 0) *= sign;
         if (upright) {
@@ -175,6 +117,99 @@ class Extremum final : public FeatureFinder {
     }
 
   private:
+    // Where the contour is outermost: points `first` and `last` of equal height, on one piece; nullptr: no piece is long
+    // enough.
+    struct Top {
+        int first = 0, last = 0;
+        double height = -std::numeric_limits<double>::infinity();  // times sign
+        const FeaturePoints::Piece* piece = nullptr;
+    };
+    // v = c0 u^2 + c1 u + c2 with u = (t - centre) / fit_length_ and v = sign (h - origin).
+    struct Parabola {
+        Eigen::Vector3d coefficient = Eigen::Vector3d::Zero();
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        double sigma2 = 0, centre = 0, origin = 0;
+        double low = 0, high = 0;  // u that was seen
+        int used = 0;
+        bool bent = false;  // outwards
+    };
+
+    static Feature refused(FeatureStatus status, Text message) {
+        Feature feature;
+        feature.status = status;
+        feature.message = std::move(message);
+        return feature;
+    }
+
+    // The median of three neighbours decides, so a single spike is no summit. Neighbours share medians: the middle of
+    // equal ones is taken, the same seen from left and right.
+    Top top_of(const std::vector<double>& h, double sign) const {
+        Top top;
+        for (const auto& p : points_.pieces) {
+            if (p.count < kFewestForApex) continue;
+            for (int i = p.first; i < p.first + p.count; ++i) {
+                const int a = std::max(i - 1, p.first), b = std::min(i + 1, p.first + p.count - 1);
+                const double value = std::max(std::min(sign * h[a], sign * h[i]),
+                                              std::min(std::max(sign * h[a], sign * h[i]), sign * h[b]));
+                if (value > top.height)
+                    top = {i, i, value, &p};
+                else if (value == top.height && top.piece == &p && i - top.last <= 2)
+                    top.last = i;
+            }
+        }
+        return top;
+    }
+
+    // Least squares about fit.centre in two passes: all points, then those within the gate of the first.
+    void fit_parabola(const std::vector<double>& t, const std::vector<double>& h, double sign,
+                      const FeaturePoints::Piece& piece, Parabola& fit) const {
+        double gate = std::numeric_limits<double>::infinity();
+        for (int pass = 0; pass < 2; ++pass) {
+            fit.normal.setZero();
+            Eigen::Vector3d right = Eigen::Vector3d::Zero();
+            double hh = 0;
+            fit.used = 0;
+            fit.low = fit.high = 0;
+            for (int i = piece.first; i < piece.first + piece.count; ++i) {
+                const double u = (t[i] - fit.centre) / fit_length_, v = sign * (h[i] - fit.origin);
+                if (std::abs(u) > 0.5 || std::abs(h[i] - fit.origin) > fit_length_) continue;
+                const Eigen::Vector3d row(u * u, u, 1);
+                if (pass > 0 && std::abs(row.dot(fit.coefficient) - v) > gate) continue;
+                fit.normal += row * row.transpose();
+                right += v * row;
+                hh += v * v;
+                fit.low = std::min(fit.low, u);
+                fit.high = std::max(fit.high, u);
+                ++fit.used;
+            }
+            if (fit.used < kFewestForApex) return;
+            fit.coefficient = fit.normal.ldlt().solve(right);
+            fit.sigma2 = std::max(0.0, hh - right.dot(fit.coefficient)) / (fit.used - 3);
+            gate = kApexGate * std::sqrt(fit.sigma2) + 1e-9;
+        }
+    }
+
+    // Round by round about the vertex that the last one found.
+    Parabola parabola_at(const std::vector<double>& t, const std::vector<double>& h, double sign,
+                         const Top& top) const {
+        constexpr int kRounds = 4;
+        constexpr double kStill = 1e-3;  // of fit_length_
+        Parabola fit;
+        fit.centre = 0.5 * (t[static_cast<std::size_t>(top.first)] + t[static_cast<std::size_t>(top.last)]);
+        fit.origin = sign * top.height;
+        for (int round = 0; round < kRounds; ++round) {
+            fit_parabola(t, h, sign, *top.piece, fit);
+            if (fit.used < kFewestForApex) break;
+            fit.bent = fit.coefficient[0] < 0;
+            if (!fit.bent) break;
+            const double vertex = -fit.coefficient[1] / (2 * fit.coefficient[0]);
+            if (std::abs(vertex) > 0.5) break;
+            if (round + 1 < kRounds) fit.centre += vertex * fit_length_;
+            if (std::abs(vertex) < kStill && round > 0) break;
+        }
+        return fit;
+    }
+
     FeatureWindow window_;
     Which which_;
     double fit_length_;

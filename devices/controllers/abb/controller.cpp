@@ -143,14 +143,14 @@ class Controller final : public AbbRapidController {
     }
 
     std::uint16_t port() const override { return port_; }
-    void press_start(const std::string& part_id, const std::string& part_type) override {
+    void press_start(const PartId& part_id, const PartTypeId& part_type) override {
         const std::lock_guard lock(machine_.mutex());
         Value* part = machine_.find(kMotionTask, "simPart");
         Value* called = machine_.find(kMotionTask, "simCalled");
         if (!part || !called) return;  // another application than ours
-        part->text = part_id.substr(0, rapid::kLongestString);
+        part->text = part_id.text().substr(0, rapid::kLongestString);
         if (Value* type = machine_.find(kMotionTask, "swType"); type && !part_type.empty())
-            type->text = part_type.substr(0, rapid::kLongestString);
+            type->text = part_type.text().substr(0, rapid::kLongestString);
         called->number = 1;
     }
     bool released() const override { return given() && (number(kMotionTask, "swGone") == 0.0 || taken()); }

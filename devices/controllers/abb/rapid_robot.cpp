@@ -243,6 +243,15 @@ bool RapidRobot::send_message(Task& task, Socket& to, std::string bytes) {
 
 std::map<std::string, Native> RapidRobot::natives() {
     auto n = general_natives();
+    add_motion(n);
+    add_places(n);
+    add_system(n);
+    add_sockets(n);
+    add_socket_bytes(n);
+    return n;
+}
+
+void RapidRobot::add_motion(Natives& n) {
     n["movel"] = [this](Task& t, const Call& c) {
         if (c.has("v") || c.has("z")) Task::raise(0, "this argument of a motion is not executed here");
         return move(t, c, {});
@@ -277,6 +286,9 @@ std::map<std::string, Native> RapidRobot::natives() {
                               : mode == RobotMode::unknown      ? 0
                                                                 : 1);
     };
+}
+
+void RapidRobot::add_places(Natives& n) {
     n["crobt"] = [this](Task& t, const Call& c) -> Value {
         if (c.has("taskname") && folded(c.text("taskname")) != "t_rob1")
             Task::raise(kErrTaskname, "that task moves nothing");
@@ -313,6 +325,9 @@ std::map<std::string, Native> RapidRobot::natives() {
         for (Value& q : out.parts) q.number = as_num(q.number / norm);
         return out;
     };
+}
+
+void RapidRobot::add_system(Natives& n) {
     n["getsysinfo"] = [this](Task& t, const Call& c) -> Value {
         if (c.has("serialno")) return make_text(t, settings_.serial);
         if (c.has("robottype")) return make_text(t, settings_.model);
@@ -321,6 +336,9 @@ std::map<std::string, Native> RapidRobot::natives() {
     };
     n["getdataval"] = [this](Task& t, const Call& c) { return data_value(t, c, false); };
     n["setdataval"] = [this](Task& t, const Call& c) { return data_value(t, c, true); };
+}
+
+void RapidRobot::add_sockets(Natives& n) {
     n["socketcreate"] = [this](Task&, const Call& c) -> Value {
         Socket& s = socket(c, "socket");
         if (s.created) Task::raise(0, "the socket is created already");
@@ -369,6 +387,9 @@ std::map<std::string, Native> RapidRobot::natives() {
         client.connection = std::move(accepted);
         return {};
     };
+}
+
+void RapidRobot::add_socket_bytes(Natives& n) {
     n["socketpeek"] = [this](Task& t, const Call& c) {
         Socket& s = socket(c, "socket");
         if (!s.created) Task::raise(kErrSockClosed, "the socket is closed");
@@ -416,7 +437,6 @@ std::map<std::string, Native> RapidRobot::natives() {
         socket(c, "socket") = {};
         return {};
     };
-    return n;
 }
 
 }  // namespace seamwright::rapid

@@ -37,6 +37,12 @@ class RapidRobot {
     bool listening() const { return listening_; }
 
   private:
+    using Natives = std::map<std::string, Native>;
+    void add_motion(Natives& n);
+    void add_places(Natives& n);
+    void add_system(Natives& n);
+    void add_sockets(Natives& n);
+    void add_socket_bytes(Natives& n);
     struct Socket;
     struct Trigger;
     Socket& socket(const Call& c, std::string_view name) const;

@@ -217,8 +217,11 @@ const std::string& instruction_set_text() {
     return text;
 }
 
-std::map<std::string, Native> general_natives() {
-    std::map<std::string, Native> n;
+namespace {
+
+using Natives = std::map<std::string, Native>;
+
+void add_flow(Natives& n) {
     n["confl"] = [](Task&, const Call&) { return Value{}; };
     n["waittime"] = [](Task& t, const Call& c) {
         if (c.number("time") < 0) Task::raise(0, "a negative time");
@@ -238,6 +241,16 @@ std::map<std::string, Native> general_natives() {
         c["interrupt"].number = 0;
         return Value{};
     };
+    n["abs"] = [](Task& t, const Call& c) { return make_number(t, std::abs(c.number("value"))); };
+    n["testandset"] = [](Task& t, const Call& c) {
+        Value& object = c["object"];
+        const bool was = object.number != 0;
+        object.number = 1;
+        return make_truth(t, !was);
+    };
+}
+
+void add_texts(Natives& n) {
     n["strlen"] = [](Task& t, const Call& c) {
         return make_number(t, static_cast<double>(c.text("str").size()));
     };
@@ -272,13 +285,9 @@ std::map<std::string, Native> general_natives() {
         v.number = c.number("value");
         return v;
     };
-    n["abs"] = [](Task& t, const Call& c) { return make_number(t, std::abs(c.number("value"))); };
-    n["testandset"] = [](Task& t, const Call& c) {
-        Value& object = c["object"];
-        const bool was = object.number != 0;
-        object.number = 1;
-        return make_truth(t, !was);
-    };
+}
+
+void add_stopwatch(Natives& n) {
     n["clkreset"] = [](Task&, const Call& c) {
         stopwatch(c) = {};
         return Value{};
@@ -294,6 +303,9 @@ std::map<std::string, Native> general_natives() {
         return Value{};
     };
     n["clkread"] = [](Task& t, const Call& c) { return make_number(t, stopwatch(c).read()); };
+}
+
+void add_raw_bytes(Natives& n) {
     n["clearrawbytes"] = [](Task&, const Call& c) {
         if (c.has("fromindex")) Task::raise(0, "\\FromIndex is not executed here");
         c["rawdata"].text.clear();
@@ -323,6 +335,16 @@ std::map<std::string, Native> general_natives() {
         value.text = raw.substr(at, length);
         return Value{};
     };
+}
+
+}  // namespace
+
+std::map<std::string, Native> general_natives() {
+    Natives n;
+    add_flow(n);
+    add_texts(n);
+    add_stopwatch(n);
+    add_raw_bytes(n);
     return n;
 }
 

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "devices/controllers/ur/dashboard_server.h"
-#include "devices/controllers/ur/interpreter.h"
 #include "devices/controllers/ur/rtde_server.h"
+#include "devices/controllers/ur/script/interpreter.h"
 #include "devices/exchange/files.h"
 #include "devices/exchange/settings.h"
 #include "devices/ur/module.h"

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "devices/controllers/ur/kinematics.h"
-#include "devices/controllers/ur/robot.h"
+#include "devices/controllers/ur/script/kinematics.h"
+#include "devices/controllers/ur/script/robot.h"
 #include "devices/ur/rtde_message.h"
 
 namespace seamwright::urscript {

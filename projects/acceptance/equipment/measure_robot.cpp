@@ -6,8 +6,8 @@
 
 #include "core/median.h"
 #include "projects/acceptance/study/stored_values.h"
+#include "projects/measure/measure.h"
 #include "projects/station/check.h"
-#include "projects/station/measure.h"
 #include "projects/station/teach.h"
 
 namespace seamwright {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "projects/acceptance/study/stored_values.h"
+#include "projects/measure/measure.h"
 #include "projects/station/check.h"
-#include "projects/station/measure.h"
 #include "projects/station/program.h"
 #include "projects/station/teach.h"
 
@@ -260,7 +260,7 @@ std::vector<MeasuringMove> trigger_moves(const Spot& spot, const Pose& flange_fr
 
 Expected<ProgramRequest> trigger_program(const Project& project, const MeasureTriggerOptions& options) {
     SEAM_TRY(auto task, task_of(project, options));
-    auto request = program_request(project, task.spot.robot_id);
+    auto request = program_request(project, RobotId(task.spot.robot_id));
     if (!request) return request;
     request->frames.clear();
     request->moves = trigger_moves(task.spot, task.flange_from_sensor, options.travel_deg, task.speeds_mm_s);

@@ -10,7 +10,7 @@
 #include "devices/exchange/pose_json.h"
 #include "projects/acceptance/pages/acceptance_page.h"
 #include "projects/acceptance/study/stored_values.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

@@ -1,6 +1,6 @@
 #include "projects/acceptance/pages/acceptance_json.h"
 
-#include "projects/station/fields.h"
+#include "projects/measure/fields.h"
 
 namespace seamwright {
 namespace {

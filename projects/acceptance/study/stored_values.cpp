@@ -5,11 +5,11 @@
 #include <map>
 
 #include "projects/acceptance/study/live_study.h"
+#include "projects/measure/measure.h"
 #include "projects/proof/budget.h"
 #include "projects/proof/known_shift.h"
 #include "projects/proof/path_direction.h"
 #include "projects/proof/zero_shift.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "projects/station/fields.h"
+#include "projects/measure/fields.h"
 
 namespace seamwright {
 namespace {

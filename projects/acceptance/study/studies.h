@@ -82,7 +82,7 @@ struct AcceptanceSettings {
     double grr_accepted_percent = 10, grr_refused_percent = 30;
     int ndc = 5;
     double system_percent = 15, process_percent = 30;
-    // By the names of acceptance_fields() (projects/station/fields.h); absent: the default.
+    // By the names of acceptance_fields() (projects/measure/fields.h); absent: the default.
     std::map<std::string, RequirementFrom> from;
     int subgroup = 5;  // consecutive runs, where a run holds one value
     double reference_u_mm = 0, resolution_mm = 0;

@@ -13,9 +13,10 @@
 #include "core/calibration/sphere/drift_check.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/input/entry.h"
+#include "projects/calibrate/input/sphere_data.h"
 #include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
-#include "projects/calibrate/methods/sphere_profile_json.h"
 
 namespace seamwright {
 namespace {

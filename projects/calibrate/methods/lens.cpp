@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "devices/exchange/json_fields.h"
+#include "projects/calibrate/input/entry.h"
 #include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/calibrate/solution/camera_json.h"

@@ -6,8 +6,9 @@
 
 #include "core/calibration/table/lookup_table_calibration.h"
 #include "devices/exchange/json_fields.h"
+#include "projects/calibrate/input/entry.h"
+#include "projects/calibrate/input/laser_pairs.h"
 #include "projects/calibrate/methods/example/example_cell.h"
-#include "projects/calibrate/methods/laser_pairs_json.h"
 #include "projects/calibrate/methods/methods.h"
 
 namespace seamwright {

@@ -139,9 +139,4 @@ MethodSetting choice_setting(const char* name, const char* pointer, std::vector<
 MethodSetting sphere_radius_setting();
 std::vector<MethodSetting> board_settings();
 
-// "id" of an entry as text, a number as its text, absent: the entry's index ("0", "1", ...).
-Expected<std::string> entry_id(const nlohmann::json& entry, std::size_t index, const std::string& where);
-// "size": [width, height] in pixels.
-Expected<std::pair<int, int>> image_size_of(const nlohmann::json& data, const std::string& where);
-
 }  // namespace seamwright

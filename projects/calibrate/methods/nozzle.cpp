@@ -17,6 +17,7 @@
 #include "core/calibration/nozzle/nozzle.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/input/entry.h"
 #include "projects/calibrate/methods/example/example_cell.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/file/stored_text.h"

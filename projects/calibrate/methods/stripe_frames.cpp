@@ -1,4 +1,5 @@
 #include "projects/calibrate/methods/stripe_frames.h"
+#include "projects/calibrate/input/entry.h"
 
 #include <cmath>
 #include <optional>

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "devices/capture/capture.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

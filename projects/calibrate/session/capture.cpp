@@ -12,14 +12,15 @@
 #include "core/calibration/sphere/circle_section.h"
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
+#include "projects/calibrate/input/entry.h"
 #include "projects/calibrate/input/plate_images.h"
+#include "projects/calibrate/input/sphere_data.h"
 #include "projects/calibrate/input/stripe_line_points.h"
-#include "projects/calibrate/methods/sphere_profile_json.h"
 #include "projects/calibrate/methods/stripe_frames.h"
 #include "projects/calibrate/session/apex_pair.h"
 #include "projects/calibrate/solution/camera_json.h"
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {

@@ -30,9 +30,8 @@ std::string file_name(const std::string& text) {
     return name.empty() ? "_" : name;
 }
 
-fs::path session_folder(const fs::path& project_file, const std::string& method,
-                        const std::string& sensor_id) {
-    return CalibrationSession::folder_of(project_file) / (file_name(sensor_id) + "-" + method);
+fs::path session_folder(const fs::path& project_file, const MethodId& method, const SensorId& sensor) {
+    return CalibrationSession::folder_of(project_file) / (file_name(sensor.text()) + "-" + method.text());
 }
 
 json capture_json(const CalibrationCapture& c) {
@@ -125,23 +124,23 @@ Expected<void> CalibrationSession::copy_all(const fs::path& from_project, const 
     return {};
 }
 
-bool CalibrationSession::exists(const fs::path& project_file, const std::string& method,
-                                const std::string& sensor_id) {
+bool CalibrationSession::exists(const fs::path& project_file, const MethodId& method,
+                                const SensorId& sensor) {
     std::error_code code;
-    return fs::exists(session_folder(project_file, method, sensor_id) / "session.json", code);
+    return fs::exists(session_folder(project_file, method, sensor) / "session.json", code);
 }
 
-Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_file, const std::string& method,
-                                                      const std::string& sensor_id,
-                                                      const std::string& robot_id) {
+Expected<CalibrationSession> CalibrationSession::open(const fs::path& project_file, const MethodId& method,
+                                                      const SensorId& sensor, const RobotId& robot) {
     CalibrationSession s;
-    s.method_ = find_method(method);
-    if (!s.method_) return usage_error(Text("the calibration method '{}' is unknown", method), "method");
-    s.sensor_id_ = sensor_id;
-    s.robot_id_ = robot_id;
-    s.folder_ = session_folder(project_file, method, sensor_id);
+    s.method_ = find_method(method.text());
+    if (!s.method_)
+        return usage_error(Text("the calibration method '{}' is unknown", method.text()), "method");
+    s.sensor_id_ = sensor.text();
+    s.robot_id_ = robot.text();
+    s.folder_ = session_folder(project_file, method, sensor);
     s.state_.settings = default_settings(*s.method_);
-    if (exists(project_file, method, sensor_id)) {
+    if (exists(project_file, method, sensor)) {
         SEAM_OK(s.read());
     }
     return s;

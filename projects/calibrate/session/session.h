@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ids.h"
 #include "core/text.h"
 #include "projects/calibrate/methods/methods.h"
 #include "projects/model/project.h"
@@ -79,8 +80,8 @@ class CalibrationSession {
     // cannot be written, a session.json that is none. A capture file that is missing or damaged is left out
     // of the list and named in notices().
     static Expected<CalibrationSession> open(const std::filesystem::path& project_file,
-                                             const std::string& method, const std::string& sensor_id,
-                                             const std::string& robot_id);
+                                             const MethodId& method, const SensorId& sensor,
+                                             const RobotId& robot);
     static std::filesystem::path folder_of(const std::filesystem::path& project_file);
     // Sessions go with their project: copied when it is saved under another name, put aside under their time
     // when another project takes the file's place. Nothing to do is no Error.
@@ -88,8 +89,8 @@ class CalibrationSession {
                                    const std::filesystem::path& to_project);
     static Expected<void> put_aside(const std::filesystem::path& project_file);
     // True when open() would find captures.
-    static bool exists(const std::filesystem::path& project_file, const std::string& method,
-                       const std::string& sensor_id);
+    static bool exists(const std::filesystem::path& project_file, const MethodId& method,
+                       const SensorId& sensor);
 
     const CalibrationMethod& method() const { return *method_; }
     const std::string& sensor_id() const { return sensor_id_; }

@@ -9,8 +9,8 @@
 #include "devices/registry.h"
 #include "devices/simulated/cell.h"
 #include "projects/calibrate/session/capture.h"
+#include "projects/measure/measure.h"
 #include "projects/station/acquire.h"
-#include "projects/station/measure.h"
 
 namespace seamwright {
 namespace {
@@ -77,17 +77,17 @@ Expected<FramePtr> board_picture(ProfileSource& sensor, const std::stop_token& c
 
 }  // namespace
 
-Expected<CalibrationShot> take_shot(Station& station, const std::string& sensor_id,
-                                    const std::string& robot_id, bool board, const std::stop_token& cancel) {
+Expected<CalibrationShot> take_shot(Station& station, const SensorId& sensor_id, const RobotId& robot_id,
+                                    bool board, const std::stop_token& cancel) {
     CalibrationShot shot;
-    shot.sensor_id = sensor_id;
-    shot.robot_id = robot_id;
-    ProfileSource* sensor = station.sensor(sensor_id);
+    shot.sensor_id = sensor_id.text();
+    shot.robot_id = robot_id.text();
+    ProfileSource* sensor = station.sensor(sensor_id.text());
     if (!sensor)
-        return device_error("the sensor is not connected", Text("sensor {}", sensor_id), "connect it");
-    RobotLink* robot = robot_id.empty() ? nullptr : station.robot(robot_id);
+        return device_error("the sensor is not connected", Text("sensor {}", sensor_id.text()), "connect it");
+    RobotLink* robot = robot_id.empty() ? nullptr : station.robot(robot_id.text());
     if (!robot_id.empty() && !robot)
-        return device_error("the robot is not connected", Text("robot {}", robot_id), "connect it");
+        return device_error("the robot is not connected", Text("robot {}", robot_id.text()), "connect it");
     if (robot) {
         SEAM_TRY(auto at, robot->base_from_flange());
         shot.base_from_flange = at;
@@ -105,8 +105,8 @@ Expected<CalibrationShot> take_shot(Station& station, const std::string& sensor_
         SEAM_TRY(auto after, robot->base_from_flange());
         if (distance_mm(after, *shot.base_from_flange) > kSameShotMm ||
             angle_rad(after, *shot.base_from_flange) > rad_from_deg(kSameShotDeg))
-            return device_error("the robot moved while the picture was taken", Text("robot {}", robot_id),
-                                "let it stand still and capture again");
+            return device_error("the robot moved while the picture was taken",
+                                Text("robot {}", robot_id.text()), "let it stand still and capture again");
     }
     return shot;
 }

@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/ids.h"
 #include "devices/frame.h"
 #include "projects/calibrate/session/session.h"
 #include "projects/station/station.h"
@@ -24,8 +25,8 @@ using CalibrationShots = std::vector<Expected<CalibrationShot>>;
 // `board`: a picture with the laser off and exposed for the surroundings is taken as well; laser and exposure are as
 // before when this returns. Empty `robot_id`: no robot is asked. Error (device): not connected, no frame in time, the
 // robot moved meanwhile.
-Expected<CalibrationShot> take_shot(Station& station, const std::string& sensor_id,
-                                    const std::string& robot_id, bool board, const std::stop_token& cancel);
+Expected<CalibrationShot> take_shot(Station& station, const SensorId& sensor_id, const RobotId& robot_id,
+                                    bool board, const std::stop_token& cancel);
 
 // Whose pictures one capture takes, the session's own sensor first: that alone, or, where every capture is a sensor's
 // chain, all of `connected` that know their camera and the session's robot.

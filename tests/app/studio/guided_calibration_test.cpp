@@ -206,7 +206,8 @@ TEST_F(Guided, SphereWithABadPoseAndAKillInBetween) {
     me.picture("guided_1_captures");
 
     // The bad pose: seen in the list, left out by its tick, and the solution is good again.
-    const auto session = CalibrationSession::open(file, "tcp-sphere", "A", "R1").value();
+    const auto session =
+        CalibrationSession::open(file, MethodId("tcp-sphere"), SensorId("A"), RobotId("R1")).value();
     me.answer_file_dialog(QString::fromStdString(wrong_pose(session).string()));
     me.click("calibration_load");
     ASSERT_TRUE(me.wait([&] { return captures(me) == 12; })) << me.text_of("calibration_said").toStdString();
@@ -317,7 +318,8 @@ TEST_P(GuidedLive, FromTheFirstCaptureToTheStoredCalibration) {
     // One more, which comes back from a file with its pose mistyped.
     capture(me, desk);
     ASSERT_FALSE(HasFailure());
-    const auto session = CalibrationSession::open(file, method, "A", "R1").value();
+    const auto session =
+        CalibrationSession::open(file, MethodId(method), SensorId("A"), RobotId("R1")).value();
     me.find<QTableWidget>("captures")->setCurrentCell(poses, 0);
     me.click("calibration_remove");
     ASSERT_TRUE(me.wait([&] { return captures(me) == poses; }));
@@ -498,7 +500,8 @@ TEST_P(GuidedDrift, OnTheSimulatedCell) {
     }
     ASSERT_TRUE(solved(me, studio.window()));
     me.picture(GetParam() ? "guided_drift_struck" : "guided_drift");
-    const auto session = CalibrationSession::open(file, "drift", "A", "R1").value();
+    const auto session =
+        CalibrationSession::open(file, MethodId("drift"), SensorId("A"), RobotId("R1")).value();
     ASSERT_TRUE(session.solution());
     EXPECT_EQ(session.solution()->document.value("status", ""), GetParam() ? "drifted" : "holds")
         << me.text_of("calibration_reason").toStdString();
@@ -692,7 +695,8 @@ TEST_F(Guided, BoardFromAFolderOfImages) {
     const auto command_line = solve_calibration(
         method, *method.data_of_images({images.string(), {.counts = "7x6", .pitch_mm = 10}, {}}), {});
     ASSERT_TRUE(command_line);
-    const auto session = CalibrationSession::open(file, "stripe-camera", "A", "R1").value();
+    const auto session =
+        CalibrationSession::open(file, MethodId("stripe-camera"), SensorId("A"), RobotId("R1")).value();
     ASSERT_TRUE(session.solution());
     const json &found = session.solution()->document, &expected = command_line->document;
     EXPECT_EQ(session.state().captures.size(), expected["images"].get<std::size_t>());

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "app/studio/studio.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "tests/app/studio/person.h"
 #include "tests/projects/sample_project.h"
 #include "tests/projects/served_cell.h"

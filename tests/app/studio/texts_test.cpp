@@ -14,8 +14,8 @@
 #include "core/features/kinds/feature_registry.h"
 #include "core/text.h"
 #include "devices/registry.h"
+#include "projects/measure/fields.h"
 #include "projects/model/run.h"
-#include "projects/station/fields.h"
 #include "widgets/words.h"
 
 namespace seamwright {

@@ -22,7 +22,7 @@
 #include "devices/simulated/cell.h"
 #include "devices/simulated/scene/door.h"
 #include "devices/simulated/scene/mesh_file.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "tests/app/studio/person.h"
 #include "widgets/editors/parameter_editor.h"
 #include "widgets/profile/profile_plot.h"

@@ -120,7 +120,7 @@ TEST_F(AbbController, WholePartsAreMeasuredReleasedAndRun) {
     for (int part = 1; part <= 3; ++part) {
         SCOPED_TRACE(part);
         const std::string id = "CAR-" + std::to_string(part);
-        controller->press_start(id);
+        controller->press_start(PartId(id));
         auto call = link->wait_start(milliseconds(5000));
         ASSERT_TRUE(call) << call.error().sentence();
         EXPECT_EQ(call->part_id, id);
@@ -150,7 +150,7 @@ TEST_F(AbbController, ACallIsNeverLost) {
         std::thread line([&] {
             eventually([&] { return controller->number("T_ROB1", "swFired") == 1; });
             std::this_thread::sleep_for(milliseconds(part * 7));
-            controller->press_start("CAR-" + std::to_string(part));
+            controller->press_start(PartId("CAR-" + std::to_string(part)));
         });
         EXPECT_EQ(triggers_to_the_end(), 1);
         EXPECT_TRUE(link->confirm(PartVerdict::refused, "next"));
@@ -171,7 +171,7 @@ TEST_F(AbbController, TheEndIsToldBeforeTheNextCall) {
     ASSERT_TRUE(start_measuring());
     // The application is told that the part is refused and another one waits, before the program has ended.
     ASSERT_TRUE(link->confirm(PartVerdict::refused, ""));
-    controller->press_start("CAR-2");
+    controller->press_start(PartId("CAR-2"));
     auto trigger = link->wait_trigger(milliseconds(5000));
     ASSERT_TRUE(trigger) << trigger.error().sentence();
     auto end = link->wait_trigger(milliseconds(5000));
@@ -186,7 +186,7 @@ TEST_F(AbbController, ACallDuringAnOutageIsToldWhenTheLinkIsBackWhileTheRobotWai
     start();
     ASSERT_TRUE(link->mode());
     link.reset();
-    controller->press_start("CAR-7");
+    controller->press_start(PartId("CAR-7"));
     std::this_thread::sleep_for(milliseconds(300));
     connect();
     auto call = link->wait_start(milliseconds(5000));

@@ -137,7 +137,7 @@ TEST_F(AbbRapid, StartAndTriggersComeInOrder) {
     const auto none = link->wait_start(Milliseconds(20));
     ASSERT_FALSE(none);
     EXPECT_TRUE(is_silence(none.error()));
-    controller->press_start("car-7");
+    controller->press_start(PartId("car-7"));
     const auto start = link->wait_start(Milliseconds(2000));
     ASSERT_TRUE(start) << start.error().sentence();
     EXPECT_EQ(start->part_id, "car-7");

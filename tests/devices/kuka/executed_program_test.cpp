@@ -143,7 +143,7 @@ TEST_P(ExecutedKrl, APartAfterTheOtherNeverHasTheLastOnesPermission) {
 TEST_P(ExecutedKrl, TheLinesCallIsToldOnce) {
     start(5);
     EXPECT_TRUE(is_silence(link->wait_start(milliseconds(50)).error()));
-    controller->press_start("CAR-1");
+    controller->press_start(PartId("CAR-1"));
     auto called = link->wait_start(std::chrono::seconds(5));
     ASSERT_TRUE(called) << called.error().sentence();
     EXPECT_EQ(called->part_id, "CAR-1");

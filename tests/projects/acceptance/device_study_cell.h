@@ -6,7 +6,7 @@
 #include "core/profile/taught_profile.h"
 #include "projects/acceptance/equipment/measure_robot.h"
 #include "projects/acceptance/equipment/measure_trigger.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "projects/station/teach.h"
 #include "tests/projects/door_project.h"
 #include "tests/projects/sample_project.h"

@@ -10,7 +10,7 @@
 #include "devices/registry.h"
 #include "projects/calibrate/methods/example/target_views.h"
 #include "projects/calibrate/session/guide.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "tests/projects/door_project.h"
 
 namespace seamwright {

@@ -53,7 +53,7 @@ class Session : public testing::Test {
         return c;
     }
     CalibrationSession open(const std::string& method = "tcp-sphere") const {
-        auto s = CalibrationSession::open(project, method, "A", "R1");
+        auto s = CalibrationSession::open(project, MethodId(method), SensorId("A"), RobotId("R1"));
         EXPECT_TRUE(s) << s.error().sentence();
         return *s;
     }
@@ -188,7 +188,7 @@ TEST_F(Session, SurvivesAKill) {
         ASSERT_EQ(::pipe(pipe_ends), 0);
         const pid_t child = ::fork();
         if (child == 0) {
-            auto s = CalibrationSession::open(project, "tcp-sphere", "A", "R1");
+            auto s = CalibrationSession::open(project, MethodId("tcp-sphere"), SensorId("A"), RobotId("R1"));
             for (int i = 0; s && i < 100000; ++i) {
                 CalibrationCapture c;
                 c.entry = entry;
@@ -250,14 +250,16 @@ TEST_F(Session, ResumesWithItsSolution) {
             json hostile = list;
             hostile[json::json_pointer(pointer)] = other;
             std::ofstream(s.folder() / "session.json") << hostile;
-            EXPECT_NO_THROW((void)CalibrationSession::open(project, "tcp-sphere", "A", "R1"))
+            EXPECT_NO_THROW(
+                (void)CalibrationSession::open(project, MethodId("tcp-sphere"), SensorId("A"), RobotId("R1")))
                 << pointer << " = " << other;
         }
     std::ofstream(s.folder() / "session.json") << "[1]";
-    EXPECT_FALSE(CalibrationSession::open(project, "tcp-sphere", "A", "R1"));
+    EXPECT_FALSE(CalibrationSession::open(project, MethodId("tcp-sphere"), SensorId("A"), RobotId("R1")));
     // Foreign files are refused with a sentence.
     std::ofstream(s.folder() / "session.json") << "{\"format\":\"something\"}";
-    const auto refused = CalibrationSession::open(project, "tcp-sphere", "A", "R1");
+    const auto refused =
+        CalibrationSession::open(project, MethodId("tcp-sphere"), SensorId("A"), RobotId("R1"));
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().sentence(), HasSubstr("no calibration session"));
 }
@@ -282,11 +284,14 @@ TEST_F(Session, GoesWithItsProject) {
     }
     const fs::path other = folder / "other.seam";
     ASSERT_TRUE(CalibrationSession::copy_all(project, other));
-    EXPECT_EQ(CalibrationSession::open(other, "tcp-sphere", "A", "R1")->state().captures.size(), 2U);
+    EXPECT_EQ(CalibrationSession::open(other, MethodId("tcp-sphere"), SensorId("A"), RobotId("R1"))
+                  ->state()
+                  .captures.size(),
+              2U);
     EXPECT_EQ(open().state().captures.size(), 2U);
     // Another project in the file's place begins with none.
     ASSERT_TRUE(CalibrationSession::put_aside(other));
-    EXPECT_FALSE(CalibrationSession::exists(other, "tcp-sphere", "A"));
+    EXPECT_FALSE(CalibrationSession::exists(other, MethodId("tcp-sphere"), SensorId("A")));
     ASSERT_TRUE(CalibrationSession::put_aside(other)) << "nothing to do is no error";
 }
 

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "devices/drawing/door_step.h"
+#include "projects/measure/measure.h"
 #include "projects/placing/take.h"
-#include "projects/station/measure.h"
 #include "tests/projects/door_project.h"
 #include "tests/projects/sample_project.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "projects/elastic/region_modes.h"
-#include "projects/station/path.h"
+#include "projects/measure/path.h"
 #include "tests/core/elastic/bent_doors.h"
 #include "tests/projects/sample_project.h"
 

@@ -264,8 +264,9 @@ TEST(PartTypes, TwoTypesMayShareAFrameTwoRegionsOfOneMayNot) {
 
 TEST(PartTypes, ARobotsProgramIsOfOneTypeAndSaysSo) {
     const Project p = two_types();
-    EXPECT_THAT(program_request(p, "R1").error().sentence(), HasSubstr("no part type was said"));
-    const auto left = program_request(p, "R1", "1"), right = program_request(p, "R1", "right");
+    EXPECT_THAT(program_request(p, RobotId("R1")).error().sentence(), HasSubstr("no part type was said"));
+    const auto left = program_request(p, RobotId("R1"), PartTypeId("1")),
+               right = program_request(p, RobotId("R1"), PartTypeId("right"));
     ASSERT_TRUE(left && right);
     EXPECT_EQ(left->part_type, "left");
     EXPECT_EQ(right->frames.size(), 2u);

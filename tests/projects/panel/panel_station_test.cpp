@@ -9,12 +9,12 @@
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/gripper_cell.h"
 #include "projects/hand_over/hand_over.h"
+#include "projects/measure/fields.h"
 #include "projects/panel/panel_measure.h"
 #include "projects/proof/replay.h"
 #include "projects/reuse/exchange.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/check.h"
-#include "projects/station/fields.h"
 #include "tests/projects/gate/numeric_members.h"
 #include "tests/projects/sample_project.h"
 

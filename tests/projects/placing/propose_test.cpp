@@ -8,9 +8,9 @@
 #include <map>
 
 #include "devices/drawing/door_step.h"
+#include "projects/measure/measure.h"
 #include "projects/placing/expected_profile.h"
 #include "projects/proof/forecast.h"
-#include "projects/station/measure.h"
 #include "tests/projects/door_project.h"
 
 namespace seamwright {

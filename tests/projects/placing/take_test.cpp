@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "devices/registry.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "projects/station/program.h"
 #include "tests/projects/door_project.h"
 
@@ -98,7 +98,7 @@ TEST(TakeProposal, TheSensorTravelsOverThePart) {
         EXPECT_TRUE(spot.via.back().linear().isApprox(spot.base_from_flange.linear(), 1e-12));
     }
     for (const ProgramWriter& brand : program_writers()) {
-        const auto request = program_request(taken->project, "R1");
+        const auto request = program_request(taken->project, RobotId("R1"));
         ASSERT_TRUE(request) << request.error().sentence();
         const auto files = write_robot_program(std::string(brand.name), *request);
         ASSERT_TRUE(files) << brand.name << ": " << files.error().sentence();

@@ -11,10 +11,10 @@
 #include "core/correction/forecast.h"
 #include "core/correction/travel.h"
 #include "core/geometry/notation.h"
+#include "projects/measure/measure.h"
 #include "projects/proof/budget_json.h"
 #include "projects/proof/budget_page.h"
 #include "projects/proof/path_direction.h"
-#include "projects/station/measure.h"
 #include "tests/projects/fake_cell.h"
 
 namespace seamwright {

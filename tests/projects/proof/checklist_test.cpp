@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "projects/measure/measure.h"
 #include "projects/proof/known_shift.h"
-#include "projects/station/measure.h"
 #include "tests/projects/door_project.h"
 
 namespace seamwright {

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "projects/measure/measure.h"
 #include "projects/proof/checklist.h"
 #include "projects/proof/zero_shift.h"
-#include "projects/station/measure.h"
 #include "tests/projects/door_project.h"
 #include "tests/projects/sample_project.h"
 

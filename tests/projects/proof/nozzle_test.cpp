@@ -1,7 +1,7 @@
 // A calibrated nozzle in a project: kept in the file, at the bead in budget, forecast and gate, stale after a collision;
 // and without one every number is what it was.
 
-#include "projects/station/nozzle.h"
+#include "projects/measure/nozzle.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

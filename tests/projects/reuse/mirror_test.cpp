@@ -4,8 +4,8 @@
 
 #include "core/features/kinds/feature_registry.h"
 #include "devices/simulated/scene/mesh_file.h"
+#include "projects/measure/measure.h"
 #include "projects/station/check.h"
-#include "projects/station/measure.h"
 #include "tests/projects/fake_cell.h"
 
 namespace seamwright {

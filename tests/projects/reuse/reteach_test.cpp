@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "projects/station/station.h"
 #include "tests/projects/door_project.h"
 #include "tests/projects/sample_project.h"

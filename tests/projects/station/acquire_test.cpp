@@ -8,7 +8,7 @@
 #include <deque>
 
 #include "devices/silence.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "tests/projects/mock_devices.h"
 #include "tests/projects/sample_project.h"
 

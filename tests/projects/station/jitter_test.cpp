@@ -7,7 +7,7 @@
 
 #include "core/evaluation/statistics.h"
 #include "devices/simulated/scene/door.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright {
 namespace {

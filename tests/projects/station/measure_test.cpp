@@ -1,4 +1,4 @@
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

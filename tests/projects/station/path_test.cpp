@@ -1,6 +1,6 @@
 // The project's path: regions, frames, the gate and its limits at every point.
 
-#include "projects/station/path.h"
+#include "projects/measure/path.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

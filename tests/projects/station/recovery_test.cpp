@@ -53,7 +53,7 @@ class Recovery : public testing::TestWithParam<std::string> {
         for (int part = 1; seconds() < kPatienceS; ++part) {
             std::unique_lock lock(mutex);
             const int before = runs;
-            served->controller().press_start(fmt::format("CAR-{}", part));
+            served->controller().press_start(PartId(fmt::format("CAR-{}", part)));
             // A call can get lost with the connection that told it; then the line calls again.
             const auto called = counts.parts;
             const auto begins = [&] { return runs > before || counts.parts > called; };
@@ -110,7 +110,7 @@ TEST_P(Recovery, TheNextPartIsGoodSoonAfterEveryOutage) {
         {"called meanwhile",
          [&] {
              served->controller().set_fault(ControllerFault::disconnect);
-             served->controller().press_start("CAR-0");
+             served->controller().press_start(PartId("CAR-0"));
              std::this_thread::sleep_for(300ms);
              served->controller().set_fault(ControllerFault::none);
          }},

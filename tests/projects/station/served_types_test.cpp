@@ -60,7 +60,7 @@ TEST_P(ServedTypes, TheFrameOnTheControllerIsTheOneOfThePartsType) {
         std::this_thread::sleep_for(1s);
         std::unique_lock lock(mutex);
         const int before = over;
-        served.controller().press_start("CAR-" + said, said);
+        served.controller().press_start(PartId("CAR-" + said), PartTypeId(said));
         EXPECT_TRUE(told.wait_for(lock, 60s, [&] { return over > before; })) << log;
         return served.cell->read_frame("path").value();
     };

@@ -77,7 +77,7 @@ Soaked soak(const ServedCellOptions& options, Minutes minutes) {
         }
         while (Clock::now() - begin < minutes && !testing::Test::HasFailure()) {
             const std::int64_t due = ended + 1;
-            served->controller().press_start(fmt::format("CAR-{}", ++sum.parts));
+            served->controller().press_start(PartId(fmt::format("CAR-{}", ++sum.parts)));
             const auto until = Clock::now() + std::chrono::seconds(30);
             while (ended < due && Clock::now() < until)
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));

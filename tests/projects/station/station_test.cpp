@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "projects/gate/safety_gate.h"
+#include "projects/measure/measure.h"
 #include "projects/proof/replay.h"
 #include "projects/station/check.h"
-#include "projects/station/measure.h"
 #include "tests/projects/fake_cell.h"
 #include "tests/projects/file/other_program.h"
 #include "tests/projects/sample_project.h"

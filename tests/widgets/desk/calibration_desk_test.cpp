@@ -7,8 +7,8 @@
 
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/cell.h"
+#include "projects/measure/measure.h"
 #include "projects/reuse/simulated_truth.h"
-#include "projects/station/measure.h"
 #include "tests/widgets/desk/desk_fixture.h"
 
 namespace seamwright {
@@ -83,7 +83,7 @@ class OneShotAtTheDesk : public testing::Test {
         QObject::connect(&calibration, &CalibrationDesk::refused, &desk,
                          [this](const QString& sentence) { refusals << sentence; });
         ASSERT_TRUE(desk.create(folder / "a.seam", cell_of_four()));
-        ASSERT_TRUE(calibration.open("static", "A", "R1"));
+        ASSERT_TRUE(calibration.open(MethodId("static"), SensorId("A"), RobotId("R1")));
     }
     void connect_and_stand(const Pose& at) {
         if (!desk.station().connected) desk.worker().connect_devices();

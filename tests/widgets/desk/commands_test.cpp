@@ -68,7 +68,7 @@ std::vector<Edit> edits() {
                  "pose");
          }},
         {"SpotField", "Change jitter_mm of spot S1",
-         [](Desk& d) { return d.set_spot_field("S1", "jitter_mm", 1.0 / 3.0); }},
+         [](Desk& d) { return d.set_spot_field(SpotId("S1"), "jitter_mm", 1.0 / 3.0); }},
         {"SpotEnable", "Enable spot S6", [](Desk& d) { return d.set_spot_enabled("S6", true); }},
         {"SpotDisable", "Disable spot S1", [](Desk& d) { return d.set_spot_enabled("S1", false); }},
         {"RegionAdd", "Add region N",
@@ -85,7 +85,7 @@ std::vector<Edit> edits() {
              }));
          }},
         {"RegionField", "Change sigma_limit_mm of region edge",
-         [](Desk& d) { return d.set_region_field("edge", "sigma_limit_mm", 0.3); }},
+         [](Desk& d) { return d.set_region_field(RegionId("edge"), "sigma_limit_mm", 0.3); }},
         {"SensorAdd", "Add sensor N",
          [=](Desk& d) { return d.add(with(d.project().sensors[0], [](SensorSetup& s) { s.id = "N"; })); }},
         {"SensorRemove", "Remove sensor B", [](Desk& d) { return d.remove<SensorSetup>("B"); }},
@@ -116,9 +116,9 @@ std::vector<Edit> edits() {
              return d.add(with(d.project().calibrations[0], [](Calibration& c) { c.id = "N"; }));
          }},
         {"CalibrationUse", "Use calibration C2 at sensor A",
-         [](Desk& d) { return d.use_calibration("A", "C2"); }},
+         [](Desk& d) { return d.use_calibration(SensorId("A"), CalibrationId("C2")); }},
         {"CalibrationUseNone", "Use calibration  at sensor A",
-         [](Desk& d) { return d.use_calibration("A", ""); }},
+         [](Desk& d) { return d.use_calibration(SensorId("A"), CalibrationId("")); }},
         {"CalibrationTake", "Use calibration N",
          [=](Desk& d) {
              return d.take_calibrations(
@@ -261,8 +261,8 @@ TEST_F(Commands, AnEditThatIsNoneIsNoStep) {
     EXPECT_TRUE(desk.rename<Spot>("S1", "S1"));
     EXPECT_TRUE(desk.move<Spot>("S1", 0));
     EXPECT_TRUE(desk.set_spot_enabled("S1", true));
-    EXPECT_TRUE(desk.set_spot_field("S1", "jitter_mm", p.spots[0].jitter_mm));
-    EXPECT_TRUE(desk.use_calibration("A", "C1"));
+    EXPECT_TRUE(desk.set_spot_field(SpotId("S1"), "jitter_mm", p.spots[0].jitter_mm));
+    EXPECT_TRUE(desk.use_calibration(SensorId("A"), CalibrationId("C1")));
     EXPECT_TRUE(desk.rename_project(p.name));
     EXPECT_EQ(desk.undo_stack().count(), 0);
     EXPECT_FALSE(desk.modified());
@@ -292,26 +292,26 @@ TEST_F(Commands, WhatIsWrongIsRefusedAndChangesNothing) {
     refused(desk.edit(with(p.spots[0], [](Spot& s) { s.robot_id = "Z"; })), "the robot \"Z\"");
     refused(desk.edit(with(p.spots[0], [](Spot& s) { s.base_from_flange.matrix()(0, 0) += 0.1; })), "S1");
     refused(desk.edit(with(p.spots[0], [](Spot& s) { s.jitter_mm = -1; })), "jitter_mm");
-    refused(desk.set_spot_field("S1", "sigma_mm", 0), "sigma_mm");
-    refused(desk.set_spot_field("none", "sigma_mm", 1), "no spot \"none\"");
+    refused(desk.set_spot_field(SpotId("S1"), "sigma_mm", 0), "sigma_mm");
+    refused(desk.set_spot_field(SpotId("none"), "sigma_mm", 1), "no spot \"none\"");
     refused(desk.rename<Spot>("S1", "S2"), "used already");
     refused(desk.rename<Spot>("none", "S9"), "\"none\"");
     refused(desk.remove<Spot>("none"), "\"none\"");
     refused(desk.move<Spot>("none", 1), "\"none\"");
     refused(desk.edit(with(p.regions[0], [](Region& r) { r.spot_ids = {"none"}; })), "no spot \"none\"");
     refused(desk.edit(with(p.regions[0], [](Region& r) { r.free.fill(false); })), "degree of freedom");
-    refused(desk.set_region_field("edge", "sigma_limit_mm", 100), "sigma_limit_mm");
+    refused(desk.set_region_field(RegionId("edge"), "sigma_limit_mm", 100), "sigma_limit_mm");
     refused(desk.edit(with(p.sensors[0], [](SensorSetup& s) { s.driver = "none"; })), "driver \"none\"");
     refused(desk.edit(with(p.robots[0], [](RobotSetup& r) { r.driver = "none"; })), "driver \"none\"");
     refused(desk.remove<SensorSetup>("A"), "spot S1 uses it");
     refused(desk.remove<RobotSetup>("R1"), "spot S1 uses it");
-    refused(desk.use_calibration("B", "C1"), "another sensor");
+    refused(desk.use_calibration(SensorId("B"), CalibrationId("C1")), "another sensor");
     const Calibration good = with(p.calibrations[0], [](Calibration& c) { c.id = "M"; });
     const Calibration lost = with(good, [](Calibration& c) { c.id = "N", c.sensor_id = "Z"; });
     refused(desk.take_calibrations({lost}, true), "\"Z\"");
     refused(desk.take_calibrations({good, lost}, true), "\"Z\"");
     refused(desk.take_calibrations({good, good}, false), "used already");
-    refused(desk.use_calibration("A", "none"), "\"none\"");
+    refused(desk.use_calibration(SensorId("A"), CalibrationId("none")), "\"none\"");
     refused(desk.import_part(folder / "none.stl", "mm"), "none.stl");
 }
 

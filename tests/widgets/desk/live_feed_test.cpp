@@ -1,5 +1,5 @@
 // What the screens get of a fast sensor when the feature takes longer to find than the frames leave time.
-#include "widgets/desk/live_feed.h"
+#include "widgets/worker/live_feed.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "widgets/desk/station_worker.h"
+#include "widgets/worker/station_worker.h"
 
 #include <gmock/gmock.h>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "devices/registry.h"
+#include "projects/measure/measure.h"
 #include "projects/proof/checklist.h"
-#include "projects/station/measure.h"
 #include "widgets/pages/parts/form.h"
 #include "widgets/style.h"
 

@@ -2,7 +2,7 @@
 
 #include <QHeaderView>
 
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "widgets/style.h"
 
 namespace seamwright {

@@ -16,8 +16,8 @@
 #include "projects/calibrate/session/answer.h"
 #include "projects/file/project_file.h"
 #include "projects/file/stored_text.h"
+#include "projects/measure/measure.h"
 #include "projects/model/run.h"
-#include "projects/station/measure.h"
 
 namespace seamwright::cli {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "app/cli/command.h"
 #include "projects/file/project_file.h"
-#include "projects/station/measure.h"
-#include "projects/station/nozzle.h"
+#include "projects/measure/measure.h"
+#include "projects/measure/nozzle.h"
 
 namespace seamwright::cli {
 namespace {

@@ -19,11 +19,11 @@
 #include "devices/exchange/json_fields.h"
 #include "devices/exchange/pose_json.h"
 #include "devices/simulated/scene/random.h"
+#include "projects/measure/fields.h"
+#include "projects/measure/measure.h"
 #include "projects/panel/panel_station.h"
 #include "projects/reuse/simulated_truth.h"
 #include "projects/station/check.h"
-#include "projects/station/fields.h"
-#include "projects/station/measure.h"
 
 namespace seamwright::cli {
 namespace {

@@ -9,9 +9,9 @@
 #include "devices/exchange/files.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
+#include "projects/measure/path.h"
 #include "projects/report/html.h"
 #include "projects/report/svg_plot.h"
-#include "projects/station/path.h"
 
 namespace seamwright::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/cli/signal_watch.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 
 namespace seamwright::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/cli/program_files.h"
 #include "devices/registry.h"
 #include "projects/file/project_file.h"
-#include "projects/station/measure.h"
+#include "projects/measure/measure.h"
 #include "projects/station/program.h"
 
 namespace seamwright::cli {
@@ -22,7 +22,7 @@ struct ProgramArguments {
 Expected<Answer> write_program(const ProgramArguments& a) {
     SEAM_TRY(auto file, ProjectFile::open(a.file, FileAccess::read_only));
     SEAM_TRY(auto project, file.load());
-    SEAM_TRY(auto request, program_request(project, a.robot, a.type));
+    SEAM_TRY(auto request, program_request(project, RobotId(a.robot), PartTypeId(a.type)));
     SEAM_TRY(auto files, write_robot_program(a.brand, request));
     Answer answer;
     answer.json = {{"status", "ok"}, {"brand", a.brand}};

@@ -127,7 +127,7 @@ json obey(CellServer& server, const std::string& line, bool& stop) {
     std::getline(words >> std::ws, rest);
     const auto refuse = [&](const std::string& why) { return json{{"ok", false}, {"error", why}}; };
     if (word == "start") {
-        for (const auto& [name, controller] : server.controllers()) controller->press_start(rest);
+        for (const auto& [name, controller] : server.controllers()) controller->press_start(PartId(rest));
     } else if (word == "part") {
         const auto state = parse_json(rest, "part");
         if (!state) return refuse(state.error().sentence());

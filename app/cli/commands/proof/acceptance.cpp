@@ -14,7 +14,7 @@
 #include "projects/acceptance/pages/acceptance_workbook.h"
 #include "projects/acceptance/stored_acceptance.h"
 #include "projects/acceptance/study/stored_values.h"
-#include "projects/station/fields.h"
+#include "projects/measure/fields.h"
 #include "widgets/print/pdf.h"
 
 namespace seamwright::cli {

@@ -10,7 +10,7 @@
 #include "projects/acceptance/simulated_parts.h"
 #include "projects/acceptance/study/kept_offsets.h"
 #include "projects/acceptance/study/stored_values.h"
-#include "projects/station/fields.h"
+#include "projects/measure/fields.h"
 
 namespace seamwright::cli {
 namespace {

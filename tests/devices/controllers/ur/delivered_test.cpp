@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "devices/controllers/ur/interpreter.h"
-#include "devices/controllers/ur/lexer.h"
+#include "devices/controllers/ur/script/interpreter.h"
+#include "devices/controllers/ur/script/lexer.h"
 #include "devices/simulated/cell.h"
 #include "devices/ur/module.h"
 #include "devices/ur/program.h"

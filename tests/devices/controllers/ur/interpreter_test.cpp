@@ -1,7 +1,7 @@
 // The language as the script manual has it: what is refused at loading, what stops a running program, scopes
 // and threads.
 
-#include "devices/controllers/ur/interpreter.h"
+#include "devices/controllers/ur/script/interpreter.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

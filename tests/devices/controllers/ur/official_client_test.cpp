@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "devices/controllers/ur/controller.h"
-#include "devices/controllers/ur/kinematics.h"
+#include "devices/controllers/ur/script/kinematics.h"
 #include "devices/net/socket.h"
 #include "devices/simulated/cell.h"
 

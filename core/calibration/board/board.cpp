@@ -10,6 +10,12 @@
 
 namespace seamwright {
 
+namespace {
+
+constexpr double kLeastPitch_mm = 0.2;  // a finer board is one given in metres
+
+}  // namespace
+
 Expected<void> validate(const BoardSpec& spec) {
     if (spec.columns < 3 || spec.rows < 3 || spec.columns > 200 || spec.rows > 200)
         return input_error(Text("a board of {}x{} points is not possible", std::to_string(spec.columns),
@@ -17,7 +23,7 @@ Expected<void> validate(const BoardSpec& spec) {
                            "board", "give columns x rows between 3 and 200, e.g. 7x6");
     if (!std::isfinite(spec.pitch_mm) || spec.pitch_mm <= 0)
         return input_error("the pitch must be a positive number of millimetres", "pitch_mm", "give e.g. 10");
-    if (spec.pitch_mm < 0.2)
+    if (spec.pitch_mm < kLeastPitch_mm)
         return input_error(Text("a pitch of {} mm looks like metres", std::to_string(spec.pitch_mm)),
                            "pitch_mm", "give the pitch in millimetres (0.01 m = 10 mm)");
     if (spec.pitch_mm > 1000)
@@ -99,6 +105,11 @@ std::vector<std::string> dictionary_names() {
 
 namespace detail {
 
+// Of the square over its length: a piece that covers less is a stripe.
+constexpr double kSaturatedThin = 0.35;
+constexpr double kDarkQuantile = 0.005;   // of the grey values: what is darker is stretched to black
+constexpr double kLightQuantile = 0.985;  // of the grey values: what is lighter is stretched to white
+
 std::vector<cv::Mat> reduced(const cv::Mat& grey) {
     const double longest = std::max(grey.cols, grey.rows);
     std::vector<cv::Mat> pictures;
@@ -138,7 +149,7 @@ cv::Mat stripe_mask(const cv::Mat& grey) {
         const int area = stats.at<int>(i, cv::CC_STAT_AREA);
         // Long and thin: its area is a small part of the square over its length.
         const int length = std::max(w, h);
-        if (length >= least && area < 0.35 * length * length) mask.setTo(255, labels == i);
+        if (length >= least && area < kSaturatedThin * length * length) mask.setTo(255, labels == i);
     }
     return mask;
 }
@@ -177,7 +188,7 @@ cv::Mat stretched(const cv::Mat& grey, const cv::Mat& ignore, double gamma) {
             if ((sum += histogram[static_cast<std::size_t>(i)]) > q * total) return i;
         return 255;
     };
-    const double low = quantile(0.005), high = std::max<double>(quantile(0.985), low + 4);
+    const double low = quantile(kDarkQuantile), high = std::max<double>(quantile(kLightQuantile), low + 4);
     cv::Mat table(1, 256, CV_8U), out;
     for (int i = 0; i < 256; ++i)
         table.at<std::uint8_t>(i) = cv::saturate_cast<std::uint8_t>(

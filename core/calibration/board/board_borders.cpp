@@ -9,6 +9,39 @@
 namespace seamwright::detail {
 namespace {
 
+// Where a square's and a corner's grey are read, in steps of the lattice from their middle.
+
+// Off the middle, clear of the edges around.
+constexpr double kSampleAside = 0.2;
+
+// Levels: paper is 1, ink -1 (Levels::of).
+
+// In the softened root, paper above ink: below, there is no board to read.
+constexpr double kLeastLevelGap = 0.05;
+// Of the right sign: the colour is the square's own, not grey between two.
+constexpr double kClearLevel = 0.3;
+// Of the seen squares of a row that show their colour clearly, or the board does not go on.
+constexpr double kLeastRightShare = 0.8;
+// Of the squares inside that have their colour, or it is no checkerboard.
+constexpr double kLeastColouredShare = 0.85;
+constexpr double kSameLevel = 0.7;   // two places closer than this in level are of one colour
+constexpr double kOtherLevel = 1.3;  // two places farther apart than this are paper and ink
+
+// Steps of the lattice.
+
+// The dark squares' ends of a row that end on one line: the plate is cut there.
+constexpr double kStraightWithin = 0.15;
+constexpr double kOnLineWithin = 0.12;  // from the line of corners: the step of grey counts as lying on it
+constexpr double kEndFrom = 0.2;        // inside a square's middle: where the look for its end begins
+constexpr double kEndTo = 0.8;          // outside of it: where the look ends
+constexpr double kEndStep = 0.05;
+// Where paper or the next square is looked for if the middle of the next one hides.
+constexpr double kBehindNear = 0.75;
+constexpr double kBehindFar = 1.3;  // ... and if that hides too
+// Ways out beside a square's own, in its neighbour: near the corner between them.
+constexpr double kAsideNear = 0.7;
+constexpr double kAsideFar = 0.85;  // ... and nearer to the neighbour's middle
+
 using Eigen::Vector2d;
 
 class Surroundings {
@@ -21,7 +54,11 @@ class Surroundings {
         const auto place = predict(lattice_, i + 0.5, j + 0.5, reach);
         if (!place) return std::nullopt;
         double sum = 0;
-        for (const auto& [a, b] : {std::pair{0.0, 0.0}, {0.2, 0.0}, {-0.2, 0.0}, {0.0, 0.2}, {0.0, -0.2}}) {
+        for (const auto& [a, b] : {std::pair{0.0, 0.0},
+                                   {kSampleAside, 0.0},
+                                   {-kSampleAside, 0.0},
+                                   {0.0, kSampleAside},
+                                   {0.0, -kSampleAside}}) {
             const auto g = grey_at(place->at + a * place->along_i + b * place->along_j);
             if (!g) return std::nullopt;
             sum += *g / 5;
@@ -88,7 +125,7 @@ class Surroundings {
         };
         if (white.empty() || black.empty()) return std::nullopt;
         const Levels levels{usual(white), usual(black)};
-        if (!(levels.white > levels.black + 0.05)) return std::nullopt;
+        if (!(levels.white > levels.black + kLeastLevelGap)) return std::nullopt;
         return levels;
     }
 
@@ -105,10 +142,10 @@ class Surroundings {
             if (level > 2) continue;  // a stripe or a glint
             const double match = sign_of(c.first, c.second) * std::clamp(level, -1.0, 1.0);
             ++seen;
-            right += match > 0.3;
+            right += match > kClearLevel;
             score += match;
         }
-        return seen >= 3 && 2 * seen >= count && score > 0.5 * seen && right >= 0.8 * seen;
+        return seen >= 3 && 2 * seen >= count && score > 0.5 * seen && right >= kLeastRightShare * seen;
     }
 
     // What the grey values say along a way outwards over the line of corners that would be next.
@@ -199,7 +236,7 @@ class Surroundings {
         }
         // The plate may be cut through its squares: the dark ones end on a line along the lattice.
         bool straight() const {
-            return dark_ends >= 3 && 4 * dark_ends >= pairs && last_end - first_end < 0.15;
+            return dark_ends >= 3 && 4 * dark_ends >= pairs && last_end - first_end < kStraightWithin;
         }
         // On that line, over most of the side.
         bool seen_on_cut() const { return on_line >= 4 && going_on == 0 && 2 * on_line >= on_line + unclear; }
@@ -224,11 +261,11 @@ class Surroundings {
                 return g && levels.of(*g) < 2 ? std::optional(levels.of(*g)) : std::nullopt;
             };
             const auto own = level_at(-0.25);
-            right[static_cast<std::size_t>(k)] = own && colour * *own > 0.3;
-            for (const double out : {1.0, 0.75, 1.3})
+            right[static_cast<std::size_t>(k)] = own && colour * *own > kClearLevel;
+            for (const double out : {1.0, kBehindNear, kBehindFar})
                 if (!behind[static_cast<std::size_t>(k)]) behind[static_cast<std::size_t>(k)] = level_at(out);
             if (colour < 0 && right[static_cast<std::size_t>(k)])
-                for (double out = -0.2; out < 0.8; out += 0.05) {
+                for (double out = -kEndFrom; out < kEndTo; out += kEndStep) {
                     const auto level = level_at(out);
                     if (!level) break;
                     if (*level < 0) continue;
@@ -246,20 +283,20 @@ class Surroundings {
                 const Seen seen = look_out(side, *square, aside, line, levels, way);
                 inside_picture &= seen != Seen::out_of_picture;
                 dim &= seen != Seen::outshone;
-                on_line &=
-                    seen == Seen::yes && colour * way.inside > 0.3 && std::abs(way.step_at - line) < 0.12;
+                on_line &= seen == Seen::yes && colour * way.inside > kClearLevel &&
+                           std::abs(way.step_at - line) < kOnLineWithin;
                 outside += way.outside / 3;
             }
             for (const int towards : {-1, 1}) {
                 if (k + towards < 0 || k + towards >= count) continue;
                 bool same = on_line, other = on_line, in_picture = inside_picture, plain = dim;
-                for (const double aside : {0.7, 0.85}) {
+                for (const double aside : {kAsideNear, kAsideFar}) {
                     Way way;
                     const Seen seen = look_out(side, *square, towards * aside, line, levels, way);
                     in_picture &= seen != Seen::out_of_picture;
                     plain &= seen != Seen::outshone;
-                    const bool clear = seen == Seen::yes && colour * way.inside < -0.3;
-                    same &= clear && std::abs(way.outside - outside) < 0.7;
+                    const bool clear = seen == Seen::yes && colour * way.inside < -kClearLevel;
+                    same &= clear && std::abs(way.outside - outside) < kSameLevel;
                     other &= clear && std::abs(way.outside - outside) > 1;
                 }
                 if (!in_picture)
@@ -276,8 +313,8 @@ class Surroundings {
             ++end.pairs;
             if (!right[k] || !right[k + 1] || !behind[k] || !behind[k + 1]) continue;
             const double apart = std::abs(*behind[k] - *behind[k + 1]);
-            end.paper += apart < 0.7 && std::min(*behind[k], *behind[k + 1]) > 0.5;
-            end.squares += apart > 1.3 && *behind[k] * *behind[k + 1] < 0;
+            end.paper += apart < kSameLevel && std::min(*behind[k], *behind[k + 1]) > 0.5;
+            end.squares += apart > kOtherLevel && *behind[k] * *behind[k + 1] < 0;
         }
         return end;
     }
@@ -313,8 +350,11 @@ class Surroundings {
             const auto place = corner_beyond(side, beyond, k);
             if (!place) continue;
             bool clear = true;
-            for (const auto& [x, y] :
-                 {std::pair{0.0, 0.0}, {0.2, 0.2}, {-0.2, 0.2}, {0.2, -0.2}, {-0.2, -0.2}}) {
+            for (const auto& [x, y] : {std::pair{0.0, 0.0},
+                                       {kSampleAside, kSampleAside},
+                                       {-kSampleAside, kSampleAside},
+                                       {kSampleAside, -kSampleAside},
+                                       {-kSampleAside, -kSampleAside}}) {
                 const auto g = grey_at(place->at + x * place->along_i + y * place->along_j);
                 clear &= g && levels.of(*g) < 2;
             }
@@ -367,7 +407,7 @@ class Surroundings {
             if (levels.of(g) < 2) ++seen, right += levels.of(g) > 0;
         for (const double g : black)
             if (levels.of(g) < 2) ++seen, right += levels.of(g) < 0;
-        return seen >= 2 && right >= 0.85 * seen;
+        return seen >= 2 && right >= kLeastColouredShare * seen;
     }
 
   private:

@@ -9,6 +9,27 @@
 namespace seamwright::detail {
 namespace {
 
+constexpr double kWindowShare = 0.45;  // of the least step or lean: the window stays inside the four squares
+// Of the window's pixels foreign: something lies beside the corner, it is held to less.
+constexpr double kForeignDoubt = 0.05;
+// Least departure from the corners around that drops a doubtful corner.
+constexpr double kPulledDoubtful_px = 0.15;
+constexpr double kPulled_px = 0.3;       // ... any corner
+constexpr double kPulledDoubtful = 3.5;  // times the usual departure that drops a doubtful corner
+constexpr double kPulled = 6.0;          // ... any corner
+constexpr double kMostForeign = 0.1;     // of the window: a corner added by prediction has to be clean
+// Of the usual contrast, for a corner added in the searched picture.
+constexpr double kLeastContrastSearched = 0.65;
+constexpr double kMostNoiseSearched = 0.2;  // of its own contrast, for such a corner
+constexpr double kOffPrediction = 0.12;     // of the least step: farther off it is another thing
+constexpr double kMisfitMeasured = 0.1;     // of a step, from where the corners around a measured corner say
+// The usual rest of the fit, over its contrast: above (plus kRestMore) the window holds something else.
+constexpr double kRestTimes = 1.7;
+constexpr double kRestMore = 0.02;             // of the contrast: small rests drop no corner
+constexpr double kLeastContrastAround = 0.75;  // of the contrast of the corners around
+// Of the usual contrast, for a corner that the searched scale was too coarse for.
+constexpr double kLeastContrastAdded = 0.7;
+
 using Eigen::Vector2d;
 
 int window_at(const LatticePlace& place, int most) {
@@ -16,7 +37,7 @@ int window_at(const LatticePlace& place, int most) {
     const double lean =
         std::abs(place.along_i.x() * place.along_j.y() - place.along_i.y() * place.along_j.x()) /
         std::max(place.along_i.norm(), place.along_j.norm());
-    return std::clamp(static_cast<int>(0.45 * std::min(lean, place.least_step())), 2, most);
+    return std::clamp(static_cast<int>(kWindowShare * std::min(lean, place.least_step())), 2, most);
 }
 
 CornerStart start_at(const LatticeCell& cell, const LatticePlace& place, const Vector2d& at, int most) {
@@ -60,7 +81,9 @@ void drop_pulled(const std::map<LatticeCell, CornerFit>& fits, SaddleLattice& la
         for (const auto& [size, cell] : off) {
             const auto fit = fits.find(cell);
             const double doubt = fit == fits.end() ? 0 : fit->second.foreign;
-            if (size < std::max((doubt > 0.05 ? 0.15 : 0.3), (doubt > 0.05 ? 3.5 : 6.0) * usual)) continue;
+            if (size < std::max((doubt > kForeignDoubt ? kPulledDoubtful_px : kPulled_px),
+                                (doubt > kForeignDoubt ? kPulledDoubtful : kPulled) * usual))
+                continue;
             lattice.erase(cell);
             if (++dropped > lattice.size() / 10) break;
         }
@@ -109,9 +132,10 @@ double measure_corners(const cv::Mat& small, SaddleLattice& lattice) {
                 if (!place) continue;
                 if (round > 0) tried.push_back(cell);
                 const auto fit = fit_corner(small, start_at(cell, *place, place->at, kRough));
-                if (!fit || !sound(*fit) || fit->foreign > 0.1 || fit->half_contrast < 0.65 * usual ||
-                    fit->noise > 0.2 * fit->half_contrast ||
-                    (fit->at - place->at).norm() > 0.12 * place->least_step())
+                if (!fit || !sound(*fit) || fit->foreign > kMostForeign ||
+                    fit->half_contrast < kLeastContrastSearched * usual ||
+                    fit->noise > kMostNoiseSearched * fit->half_contrast ||
+                    (fit->at - place->at).norm() > kOffPrediction * place->least_step())
                     continue;
                 extra.emplace_back(cell, *fit);
                 more = true;
@@ -122,7 +146,7 @@ double measure_corners(const cv::Mat& small, SaddleLattice& lattice) {
         }
         if (!more) break;
     }
-    drop_misfits(lattice, 0.1);
+    drop_misfits(lattice, kMisfitMeasured);
     return blur_px;
 }
 
@@ -179,8 +203,8 @@ void refine_corners(const cv::Mat& grey, double factor, double blur_px, SaddleLa
             for (int dj = -2; dj <= 2; ++dj)
                 if (const auto n = fits.find({cell.first + di, cell.second + dj}); n != fits.end())
                     contrasts.push_back(n->second.half_contrast);
-        if (fit.noise > (1.7 * usual + 0.02) * fit.half_contrast ||
-            fit.half_contrast < 0.75 * median(contrasts))
+        if (fit.noise > (kRestTimes * usual + kRestMore) * fit.half_contrast ||
+            fit.half_contrast < kLeastContrastAround * median(contrasts))
             bad.push_back(cell);
     }
     for (auto& [cell, fit] : fits) lattice[cell].at = fit.at;
@@ -192,9 +216,10 @@ void refine_corners(const cv::Mat& grey, double factor, double blur_px, SaddleLa
             const auto place = predict(lattice, i, j);
             if (!place) continue;
             const auto fit = fit_corner(grey, start_at({i, j}, *place, place->at, most));
-            if (!fit || !sound(*fit) || fit->foreign > 0.1 || fit->half_contrast < 0.7 * usual_contrast ||
-                fit->noise > (1.7 * usual + 0.02) * fit->half_contrast ||
-                (fit->at - place->at).norm() > 0.12 * place->least_step())
+            if (!fit || !sound(*fit) || fit->foreign > kMostForeign ||
+                fit->half_contrast < kLeastContrastAdded * usual_contrast ||
+                fit->noise > (kRestTimes * usual + kRestMore) * fit->half_contrast ||
+                (fit->at - place->at).norm() > kOffPrediction * place->least_step())
                 continue;
             lattice[{i, j}] = {fit->at, -1};
             fits.emplace(LatticeCell{i, j}, *fit);

@@ -7,6 +7,16 @@
 
 namespace seamwright::detail {
 
+namespace {
+
+// Weight on the perspective's two numbers in predict(): with few corners around, it is not seen and held small.
+constexpr double kHoldFew = 3e-3;       // with six to eight corners
+constexpr double kHold = 1e-4;          // with more
+constexpr double kRidge8 = 1e-12;       // keeps the normal equations solvable
+constexpr double kLeastScatter = 1e-9;  // guards the scale
+
+}  // namespace
+
 using Eigen::Vector2d;
 
 LatticeBox box_of(const SaddleLattice& lattice) {
@@ -49,7 +59,7 @@ std::optional<LatticePlace> predict(const SaddleLattice& lattice, double i, doub
     mean /= static_cast<double>(known.size());
     double scale = 0;
     for (const Known& k : known) scale += (k.at - mean).norm();
-    scale = static_cast<double>(known.size()) / std::max(scale, 1e-9);
+    scale = static_cast<double>(known.size()) / std::max(scale, kLeastScatter);
     // x (1 + g a + h b) = x0 + x1 a + x2 b, the same for y; g and h held small where few corners carry them.
     Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Zero();
     Eigen::Matrix<double, 8, 1> right = Eigen::Matrix<double, 8, 1>::Zero();
@@ -65,8 +75,8 @@ std::optional<LatticePlace> predict(const SaddleLattice& lattice, double i, doub
         normal.noalias() += weight * r * r.transpose();
         right += weight * q.y() * r;
     }
-    const double hold = known.size() < 6 ? 1 : known.size() < 9 ? 3e-3 : 1e-4;
-    normal.diagonal().array() += 1e-12;
+    const double hold = known.size() < 6 ? 1 : known.size() < 9 ? kHoldFew : kHold;
+    normal.diagonal().array() += kRidge8;
     normal(6, 6) += hold;
     normal(7, 7) += hold;
     const Eigen::Matrix<double, 8, 1> x = normal.ldlt().solve(right);
@@ -98,6 +108,29 @@ void drop_misfits(SaddleLattice& lattice, double share) {
 
 namespace {
 
+// Of a step, from where the corners around say: dropped from a grown lattice.
+constexpr double kSeedMisfit = 0.2;
+// Looking along an edge for the next corner, px and px per px of way.
+constexpr double kLookAround_px = 2.5;  // of the way's point, at its start
+constexpr double kLookWiden = 0.12;     // how the look around widens on the way
+constexpr double kLeastAhead_px = 3.5;  // nearer is the corner itself
+constexpr double kMostAside = 0.17;     // of the way ahead, beside the edge's direction (besides one pixel)
+constexpr double kSidesFrom_px = 1.5;   // off the edge, where its two colours are compared
+constexpr double kSidesWiden = 0.1;     // ... more, on the way
+// Of the saddle's contrast between the edge's sides: less is a lost edge.
+constexpr double kLeastSides = 0.15;
+// What fits to a corner as its neighbour.
+constexpr double kMostRaySine = 0.35;  // 20 degrees between the edge's directions at its two ends
+constexpr double kLeastContrastRatio = 0.3;
+constexpr double kMostContrastRatio = 3.3;
+// Of the shorter step, by which the fourth corner misses the others' parallelogram.
+constexpr double kMostUnclosed = 0.35;
+// Sine between a cell's directions: flatter, corners are not told apart.
+constexpr double kLeastCrossing = 0.15;
+constexpr double kMostEdgeSine = 0.42;    // between a corner's edge and the lattice's direction, 25 degrees
+constexpr double kNextWithin = 0.25;      // of a step from where it is expected: the next corner
+constexpr double kBeyondGapWithin = 0.2;  // ... over a gap
+
 double cross(const Vector2d& a, const Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
@@ -124,7 +157,7 @@ class Grower {
             auto seed = square_at(static_cast<int>(k));
             if (!seed) continue;
             grow(*seed);
-            drop_misfits(*seed, 0.2);
+            drop_misfits(*seed, kSeedMisfit);
             constexpr std::size_t kSettled = 9;
             if (seed->size() >= kSettled)
                 for (const auto& [cell, corner] : *seed) taken_[static_cast<std::size_t>(corner.saddle)] = 1;
@@ -180,15 +213,17 @@ class Grower {
             if (p.x() < 1 || p.y() < 1 || p.x() > soft_.cols - 2 || p.y() > soft_.rows - 2) return -1;
             int best = -1;
             double least = 1e9;
-            around(p, 2.5 + 0.12 * t, [&](int k) {
+            around(p, kLookAround_px + kLookWiden * t, [&](int k) {
                 if (k == from) return;
                 const Vector2d d = at(k).at - s.at;
                 const double ahead = d.dot(along), aside = std::abs(cross(along, d));
-                if (ahead < 3.5 || aside > 1 + 0.17 * ahead || !opposite(s, at(k), second)) return;
+                if (ahead < kLeastAhead_px || aside > 1 + kMostAside * ahead || !opposite(s, at(k), second))
+                    return;
                 if (ahead < least) least = ahead, best = k;
             });
             if (best >= 0) return best;
-            lost = sides(p, (1.5 + 0.1 * t) * normal) > 0.15 * s.contrast ? 0 : lost + 1;
+            lost = sides(p, (kSidesFrom_px + kSidesWiden * t) * normal) > kLeastSides * s.contrast ? 0
+                                                                                                   : lost + 1;
             if (lost >= 3) return -1;
         }
         return -1;
@@ -196,13 +231,13 @@ class Grower {
 
     // Whether `b` is what follows `a` along a's edge: the same edges within 25 degrees, colours swapped.
     static bool opposite(const Saddle& a, const Saddle& b, bool along_second) {
-        constexpr double kSin = 0.42;
         const Vector2d& ray = along_second ? a.second : a.first;
         const Vector2d& side = along_second ? a.first : a.second;
         const Vector2d& b_ray = along_second ? b.first : b.second;
         const Vector2d& b_side = along_second ? b.second : b.first;
-        if (std::abs(cross(ray, b_ray)) > 0.35 || std::abs(cross(side, b_side)) > kSin) return false;
-        return b.contrast > 0.3 * a.contrast && b.contrast < 3.3 * a.contrast;
+        if (std::abs(cross(ray, b_ray)) > kMostRaySine || std::abs(cross(side, b_side)) > kMostEdgeSine)
+            return false;
+        return b.contrast > kLeastContrastRatio * a.contrast && b.contrast < kMostContrastRatio * a.contrast;
     }
 
     // Four corners that close a square with `k` as one of them.
@@ -221,7 +256,7 @@ class Grower {
                 if (d < 0 || d != e || d == k || taken_[static_cast<std::size_t>(d)]) continue;
                 const Vector2d u = at(b).at - s.at, v = at(c).at - s.at, w = at(d).at - s.at;
                 // The fourth closes the others' parallelogram as perspective lets it.
-                if ((w - u - v).norm() > 0.35 * std::min(u.norm(), v.norm())) continue;
+                if ((w - u - v).norm() > kMostUnclosed * std::min(u.norm(), v.norm())) continue;
                 if (cross(si * u, sj * v) <= 0) continue;
                 SaddleLattice lattice;
                 lattice[{0, 0}] = {s.at, k};
@@ -242,8 +277,8 @@ class Grower {
         if (step < 3) return -1;
         const Vector2d i = place->along_i.normalized(), j = place->along_j.normalized();
         const double between = std::abs(cross(i, j));
-        if (between < 0.15) return -1;
-        const double tolerance = std::min(0.42, 0.5 * between);
+        if (between < kLeastCrossing) return -1;
+        const double tolerance = std::min(kMostEdgeSine, 0.5 * between);
         const bool even = (cell.first + cell.second) % 2 == 0;
         int best = -1;
         double least = share * step + 0.5;
@@ -291,7 +326,7 @@ class Grower {
                 auto& before = tried[n];
                 if (before == near) continue;
                 before = near;
-                const int k = fitting(lattice, own, n, gap == 1 ? 0.25 : 0.2, gap + 1);
+                const int k = fitting(lattice, own, n, gap == 1 ? kNextWithin : kBeyondGapWithin, gap + 1);
                 if (k < 0) continue;
                 lattice[n] = {at(k).at, k};
                 own[static_cast<std::size_t>(k)] = 1;

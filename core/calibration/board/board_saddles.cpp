@@ -6,16 +6,21 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/numbers.h"
+
 namespace seamwright::detail {
 
 using Eigen::Vector2d;
 
 cv::Mat softened_root(const cv::Mat& grey, double full_scale) {
+    constexpr double kFullGrey = 255.0;    // the root's scale, whatever the camera's
+    constexpr double kOwnNoise = 4.0;      // grey values, added under the root
+    constexpr double kSoftening_px = 1.2;  // narrow against a square, wide enough for second differences
     // Below some grey values the noise is the camera's own and even already.
     cv::Mat root;
-    grey.convertTo(root, CV_32F, 255.0 / full_scale, 4.0);
+    grey.convertTo(root, CV_32F, kFullGrey / full_scale, kOwnNoise);
     cv::sqrt(root, root);
-    cv::GaussianBlur(root, root, {7, 7}, 1.2);
+    cv::GaussianBlur(root, root, {7, 7}, kSoftening_px);
     return root;
 }
 
@@ -29,6 +34,11 @@ float between(const cv::Mat& image, double x, double y) {
 }
 
 constexpr int kRing = 32;
+
+// Of the ring's contrast: opposite places differ by more where there is no saddle.
+constexpr float kMostUnlike = 0.8F;
+constexpr double kMostAskew_rad = 0.5;     // by which an edge may bend between the ring's two crossings
+constexpr double kLeastBetween_rad = 0.4;  // edges closer in direction than this are one
 
 struct Ring {
     std::array<double, kRing> cosine, sine;
@@ -56,7 +66,7 @@ std::optional<Saddle> edges_through(const cv::Mat& soft, const Ring& ring, const
         size += std::abs(v[i] - middle);
         if (i < kRing / 2) unlike += 2 * std::abs(v[i] - v[i + kRing / 2]);
     }
-    if (unlike > 0.8F * size) return std::nullopt;
+    if (unlike > kMostUnlike * size) return std::nullopt;
     std::array<double, 4> turn{};
     int turns = 0, first_rise = -1;
     for (std::size_t i = 0; i < kRing; ++i) {
@@ -73,9 +83,10 @@ std::optional<Saddle> edges_through(const cv::Mat& soft, const Ring& ring, const
     };
     const double rise = 0.5 * (crossing(0) + crossing(2) - M_PI),
                  fall = 0.5 * (crossing(1) + crossing(3) - M_PI);
-    if (std::abs(crossing(2) - crossing(0) - M_PI) > 0.5 || std::abs(crossing(3) - crossing(1) - M_PI) > 0.5)
+    if (std::abs(crossing(2) - crossing(0) - M_PI) > kMostAskew_rad ||
+        std::abs(crossing(3) - crossing(1) - M_PI) > kMostAskew_rad)
         return std::nullopt;
-    if (fall - rise < 0.4 || fall - rise > M_PI - 0.4) return std::nullopt;
+    if (fall - rise < kLeastBetween_rad || fall - rise > M_PI - kLeastBetween_rad) return std::nullopt;
     Saddle s;
     s.at = at;
     s.first = {std::cos(rise), std::sin(rise)};
@@ -100,6 +111,9 @@ std::vector<Saddle> find_saddles(const cv::Mat& soft, double radius_px) {
             r[x] = xy * xy - xx * yy;
         }
     }
+    constexpr float kLeastResponse = 3e-4F;  // the threshold's lower limit, of a picture without noise
+    // ... and its upper one: a saddle this strong is never lost for noise
+    constexpr float kMostResponse = 0.02F;
     // The noise: what half of the places with a saddle's sign have at most.
     std::vector<float> some;
     for (int y = rim; y < h - rim; y += 7)
@@ -107,7 +121,7 @@ std::vector<Saddle> find_saddles(const cv::Mat& soft, double radius_px) {
             if (const float r = response.at<float>(y, x); r > 0) some.push_back(r);
     if (some.empty()) return out;
     std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2), some.end());
-    const float least = std::clamp(6 * some[some.size() / 2], 3e-4F, 0.02F);
+    const float least = std::clamp(6 * some[some.size() / 2], kLeastResponse, kMostResponse);
     struct Peak {
         float response;
         int x, y;
@@ -183,6 +197,38 @@ const StepTable& steps() {
     static const StepTable table;
     return table;
 }
+
+// What a fit of a corner takes for sound.
+constexpr double kMostForeignSound = 0.2;  // of the window's pixels
+constexpr double kMostNoiseSound = 0.4;    // of half the contrast
+constexpr double kMostSigma_px = 0.5;      // of the corner
+
+// The fit's course.
+
+// Of half the window: the blur a fit starts from, and what lies nearer to an edge has no level.
+constexpr double kNearEdge = 0.15;
+constexpr double kLeastStartBlur_px = 0.7;
+constexpr double kMostStartBlur_px = 2.0;
+// Grey values per root of a grey value, 8 bit: four times this above paper is no noise.
+constexpr double kShotNoise8 = 0.25;
+constexpr double kShotNoise16 = 4.0;  // ... 16 bit
+// Of the window's pixels: under more stripe or glint there is no corner to measure.
+constexpr double kMostOutshining = 0.4;
+constexpr double kDampingStart = 1e-3;
+constexpr double kMostDamping = 1e4;   // no better step is to be found
+constexpr double kRidge = 1e-9;        // keeps a window without some parameter solvable
+constexpr double kLeastBlur_px = 0.3;  // narrower than a pixel's own width is not told
+constexpr double kMostBlur = 0.6;      // of half the window
+constexpr double kSettled_px = 1e-3;   // move of the corner below which a fit has settled
+constexpr double kSettledCost = 1e-3;  // relative gain in cost below which it has
+constexpr double kDampingDown = 0.15;
+constexpr double kLeastScale = 0.02;  // of half the contrast: the noise is not taken for smaller
+// Noise scales at which the biweight's weight ends: 95 % efficient on normal noise.
+constexpr double kTukey = 4.7;
+constexpr double kCleanReach = 0.6;      // of that reach: nothing in the window asks for weights
+constexpr double kForeignWeight = 0.05;  // a pixel of less weight counts as foreign
+// Between an edge's start and its fit (37 degrees): beyond, the edges have changed places.
+constexpr double kLeastTurnCosine = 0.8;
 
 struct WindowPixel {
     float x, y, grey, weight;
@@ -267,7 +313,8 @@ bool gather(const cv::Mat& grey, int cx, int cy, int half, std::vector<WindowPix
 }  // namespace
 
 bool sound(const CornerFit& fit) {
-    return fit.foreign < 0.2 && fit.noise < 0.4 * fit.half_contrast && fit.sigma_px < 0.5;
+    return fit.foreign < kMostForeignSound && fit.noise < kMostNoiseSound * fit.half_contrast &&
+           fit.sigma_px < kMostSigma_px;
 }
 
 std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& start) {
@@ -281,7 +328,8 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
     if (half < 2) return std::nullopt;
     Vector9 p;
     p << start.at.x() - cx, start.at.y() - cy, std::atan2(start.first.y(), start.first.x()),
-        std::atan2(start.second.y(), start.second.x()), 0, 0, 0, 0, std::clamp(0.15 * half, 0.7, 2.0);
+        std::atan2(start.second.y(), start.second.x()), 0, 0, 0, 0,
+        std::clamp(kNearEdge * half, kLeastStartBlur_px, kMostStartBlur_px);
     // Levels by the medians of the sectors, away from the edges.
     bright.clear();
     dark.clear();
@@ -289,7 +337,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
         const double x = q.x - p(0), y = q.y - p(1);
         const double u = start.first.x() * y - start.first.y() * x,
                      v = start.second.y() * x - start.second.x() * y;
-        if (std::min(std::abs(u), std::abs(v)) < 0.15 * half) continue;
+        if (std::min(std::abs(u), std::abs(v)) < kNearEdge * half) continue;
         (u * v > 0 ? bright : dark).push_back(q.grey);
     }
     if (bright.size() < 4 || dark.size() < 4) return std::nullopt;
@@ -298,8 +346,9 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
     p(4) = 0.5 * (white + black);
     p(5) = 0.5 * (white - black);
     // What outshines the paper is a stripe or a glint, and so is what lies beside it.
-    const double limit = white + std::max(0.5 * (white - black), 4 * std::sqrt(std::max(white, 1.0)) *
-                                                                     (grey.depth() == CV_8U ? 0.25 : 4.0));
+    const double limit =
+        white + std::max(0.5 * (white - black), 4 * std::sqrt(std::max(white, 1.0)) *
+                                                    (grey.depth() == CV_8U ? kShotNoise8 : kShotNoise16));
     std::size_t out_shining = 0;
     for (std::size_t i = 0; i < window.size(); ++i) {
         if (window[i].grey <= limit) continue;
@@ -308,11 +357,11 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
             if (std::abs(q.x - window[i].x) <= 2 && std::abs(q.y - window[i].y) <= 2) q.weight = 0;
     }
     const auto n = static_cast<double>(window.size());
-    if (static_cast<double>(out_shining) > 0.4 * n) return std::nullopt;
+    if (static_cast<double>(out_shining) > kMostOutshining * n) return std::nullopt;
     residual.resize(window.size());
     trial_residual.resize(window.size());
     Sum sum, trial;
-    double damping = 1e-3;
+    double damping = kDampingStart;
     const double largest = 0.5 * half;
     const auto solve = [&](int rounds) {
         accumulate(window, p, start.bend1, start.bend2, residual, sum);
@@ -320,20 +369,21 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
             if (sum.weight < 12) return false;
             Matrix9 m = sum.normal;
             m.diagonal() *= 1 + damping;
-            m.diagonal().array() += 1e-9;
+            m.diagonal().array() += kRidge;
             const Vector9 move = m.ldlt().solve(sum.right);
             Vector9 next = p + move;
-            next(8) = std::clamp(next(8), 0.3, 0.6 * half);
+            next(8) = std::clamp(next(8), kLeastBlur_px, kMostBlur * half);
             if (!next.allFinite() || next.head<2>().norm() > largest) return false;
             accumulate(window, next, start.bend1, start.bend2, trial_residual, trial);
             if (trial.cost > sum.cost) {
-                damping = std::max(1e-3, damping * 8);
-                if (damping > 1e4) return true;
+                damping = std::max(kDampingStart, damping * 8);
+                if (damping > kMostDamping) return true;
                 continue;
             }
-            const bool settled = move.head<2>().norm() < 1e-3 && sum.cost - trial.cost < 1e-3 * sum.cost;
+            const bool settled =
+                move.head<2>().norm() < kSettled_px && sum.cost - trial.cost < kSettledCost * sum.cost;
             p = next;
-            damping *= 0.15;
+            damping *= kDampingDown;
             std::swap(sum, trial);
             residual.swap(trial_residual);
             if (settled) break;
@@ -345,18 +395,18 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
         if (!solve(round == 0 ? 12 : 3)) return std::nullopt;
         size.clear();
         for (std::size_t i = 0; i < window.size(); ++i) size.push_back(std::abs(residual[i]));
-        scale = std::max(1.4826 * middle_of(size), 0.02 * p(5));
+        scale = std::max(kMadToSigma * middle_of(size), kLeastScale * p(5));
         if (round == 2) break;
         // The pixel's own rounding is noise as well.
-        const double reach = 4.7 * std::max(scale, 0.5);
-        if (round == 0 && *std::max_element(size.begin(), size.end()) < 0.6 * reach) break;
+        const double reach = kTukey * std::max(scale, 0.5);
+        if (round == 0 && *std::max_element(size.begin(), size.end()) < kCleanReach * reach) break;
         foreign = 0;
         for (std::size_t i = 0; i < window.size(); ++i) {
             const double z = residual[i] / reach;
             const bool masked = window[i].grey > limit;
             const double weight = masked || std::abs(z) >= 1 ? 0 : (1 - z * z) * (1 - z * z);
             window[i].weight = static_cast<float>(weight);
-            foreign += weight < 0.05;
+            foreign += weight < kForeignWeight;
         }
         foreign /= n;
     }
@@ -369,9 +419,10 @@ std::optional<CornerFit> fit_corner(const cv::Mat& grey, const CornerStart& star
     fit.foreign = foreign;
     fit.noise = std::sqrt(sum.cost / std::max(sum.weight, 1.0));
     // The edges may have turned, not changed places.
-    if (p(5) <= 0 || fit.first.dot(start.first) < 0.8 || fit.second.dot(start.second) < 0.8)
+    if (p(5) <= 0 || fit.first.dot(start.first) < kLeastTurnCosine ||
+        fit.second.dot(start.second) < kLeastTurnCosine)
         return std::nullopt;
-    const Eigen::LDLT<Matrix9> ldlt(sum.normal + 1e-9 * Matrix9::Identity());
+    const Eigen::LDLT<Matrix9> ldlt(sum.normal + kRidge * Matrix9::Identity());
     const double variance = sum.cost / std::max(sum.weight - 9, 3.0);
     Vector9 unit = Vector9::Zero();
     unit(0) = 1;

@@ -14,6 +14,18 @@
 namespace seamwright::detail {
 namespace {
 
+// An outline that counts as a dot.
+
+// Its shorter axis over its longer one: flatter, it is another thing.
+constexpr double kLeastAxes = 0.25;
+constexpr double kLeastAxis_px = 1.2;     // the shorter semi-axis
+constexpr double kMostUnelliptic = 0.15;  // relative, its area against the ellipse of its second moments
+constexpr double kLeastHullShare = 0.85;  // its area over its hull's: a dot has no dents
+// Outlines of one dot at several thresholds.
+constexpr double kSameRadius = 0.4;      // of the radius, by which they may differ
+constexpr double kAroundDot = 2.5;       // radii around a dot that are looked at in the whole picture
+constexpr double kNextDotWithin = 0.33;  // of a step from where it is expected
+
 constexpr double kSoft_px = 0.7;
 constexpr double kLargestDot = 0.02;  // of the picture's area
 
@@ -38,11 +50,11 @@ void ellipses(const cv::Mat& binary, double largest_px2, std::vector<Dot>& out) 
         const double xx = m.mu20 / m.m00, xy = m.mu11 / m.m00, yy = m.mu02 / m.m00;
         const double half = 0.5 * (xx + yy), root = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
         const double p = 2 * std::sqrt(half + root), q = 2 * std::sqrt(std::max(0.0, half - root));
-        if (q < 0.25 * p || q < 1.2) continue;
-        if (std::abs(m.m00 / (kPi * p * q) - 1) > 0.15) continue;
+        if (q < kLeastAxes * p || q < kLeastAxis_px) continue;
+        if (std::abs(m.m00 / (kPi * p * q) - 1) > kMostUnelliptic) continue;
         std::vector<cv::Point> hull;
         cv::convexHull(c, hull);
-        if (m.m00 < 0.85 * cv::contourArea(hull)) continue;
+        if (m.m00 < kLeastHullShare * cv::contourArea(hull)) continue;
         out.push_back({{m.m10 / m.m00, m.m01 / m.m00}, std::sqrt(p * q), 1});
     }
 }
@@ -54,7 +66,8 @@ std::vector<Dot> find_dots(const cv::Mat& grey) {
             bool known = false;
             for (auto& m : merged) {
                 const double apart = cv::norm(d.centre - m.centre);
-                if (apart > 0.5 * m.radius || std::abs(d.radius - m.radius) > 0.4 * m.radius + 1) continue;
+                if (apart > 0.5 * m.radius || std::abs(d.radius - m.radius) > kSameRadius * m.radius + 1)
+                    continue;
                 m.centre = (m.centre * m.seen + d.centre) * (1.0 / (m.seen + 1));
                 m.radius = (m.radius * m.seen + d.radius) / (m.seen + 1);
                 ++m.seen;
@@ -91,7 +104,7 @@ std::vector<Dot> find_dots(const cv::Mat& grey) {
 // A dot of a reduced picture measured in the whole one, between its own darkness and that around it. What is not found
 // again keeps its place.
 void measure_in_full(const cv::Mat& full, Dot& dot) {
-    const int half = static_cast<int>(std::ceil(2.5 * dot.radius)) + 2;
+    const int half = static_cast<int>(std::ceil(kAroundDot * dot.radius)) + 2;
     const cv::Rect around =
         cv::Rect(cvRound(dot.centre.x) - half, cvRound(dot.centre.y) - half, 2 * half + 1, 2 * half + 1) &
         cv::Rect(0, 0, full.cols, full.rows);
@@ -108,7 +121,7 @@ void measure_in_full(const cv::Mat& full, Dot& dot) {
         for (Dot& d : seen) {
             d.centre += cv::Point2d(around.tl());
             if (cv::norm(d.centre - dot.centre) < 0.5 * dot.radius &&
-                std::abs(d.radius - dot.radius) < 0.4 * dot.radius)
+                std::abs(d.radius - dot.radius) < kSameRadius * dot.radius)
                 kept.push_back(d);
         }
     }
@@ -151,7 +164,7 @@ Lattice grow(const std::vector<Dot>& dots, std::size_t seed, const cv::Point2d& 
             const Cell n{c.first + di, c.second + dj};
             if (lattice.count(n)) continue;
             const cv::Point2d step = di ? sa * di : sb * dj;
-            const auto found = nearest(dots, taken, here + step, 0.33 * cv::norm(step));
+            const auto found = nearest(dots, taken, here + step, kNextDotWithin * cv::norm(step));
             if (found == static_cast<std::size_t>(-1)) continue;
             lattice[n] = found;
             taken[found] = 1;

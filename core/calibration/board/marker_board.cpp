@@ -14,6 +14,11 @@
 namespace seamwright::detail {
 namespace {
 
+constexpr double kLeastMarkerShare = 0.2;  // of the pitch: a marker told smaller was misread
+// Of the gap between two tags, clear of edges around a small square's corner.
+constexpr double kSmallSquareShare = 0.8;
+constexpr double kClearShare = 0.95;  // of the clear space: the window keeps off its rim
+
 using Eigen::Vector2d;
 using Corners = std::array<Vector2d, 4>;  // from the marker's top left on, clockwise as it is read
 
@@ -232,7 +237,7 @@ double marker_share(const std::vector<Seen>& markers) {
         }
     }
     const double share = shares.empty() ? kUsualMarker : median(shares);
-    return share > 0.2 && share < 1 ? share : kUsualMarker;
+    return share > kLeastMarkerShare && share < 1 ? share : kUsualMarker;
 }
 
 // The picture near a place of the board, from the markers around it; nullopt: none is near.
@@ -278,7 +283,7 @@ std::vector<Wanted> wanted_corners(const BoardSpec& spec, bool legacy, double ma
         wanted.push_back(
             {index,
              Vector2d(column / 2 + (right ? 0.5 : -0.5) * marker, row / 2 + (low ? 0.5 : -0.5) * marker),
-             right != low, 0.8 * (1 - marker)});
+             right != low, kSmallSquareShare * (1 - marker)});
     }
     return wanted;
 }
@@ -301,7 +306,8 @@ FoundBoard corners_of(const cv::Mat& full, const Read& read, double scale, const
         const Vector2d place = at(w.at), x = at(w.at + Vector2d(0.25, 0)) - place,
                        y = at(w.at + Vector2d(0, 0.25)) - place;
         const double pitch_px = 4 * std::min(x.norm(), y.norm());
-        const int half = std::clamp(static_cast<int>(0.95 * w.clear * pitch_px), kLeastHalf_px, kMostHalf_px);
+        const int half =
+            std::clamp(static_cast<int>(kClearShare * w.clear * pitch_px), kLeastHalf_px, kMostHalf_px);
         if (!place.allFinite() || pitch_px < kLeastPitch_px) continue;
         CornerStart start{place, x.normalized(), y.normalized(), half};
         if (!w.light_ahead) start.first = -y.normalized(), start.second = x.normalized();
